@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+namespace lucerna {
+
+/// What a flux counts: luminous flux (lm) or radiant flux (W). The two are never added or converted silently.
+enum class FluxUnit { lumen, watt };
+
+/// "lm" or "W".
+constexpr std::string_view symbol(FluxUnit unit) { return unit == FluxUnit::lumen ? "lm" : "W"; }
+
+}  // namespace lucerna
