@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lucerna/photometry/intensity_distribution.h"
+
+namespace lucerna {
+
+/// The cells into which traced flux is counted: one per grid angle, centred on it, with edges half way to its
+/// neighbours. The cells of the first and last gamma are half cells; at gamma 0 and 180 they are wedges of a
+/// polar cap.
+struct IntensityBins {
+  /// Lower edge of C bin i; bin i is [c_edge_deg[i], c_edge_deg[i + 1]), the last one ends at c_edge_deg[0] +
+  /// 360. c_edge_deg[0] is negative (half the last gap) unless there is one plane only ([0, 360)).
+  std::vector<double> c_edge_deg;
+  /// gamma_edge_deg[g], gamma_edge_deg[g + 1] bound bin g; one more than there are gammas.
+  std::vector<double> gamma_edge_deg;
+  /// Solid angle of bin [c][g] in sr: `solid_angle_sr[c * gammas + g]`.
+  std::vector<double> solid_angle_sr;
+};
+
+/// The bins of a grid (planes ascending from 0 below 360, gammas ascending within [0, 180]; InputError
+/// otherwise).
+IntensityBins intensity_bins(std::span<const double> c_deg, std::span<const double> gamma_deg);
+
+/// What `intensity_from_bins` returns.
+struct BinnedIntensity {
+  IntensityDistribution distribution;
+  /// Standard error of each value of `distribution.cd`; empty if none was given.
+  std::vector<double> standard_error_cd;
+  /// The last factor on all values that made the flux exact. 1 within a percent on a grid that resolves the
+  /// beam; further away means that the gamma step is too wide for what was traced, and the peak is uncertain
+  /// by as much.
+  double closure = 1.0;
+};
+
+/// Intensities from flux per bin ([c][gamma], as `intensity_bins` cuts the sphere), such that `total_flux` of
+/// the result is the sum of the bins to rounding.
+///
+/// Method. A bin's flux over its solid angle is the mean intensity A of the cell. `total_flux` weights ring k
+/// with W_k, the cell ring has the solid angle S_k; on equal steps d, W_k = cos(d/2) S_k inside but W_0 = 2
+/// cos^2(d/4) S_0 at a pole, so cell means put into that sum count the polar caps twice. Dividing by W_k
+/// instead would close the sum but halve the intensity on the axis. For a smooth beam the ring values that
+/// return its flux without touching the axis are R = I - (d^2/12) (I'' - I' cot gamma); with A = I + (d^2/24)
+/// I'' + (d^2/12) I' cot gamma this is R = A - (d^2/8) I'', and at the pole R = A - (A_1 - A_0) / 9. So each
+/// ring is multiplied by R/A of its ring mean, with I'' from the second difference of the ring means, limited
+/// by the smaller of the two first differences (minmod), which leaves sharp edges and noise alone and values
+/// non-negative. What is then left to the exact flux (fourth order in d / beam width) is one factor on all
+/// values, returned as `closure`. The wedges of a polar cap get their common mean. A ring factor is a mean
+/// over all planes, so a cell's relative noise stays that of its ray count.
+///
+/// `flux` must be finite and >= 0, of size planes * gammas; `flux_standard_error` of the same size or empty.
+/// Throws InputError otherwise. O(bins).
+BinnedIntensity intensity_from_bins(std::span<const double> c_deg, std::span<const double> gamma_deg,
+                                    std::span<const double> flux, std::span<const double> flux_standard_error,
+                                    FluxUnit unit = FluxUnit::lumen);
+
+}  // namespace lucerna

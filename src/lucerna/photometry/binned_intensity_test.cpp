@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/photometry/binned_intensity.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <numeric>
+
+#include "lucerna/core/error.h"
+#include "lucerna/core/random.h"
+#include "lucerna/photometry/flux.h"
+
+namespace lucerna {
+namespace {
+
+using Intensity = std::function<double(double c_deg, double gamma_deg)>;
+
+/// Exact flux per bin, by the midpoint rule on fine parts of each bin.
+std::vector<double> binned_flux(const std::vector<double>& c, const std::vector<double>& g,
+                                const Intensity& cd) {
+  constexpr int kParts = 24;
+  const IntensityBins bins = intensity_bins(c, g);
+  std::vector<double> flux;
+  for (std::size_t ic = 0; ic < c.size(); ++ic) {
+    const double c0 = bins.c_edge_deg[ic];
+    const double c1 = ic + 1 < c.size() ? bins.c_edge_deg[ic + 1] : bins.c_edge_deg[0] + 360.0;
+    for (std::size_t ig = 0; ig < g.size(); ++ig) {
+      const double u0 = std::cos(radians(bins.gamma_edge_deg[ig]));
+      const double u1 = std::cos(radians(bins.gamma_edge_deg[ig + 1]));
+      double sum = 0.0;
+      for (int i = 0; i < kParts; ++i) {
+        for (int j = 0; j < kParts; ++j) {
+          const double gamma = degrees(std::acos(std::clamp(u0 + (u1 - u0) * (j + 0.5) / kParts, -1.0, 1.0)));
+          sum += cd(c0 + (c1 - c0) * (i + 0.5) / kParts, gamma);
+        }
+      }
+      flux.push_back(sum / (kParts * kParts) * bins.solid_angle_sr[ic * g.size() + ig]);
+    }
+  }
+  return flux;
+}
+
+double sum_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+TEST(BinnedIntensity, BinsCoverTheSphere) {
+  const std::vector<double> c{0.0, 5.0, 100.0, 300.0}, g{0.0, 1.0, 30.0, 170.0, 180.0};
+  const IntensityBins bins = intensity_bins(c, g);
+  EXPECT_NEAR(sum_of(bins.solid_angle_sr), 4.0 * std::numbers::pi, 1e-12);
+  EXPECT_DOUBLE_EQ(bins.c_edge_deg[0], -30.0);
+  EXPECT_DOUBLE_EQ(bins.c_edge_deg[1], 2.5);
+  EXPECT_DOUBLE_EQ(bins.gamma_edge_deg[1], 0.5);
+}
+
+// Whatever is counted, the trade's sum returns it: noise, single cells, poles, unequal grids.
+TEST(BinnedIntensity, QuadratureReturnsTheTracedFlux) {
+  const std::vector<std::vector<double>> planes{{0.0}, {0.0, 90.0, 180.0, 270.0}, {0.0, 11.0, 200.0}};
+  const std::vector<std::vector<double>> gammas{
+      {0.0, 10.0, 20.0, 90.0}, {0.0, 1.0, 2.0, 5.0, 90.0, 179.0, 180.0}, {90.0, 120.0, 180.0}};
+  for (const auto& c : planes) {
+    for (const auto& g : gammas) {
+      for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        std::vector<double> flux(c.size() * g.size(), 0.0);
+        Rng rng(1, seed);
+        // Sparse for the first seeds: one lit cell, also at the poles.
+        for (double& f : flux) f = seed >= 20 || rng.uniform() < 0.1 ? rng.uniform() : 0.0;
+        flux[seed % flux.size()] += 1.0;
+        const BinnedIntensity result = intensity_from_bins(c, g, flux, {});
+        EXPECT_NEAR(total_flux(result.distribution), sum_of(flux), 1e-13 * sum_of(flux));
+        EXPECT_EQ(grid_fault(result.distribution), "");
+      }
+    }
+  }
+}
+
+// A narrow round beam: axis and flanks stay what they are, on a step that gives seven values across the half
+// width.
+TEST(BinnedIntensity, KeepsTheShapeOfANarrowBeam) {
+  const IntensityDistribution grid = uniform_distribution(30.0, 1.0);
+  for (const double sigma_deg : {2.0, 3.0, 6.0}) {
+    const auto gauss = [&](double, double g) {
+      return 1000.0 * std::exp(-0.5 * g * g / (sigma_deg * sigma_deg));
+    };
+    const auto flux = binned_flux(grid.c_deg, grid.gamma_deg, gauss);
+    const BinnedIntensity result = intensity_from_bins(grid.c_deg, grid.gamma_deg, flux, {});
+    // Fourth order in step / sigma remains.
+    const double allowed = 0.25 / std::pow(sigma_deg, 4.0);
+    EXPECT_NEAR(result.distribution.at(0, 0) / 1000.0, 1.0, allowed) << sigma_deg;
+    EXPECT_NEAR(result.closure, 1.0, allowed) << sigma_deg;
+    // What dividing by the weights of the sum would do to the axis: half of it goes.
+    const double naive = flux[0] * 12.0 / ring_weights_sr(grid.gamma_deg)[0];
+    EXPECT_LT(naive, 510.0);
+    // Cell means with one factor for the flux lose this much of the peak:
+    const IntensityBins bins = intensity_bins(grid.c_deg, grid.gamma_deg);
+    IntensityDistribution means = grid;
+    for (std::size_t i = 0; i < flux.size(); ++i) means.cd[i] = flux[i] / bins.solid_angle_sr[i];
+    const double by_factor = means.at(0, 0) * sum_of(flux) / total_flux(means);
+    EXPECT_GT(std::abs(by_factor / 1000.0 - 1.0),
+              2.0 * std::abs(result.distribution.at(0, 0) / 1000.0 - 1.0));
+  }
+}
+
+// A flat top with a sharp edge must not ring, and a smooth wide distribution must come back as it was.
+TEST(BinnedIntensity, LeavesEdgesAndWideBeamsAlone) {
+  const IntensityDistribution grid = uniform_distribution(15.0, 2.0);
+  const auto top = [](double, double g) { return g < 31.0 ? 500.0 : 0.0; };
+  const BinnedIntensity flat =
+      intensity_from_bins(grid.c_deg, grid.gamma_deg, binned_flux(grid.c_deg, grid.gamma_deg, top), {});
+  for (std::size_t g = 0; g < 91; ++g) {
+    EXPECT_NEAR(flat.distribution.at(3, g), g <= 15 ? 500.0 : 0.0, 5.0) << grid.gamma_deg[g];
+  }
+  const auto wide = [](double c, double g) {
+    return 100.0 + 80.0 * std::cos(radians(g)) + 15.0 * std::sin(radians(g)) * std::cos(radians(c));
+  };
+  const BinnedIntensity round =
+      intensity_from_bins(grid.c_deg, grid.gamma_deg, binned_flux(grid.c_deg, grid.gamma_deg, wide), {});
+  for (std::size_t c = 0; c < grid.c_deg.size(); ++c) {
+    for (std::size_t g = 0; g < 91; ++g) {
+      EXPECT_NEAR(round.distribution.at(c, g), wide(grid.c_deg[c], grid.gamma_deg[g]), 0.1);
+    }
+  }
+}
+
+// Counting noise goes through nearly as it is: the spread of the values over seeds against the stated errors.
+TEST(BinnedIntensityStatistical, StandardErrorsHold) {
+  const IntensityDistribution grid = uniform_distribution(45.0, 10.0);
+  const auto cells = grid.cd.size();
+  constexpr int kRuns = 400;
+  constexpr double kMean = 400.0;
+  std::vector<double> sum(cells, 0.0), squares(cells, 0.0), stated(cells, 0.0);
+  for (int run = 0; run < kRuns; ++run) {
+    std::vector<double> flux(cells), error(cells);
+    for (std::size_t i = 0; i < cells; ++i) {
+      Rng rng(7, static_cast<std::uint64_t>(run) * cells + i);
+      double normal = -6.0;
+      for (int k = 0; k < 12; ++k) normal += rng.uniform();
+      const double mean = kMean * (1.0 + static_cast<double>(i % 19));
+      flux[i] = mean + std::sqrt(mean) * normal;
+      error[i] = std::sqrt(mean);
+    }
+    const BinnedIntensity result = intensity_from_bins(grid.c_deg, grid.gamma_deg, flux, error);
+    for (std::size_t i = 0; i < cells; ++i) {
+      sum[i] += result.distribution.cd[i];
+      squares[i] += result.distribution.cd[i] * result.distribution.cd[i];
+      stated[i] += result.standard_error_cd[i] / kRuns;
+    }
+  }
+  for (std::size_t i = 0; i < cells; ++i) {
+    const double mean = sum[i] / kRuns;
+    const double spread = std::sqrt(std::max(0.0, squares[i] / kRuns - mean * mean));
+    // 5 sigma of a standard deviation from 400 runs is 0.18; the ring factor may add up to a tenth.
+    EXPECT_NEAR(spread / stated[i], 1.0, 0.28) << i;
+  }
+}
+
+TEST(BinnedIntensity, RefusesWhatIsNotFlux) {
+  const std::vector<double> c{0.0}, g{0.0, 90.0};
+  EXPECT_THROW(intensity_from_bins(c, g, std::vector<double>{1.0}, {}), InputError);
+  EXPECT_THROW(intensity_from_bins(c, g, std::vector<double>{1.0, -1.0}, {}), InputError);
+  EXPECT_THROW(intensity_from_bins(c, g, std::vector<double>{1.0, std::nan("")}, {}), InputError);
+  EXPECT_THROW(intensity_from_bins(c, g, std::vector<double>{1.0, 1.0}, std::vector<double>{1.0}),
+               InputError);
+}
+
+TEST(BinnedIntensity, NothingIsNothing) {
+  const std::vector<double> c{0.0, 180.0}, g{0.0, 90.0, 180.0};
+  const BinnedIntensity result = intensity_from_bins(c, g, std::vector<double>(6, 0.0), {});
+  EXPECT_EQ(total_flux(result.distribution), 0.0);
+  EXPECT_EQ(result.closure, 1.0);
+}
+
+}  // namespace
+}  // namespace lucerna

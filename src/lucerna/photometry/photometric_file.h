@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lucerna/photometry/intensity_distribution.h"
+
+namespace lucerna {
+
+/// One set of lamps of EULUMDAT lines 26a-26f. Sets are alternatives: their fluxes are not added.
+struct LampSet {
+  int count = 1;  ///< lamps in the set, >= 0 (absolute photometry is `LuminaireData::absolute`)
+  std::string type{};
+  double flux_lm = 0.0;  ///< of all lamps of the set together; of the luminaire for absolute photometry
+  std::string color{};   ///< colour appearance or temperature, as in the file
+  std::string color_rendering{};  ///< group or index, as in the file
+  double watts = 0.0;             ///< of the set, with ballast
+  friend bool operator==(const LampSet&, const LampSet&) = default;
+};
+
+/// What a photometric file says of the luminaire beside its intensities. Text is UTF-8, without line ends.
+/// Lengths in mm in EULUMDAT's sense: length along C90-C270, width along C0-C180; width 0 with a length is a
+/// circle of that diameter.
+struct LuminaireData {
+  std::string manufacturer, name, catalog_number, report_number, test_lab;
+  std::string date_user;  ///< EULUMDAT line 12; ISSUEDATE of LM-63
+  std::string file_name;  ///< EULUMDAT line 11
+  double length_mm = 0.0, width_mm = 0.0, height_mm = 0.0;
+  double luminous_length_mm = 0.0, luminous_width_mm = 0.0;
+  /// Height of the luminous area in planes C0, C90, C180, C270.
+  std::array<double, 4> luminous_height_mm{};
+  /// True if intensities stand by themselves (LM-63 lumens -1, EULUMDAT lamp count -1), not for the flux of a
+  /// lamp.
+  bool absolute = true;
+  /// The lamps; none for absolute photometry made here. The first set is the one that EULUMDAT's cd/klm refer
+  /// to.
+  std::vector<LampSet> lamps;
+  double input_watts = 0.0;
+  double tilt_deg = 0.0;   ///< of the luminaire while it was measured
+  int type_indicator = 0;  ///< EULUMDAT Ityp; 0 = choose from the symmetry when writing
+  std::array<double, 10> direct_ratios{};
+  /// Further LM-63 keywords in their order, without brackets; a text with line ends was continued with
+  /// [MORE].
+  std::vector<std::pair<std::string, std::string>> keywords;
+  friend bool operator==(const LuminaireData&, const LuminaireData&) = default;
+};
+
+/// A light distribution with what is said of it: what readers return and writers take.
+struct PhotometricFile {
+  IntensityDistribution distribution;
+  LuminaireData luminaire;
+};
+
+/// Flux of the lamps that intensities may be quoted for (cd/klm), in lm: of the first lamp set with flux, or
+/// none for absolute photometry.
+std::optional<double> lamp_flux_lm(const LuminaireData& luminaire);
+
+/// How IES's H angles stand to C (see design.md section 4): both are in use, and no file says which.
+enum class IesTurn {
+  none,      ///< H = C; sizes swap (IES width = our length, IES length = our width)
+  minus_90,  ///< H = C - 90; sizes keep their names
+};
+
+enum class PhotometricFormat { ies_2002, ies_2019, ldt };
+
+struct PhotometricWriteOptions {
+  IesTurn ies_turn = IesTurn::none;
+  /// Significant digits of the peak; all other intensities get as many decimals. 17 or more: shortest text
+  /// that reads back to the same double.
+  int digits = 7;
+  /// What LM-63-2019 calls the file generation type; 1.00010 is computer simulation (LM-63-2019 table 2).
+  std::string file_generation_type = "1.00010";
+  /// Text of [FILEGENINFO]; empty: none is written.
+  std::string file_generation_info = "Computer simulation by Lucerna (light tracing)";
+};
+
+/// The text of an IES LM-63 file, CR LF, symmetry found at the printed precision, absolute photometry as
+/// lumens -1. The required keywords are always there, "unknown" where nothing is known. `format` must be one
+/// of the two IES formats. Radiometric distributions carry [_INTENSITYUNITS] W/sr. Throws InputError if the
+/// grid breaks its rules, or starts at neither 0 nor 90 or ends at neither 90 nor 180, which LM-63 cannot
+/// say. Thread safe, O(values).
+std::string ies_text(const PhotometricFile& file, PhotometricFormat format,
+                     const PhotometricWriteOptions& options = {});
+
+/// The text of a EULUMDAT file (Stockmar 1990), CR LF, UTF-8, symmetry found at the printed precision, planes
+/// of Isym 3 from C270 over C0 to C90. Absolute photometry as lamp count -1, luminaire flux, LORL 100.
+/// Radiometric distributions are refused with InputError: the format has no unit. Thread safe, O(values).
+std::string ldt_text(const PhotometricFile& file, const PhotometricWriteOptions& options = {});
+
+}  // namespace lucerna
