@@ -150,12 +150,12 @@ void draw_figures(SvgCanvas& canvas, const IntensityDistribution& d, double y, d
   const auto plane = [&](double c) {
     return *std::find_if(f.planes.begin(), f.planes.end(), [&](const auto& p) { return p.c_deg == c; });
   };
-  canvas.text({60.0, y}, fmt::format("Flux {} {}    peak {} {} at C {:g}°, γ {:g}°", label_number(f.flux),
-                                     symbol(d.unit), label_number(f.peak.cd * shown_per_cd), unit,
-                                     f.peak.c_deg, f.peak.gamma_deg));
+  canvas.text({60.0, y},
+              fmt::format("Flux {} {} · peak {} {} at C {:g}°, γ {:g}°", label_number(f.flux), symbol(d.unit),
+                          label_number(f.peak.cd * shown_per_cd), unit, f.peak.c_deg, f.peak.gamma_deg));
   const auto p0 = plane(0.0), p90 = plane(90.0);
   canvas.text({60.0, y + 19.0},
-              fmt::format("Beam 50 % of maximum: C0 {}, C90 {}    field 10 %: C0 {}, C90 {}",
+              fmt::format("Beam 50 % of maximum: C0 {}, C90 {} · field 10 %: C0 {}, C90 {}",
                           angle_text(p0.beam_of_maximum), angle_text(p90.beam_of_maximum),
                           angle_text(p0.field_of_maximum), angle_text(p90.field_of_maximum)));
 }
@@ -185,10 +185,8 @@ std::string polar_svg(const IntensityDistribution& d, const PolarOptions& option
               {.size = 12.5, .anchor = "middle", .fill = "#444"});
   draw_spokes(canvas, frame);
   draw_rings(canvas, frame, step, rings, shown_per_cd);
-  canvas.text({frame.centre.x - kRadius - 34.0, frame.centre.y + (frame.up ? -22.0 : 24.0)}, "C180 | C270",
-              {.size = 11.0, .fill = "#666"});
-  canvas.text({frame.centre.x + kRadius + 34.0, frame.centre.y + (frame.up ? -22.0 : 24.0)}, "C0 | C90",
-              {.size = 11.0, .anchor = "end", .fill = "#666"});
+  canvas.text({40.0, 72.0}, "← C180, C270", {.size = 12.0, .fill = "#555"});
+  canvas.text({kWidth - 40.0, 72.0}, "C0, C90 →", {.size = 12.0, .anchor = "end", .fill = "#555"});
   const SvgStyle across{.stroke = std::string(kCurveColors[0]), .width = 2.4};
   const SvgStyle along{.stroke = std::string(kCurveColors[1]), .width = 2.4, .dash = "9 5"};
   const SvgStyle behind{.stroke = "#999", .width = 3.4};
