@@ -11,6 +11,11 @@ void RayBlock::resize(std::size_t n, std::size_t columns) {
   for (auto& column : extra) column.resize(n);
 }
 
+void RayBlock::reserve(std::size_t n) {
+  for (auto* array : {&x_mm, &y_mm, &z_mm, &kx, &ky, &kz, &weight}) array->reserve(n);
+  for (auto& column : extra) column.reserve(n);
+}
+
 void RayBlock::append(const RayBlock& other, std::size_t i) {
   LUCERNA_CHECK(extra.size() == other.extra.size() && i < other.size(), "columns {} and {}, ray {} of {}",
                 extra.size(), other.extra.size(), i, other.size());
@@ -27,7 +32,9 @@ void RayBlock::append(const RayBlock& other, std::size_t i) {
 void RayBlock::append(const RayBlock& other) {
   if (empty() && extra.empty()) extra.resize(other.extra.size());
   LUCERNA_CHECK(extra.size() == other.extra.size(), "columns {} and {}", extra.size(), other.extra.size());
-  const auto join = [](std::vector<float>& a, const std::vector<float>& b) { a.insert(a.end(), b.begin(), b.end()); };
+  const auto join = [](std::vector<float>& a, const std::vector<float>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+  };
   join(x_mm, other.x_mm);
   join(y_mm, other.y_mm);
   join(z_mm, other.z_mm);

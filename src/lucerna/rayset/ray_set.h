@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -16,7 +17,7 @@ enum class ColumnKind {
   radiant_flux_w,    ///< beside luminous weights
   luminous_flux_lm,  ///< beside radiant weights
   wavelength_nm,
-  stokes,         ///< S1, S2, S3 relative to S0, then the axis of the polarisation ellipse; one column each
+  stokes,  ///< S1, S2, S3 relative to S0, then the axis of the polarisation ellipse; one column each
   tristimulus_x,
   tristimulus_z,
   spectrum_index,  ///< 1-based index into RaySetHeader::spectra
@@ -29,6 +30,13 @@ struct ColumnSpec {
   friend bool operator==(const ColumnSpec&, const ColumnSpec&) = default;
 };
 
+/// The label that readers give to columns of a kind that formats define, "wavelength nm"; `n` counts the
+/// Stokes columns from 0. Empty for `additional`.
+std::string standard_label(ColumnKind kind, std::size_t n = 0);
+
+/// Index in `columns` of the first of this kind; absent if there is none.
+std::optional<std::size_t> find_column(const std::vector<ColumnSpec>& columns, ColumnKind kind);
+
 /// Relative spectral power over wavelength; wavelengths ascend.
 struct SpectralTable {
   std::vector<float> wavelength_nm, relative_power;
@@ -37,8 +45,8 @@ struct SpectralTable {
 
 /// Free text that ray files carry; empty where the file says nothing. Names follow TM-25-13 clause 4.4.
 struct RaySetTexts {
-  std::string light_source, manufacturer, model_creator, file_creator, equipment, camera, operating_conditions,
-      additional_info, geometry_reference, additional_text, date;
+  std::string light_source, manufacturer, model_creator, file_creator, equipment, camera,
+      operating_conditions, additional_info, geometry_reference, additional_text, date;
   friend bool operator==(const RaySetTexts&, const RaySetTexts&) = default;
 };
 

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/rayset/ray_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstring>
+
+#include "lucerna/core/error.h"
+#include "lucerna/core/file.h"
+#include "lucerna/rayset/tm25.h"
+
+namespace lucerna {
+
+namespace {
+
+/// One line per format: "to add a format, add a line here".
+struct Format {
+  std::string_view name;
+  std::unique_ptr<RayReader> (*open)(InputFile, const ReadOptions&);
+  std::unique_ptr<RayWriter> (*create)(const std::filesystem::path&, const RaySetHeader&,
+                                       const WriteOptions&);
+};
+
+constexpr std::array kFormats{Format{"tm25", open_tm25, create_tm25}};
+
+constexpr auto kNames = [] {
+  std::array<std::string_view, kFormats.size()> names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kFormats[i].name;
+  return names;
+}();
+
+const Format& format_named(std::string_view name) {
+  const auto found = std::ranges::find(kFormats, name, &Format::name);
+  if (found == kFormats.end()) {
+    throw UsageError(fmt::format("unknown ray format '{}': {} expected", name, fmt::join(kNames, ", ")));
+  }
+  return *found;
+}
+
+std::optional<std::string> detect(const InputFile& file) {
+  if (file.size() == 0) throw InputError(fmt::format("{}: empty file, rays expected", file.name()));
+  std::array<char, 4> magic{};
+  if (file.size() >= magic.size()) file.read_at(0, std::as_writable_bytes(std::span(magic)));
+  if (std::memcmp(magic.data(), "TM25", 4) == 0) return "tm25";
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::span<const std::string_view> ray_formats() { return kNames; }
+
+std::optional<std::string> detect_ray_format(const std::filesystem::path& path) {
+  return detect(InputFile(path));
+}
+
+std::unique_ptr<RayReader> open_ray_file(const std::filesystem::path& path, const ReadOptions& options) {
+  InputFile file(path);
+  const std::optional<std::string> name = options.format.empty() ? detect(file) : options.format;
+  if (!name) {
+    std::array<unsigned char, 4> head{};
+    file.read_at(0, std::as_writable_bytes(std::span(head)).first(std::min<std::uint64_t>(4, file.size())));
+    throw_input_error(file.name(), "byte 0",
+                      "no ray file of a known format: begins with {:02x}, expected one of {}",
+                      fmt::join(head, " "), fmt::join(kNames, ", "));
+  }
+  return format_named(*name).open(std::move(file), options);
+}
+
+std::unique_ptr<RayWriter> create_ray_file(const std::filesystem::path& path, std::string_view format,
+                                           const RaySetHeader& header, std::uint64_t /*ray_count*/,
+                                           const WriteOptions& options) {
+  return format_named(format).create(path, header, options);
+}
+
+std::string ray_format_for(const std::filesystem::path& path, std::string_view to) {
+  if (!to.empty()) return std::string(format_named(to).name);
+  std::string ending = path.extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (ending == ".tm25ray" || ending == ".tm25") return "tm25";
+  if (ending == ".sdf") return "zemax-binary";
+  if (ending == ".dis") return "asap";
+  throw UsageError(fmt::format("{}: the ending '{}' does not say the format: give --to with one of {}",
+                               path.string(), ending, fmt::join(kNames, ", ")));
+}
+
+RaySet read_ray_set(const std::filesystem::path& path, const ReadOptions& options, Progress& progress,
+                    std::vector<std::string>* warnings) {
+  const auto reader = open_ray_file(path, options);
+  RaySet set;
+  set.rays.resize(0, reader->header().columns.size());
+  set.rays.reserve(reader->ray_count());
+  for_each_block(*reader, progress, "read", [&](const RayBlock& block) { set.rays.append(block); });
+  set.header = reader->header();
+  if (warnings != nullptr) *warnings = reader->warnings();
+  return set;
+}
+
+std::vector<std::string> write_ray_set(const std::filesystem::path& path, const RaySet& set,
+                                       std::string_view format, const WriteOptions& options) {
+  const auto writer = create_ray_file(path, format, set.header, set.rays.size(), options);
+  writer->write(set.rays);
+  writer->finish();
+  return writer->warnings();
+}
+
+double require_flux(const RaySetHeader& header, std::string_view name) {
+  if (const auto flux = header.flux()) return *flux;
+  throw_input_error(name, "", "states no total flux in {}: give it with --flux", symbol(header.flux_unit));
+}
+
+}  // namespace lucerna
