@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "lucerna/core/frame.h"
+#include "lucerna/rayset/bounding_surface.h"
+#include "lucerna/rayset/ray_block.h"
+
+namespace lucerna {
+
+/// What the starts of a ray set lie on.
+enum class MeshSurfaceKind : std::uint8_t {
+  point = 0,
+  line = 1,
+  plane = 2,
+  sphere = 3,
+  cylinder = 4,
+  box = 5,
+  hull = 6
+};
+
+std::string_view to_string(MeshSurfaceKind kind);
+
+/// The convex surface that carries a mesh of representatives, as seen from a point `centre_mm` inside it (for
+/// a plane: behind it), so that every line from there meets it once. Immutable, thread safe.
+struct MeshSurface {
+  MeshSurfaceKind kind = MeshSurfaceKind::point;
+  /// point: the point. line: x is along it, the origin on it. plane: z is its normal, the origin on it.
+  /// sphere, cylinder, box: as BoundingSurface. hull: the identity.
+  Frame world_from_surface;
+  /// Sphere, cylinder.
+  double radius_mm = 0.0;
+  /// Cylinder (z), box.
+  Vec3 half_size_mm;
+  Vec3 centre_mm;
+
+  /// The point of the surface that belongs to a point near it: on the line from the centre for sphere,
+  /// cylinder and box; the nearest one for point, line and plane; for a hull the point itself (its facets are
+  /// the mesh).
+  Vec3 put_back(const Vec3& point_mm) const;
+
+  /// Outward unit normal at a point of the surface; for hull, line and point the direction from the centre
+  /// (+z if none).
+  Vec3 normal(const Vec3& point_mm) const;
+
+  /// True where points can be anywhere on an area, so that `pdf_area` exists.
+  bool has_area() const { return kind >= MeshSurfaceKind::plane; }
+
+  friend bool operator==(const MeshSurface&, const MeshSurface&) = default;
+};
+
+/// A surface, and whether rays had to leave their starts to be on it.
+struct FoundSurface {
+  MeshSurface surface;
+  /// The starts lie on no convex surface: rays are slid forward along their lines to `surface`, a sphere
+  /// about them all.
+  bool slide = false;
+};
+
+/// The surface that the starts lie on, to within 1e-3 of their extent: point, line, plane, sphere, cylinder
+/// (about a coordinate or principal axis; open or closed), box along the axes, or their own convex hull; else
+/// a sphere round them. Needs one ray. Deterministic; looks at no more than 2^16 rays.
+FoundSurface find_mesh_surface(const RayBlock& rays);
+
+}  // namespace lucerna
