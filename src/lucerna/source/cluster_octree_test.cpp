@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/source/cluster_octree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "lucerna/core/error.h"
+#include "lucerna/core/parallel.h"
+#include "lucerna/core/random.h"
+
+namespace lucerna {
+namespace {
+
+RayBlock cloud(std::size_t n) {
+  RayBlock rays;
+  rays.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    Rng rng(1, i);
+    const double x = rng.uniform();
+    rays.set(i, {{x * x * x, 2.0 * rng.uniform(), 0.5 * rng.uniform()}, Direction()});
+    rays.weight[i] = i % 7 == 0 ? 0.0f : 1.0f;
+  }
+  return rays;
+}
+
+TEST(PositionOctree, HoldsEveryRayWithFluxOnceInSmallLeaves) {
+  const RayBlock rays = cloud(20'000);
+  const PositionOctree tree = build_position_octree(rays, 50);
+  std::vector<std::uint32_t> seen = tree.order;
+  std::sort(seen.begin(), seen.end());
+  EXPECT_EQ(std::unique(seen.begin(), seen.end()), seen.end());
+  EXPECT_EQ(seen.size(), static_cast<std::size_t>(std::count(rays.weight.begin(), rays.weight.end(), 1.0f)));
+  for (std::size_t l = 0; l < tree.leaf_count(); ++l) {
+    EXPECT_GT(tree.begin[l + 1], tree.begin[l]);
+    EXPECT_LE(tree.begin[l + 1] - tree.begin[l], 50u);
+    // A leaf is a cube: its rays span no more than the widest halving that it can be.
+    for (std::uint32_t i = tree.begin[l]; i < tree.begin[l + 1]; ++i)
+      EXPECT_GT(rays.weight[tree.order[i]], 0.0f);
+  }
+}
+
+TEST(PositionOctree, RaysAtOnePlaceAreOneLeaf) {
+  RayBlock rays = cloud(1000);
+  for (std::size_t i = 0; i < rays.size(); ++i) rays.set(i, {{1, 2, 3}, Direction()});
+  EXPECT_EQ(build_position_octree(rays, 10).leaf_count(), 1u);
+}
+
+TEST(PositionOctree, SameForAnyNumberOfThreads) {
+  const RayBlock rays = cloud(200'000);
+  const auto run = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return build_position_octree(rays, 100);
+  };
+  const PositionOctree one = run(1), two = run(2);
+  EXPECT_EQ(one.order, two.order);
+  EXPECT_EQ(one.begin, two.begin);
+}
+
+TEST(PositionOctree, NoFluxIsAnError) {
+  RayBlock rays = cloud(10);
+  for (float& w : rays.weight) w = 0.0f;
+  EXPECT_THROW(build_position_octree(rays, 10), InputError);
+}
+
+}  // namespace
+}  // namespace lucerna
