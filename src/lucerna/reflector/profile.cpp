@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/reflector/profile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "lucerna/core/error.h"
+#include "lucerna/reflector/aperture.h"
+
+namespace lucerna {
+
+namespace {
+
+void check_positive(const char* what, double value_mm) {
+  if (!(value_mm > 0.0 && std::isfinite(value_mm))) {
+    throw InputError(fmt::format("reflector: {} is {}, expected a finite number above 0", what, value_mm));
+  }
+}
+
+void widen(HeightRange& range, double z_mm) {
+  range.low_mm = std::min(range.low_mm, z_mm);
+  range.high_mm = std::max(range.high_mm, z_mm);
+}
+
+}  // namespace
+
+ConicProfile::ConicProfile(double curvature, double conic, double r_max_mm)
+    : curvature_(curvature), conic_(conic) {
+  check_positive("the outer radius", r_max_mm);
+  r_max_mm_ = r_max_mm;
+}
+
+ConicProfile ConicProfile::parabola(double focal_mm, double r_max_mm) {
+  check_positive("focal_mm", focal_mm);
+  return {0.5 / focal_mm, -1.0, r_max_mm};
+}
+
+ConicProfile ConicProfile::ellipse(double focal_mm, double focal2_mm, double r_max_mm) {
+  check_positive("focal_mm", focal_mm);
+  check_positive("focal2_mm", focal2_mm);
+  const double equator_mm = std::sqrt(focal_mm * focal2_mm);
+  if (!(r_max_mm < equator_mm)) {
+    throw InputError(fmt::format(
+        "reflector: the ellipse reaches radius {} mm at its equator, the aperture asks for {} mm; "
+        "expected an aperture inside the equator",
+        equator_mm, r_max_mm));
+  }
+  const double eccentricity = (focal2_mm - focal_mm) / (focal2_mm + focal_mm);
+  return {(focal_mm + focal2_mm) / (2.0 * focal_mm * focal2_mm), -eccentricity * eccentricity, r_max_mm};
+}
+
+ConicProfile ConicProfile::hyperbola(double focal_mm, double focal2_mm, double r_max_mm) {
+  check_positive("focal_mm", focal_mm);
+  if (!(focal2_mm > focal_mm && std::isfinite(focal2_mm))) {
+    throw InputError(
+        fmt::format("reflector: hyperbola with focal_mm {} and focal2_mm {}, expected focal2_mm > focal_mm",
+                    focal_mm, focal2_mm));
+  }
+  const double eccentricity = (focal2_mm + focal_mm) / (focal2_mm - focal_mm);
+  return {(focal2_mm - focal_mm) / (2.0 * focal_mm * focal2_mm), -eccentricity * eccentricity, r_max_mm};
+}
+
+ProfilePoint ConicProfile::at(double r_mm) const {
+  const double r = std::min(r_mm, r_max_mm_);
+  const double cr = curvature_ * r;
+  const double root = std::sqrt(1.0 - (1.0 + conic_) * cr * cr);
+  const double slope = cr / root;
+  return {cr * r / (1.0 + root) + slope * (r_mm - r), slope};
+}
+
+HeightRange ConicProfile::range(double r0_mm, double r1_mm) const { return {at(r0_mm).z_mm, at(r1_mm).z_mm}; }
+
+namespace {
+
+/// Slopes of the C2 spline at its knots; `h` lengths and `delta` secant slopes of the pieces (at least two
+/// pieces).
+std::vector<double> spline_slopes(const std::vector<double>& h, const std::vector<double>& delta,
+                                  bool flat_start) {
+  const std::size_t m = h.size();
+  std::vector<double> lower(m + 1, 0.0), diagonal(m + 1, 1.0), upper(m + 1, 0.0), right(m + 1, 0.0);
+  if (!flat_start) {
+    diagonal[0] = h[1];
+    upper[0] = h[0] + h[1];
+    right[0] = ((h[0] + 2.0 * upper[0]) * h[1] * delta[0] + h[0] * h[0] * delta[1]) / upper[0];
+  }
+  for (std::size_t i = 1; i < m; ++i) {
+    lower[i] = h[i];
+    diagonal[i] = 2.0 * (h[i - 1] + h[i]);
+    upper[i] = h[i - 1];
+    right[i] = 3.0 * (h[i] * delta[i - 1] + h[i - 1] * delta[i]);
+  }
+  lower[m] = h[m - 1] + h[m - 2];
+  diagonal[m] = h[m - 2];
+  right[m] =
+      (h[m - 1] * h[m - 1] * delta[m - 2] + (2.0 * lower[m] + h[m - 1]) * h[m - 2] * delta[m - 1]) / lower[m];
+  if (!flat_start &&
+      m == 2) {  // one parabola through three points: the two not-a-knot conditions are the same
+    diagonal[0] = upper[0] = 1.0;
+    right[0] = 2.0 * delta[0];
+    lower[m] = diagonal[m] = 1.0;
+    right[m] = 2.0 * delta[1];
+  }
+  for (std::size_t i = 1; i <= m; ++i) {
+    const double w = lower[i] / diagonal[i - 1];
+    diagonal[i] -= w * upper[i - 1];
+    right[i] -= w * right[i - 1];
+  }
+  std::vector<double> slope(m + 1);
+  slope[m] = right[m] / diagonal[m];
+  for (std::size_t i = m; i-- > 0;) slope[i] = (right[i] - upper[i] * slope[i + 1]) / diagonal[i];
+  return slope;
+}
+
+}  // namespace
+
+SplineProfile::SplineProfile(const std::vector<ProfileKnot>& knots) {
+  if (knots.size() < 2) {
+    throw InputError(
+        fmt::format("reflector: the profile has {} point(s), expected at least 2", knots.size()));
+  }
+  for (std::size_t i = 0; i < knots.size(); ++i) {
+    const ProfileKnot& k = knots[i];
+    const double before = i == 0 ? -std::numeric_limits<double>::min() : knots[i - 1].r_mm;
+    if (!std::isfinite(k.r_mm) || !std::isfinite(k.z_mm) || k.r_mm < 0.0 || !(k.r_mm > before)) {
+      throw InputError(fmt::format(
+          "reflector: profile point {} is [{}, {}], expected finite numbers with r >= 0 ascending", i + 1,
+          k.r_mm, k.z_mm));
+    }
+  }
+  const std::size_t m = knots.size() - 1;
+  const bool flat_start = knots[0].r_mm == 0.0;
+  std::vector<double> h(m), delta(m);
+  for (std::size_t i = 0; i < m; ++i) {
+    h[i] = knots[i + 1].r_mm - knots[i].r_mm;
+    delta[i] = (knots[i + 1].z_mm - knots[i].z_mm) / h[i];
+  }
+  std::vector<double> s;
+  if (m == 1) {
+    s = flat_start ? std::vector{0.0, 2.0 * delta[0]} : std::vector{delta[0], delta[0]};
+  } else {
+    s = spline_slopes(h, delta, flat_start);
+  }
+  for (std::size_t i = 0; i < m; ++i) {
+    pieces_.push_back({knots[i].r_mm, knots[i].z_mm, s[i], (3.0 * delta[i] - 2.0 * s[i] - s[i + 1]) / h[i],
+                       (s[i] + s[i + 1] - 2.0 * delta[i]) / (h[i] * h[i])});
+  }
+  end_ = {knots[m].z_mm, s[m]};
+  r_min_mm_ = knots[0].r_mm;
+  r_max_mm_ = knots[m].r_mm;
+}
+
+const SplineProfile::Piece& SplineProfile::piece(double r_mm) const {
+  const auto after = std::upper_bound(pieces_.begin() + 1, pieces_.end(), r_mm,
+                                      [](double r, const Piece& p) { return r < p.r_mm; });
+  return *(after - 1);
+}
+
+ProfilePoint SplineProfile::at(double r_mm) const {
+  if (r_mm >= r_max_mm_) return {end_.z_mm + end_.slope * (r_mm - r_max_mm_), end_.slope};
+  const Piece& p = piece(r_mm);
+  const double t = r_mm - p.r_mm;
+  if (t < 0.0) return {p.z + p.b * t, p.b};
+  return {p.z + t * (p.b + t * (p.c + t * p.d)), p.b + t * (2.0 * p.c + 3.0 * t * p.d)};
+}
+
+HeightRange SplineProfile::range(double r0_mm, double r1_mm) const {
+  const double z0 = at(r0_mm).z_mm;
+  HeightRange range{z0, z0};
+  widen(range, at(r1_mm).z_mm);
+  for (const Piece* p = &piece(r0_mm); p < pieces_.data() + pieces_.size() && p->r_mm < r1_mm; ++p) {
+    const double end = p + 1 < pieces_.data() + pieces_.size() ? (p + 1)->r_mm : r_max_mm_;
+    if (p->r_mm > r0_mm) widen(range, p->z);
+    if (end > r0_mm && end < r1_mm) widen(range, at(end).z_mm);
+    const double q = p->c * p->c - 3.0 * p->d * p->b;  // z' = b + 2 c t + 3 d t^2 = 0
+    if (q < 0.0) continue;
+    const double w = -(p->c + std::copysign(std::sqrt(q), p->c));
+    for (const double t : {w / (3.0 * p->d), p->b / w}) {
+      const double r = p->r_mm + t;
+      if (t >= 0.0 && r <= end && r > r0_mm && r < r1_mm) widen(range, at(r).z_mm);
+    }
+  }
+  return range;
+}
+
+RevolutionSurface::RevolutionSurface(std::shared_ptr<const Profile> profile) : profile_(std::move(profile)) {}
+
+SurfacePoint RevolutionSurface::at(double x_mm, double y_mm) const {
+  const double r = std::sqrt(x_mm * x_mm + y_mm * y_mm);
+  const ProfilePoint p = profile_->at(r);
+  const double per_r = r > 0.0 ? p.slope / r : 0.0;  // on the axis the tangent plane is level
+  return {p.z_mm, x_mm * per_r, y_mm * per_r};
+}
+
+HeightRange RevolutionSurface::range(const Rectangle& region) const {
+  const RadiusRange r = radius_range(region);
+  return profile_->range(r.least_mm, r.greatest_mm);
+}
+
+}  // namespace lucerna

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "lucerna/core/direction.h"
+#include "lucerna/reflector/height_mipmap.h"
+
+namespace lucerna {
+
+/// Where a ray meets a mirror, in the mirror's frame.
+struct MirrorHit {
+  /// Distance along the ray.
+  double t_mm = 0.0;
+  /// The point, put a hair (far below the wavelength of light) off the surface on the side the ray came from,
+  /// so that the reflected ray starts on the right side of it.
+  Vec3 point_mm;
+  /// Normal of the exact surface, towards +z.
+  Direction normal;
+  /// The ray came from the reflecting side.
+  bool front = true;
+};
+
+/// The plain tracer that faster ones are checked against: a maximum-mipmap quadtree walked from the ray's
+/// start, each hit refined on the exact surface to rounding, normals exact, all in double. A sign change of
+/// (height of the ray - height of the surface) between shared cell borders cannot fall between cells, so the
+/// surface is watertight; within a cell up to two crossings are found. Immutable and thread safe.
+class ReferenceTracer {
+ public:
+  /// 2^levels cells a side; a hit does not depend on it but where a ray grazes the surface twice within one
+  /// cell.
+  explicit ReferenceTracer(const Reflector& reflector, int levels = 8);
+
+  /// The first point in [0, infinity) where `ray` (in the mirror's frame) meets the mirror; nothing if it
+  /// passes by or through the hole.
+  std::optional<MirrorHit> first_hit(const Ray& ray) const;
+
+ private:
+  Reflector reflector_;
+  HeightMipmap mipmap_;
+  double offset_mm_;
+};
+
+}  // namespace lucerna

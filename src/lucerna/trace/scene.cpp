@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/scene.h"
+
+#include <cmath>
+#include <set>
+
+#include "lucerna/core/error.h"
+
+namespace lucerna {
+
+void check(const Scene& scene) {
+  if (scene.sources.empty()) throw InputError("the scene has no source");
+  const FluxUnit unit = scene.sources.front().rays->flux_unit();
+  for (std::size_t i = 0; i < scene.sources.size(); ++i) {
+    const PlacedSource& s = scene.sources[i];
+    if (!(s.total_flux() > 0.0 && std::isfinite(s.total_flux()))) {
+      throw InputError(fmt::format("source {}: the flux is {} {}, expected a finite number above 0", i + 1,
+                                   s.total_flux(), symbol(s.rays->flux_unit())));
+    }
+    if (s.rays->flux_unit() != unit) {
+      throw InputError(fmt::format("source {} counts {}, source 1 counts {}; they cannot be added", i + 1,
+                                   symbol(s.rays->flux_unit()), symbol(unit)));
+    }
+    if (s.rays->ray_count() == 0) throw InputError(fmt::format("source {} has no rays", i + 1));
+  }
+  std::set<std::string> names;
+  for (const FarFieldDetector& d : scene.far_fields) {
+    const FarFieldGrid checked(d);
+    if (!names.insert(d.name).second) throw InputError(fmt::format("two detectors are named '{}'", d.name));
+  }
+}
+
+}  // namespace lucerna

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lucerna/core/frame.h"
+#include "lucerna/reflector/reflector.h"
+#include "lucerna/source/ray_source.h"
+#include "lucerna/trace/far_field.h"
+#include "lucerna/trace/reflectance.h"
+
+namespace lucerna {
+
+/// A source of light in the luminaire frame.
+struct PlacedSource {
+  std::shared_ptr<const RaySource> rays;
+  Frame world_from_source;
+  /// Overrides the source's own flux, in its own unit; > 0.
+  std::optional<double> flux;
+
+  double total_flux() const { return flux ? *flux : rays->flux(); }
+};
+
+/// A mirror in the luminaire frame. The side towards its +z reflects, the other absorbs.
+struct PlacedReflector {
+  Reflector reflector;
+  Frame world_from_reflector;
+  Reflectance reflectance{1.0};
+};
+
+/// All that light can meet, and what looks at it. Plain data; `trace` checks it.
+struct Scene {
+  std::vector<PlacedSource> sources;
+  std::vector<PlacedReflector> reflectors;
+  std::vector<FarFieldDetector> far_fields;
+};
+
+/// Throws InputError if the scene cannot be traced: no source, a flux that is not above 0, lm and W together,
+/// a detector whose steps do not divide the circle, two detectors of one name.
+void check(const Scene& scene);
+
+}  // namespace lucerna

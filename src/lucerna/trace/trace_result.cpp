@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/trace_result.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lucerna/core/error.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Turns sums of units into flux, with the standard error that the spread between replicates gives: the ratio
+/// estimator X / E with X_r and E_r by replicate has the variance R / (R - 1) * sum (X_r - E_r X / E)^2 / E^2
+/// (W. G. Cochran, "Sampling Techniques", 3rd ed., section 6.3).
+class Normaliser {
+ public:
+  explicit Normaliser(const TraceResult& result) : result_(result) {
+    for (const Tally& t : result.replicates) {
+      emitted_ += static_cast<double>(t.emitted);
+      if (t.rays > 0) ++used_;
+    }
+    LUCERNA_CHECK(emitted_ > 0.0, "nothing was emitted");
+    per_unit_ = result.flux / emitted_;
+  }
+
+  template <class Pick>
+  Estimate estimate(const Pick& pick) const {
+    std::int64_t sum = 0;
+    for (const Tally& t : result_.replicates) sum += pick(t);
+    const double ratio = static_cast<double>(sum) / emitted_;
+    Estimate e{static_cast<double>(sum) * per_unit_, std::numeric_limits<double>::quiet_NaN()};
+    if (used_ < 2) return e;
+    double squares = 0.0;
+    for (const Tally& t : result_.replicates) {
+      const double d = static_cast<double>(pick(t)) - ratio * static_cast<double>(t.emitted);
+      squares += d * d;
+    }
+    e.standard_error = std::sqrt(squares * used_ / (used_ - 1.0)) * per_unit_;
+    return e;
+  }
+
+ private:
+  const TraceResult& result_;
+  double emitted_ = 0.0, per_unit_ = 0.0, used_ = 0.0;
+};
+
+}  // namespace
+
+Ledger ledger(const TraceResult& result) {
+  const Normaliser normal(result);
+  Ledger l;
+  l.unit = result.unit;
+  l.emitted = result.flux;
+  l.out_direct = normal.estimate([](const Tally& t) { return t.out_direct; });
+  l.out_reflected = normal.estimate([](const Tally& t) { return t.out_reflected; });
+  const char* const absorbed[kMirrorLosses] = {"mirror", "mirror_back"};
+  for (std::size_t i = 0; i < kMirrorLosses; ++i) {
+    l.absorbed.emplace_back(absorbed[i], normal.estimate([i](const Tally& t) { return t.absorbed[i]; }));
+  }
+  const char* const lost[kLostCauses] = {"bounce_limit", "not_finite"};
+  for (std::size_t i = 0; i < kLostCauses; ++i) {
+    l.lost.emplace_back(lost[i], normal.estimate([i](const Tally& t) { return t.lost[i]; }));
+  }
+  std::uint64_t reflections = 0;
+  for (const Tally& t : result.replicates) {
+    l.rays += t.rays;
+    reflections += t.reflections;
+    for (const std::uint64_t n : t.lost_rays) l.lost_rays += n;
+  }
+  l.reflections_per_ray = static_cast<double>(reflections) / static_cast<double>(l.rays);
+  return l;
+}
+
+FarField far_field(const TraceResult& result, std::size_t index) {
+  LUCERNA_CHECK(index < result.far_fields.size(), "index = {}", index);
+  const FarFieldDetector& detector = result.far_fields[index];
+  const FarFieldGrid grid(detector);
+  FarField f{detector.name,
+             detector.c_step_deg,
+             detector.gamma_step_deg,
+             grid.c_count(),
+             grid.gamma_count(),
+             result.unit,
+             {},
+             {}};
+  f.flux.resize(grid.size());
+  f.standard_error.resize(grid.size());
+  const Normaliser normal(result);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const Estimate e = normal.estimate([&](const Tally& t) { return t.bins[index][i]; });
+    f.flux[i] = e.mean;
+    f.standard_error[i] = e.standard_error;
+  }
+  return f;
+}
+
+TraceResult merge(const TraceResult& a, const TraceResult& b) {
+  const auto need = [](bool same, const char* what) {
+    if (!same) throw InputError(fmt::format("the traces cannot be added: they differ in {}", what));
+  };
+  need(a.seed == b.seed && a.sequence == b.sequence, "seed or sequence");
+  need(a.max_bounces == b.max_bounces, "the limit of bounces");
+  if (a.isa != b.isa) {
+    throw InputError(
+        fmt::format("the traces cannot be added: one was made with {}, the other with {}", a.isa, b.isa));
+  }
+  need(a.flux == b.flux && a.unit == b.unit, "the sources' flux");
+  need(a.far_fields == b.far_fields && a.replicates.size() == b.replicates.size(), "detectors");
+  if (a.last_ray != b.first_ray && b.last_ray != a.first_ray) {
+    throw InputError(fmt::format("the traces cannot be added: rays {}:{} and {}:{} do not meet end to end",
+                                 a.first_ray, a.last_ray, b.first_ray, b.last_ray));
+  }
+  TraceResult sum = a;
+  sum.first_ray = std::min(a.first_ray, b.first_ray);
+  sum.last_ray = std::max(a.last_ray, b.last_ray);
+  for (std::size_t r = 0; r < sum.replicates.size(); ++r) sum.replicates[r] += b.replicates[r];
+  return sum;
+}
+
+}  // namespace lucerna

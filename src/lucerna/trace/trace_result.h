@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lucerna/core/estimate.h"
+#include "lucerna/core/flux_unit.h"
+#include "lucerna/core/sequence.h"
+#include "lucerna/trace/far_field.h"
+#include "lucerna/trace/tally.h"
+
+namespace lucerna {
+
+/// What a trace leaves: raw sums by replicate, before any normalisation, so that ranges of rays can be added.
+struct TraceResult {
+  /// The rays traced, [first_ray, last_ray).
+  std::uint64_t first_ray = 0, last_ray = 0;
+  std::uint64_t seed = 0;
+  SequenceKind sequence = SequenceKind::sobol;
+  int max_bounces = 0;
+  /// Which tracer and instruction set made the sums: only equal ones can be merged.
+  std::string isa;
+  /// Flux of all sources together.
+  double flux = 0.0;
+  FluxUnit unit = FluxUnit::lumen;
+  std::vector<FarFieldDetector> far_fields;
+  /// kReplicates tallies.
+  std::vector<Tally> replicates;
+};
+
+/// Where the light went. Every figure in the unit of the sources' flux. A standard error is NaN where it is
+/// not known: fewer than two replicates have rays.
+struct Ledger {
+  FluxUnit unit = FluxUnit::lumen;
+  /// Exactly the flux of the sources.
+  double emitted = 0.0;
+  Estimate out_direct, out_reflected;
+  /// By cause: "mirror" (what its face kept), "mirror_back".
+  std::vector<std::pair<std::string, Estimate>> absorbed;
+  /// By cause: "bounce_limit", "not_finite"; rays beside it.
+  std::vector<std::pair<std::string, Estimate>> lost;
+  std::uint64_t lost_rays = 0;
+  std::uint64_t rays = 0;
+  double reflections_per_ray = 0.0;
+};
+
+/// The figures of the energy ledger. emitted = out + absorbed + lost to rounding of the last digit.
+Ledger ledger(const TraceResult& result);
+
+/// Flux by far-field cell, numbered as in FarFieldGrid: c * gamma_count + g.
+struct FarField {
+  std::string name;
+  double c_step_deg = 0.0, gamma_step_deg = 0.0;
+  std::size_t c_count = 0, gamma_count = 0;
+  FluxUnit unit = FluxUnit::lumen;
+  std::vector<double> flux;
+  /// NaN where not known, as in Ledger.
+  std::vector<double> standard_error;
+};
+
+/// The far field that detector `index` of TraceResult::far_fields saw.
+FarField far_field(const TraceResult& result, std::size_t index);
+
+/// Adds two traces of the same scene over different rays: the result is, to the bit, that of one run over
+/// both, whatever the order. Throws InputError if they differ in seed, sequence, bounces, instruction set,
+/// flux or detectors, or if their rays do not meet end to end.
+TraceResult merge(const TraceResult& a, const TraceResult& b);
+
+}  // namespace lucerna
