@@ -55,8 +55,9 @@ TEST(TraceStatistical, SharesOfAPointSourceAreSolidAngles) {
 }
 
 TEST(Trace, LedgerClosesToTheUnit) {
-  const TraceResult result = trace(downlight(emitter({.kind = EmitterKind::sphere, .radius_mm = 6.0})),
-                                   {.last_ray = 50000, .max_bounces = 1});
+  const TraceResult result =
+      trace(downlight(emitter({.kind = EmitterKind::sphere, .radius_mm = 6.0}, {15, 0, 0})),
+            {.last_ray = 50000, .max_bounces = 1});
   std::int64_t lost = 0, binned = 0, out = 0;
   for (const Tally& t : result.replicates) {
     const std::int64_t absorbed = t.absorbed[0] + t.absorbed[1];
