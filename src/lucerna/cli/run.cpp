@@ -1,23 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/cli/run.h"
 
-#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <new>
 #include <string>
 
+#include "lucerna/cli/commands.h"
+#include "lucerna/core/error.h"
 #include "lucerna/core/version.h"
 
 namespace lucerna::cli {
+
+namespace {
+
+enum ExitCode { kDone = 0, kBadInput = 1, kUsage = 2, kInterrupted = 3 };
+
+int complain(const char* text, ExitCode code) {
+  fmt::print(stderr, "lucerna: {}\n", text);
+  return code;
+}
+
+}  // namespace
 
 int run(int argc, char** argv) {
   CLI::App app{"Lucerna: from ray file to reflector", "lucerna"};
   app.set_version_flag("--version", std::string(version()));
   app.require_subcommand(1);
+  Session session;
+  int exit_code = kDone;
+  for (const AddCommand add : kCommands) add(app, session, exit_code);
   try {
     app.parse(argc, argv);
+    return exit_code;
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
+    return app.exit(e) == 0 ? kDone : kUsage;
+  } catch (const UsageError& e) {
+    return complain(e.what(), kUsage);
+  } catch (const Interrupted&) {
+    return complain("interrupted", kInterrupted);
+  } catch (const Error& e) {
+    return complain(e.what(), kBadInput);
+  } catch (const std::bad_alloc&) {
+    return complain("out of memory", kBadInput);
+  } catch (const std::exception& e) {
+    return complain(e.what(), kBadInput);
   }
-  return 0;
 }
 
 }  // namespace lucerna::cli

@@ -20,7 +20,8 @@ struct Interval {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The part of the line o + t d inside |x| <= half. A line parallel to the slab is inside everywhere or nowhere.
+/// The part of the line o + t d inside |x| <= half. A line parallel to the slab is inside everywhere or
+/// nowhere.
 std::optional<Interval> inside_slab(double o, double d, double half) {
   if (d == 0.0) {
     if (std::abs(o) > half) return std::nullopt;
@@ -30,7 +31,8 @@ std::optional<Interval> inside_slab(double o, double d, double half) {
   return Interval{std::min(a, b), std::max(a, b)};
 }
 
-/// The part of the line inside |o + t d|^2 <= radius^2, of the vectors given (three components, or two for a cylinder).
+/// The part of the line inside |o + t d|^2 <= radius^2, of the vectors given (three components, or two for a
+/// cylinder).
 std::optional<Interval> inside_round(const Vec3& o, const Vec3& d, double radius) {
   const double a = dot(d, d);
   if (a == 0.0) return inside_slab(length(o), 0.0, radius);
@@ -57,8 +59,7 @@ std::string_view to_string(SurfaceKind kind) { return kSurfaceNames[static_cast<
 SurfaceKind surface_kind(std::string_view name) {
   const auto found = std::find(kSurfaceNames.begin(), kSurfaceNames.end(), name);
   if (found == kSurfaceNames.end()) {
-    throw UsageError(
-        fmt::format("unknown surface '{}'; expected {}", name, fmt::join(kSurfaceNames, ", ")));
+    throw UsageError(fmt::format("unknown surface '{}'; expected {}", name, fmt::join(kSurfaceNames, ", ")));
   }
   return static_cast<SurfaceKind>(found - kSurfaceNames.begin());
 }
@@ -70,17 +71,51 @@ BoundingSurface BoundingSurface::sphere(double radius_mm) { return {SurfaceKind:
 BoundingSurface BoundingSurface::cylinder(double radius_mm, double length_mm) {
   return {SurfaceKind::cylinder, {}, radius_mm, {radius_mm, radius_mm, 0.5 * length_mm}};
 }
-BoundingSurface BoundingSurface::box(const Vec3& size_mm) { return {SurfaceKind::box, {}, 0.0, 0.5 * size_mm}; }
+BoundingSurface BoundingSurface::box(const Vec3& size_mm) {
+  return {SurfaceKind::box, {}, 0.0, 0.5 * size_mm};
+}
+
+BoundingSurface BoundingSurface::from_sizes(SurfaceKind kind, std::span<const double> mm) {
+  constexpr std::array<std::size_t, 5> kCounts{0, 1, 1, 2, 3};
+  const std::size_t expected = kCounts[static_cast<std::size_t>(kind)];
+  if (mm.size() != expected) {
+    throw InputError(
+        fmt::format("a {} surface takes {} number(s), found {}", to_string(kind), expected, mm.size()));
+  }
+  for (const double value : mm) {
+    if (kind != SurfaceKind::plane && !(value > 0.0)) {
+      throw InputError(fmt::format("a {} surface of size {}, expected > 0", to_string(kind), value));
+    }
+  }
+  switch (kind) {
+    case SurfaceKind::none:
+      return {};
+    case SurfaceKind::plane:
+      return plane(mm[0]);
+    case SurfaceKind::sphere:
+      return sphere(mm[0]);
+    case SurfaceKind::cylinder:
+      return cylinder(mm[0], mm[1]);
+    case SurfaceKind::box:
+      return box({mm[0], mm[1], mm[2]});
+  }
+  return {};
+}
 
 double BoundingSurface::outside_mm(const Vec3& point_mm) const {
   const Vec3 p = world_from_surface.inverse().point(point_mm);
   switch (kind) {
-    case SurfaceKind::none: return 0.0;
-    case SurfaceKind::plane: return p.z;
-    case SurfaceKind::sphere: return length(p) - radius_mm;
-    case SurfaceKind::cylinder: return std::max(std::hypot(p.x, p.y) - radius_mm, std::abs(p.z) - half_size_mm.z);
+    case SurfaceKind::none:
+      return 0.0;
+    case SurfaceKind::plane:
+      return p.z;
+    case SurfaceKind::sphere:
+      return length(p) - radius_mm;
+    case SurfaceKind::cylinder:
+      return std::max(std::hypot(p.x, p.y) - radius_mm, std::abs(p.z) - half_size_mm.z);
     case SurfaceKind::box:
-      return std::max({std::abs(p.x) - half_size_mm.x, std::abs(p.y) - half_size_mm.y, std::abs(p.z) - half_size_mm.z});
+      return std::max(
+          {std::abs(p.x) - half_size_mm.x, std::abs(p.y) - half_size_mm.y, std::abs(p.z) - half_size_mm.z});
   }
   return 0.0;
 }
@@ -90,13 +125,17 @@ std::optional<double> BoundingSurface::exit_distance_mm(const Ray& ray) const {
   const Vec3 o = surface_from_world.point(ray.origin_mm), d = surface_from_world.vector(ray.direction);
   std::optional<Interval> inside;
   switch (kind) {
-    case SurfaceKind::none: return std::nullopt;
+    case SurfaceKind::none:
+      return std::nullopt;
     case SurfaceKind::plane:
       if (d.z <= 0.0) return std::nullopt;
       return -o.z / d.z;
-    case SurfaceKind::sphere: inside = inside_round(o, d, radius_mm); break;
+    case SurfaceKind::sphere:
+      inside = inside_round(o, d, radius_mm);
+      break;
     case SurfaceKind::cylinder:
-      inside = both(inside_round({o.x, o.y, 0.0}, {d.x, d.y, 0.0}, radius_mm), inside_slab(o.z, d.z, half_size_mm.z));
+      inside = both(inside_round({o.x, o.y, 0.0}, {d.x, d.y, 0.0}, radius_mm),
+                    inside_slab(o.z, d.z, half_size_mm.z));
       break;
     case SurfaceKind::box:
       inside = both(inside_slab(o.x, d.x, half_size_mm.x),

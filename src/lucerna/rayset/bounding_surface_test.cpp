@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "lucerna/core/error.h"
 #include "lucerna/core/random.h"
 
@@ -28,7 +30,8 @@ TEST(BoundingSurface, ExitLiesOnTheSurfaceAndTheRayGoesOutward) {
   for (const BoundingSurface& surface : bodies()) {
     int hits = 0;
     for (int i = 0; i < 2000; ++i) {
-      const Ray ray{surface.world_from_surface.point(10.0 * random_vector(rng)), Direction::from(random_vector(rng))};
+      const Ray ray{surface.world_from_surface.point(10.0 * random_vector(rng)),
+                    Direction::from(random_vector(rng))};
       const auto t = surface.exit_distance_mm(ray);
       if (!t) continue;
       ++hits;
@@ -45,7 +48,8 @@ TEST(BoundingSurface, RaysFromInsideAlwaysLeaveForward) {
   for (const BoundingSurface& surface : bodies()) {
     if (surface.kind == SurfaceKind::plane) continue;
     for (int i = 0; i < 1000; ++i) {
-      const Ray ray{surface.world_from_surface.point(1.9 * random_vector(rng)), Direction::from(random_vector(rng))};
+      const Ray ray{surface.world_from_surface.point(1.9 * random_vector(rng)),
+                    Direction::from(random_vector(rng))};
       ASSERT_LT(surface.outside_mm(ray.origin_mm), 0.0);
       const auto t = surface.exit_distance_mm(ray);
       ASSERT_TRUE(t.has_value());
@@ -61,12 +65,21 @@ TEST(BoundingSurface, ParallelLinesAreSettledBySide) {
   const auto cylinder = BoundingSurface::cylinder(1, 4);
   EXPECT_EQ(cylinder.exit_distance_mm({{0.5, 0, 0}, Direction::from({0, 0, -1})}), 2.0);
   EXPECT_FALSE(cylinder.exit_distance_mm({{1.5, 0, 0}, Direction::from({0, 0, 1})}).has_value());
-  EXPECT_FALSE(BoundingSurface::plane(0).exit_distance_mm({{0, 0, -1}, Direction::from({1, 0, 0})}).has_value());
+  EXPECT_FALSE(
+      BoundingSurface::plane(0).exit_distance_mm({{0, 0, -1}, Direction::from({1, 0, 0})}).has_value());
   EXPECT_FALSE(BoundingSurface{}.exit_distance_mm({}).has_value());
 }
 
+TEST(BoundingSurface, SizesAreCountedAndChecked) {
+  EXPECT_EQ(BoundingSurface::from_sizes(SurfaceKind::cylinder, std::vector{2.0, 6.0}).half_size_mm.z, 3.0);
+  EXPECT_EQ(BoundingSurface::from_sizes(SurfaceKind::plane, std::vector{-1.0}).outside_mm({0, 0, 0}), 1.0);
+  EXPECT_THROW(BoundingSurface::from_sizes(SurfaceKind::sphere, std::vector{1.0, 2.0}), InputError);
+  EXPECT_THROW(BoundingSurface::from_sizes(SurfaceKind::box, std::vector{1.0, 0.0, 2.0}), InputError);
+}
+
 TEST(BoundingSurface, NamesRoundTrip) {
-  for (const char* name : {"none", "plane", "sphere", "cylinder", "box"}) EXPECT_EQ(to_string(surface_kind(name)), name);
+  for (const char* name : {"none", "plane", "sphere", "cylinder", "box"})
+    EXPECT_EQ(to_string(surface_kind(name)), name);
   EXPECT_THROW(surface_kind("egg"), UsageError);
 }
 

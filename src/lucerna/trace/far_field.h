@@ -10,7 +10,7 @@ namespace lucerna {
 
 /// A far-field detector: all light that leaves, by direction, on a CIE Type C grid in the luminaire frame.
 struct FarFieldDetector {
-  std::string name = "far";
+  std::string name = "far-field";
   /// Must divide 360 and 180 evenly.
   double c_step_deg = 5.0;
   double gamma_step_deg = 1.0;

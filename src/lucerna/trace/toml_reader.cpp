@@ -150,6 +150,12 @@ std::optional<std::vector<double>> TomlReader::numbers(std::string_view key, std
   return values;
 }
 
+std::optional<std::vector<double>> TomlReader::number_or_numbers(std::string_view key) {
+  const toml::node* node = find(key);
+  if (node != nullptr && !node->is_array()) return std::vector{to_number(*node, key)};
+  return numbers(key);
+}
+
 std::optional<Vec3> TomlReader::vector(std::string_view key) {
   const auto values = numbers(key, 3);
   if (!values) return std::nullopt;

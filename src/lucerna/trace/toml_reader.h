@@ -34,6 +34,8 @@ class TomlReader {
   /// Any number of numbers; with `n`, exactly that many.
   std::optional<std::vector<double>> numbers(std::string_view key);
   std::optional<std::vector<double>> numbers(std::string_view key, std::size_t n);
+  /// A number by itself, or an array of numbers.
+  std::optional<std::vector<double>> number_or_numbers(std::string_view key);
   std::optional<Vec3> vector(std::string_view key);
   /// "+x", "-x", ... "z", or three numbers, not all zero.
   std::optional<Direction> axis(std::string_view key);

@@ -41,6 +41,8 @@ TEST(TomlReader, ReadsWhatIsThere) {
                       EXPECT_EQ(r.text("name"), "led");
                       EXPECT_EQ(r.flag("on"), true);
                       EXPECT_EQ(r.vector("v"), (Vec3{1, 2, 3}));
+                      EXPECT_EQ(r.number_or_numbers("v")->size(), 3u);
+                      EXPECT_EQ(r.number_or_numbers("n"), std::vector{3.0});
                       EXPECT_EQ(r.axis("axis")->vec(), (Vec3{0, -1, 0}));
                       EXPECT_NEAR(r.axis("slant")->z(), 0.8, 1e-15);
                       EXPECT_EQ(r.pairs("profile")->at(1)[1], 0.5);

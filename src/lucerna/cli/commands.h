@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "lucerna/cli/session.h"
+
+namespace lucerna::cli {
+
+/// Adds one command to the program. Its callback does the work when the command line names it; it may set
+/// `exit_code` (to 1: a check failed) and throws lucerna::Error otherwise.
+using AddCommand = void (*)(CLI::App& app, Session& session, int& exit_code);
+
+void add_init(CLI::App& app, Session& session, int& exit_code);
+void add_info(CLI::App& app, Session& session, int& exit_code);
+void add_make_source(CLI::App& app, Session& session, int& exit_code);
+void add_trace(CLI::App& app, Session& session, int& exit_code);
+
+/// In the order of `lucerna --help`.
+inline constexpr std::array<AddCommand, 4> kCommands{add_init, add_info, add_make_source, add_trace};
+
+}  // namespace lucerna::cli

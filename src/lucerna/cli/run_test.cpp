@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program as a user meets it: files, exit codes, messages.
+#include "lucerna/cli/run.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "lucerna/core/file.h"
+#include "tests/support/run_program.h"
+
+namespace lucerna {
+namespace {
+
+using test::run_lucerna;
+using test::slurp;
+using test::TempDir;
+using Json = nlohmann::json;
+
+constexpr const char* kProject = R"(
+[[source]]
+file = "s.tm25ray"
+[[reflector]]
+family = "revolution"
+preset = "parabola"
+focal_mm = 15.0
+diameter_mm = 100.0
+position_mm = [0, 0, 15]
+axis = "-z"
+reflectance = 0.9
+)";
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+std::size_t lines(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+std::size_t entries(const std::filesystem::path& folder) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+void make_source(const TempDir& dir, const std::string& arguments = "led -n 20000") {
+  const auto run = run_lucerna(dir.path(), "make-source " + arguments + " -o s.tm25ray");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+}
+
+TEST(ProgramCli, MadeSourceIsWhatInfoSees) {
+  const TempDir dir;
+  make_source(dir, "disk -n 5e3 --flux-lm 337 --surface sphere --surface-mm 4");
+  const auto run = run_lucerna(dir.path(), "info s.tm25ray --json");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json result = Json::parse(run.out);
+  for (const char* key :
+       {"program_version", "schema_version", "seed", "threads", "isa", "inputs", "wall_s", "files"}) {
+    EXPECT_TRUE(result.contains(key)) << key;
+  }
+  const Json& file = result["files"][0];
+  EXPECT_EQ(file["format"], "tm25");
+  EXPECT_EQ(file["rays"], 5000);
+  EXPECT_NEAR(file["flux_lm"].get<double>(), 337.0, 1e-4);
+  EXPECT_TRUE(file["equal_weights"].get<bool>());
+  EXPECT_EQ(file["backwards_share"], 0.0);
+  EXPECT_EQ(result["inputs"][0]["sha256"].get<std::string>().size(), 64u);
+}
+
+TEST(ProgramCli, TraceWritesItsFilesAndItsLedgerCloses) {
+  const TempDir dir;
+  make_source(dir);
+  write_file(dir / "p.toml", kProject);
+  const auto run = run_lucerna(dir.path(), "trace p.toml -o out --json");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  for (const char* name :
+       {"result.json", "project.toml", "far-field.ldt", "far-field.ies", "far-field.csv", "far-field.svg"}) {
+    EXPECT_TRUE(std::filesystem::exists(dir / "out" / name)) << name;
+  }
+  const Json result = Json::parse(run.out);
+  EXPECT_EQ(result, Json::parse(slurp(dir / "out" / "result.json")));
+  const Json& ledger = result["ledger"];
+  double out = ledger["out_direct"].get<double>() + ledger["out_reflected"].get<double>() +
+               ledger["lost"].get<double>();
+  for (const auto& [cause, flux] : ledger["absorbed"].items()) out += flux.get<double>();
+  EXPECT_NEAR(out, 1000.0, 1e-9 * 1000.0);
+  EXPECT_EQ(ledger["emitted"], 1000.0);
+  EXPECT_GT(ledger["out_reflected"].get<double>(), 500.0);
+  EXPECT_GT(result["detectors"][0]["peak"]["intensity"].get<double>(), 1000.0);
+}
+
+TEST(ProgramCli, AWrittenProjectRunsAgainToTheSameBits) {
+  const TempDir dir;
+  make_source(dir);
+  write_file(dir / "p.toml", kProject);
+  ASSERT_EQ(run_lucerna(dir.path(), "trace p.toml -o one --threads 1 --seed 5").exit_code, 0);
+  ASSERT_EQ(run_lucerna(dir.path(), "trace one/project.toml -o two --threads 2 --seed 5").exit_code, 0);
+  const std::string csv = slurp(dir / "one" / "far-field.csv");
+  EXPECT_GT(csv.size(), 1000u);
+  EXPECT_EQ(csv, slurp(dir / "two" / "far-field.csv"));
+  EXPECT_EQ(slurp(dir / "one" / "far-field.ldt"), slurp(dir / "two" / "far-field.ldt"));
+}
+
+TEST(ProgramCli, TwoSourcesAdd) {
+  const TempDir dir;
+  make_source(dir);
+  write_file(dir / "p.toml", std::string(kProject) + "[[source]]\nfile = \"s.tm25ray\"\nflux_lm = 500\n");
+  const auto run = run_lucerna(dir.path(), "trace p.toml -o out --json");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(Json::parse(run.out)["ledger"]["emitted"], 1500.0);
+}
+
+TEST(ProgramCli, InitWritesAProjectThatTraces) {
+  const TempDir dir;
+  ASSERT_EQ(run_lucerna(dir.path(), "init -o p.toml").exit_code, 0);
+  EXPECT_EQ(run_lucerna(dir.path(), "init -o p.toml").exit_code, 1) << "never replaces a file unasked";
+  const auto run = run_lucerna(dir.path(), "trace p.toml -o out --rays 2e4");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(has(run.out, "beam angle")) << run.out;
+}
+
+/// One clear line with `part`, exit 1, and no file but the given number left in the folder.
+void expect_refusal(const TempDir& dir, const std::string& arguments, const std::string& part) {
+  const std::size_t before = entries(dir.path());
+  const auto run = run_lucerna(dir.path(), arguments);
+  EXPECT_EQ(run.exit_code, 1) << arguments << '\n' << run.err;
+  EXPECT_EQ(lines(run.err), 1u) << run.err;
+  EXPECT_TRUE(has(run.err, part)) << run.err;
+  EXPECT_EQ(run.out, "") << arguments;
+  EXPECT_EQ(entries(dir.path()), before) << arguments;
+}
+
+TEST(ProgramCli, BadRayFilesAreOneClearLine) {
+  const TempDir dir;
+  make_source(dir, "disk -n 100");
+  const std::string whole = slurp(dir / "s.tm25ray");
+  write_file(dir / "empty.tm25ray", "");
+  write_file(dir / "short.tm25ray", whole.substr(0, whole.size() - 5));
+  write_file(dir / "other.tm25ray", "this is no ray file at all\n");
+  std::string nan = whole;
+  for (std::size_t i = 36288; i < nan.size(); ++i) nan[i] = '\xff';
+  write_file(dir / "nan.tm25ray", nan);
+  expect_refusal(dir, "info empty.tm25ray", "empty.tm25ray");
+  expect_refusal(dir, "info short.tm25ray", "short.tm25ray");
+  expect_refusal(dir, "info other.tm25ray", "other.tm25ray");
+  expect_refusal(dir, "info nan.tm25ray", "nan.tm25ray");
+  expect_refusal(dir, "info missing.tm25ray", "missing.tm25ray");
+  make_source(dir, "disk -n 0");
+  EXPECT_EQ(run_lucerna(dir.path(), "info s.tm25ray").exit_code, 0) << "readers take a set of no rays";
+  write_file(dir / "p.toml", kProject);
+  expect_refusal(dir, "trace p.toml -o out", "no rays");
+}
+
+TEST(ProgramCli, BadProjectsAreOneClearLine) {
+  const TempDir dir;
+  make_source(dir, "disk -n 100");
+  const auto refuse = [&](const std::string& text, const std::string& part) {
+    write_file(dir / "p.toml", text);
+    expect_refusal(dir, "trace p.toml -o out", part);
+  };
+  refuse(std::string(kProject) + "focal_mn = 3\n", "nearest known one is 'focal_mm'");
+  refuse(std::string(kProject) + "[[detectors]]\n", "nearest known one is 'detector'");
+  refuse("[[source]]\nkind = 'disc'\n", "unknown source kind 'disc'");
+  refuse("[[source]]\nfile = 'none.tm25ray'\n", "none.tm25ray");
+  refuse("[[source]]\nfile = 's.tm25ray'\nflux_w = 3\n", "never mixed");
+  refuse("[[source]]\nkind = 'disk'\nflux_lm = -3\n", "line 3: source[0].flux_lm: found -3, expected > 0");
+  refuse("", "at least one [[source]]");
+  refuse("[[source]\n", "line 1");
+}
+
+TEST(ProgramCli, FoldersThatHoldFilesAreRefusedUnlessForced) {
+  const TempDir dir;
+  make_source(dir, "disk -n 100");
+  write_file(dir / "p.toml", kProject);
+  std::filesystem::create_directory(dir / "out");
+  write_file(dir / "out" / "precious", "x");
+  expect_refusal(dir, "trace p.toml -o out", "not empty");
+  expect_refusal(dir, "trace p.toml -o p.toml", "p.toml");
+  EXPECT_EQ(run_lucerna(dir.path(), "trace p.toml -o out --force").exit_code, 0);
+  EXPECT_EQ(slurp(dir / "out" / "precious"), "x");
+  expect_refusal(dir, "make-source disk -n 10 -o missing/s.tm25ray", "missing/s.tm25ray");
+}
+
+TEST(ProgramCli, UsageErrorsExitWithTwo) {
+  const TempDir dir;
+  for (const char* arguments :
+       {"", "nonsense", "info", "make-source disk -n 10", "make-source disk -n ten -o a.tm25ray",
+        "make-source torch -n 10 -o a.tm25ray", "make-source disk -n 10 -o a.ray",
+        "make-source disk -n 10 -o a.tm25ray --sequence halton"}) {
+    EXPECT_EQ(run_lucerna(dir.path(), arguments).exit_code, 2) << arguments;
+  }
+  EXPECT_EQ(entries(dir.path()), 0u);
+  EXPECT_EQ(run_lucerna(dir.path(), "--help").exit_code, 0);
+  EXPECT_EQ(run_lucerna(dir.path(), "--version").exit_code, 0);
+}
+
+TEST(ProgramData, MeasuredLedHasItsFluxFocusAndBackwardShare) {
+  const std::filesystem::path file = std::filesystem::path(LUCERNA_DATA_DIR) /
+                                     "rayfiles/rayfile_LERTDUW_S2WP_green_100k_20161013_IES_TM25.TM25RAY";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
+  const TempDir dir;
+  const auto run = run_lucerna(dir.path(), "info --json '" + file.string() + "'");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json info = Json::parse(run.out)["files"][0];
+  EXPECT_NEAR(info["flux_lm"].get<double>(), 337.0, 1e-4);
+  EXPECT_NEAR(info["backwards_share"].get<double>(), 0.00056, 5e-6);
+  const auto focus = info["virtual_focus_mm"].get<std::vector<double>>();
+  EXPECT_LT(std::hypot(focus[0] + 0.684, focus[1] - 0.836, focus[2] + 0.449), 0.003);
+  write_file(dir / "p.toml", "[[source]]\nfile = \"" + file.string() + "\"\n[[source]]\nfile = \"" +
+                                 file.string() + "\"\nposition_mm = [5, 0, 0]\n" +
+                                 std::string(kProject).substr(std::string(kProject).find("[[reflector]]")));
+  const auto traced = run_lucerna(dir.path(), "trace p.toml -o out --json");
+  ASSERT_EQ(traced.exit_code, 0) << traced.err;
+  EXPECT_NEAR(Json::parse(traced.out)["ledger"]["emitted"].get<double>(), 674.0, 1e-3);
+}
+
+}  // namespace
+}  // namespace lucerna

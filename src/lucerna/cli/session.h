@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lucerna/core/parallel.h"
+#include "lucerna/core/progress.h"
+
+namespace lucerna::cli {
+
+using Json = nlohmann::ordered_json;
+
+/// Progress on a terminal's stderr: phase, share, rate and time left, redrawn a few times a second. Ctrl-C
+/// (SIGINT) and SIGTERM ask the work to stop.
+class TerminalProgress final : public Progress {
+ public:
+  explicit TerminalProgress(bool visible) : visible_(visible) {}
+  ~TerminalProgress() override { clear(); }
+  void update(std::string_view phase, std::uint64_t done, std::uint64_t total) override;
+  bool stop_requested() const override;
+  /// Wipes the line, so that results can follow.
+  void clear();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool visible_, drawn_ = false;
+  std::string phase_;
+  Clock::time_point phase_start_{}, last_draw_{};
+};
+
+/// What the options common to all commands said, and what one run of the program gathers: its clock and its
+/// inputs.
+class Session {
+ public:
+  int threads = 0;  ///< 0 = all
+  bool quiet = false, json = false, strict = false, force = false;
+
+  /// Adds --threads and --quiet to a command.
+  void add_common(CLI::App& command);
+  void add_json(CLI::App& command);
+  void add_strict(CLI::App& command);
+
+  /// To be called once all options are parsed and before any work.
+  void start();
+  Progress& progress() { return *progress_; }
+
+  /// Runs `work` and adds its wall time to the phase `name`.
+  template <class Work>
+  auto timed(const std::string& name, Work&& work) {
+    const PhaseTimer timer(*this, name);
+    return std::forward<Work>(work)();
+  }
+  double seconds(const std::string& phase) const;
+
+  /// Notes a file that the result depends on.
+  void add_input(const std::filesystem::path& path) { inputs_.push_back(path); }
+
+  /// The keys that every JSON result begins with; `isa` is the instruction set that computed it.
+  Json json_head(std::optional<std::uint64_t> seed, const std::string& isa = "scalar") const;
+
+  /// Prints the line unless --quiet or --json; `note` goes to stderr also with --json.
+  void say(const std::string& line);
+  void note(const std::string& line);
+  void print_json(const Json& object);
+
+ private:
+  struct PhaseTimer {
+    PhaseTimer(Session& owner, std::string phase_name) : session(owner), name(std::move(phase_name)) {}
+    ~PhaseTimer();
+    PhaseTimer(const PhaseTimer&) = delete;
+    PhaseTimer& operator=(const PhaseTimer&) = delete;
+    Session& session;
+    std::string name;
+    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+  };
+
+  std::unique_ptr<ThreadLimit> limit_;
+  std::unique_ptr<TerminalProgress> progress_;
+  std::vector<std::pair<std::string, double>> phases_;
+  std::vector<std::filesystem::path> inputs_;
+};
+
+/// The folder that a command writes to: made if missing; refused (InputError) when it holds files, unless
+/// `force`.
+void prepare_folder(const std::filesystem::path& folder, bool force);
+
+}  // namespace lucerna::cli

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/trace.h"
+
+#include <fmt/format.h>
+
+#include "lucerna/cli/arguments.h"
+#include "lucerna/cli/commands.h"
+#include "lucerna/core/error.h"
+#include "lucerna/report/trace_files.h"
+#include "lucerna/trace/project.h"
+
+namespace lucerna::cli {
+
+namespace {
+
+struct TraceArguments {
+  std::string project, output, rays, seed = "1", sequence = "sobol", device = "auto";
+};
+
+TraceOptions trace_options(const TraceArguments& a) {
+  if (a.device != "auto" && a.device != "cpu" && a.device != "cuda") {
+    throw UsageError(fmt::format("unknown device '{}'; expected auto, cpu or cuda", a.device));
+  }
+  if (a.device == "cuda") throw InputError("--device cuda: this program was built without CUDA");
+  TraceOptions options;
+  options.seed = parse_count(a.seed);
+  options.sequence = sequence_kind(a.sequence);
+  if (!a.rays.empty()) {
+    const RayRange range = parse_range(a.rays);
+    options.first_ray = range.first;
+    options.last_ray = range.last;
+  }
+  return options;
+}
+
+void run_trace(const TraceArguments& a, Session& session) {
+  session.start();
+  const TraceOptions options = trace_options(a);
+  const Project project = session.timed("read", [&] { return read_project(a.project, session.progress()); });
+  prepare_folder(a.output, session.force);
+  for (const std::string& warning : project.warnings) session.note(warning);
+  for (const auto& input : project.inputs) session.add_input(input);
+  const TraceResult result =
+      session.timed("trace", [&] { return trace(project.scene, options, session.progress()); });
+  const TraceFigures figures = session.timed("figures", [&] { return trace_figures(result); });
+  Json json = session.json_head(options.seed, result.isa);
+  json["sequence"] = std::string(to_string(result.sequence));
+  json["rays"] = {{"first", result.first_ray}, {"last", result.last_ray}};
+  json.update(trace_json(figures));
+  const auto names = write_trace_files(a.output, project, figures, json);
+  session.print_json(json);
+  const double seconds = session.seconds("trace");
+  session.say(fmt::format(
+      "{}: {} rays in {:.3g} s, {:.3g} M rays/s ({}, {} threads); read {:.3g} s, figures {:.3g} s", a.output,
+      figures.ledger.rays, seconds, 1e-6 * static_cast<double>(figures.ledger.rays) / seconds, result.isa,
+      ThreadLimit::current(), session.seconds("read"), session.seconds("figures")));
+  for (const std::string& line : trace_summary(figures)) session.say(line);
+  session.say(fmt::format("  written: {}", fmt::join(names, " ")));
+}
+
+}  // namespace
+
+void add_trace(CLI::App& app, Session& session, int&) {
+  CLI::App& command = *app.add_subcommand("trace", "Trace a project's sources through its mirrors");
+  auto arguments = std::make_shared<TraceArguments>();
+  TraceArguments& a = *arguments;
+  command.add_option("PROJECT", a.project, "Project file (see: lucerna init)")->required();
+  command.add_option("-o,--output", a.output, "Folder for the results")->required();
+  command.add_option("--rays", a.rays, "Number of rays, or a range A:B of ray numbers");
+  command.add_option("--seed", a.seed, "Seed of the random numbers")->capture_default_str();
+  command.add_option("--sequence", a.sequence, "random or sobol")->capture_default_str();
+  command.add_option("--device", a.device, "cpu, cuda or auto")->capture_default_str();
+  command.add_flag("--force", session.force, "Write into a folder that is not empty");
+  session.add_json(command);
+  session.add_common(command);
+  command.callback([arguments, &session] { run_trace(*arguments, session); });
+}
+
+}  // namespace lucerna::cli

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lucerna/core/progress.h"
+#include "lucerna/trace/scene.h"
+
+namespace lucerna {
+
+/// A project file, read: what is to be traced.
+struct Project {
+  Scene scene;
+  /// Every file that the result depends on: the project and what it names.
+  std::vector<std::filesystem::path> inputs;
+  /// What was odd in the files but could be read, each with its place.
+  std::vector<std::string> warnings;
+  /// The file's tables with all file names made absolute, so that it can be written elsewhere and run again.
+  toml::table table;
+};
+
+/// Reads a project (design.md section 3): [[source]], [[reflector]], [[body]], [[detector]]; [target] and
+/// [design] are left to `design`. Ray files are read whole. Throws InputError with file, line, key, found and
+/// expected: unknown keys name the nearest known one.
+Project read_project(const std::filesystem::path& path, Progress& progress = no_progress());
+
+/// The text of the project's tables.
+std::string project_text(const Project& project);
+
+/// A commented project file with every key: what `lucerna init` writes.
+std::string project_template();
+
+}  // namespace lucerna
