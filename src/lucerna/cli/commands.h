@@ -13,10 +13,12 @@ using AddCommand = void (*)(CLI::App& app, Session& session, int& exit_code);
 
 void add_init(CLI::App& app, Session& session, int& exit_code);
 void add_info(CLI::App& app, Session& session, int& exit_code);
+void add_convert(CLI::App& app, Session& session, int& exit_code);
 void add_make_source(CLI::App& app, Session& session, int& exit_code);
 void add_trace(CLI::App& app, Session& session, int& exit_code);
 
 /// In the order of `lucerna --help`.
-inline constexpr std::array<AddCommand, 4> kCommands{add_init, add_info, add_make_source, add_trace};
+inline constexpr std::array<AddCommand, 5> kCommands{add_init, add_info, add_convert, add_make_source,
+                                                     add_trace};
 
 }  // namespace lucerna::cli

@@ -96,6 +96,7 @@ void add_info(CLI::App& app, Session& session, int&) {
   auto files = std::make_shared<std::vector<std::string>>();
   command.add_option("FILE", *files, "Ray files")->required();
   session.add_json(command);
+  session.add_strict(command);
   session.add_common(command);
   command.callback([files, &session] {
     session.start();
@@ -103,6 +104,7 @@ void add_info(CLI::App& app, Session& session, int&) {
     for (const std::string& path : *files) {
       const RayFileInfo info = session.timed("read", [&] { return inspect(path, session); });
       session.add_input(path);
+      if (session.strict && !info.warnings.empty()) throw InputError(info.warnings.front());
       list.push_back(to_json(info));
       print(info, session);
     }

@@ -65,6 +65,27 @@ TEST(ProgramCli, MadeSourceIsWhatInfoSees) {
   EXPECT_EQ(result["inputs"][0]["sha256"].get<std::string>().size(), 64u);
 }
 
+TEST(ProgramCli, ConvertThinsTurnsAndMoves) {
+  const TempDir dir;
+  make_source(dir, "rectangle --size-mm 4,1 -n 4000");
+  ASSERT_EQ(run_lucerna(dir.path(),
+                        "convert s.tm25ray t.tm25ray --rays 500 --rotate z:90 --rotate x:180 --move 1,2,3")
+                .exit_code,
+            0);
+  const Json info = Json::parse(run_lucerna(dir.path(), "info t.tm25ray --json").out)["files"][0];
+  EXPECT_EQ(info["rays"], 500);
+  EXPECT_NEAR(info["flux_lm"].get<double>(), 1000.0, 1e-3);
+  EXPECT_NEAR(info["flux_ratio"].get<double>(), 1.0, 1e-5);
+  EXPECT_EQ(info["backwards_share"], 1.0);
+  const auto low = info["extent_mm"]["min"].get<std::vector<double>>();
+  const auto high = info["extent_mm"]["max"].get<std::vector<double>>();
+  EXPECT_NEAR(high[0] - low[0], 1.0, 0.05);
+  EXPECT_NEAR(high[1] - low[1], 4.0, 0.05);
+  EXPECT_NEAR(low[2], 3.0, 1e-6);
+  EXPECT_EQ(run_lucerna(dir.path(), "convert s.tm25ray t.tm25ray --rays 5000").exit_code, 1);
+  EXPECT_EQ(run_lucerna(dir.path(), "convert s.tm25ray t.tm25ray --rotate q:5").exit_code, 2);
+}
+
 TEST(ProgramCli, TraceWritesItsFilesAndItsLedgerCloses) {
   const TempDir dir;
   make_source(dir);

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/rayset/convert.h"
+
+#include <fmt/format.h>
+
+#include "lucerna/cli/arguments.h"
+#include "lucerna/cli/commands.h"
+#include "lucerna/core/error.h"
+#include "lucerna/rayset/ray_file.h"
+
+namespace lucerna::cli {
+
+namespace {
+
+struct ConvertArguments {
+  std::string input, output, to, rays, seed = "1", flux, move;
+  std::vector<std::string> rotations;
+  bool salvage = false;
+};
+
+RayConversion conversion_of(const ConvertArguments& a, bool strict) {
+  RayConversion conversion;
+  conversion.strict = strict;
+  if (!a.rays.empty()) conversion.rays = parse_count(a.rays);
+  conversion.seed = parse_count(a.seed);
+  if (!a.flux.empty()) {
+    conversion.flux = parse_number(a.flux);
+    if (!(*conversion.flux > 0.0)) throw UsageError(fmt::format("--flux {} is not > 0", a.flux));
+  }
+  // Turns in the order given, then the move.
+  for (const std::string& rotation : a.rotations)
+    conversion.new_from_old = parse_rotation(rotation) * conversion.new_from_old;
+  if (!a.move.empty()) {
+    const auto by = parse_numbers(a.move, 3);
+    conversion.new_from_old =
+        Frame::from_axis(Direction(), 0.0, {by[0], by[1], by[2]}) * conversion.new_from_old;
+  }
+  return conversion;
+}
+
+void convert(const ConvertArguments& a, Session& session) {
+  session.start();
+  const RayConversion conversion = conversion_of(a, session.strict);
+  const std::string format = ray_format_for(a.output, a.to);
+  const auto result = session.timed("convert", [&] {
+    return convert_ray_file(a.input, a.output, format, conversion, {.salvage = a.salvage},
+                            session.progress());
+  });
+  for (const std::string& warning : result.warnings) session.note(warning);
+  session.say(fmt::format(
+      "{}: {} rays{} as {}", a.output, result.rays,
+      result.flux ? fmt::format(" of {:.6g} {}", *result.flux, symbol(result.flux_unit)) : "", format));
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app, Session& session, int&) {
+  CLI::App& command = *app.add_subcommand("convert", "Convert, thin, turn and move a ray file");
+  auto arguments = std::make_shared<ConvertArguments>();
+  ConvertArguments& a = *arguments;
+  command.add_option("IN", a.input, "The file to read")->required();
+  command.add_option("OUT", a.output, "The file to write")->required();
+  command.add_option("--to", a.to, "Format of OUT (default: by its ending)");
+  command.add_option("--rays", a.rays,
+                     "Keep so many rays, spread over the file; their flux stays that of all");
+  command.add_option("--seed", a.seed, "Seed of that choice")->capture_default_str();
+  command.add_option("--flux", a.flux, "Total flux to state, in the rays' unit");
+  command.add_flag("--salvage", a.salvage, "Take what is whole of a damaged file");
+  command.add_option("--rotate", a.rotations, "Turn about an axis through the origin: z:90; may be repeated")
+      ->allow_extra_args(false);
+  command.add_option("--move", a.move, "Then move by X,Y,Z mm");
+  session.add_strict(command);
+  session.add_common(command);
+  command.callback([arguments, &session] { convert(*arguments, session); });
+}
+
+}  // namespace lucerna::cli
