@@ -148,7 +148,7 @@ std::string ies_text(const PhotometricFile& file, PhotometricFormat format,
   append_keywords(out, file, format, options);
   append_line(out, "TILT=NONE");
   const std::optional<double> lamp_flux = lamp_flux_lm(l);
-  const int lamps = lamp_flux && l.lamps.front().count > 0 ? l.lamps.front().count : 1;
+  const int lamps = !l.lamps.empty() && l.lamps.front().count > 0 ? l.lamps.front().count : 1;
   {
     Record record(out);
     record.add(std::to_string(lamps));

@@ -49,10 +49,42 @@ struct LuminaireData {
   friend bool operator==(const LuminaireData&, const LuminaireData&) = default;
 };
 
+/// Something found in a file. `line` counts from 1; 0 means the file as a whole.
+struct Fault {
+  enum class Severity {
+    note,     ///< legal, but changes how the numbers are to be read
+    warning,  ///< a rule is broken; the reader repaired it as the text says
+    error,    ///< cannot be read
+  };
+  Severity severity = Severity::warning;
+  std::size_t line = 0;
+  std::string text{};
+  friend bool operator==(const Fault&, const Fault&) = default;
+};
+
+/// What the file looked like before it was expanded, turned and scaled to cd.
+struct PhotometricOrigin {
+  std::string format;                  ///< "IES LM-63-2002", "EULUMDAT"; empty if not from a file
+  std::string symmetry;                ///< "H 0..90", "Isym 3"
+  char type = 'C';                     ///< goniometer type A, B or C
+  std::size_t planes = 0, gammas = 0;  ///< angles that the file lists
+  double multiplier = 1.0;             ///< LM-63 multiplier, EULUMDAT conversion factor; applied
+  double ballast_factor = 1.0;         ///< LM-63, applied
+  std::string file_generation;         ///< second value of LM-63's record 2, as in the file
+  std::array<double, 3> raw_size{};    ///< LM-63 width, length, height as in the file
+  bool feet = false;
+  std::optional<double> stated_flux_lm;  ///< lamp flux times LORL, or a keyword for luminaire lumens
+  double nadir_spread = 0.0;             ///< (max - min) / mean of the nadir row before it was evened out
+  std::vector<std::pair<double, double>> tilt_factors;  ///< LM-63 TILT=INCLUDE: angle, factor; not applied
+};
+
 /// A light distribution with what is said of it: what readers return and writers take.
 struct PhotometricFile {
   IntensityDistribution distribution;
   LuminaireData luminaire;
+  PhotometricOrigin origin{};
+  std::vector<Fault> repairs{};  ///< every repair that reading needed, in the order of the file
+  std::vector<Fault> notes{};    ///< what was assumed or is unusual but legal
 };
 
 /// Flux of the lamps that intensities may be quoted for (cd/klm), in lm: of the first lamp set with flux, or
