@@ -350,7 +350,8 @@ IntensityDistribution read_intensities(const IesBody& body, double factor, int y
 
 }  // namespace
 
-PhotometricFile read_ies(std::string_view bytes, std::string_view name, const ReadOptions& options) {
+PhotometricFile read_ies(std::string_view bytes, std::string_view name,
+                         const PhotometricReadOptions& options) {
   RepairLog log(std::string(name), options.strict);
   const std::string text = decoded_text(bytes);
   const std::vector<std::string_view> lines = lines_of(text);

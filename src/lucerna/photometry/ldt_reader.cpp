@@ -265,7 +265,8 @@ IntensityDistribution read_intensities(LdtLines& in, const LdtHead& head, Isym3O
 
 }  // namespace
 
-PhotometricFile read_ldt(std::string_view bytes, std::string_view name, const ReadOptions& options) {
+PhotometricFile read_ldt(std::string_view bytes, std::string_view name,
+                         const PhotometricReadOptions& options) {
   RepairLog log(std::string(name), options.strict);
   const std::string text = decoded_text(bytes);
   const std::vector<std::string_view> lines = lines_of(text);

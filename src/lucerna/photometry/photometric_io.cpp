@@ -127,7 +127,8 @@ bool is_photometric_file(const std::filesystem::path& path) {
   }
 }
 
-PhotometricFile read_photometric_file(const std::filesystem::path& path, const ReadOptions& options) {
+PhotometricFile read_photometric_file(const std::filesystem::path& path,
+                                      const PhotometricReadOptions& options) {
   const std::string bytes = read_file(path, kMaxBytes);
   const auto format = detect_photometric_format(bytes);
   if (!format) throw InputError(fmt::format("{}: neither an IES LM-63 nor a EULUMDAT file", path.string()));
@@ -141,11 +142,12 @@ void write_photometric_file(const std::filesystem::path& path, const Photometric
              format == PhotometricFormat::ldt ? ldt_text(file, options) : ies_text(file, format, options));
 }
 
-std::vector<Fault> check_photometric_file(const std::filesystem::path& path, const ReadOptions& options) {
+std::vector<Fault> check_photometric_file(const std::filesystem::path& path,
+                                          const PhotometricReadOptions& options) {
   InputFile{path};  // throws if it cannot be opened
   std::vector<Fault> faults;
   try {
-    ReadOptions tolerant = options;
+    PhotometricReadOptions tolerant = options;
     tolerant.strict = false;
     const PhotometricFile file = read_photometric_file(path, tolerant);
     faults = file.repairs;

@@ -15,7 +15,7 @@ enum class Isym3Order {
   reversed,  ///< C90 over C180 to C270 (files of QLumEdit and its relatives)
 };
 
-struct ReadOptions {
+struct PhotometricReadOptions {
   bool strict = false;  ///< the first repair becomes an InputError
   Isym3Order isym3 = Isym3Order::standard;
   IesTurn ies_turn = IesTurn::none;  ///< how the H angles and sizes of IES files are meant
@@ -36,14 +36,17 @@ bool is_photometric_file(const std::filesystem::path& path);
 /// degrees with the flux of their own quadrature. TILT factors are kept, not applied. Intensities in mW/sr or
 /// W/sr ([_INTENSITYUNITS]) become W/sr. `name` is for messages. Throws InputError with the line where
 /// reading is not possible, or, if strict, at the first repair. Thread safe. O(bytes).
-PhotometricFile read_ies(std::string_view bytes, std::string_view name, const ReadOptions& options = {});
+PhotometricFile read_ies(std::string_view bytes, std::string_view name,
+                         const PhotometricReadOptions& options = {});
 
 /// Reads the text of a EULUMDAT file, Isym 0 to 4. cd = value x conversion factor x flux of the first lamp
 /// set / 1000.
-PhotometricFile read_ldt(std::string_view bytes, std::string_view name, const ReadOptions& options = {});
+PhotometricFile read_ldt(std::string_view bytes, std::string_view name,
+                         const PhotometricReadOptions& options = {});
 
 /// Reads either, by content. Throws InputError if it is neither, larger than 64 MiB, or as above.
-PhotometricFile read_photometric_file(const std::filesystem::path& path, const ReadOptions& options = {});
+PhotometricFile read_photometric_file(const std::filesystem::path& path,
+                                      const PhotometricReadOptions& options = {});
 
 /// Writes a whole file, or none. Throws InputError if the place cannot be written or the format cannot say
 /// it.
@@ -55,6 +58,7 @@ void write_photometric_file(const std::filesystem::path& path, const Photometric
 /// ratio outside 1 to 105 %, a little uplight (under 7 % of the flux, as stray light in the laboratory
 /// gives), missing sizes, an Isym 3 file that looks reversed. Strict: warnings become errors. Throws only if
 /// the file cannot be opened.
-std::vector<Fault> check_photometric_file(const std::filesystem::path& path, const ReadOptions& options = {});
+std::vector<Fault> check_photometric_file(const std::filesystem::path& path,
+                                          const PhotometricReadOptions& options = {});
 
 }  // namespace lucerna
