@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,12 +33,16 @@ void store(std::span<std::byte> bytes, std::size_t offset, const T& value) {
   std::memcpy(bytes.data() + offset, &value, sizeof(T));
 }
 
-/// A fixed field of `size` chars as text: up to the first NUL, without blanks at the end.
+/// A fixed field of `size` chars as text: up to the first NUL, without blanks at the end; control characters
+/// become '?'.
 inline std::string load_text(std::span<const std::byte> bytes, std::size_t offset, std::size_t size) {
   std::string text(size, '\0');
   std::memcpy(text.data(), bytes.subspan(offset, size).data(), size);
   text.resize(std::min(text.find('\0'), text.size()));
   text.resize(text.find_last_not_of(' ') + 1);
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+  }
   return text;
 }
 

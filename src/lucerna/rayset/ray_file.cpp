@@ -4,25 +4,35 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstring>
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
+#include "lucerna/rayset/asap.h"
+#include "lucerna/rayset/lighttools_binary.h"
+#include "lucerna/rayset/speos.h"
 #include "lucerna/rayset/tm25.h"
+#include "lucerna/rayset/zemax_binary.h"
 
 namespace lucerna {
 
 namespace {
 
-/// One line per format: "to add a format, add a line here".
+/// One line per format: "to add a format, add a line here". Binary ones first: text is what is left.
 struct Format {
   std::string_view name;
+  bool (*looks_like)(const InputFile&);
   std::unique_ptr<RayReader> (*open)(InputFile, const ReadOptions&);
   std::unique_ptr<RayWriter> (*create)(const std::filesystem::path&, const RaySetHeader&,
                                        const WriteOptions&);
 };
 
-constexpr std::array kFormats{Format{"tm25", open_tm25, create_tm25}};
+constexpr std::array kFormats{
+    Format{"tm25", looks_like_tm25, open_tm25, create_tm25},
+    Format{"zemax-binary", looks_like_zemax_binary, open_zemax_binary, create_zemax_binary},
+    Format{"lighttools-binary", looks_like_lighttools_binary, open_lighttools_binary,
+           create_lighttools_binary},
+    Format{"speos", looks_like_speos, open_speos, create_speos},
+    Format{"asap", looks_like_asap, open_asap, create_asap}};
 
 constexpr auto kNames = [] {
   std::array<std::string_view, kFormats.size()> names;
@@ -40,10 +50,15 @@ const Format& format_named(std::string_view name) {
 
 std::optional<std::string> detect(const InputFile& file) {
   if (file.size() == 0) throw InputError(fmt::format("{}: empty file, rays expected", file.name()));
-  std::array<char, 4> magic{};
-  if (file.size() >= magic.size()) file.read_at(0, std::as_writable_bytes(std::span(magic)));
-  if (std::memcmp(magic.data(), "TM25", 4) == 0) return "tm25";
-  return std::nullopt;
+  std::vector<std::string> candidates;
+  for (const Format& format : kFormats) {
+    if (format.looks_like(file)) candidates.emplace_back(format.name);
+  }
+  if (candidates.size() > 1) {
+    throw_input_error(file.name(), "", "could be {}: say which with --from", fmt::join(candidates, " or "));
+  }
+  if (candidates.empty()) return std::nullopt;
+  return candidates.front();
 }
 
 }  // namespace

@@ -24,6 +24,8 @@ std::array<const std::vector<float>*, 7> arrays_of(const RayBlock& b) {
   return {&b.x_mm, &b.y_mm, &b.z_mm, &b.kx, &b.ky, &b.kz, &b.weight};
 }
 
+bool is_verbatim(const RecordColumn& column) { return column.scale == 1.0 && column.offset == 0.0; }
+
 float decoded(float value, const RecordColumn& column) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
   return bits >= 1 && bits <= column.integers_up_to ? static_cast<float>(bits) : value;
@@ -37,18 +39,18 @@ void gather(const float* records, std::size_t stride, std::size_t n, const Recor
   const float* in = records + column.at;
   if (column.integers_up_to > 0) {
     for (std::size_t i = 0; i < n; ++i) out[i] = decoded(in[i * stride], column);
-  } else if (column.scale == 1.0) {
+  } else if (is_verbatim(column)) {
     for (std::size_t i = 0; i < n; ++i) out[i] = in[i * stride];
   } else {
     for (std::size_t i = 0; i < n; ++i)
-      out[i] = static_cast<float>(static_cast<double>(in[i * stride]) * column.scale);
+      out[i] = static_cast<float>(static_cast<double>(in[i * stride]) * column.scale + column.offset);
   }
 }
 
 void scatter(const float* in, std::size_t n, const RecordColumn& column, std::size_t stride, float* records) {
   if (column.at < 0) return;
   float* out = records + column.at;
-  if (column.scale == 1.0) {
+  if (is_verbatim(column)) {
     for (std::size_t i = 0; i < n; ++i) out[i * stride] = in[i];
   } else {
     for (std::size_t i = 0; i < n; ++i)
@@ -60,7 +62,7 @@ void scatter(const float* in, std::size_t n, const RecordColumn& column, std::si
 bool is_plain(const RecordLayout& layout) {
   for (std::size_t c = 0; c < 7; ++c) {
     const RecordColumn& column = layout.main[c];
-    if (column.at != static_cast<int>(c) || column.scale != 1.0 || column.integers_up_to != 0) return false;
+    if (column.at != static_cast<int>(c) || !is_verbatim(column) || column.integers_up_to != 0) return false;
   }
   return true;
 }
@@ -159,6 +161,61 @@ void RecordWriter::write_rays(const RayBlock& block) {
     file_.write(std::as_bytes(std::span(records_)));
   }
   count_ += block.size();
+}
+
+std::optional<double> mm_per(std::string_view unit) {
+  static constexpr std::array<std::pair<std::string_view, double>, 7> kUnits{{{"mm", 1.0},
+                                                                              {"cm", 10.0},
+                                                                              {"m", 1000.0},
+                                                                              {"inch", 25.4},
+                                                                              {"feet", 304.8},
+                                                                              {"um", 1e-3},
+                                                                              {"nm", 1e-6}}};
+  const auto found = std::ranges::find(kUnits, unit, &std::pair<std::string_view, double>::first);
+  if (found == kUnits.end()) return std::nullopt;
+  return found->second;
+}
+
+std::vector<float> peek_records(const InputFile& file, std::uint64_t first_byte, std::size_t floats,
+                                std::uint64_t count) {
+  const std::uint64_t room = file.size() > first_byte ? (file.size() - first_byte) / (4 * floats) : 0;
+  std::vector<float> records(std::min(count, room) * floats);
+  if (!records.empty()) file.read_at(first_byte, std::as_writable_bytes(std::span(records)));
+  return records;
+}
+
+std::vector<std::string> losses(const RaySetHeader& header, std::string_view format,
+                                const FormatHolds& holds) {
+  std::vector<std::string> lost;
+  const auto lose = [&](std::string_view what) {
+    lost.push_back(fmt::format("{} has no place for {}", format, what));
+  };
+  for (const ColumnSpec& column : header.columns) {
+    if (column.kind == ColumnKind::wavelength_nm && holds.wavelengths) continue;
+    lose(fmt::format("the column '{}'", column.label));
+  }
+  if (!header.spectra.empty() && !holds.table) lose("the spectral table");
+  if (header.wavelength_nm && !holds.one_wavelength) lose("the wavelength of all rays");
+  RaySetTexts rest = header.texts;
+  rest.light_source.clear();
+  if (!holds.texts && rest != RaySetTexts{}) lose("the texts but for the light source's name");
+  return lost;
+}
+
+std::uint64_t whole_records(const InputFile& file, std::uint64_t announced, std::uint64_t count_byte,
+                            std::uint64_t first_byte, std::uint64_t record_bytes, bool salvage,
+                            std::vector<std::string>& warnings) {
+  if (!salvage) require_records(file, announced, count_byte, first_byte, record_bytes);
+  const std::uint64_t room = file.size() > first_byte ? (file.size() - first_byte) / record_bytes : 0;
+  if (announced > room) {
+    warnings.push_back(fmt::format("byte {}: {} rays announced, {} are whole: the others are left out",
+                                   count_byte, announced, room));
+    return room;
+  }
+  const std::uint64_t end = first_byte + announced * record_bytes;
+  if (end < file.size())
+    warnings.push_back(fmt::format("byte {}: {} bytes after the last ray", end, file.size() - end));
+  return announced;
 }
 
 void require_records(const InputFile& file, std::uint64_t count, std::uint64_t count_byte,

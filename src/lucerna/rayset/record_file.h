@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lucerna/core/file.h"
@@ -19,8 +20,8 @@ namespace lucerna {
 struct RecordColumn {
   /// Which float32 of the record; negative = not stored: zero is read (starts of far-field files).
   int at = -1;
-  /// Stored value times this is ours (lengths to mm, micrometres to nm).
-  double scale = 1.0;
+  /// Stored value times this, plus `offset`, is ours (lengths to mm, micrometres to nm, a data origin).
+  double scale = 1.0, offset = 0.0;
   /// Some writers store this number as an int32: bit patterns from 1 to this are taken as one (0 = never).
   std::uint32_t integers_up_to = 0;
 };
@@ -41,6 +42,10 @@ struct RecordLayout {
     for (std::size_t c = 0; c < 3; ++c) main[c].scale = mm_per_unit;
   }
 };
+
+/// Millimetres in a unit of RayReader::length_unit: "um", "mm", "cm", "m", "inch", "feet"; absent if it is
+/// none of them.
+std::optional<double> mm_per(std::string_view unit);
 
 /// All that a format's opener finds out before the first ray.
 struct RayFileFacts {
@@ -86,6 +91,29 @@ class RecordWriter {
   std::vector<float> records_;
   std::uint64_t count_ = 0;
 };
+
+/// The first at most `count` rays as they lie in the file, unchecked, for an opener that must look at some;
+/// fewer where the file ends.
+std::vector<float> peek_records(const InputFile& file, std::uint64_t first_byte, std::size_t floats,
+                                std::uint64_t count);
+
+/// What a format can hold beside starts, directions and one flux.
+struct FormatHolds {
+  bool wavelengths = false;
+  /// One wavelength for all rays, or a table turned into one wavelength per ray.
+  bool one_wavelength = false, table = false;
+  bool texts = false;
+};
+
+/// One sentence for each thing of `header` that a format of these abilities loses.
+std::vector<std::string> losses(const RaySetHeader& header, std::string_view format,
+                                const FormatHolds& holds);
+
+/// Whole rays in the file from `first_byte`, at most `announced`. If there are fewer than announced:
+/// InputError as from require_records, or with `salvage` a warning. More bytes than rays: a warning.
+std::uint64_t whole_records(const InputFile& file, std::uint64_t announced, std::uint64_t count_byte,
+                            std::uint64_t first_byte, std::uint64_t record_bytes, bool salvage,
+                            std::vector<std::string>& warnings);
 
 /// Throws InputError unless `count` records of `record_bytes` fit between `first_byte` and the end of `file`;
 /// the text names the byte where the count stands. Safe for any count.

@@ -11,6 +11,9 @@
 /// float32 records.
 namespace lucerna {
 
+/// True if the file begins with "TM25".
+bool looks_like_tm25(const InputFile& file);
+
 /// Opens a TM-25 file. All of the 2013 edition is read; 2020 with a warning. Weights are the luminous flux
 /// column if there is one and the header does not give the watts only; the other flux column is an extra
 /// column. The rays are anchored to the end of the file where writers disagree about padding (a warning says

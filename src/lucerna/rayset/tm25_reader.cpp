@@ -260,9 +260,8 @@ void Tm25Opener::set_stokes(std::size_t columns) {
 
 bool Tm25Opener::plausible(std::uint64_t start) const {
   const std::uint64_t n = std::min(kProbe, facts_.ray_count);
-  if (start > file_.size() || n * layout_.record_bytes() > file_.size() - start) return false;
-  std::vector<float> records(n * layout_.floats);
-  file_.read_at(start, std::as_writable_bytes(std::span(records)));
+  const std::vector<float> records = peek_records(file_, start, layout_.floats, n);
+  if (records.size() < n * layout_.floats) return false;
   for (std::size_t i = 0; i < n; ++i) {
     const float* r = records.data() + i * layout_.floats;
     const double square = dot(Vec3{r[3], r[4], r[5]}, Vec3{r[3], r[4], r[5]});
@@ -309,16 +308,19 @@ void Tm25Opener::place_rays() {
   if (!plausible(computed) && !options_.salvage) {
     fail(computed, "unit directions expected in the first rays of {} numbers, others found", layout_.floats);
   }
-  const std::uint64_t whole =
-      file_.size() > computed ? (file_.size() - computed) / layout_.record_bytes() : 0;
-  if (whole < n) {
-    warn("byte {}: {} rays announced, {} are whole: the others are left out", kRayCount, n, whole);
-    facts_.ray_count = whole;
-  }
+  facts_.ray_count =
+      whole_records(file_, n, kRayCount, computed, layout_.record_bytes(), options_.salvage, facts_.warnings);
   settle(computed);
 }
 
 }  // namespace
+
+bool looks_like_tm25(const InputFile& file) {
+  std::string magic(4, '\0');
+  if (file.size() < magic.size()) return false;
+  file.read_at(0, std::as_writable_bytes(std::span(magic)));
+  return magic == "TM25";
+}
 
 std::unique_ptr<RayReader> open_tm25(InputFile file, const ReadOptions& options) {
   return Tm25Opener(std::move(file), options).open();
