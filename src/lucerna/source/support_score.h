@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "lucerna/source/support_search.h"
+
+namespace lucerna {
+
+/// Judges supports by held-out likelihood: a tree is grown from two thirds of the rays, the rest say how
+/// probable they are under it. So that supports that carry different rays can be compared, 2 % of a plain
+/// density about the focus is mixed in, and all of the share that the support does not carry.
+/// Immutable once made; thread safe.
+class SupportJudge {
+ public:
+  SupportJudge(const RayBlock& rays, const Vec3& focus_mm, double tolerance_mm);
+
+  SupportScore score(const Support& support) const;
+  /// All at once, on all threads.
+  std::vector<SupportScore> scores(const std::vector<Support>& supports) const;
+
+ private:
+  RayBlock train_, held_;
+  double tolerance_mm_;
+  std::vector<double> plain_;  // density of each held-out ray under the plain model
+};
+
+}  // namespace lucerna

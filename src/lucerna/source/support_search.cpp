@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/source/support_search.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lucerna/core/error.h"
+#include "lucerna/core/parallel.h"
+#include "lucerna/core/random.h"
+#include "lucerna/rayset/ray_statistics.h"
+#include "lucerna/rayset/surface_guess.h"
+#include "lucerna/source/support_score.h"
+
+namespace lucerna {
+
+namespace {
+
+constexpr std::size_t kScreenRays = 9000, kCoarseRays = 24000, kFineRays = 60000;
+/// Candidates that are refined, and of them those of one kind.
+constexpr std::size_t kRefined = 5, kRefinedOfKind = 2;
+/// How many of them are still refined after each round.
+constexpr std::array<std::size_t, 6> kRacers{4, 3, 2, 2, 1, 1};
+constexpr int kFineRounds = 3;
+
+/// What the candidates are made from.
+struct Shape {
+  Vec3 focus_mm, mean_direction;
+  /// The focus, and the centre of the bounding surface if it is round.
+  std::vector<Vec3> centres_mm;
+  std::vector<Direction> axes;
+  double spread_mm = 0.0;  // RMS distance of the lines from the focus
+};
+
+double quantile(std::vector<double> v, double share) {
+  if (v.empty()) return 0.0;
+  const auto at = v.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(v.size() - 1));
+  std::nth_element(v.begin(), at, v.end());
+  return *at;
+}
+
+void add_axis(std::vector<Direction>& axes, const Vec3& v) {
+  if (!(length(v) > 1e-9)) return;
+  const Direction d = Direction::from(v);
+  for (const Direction& known : axes) {
+    if (std::abs(dot(known.vec(), d.vec())) > 0.99995) return;
+  }
+  axes.push_back(d);
+}
+
+Shape shape_of(const RayBlock& rays, const BoundingSurface& surface) {
+  const RaySummary summary = summarize(rays);
+  Shape shape;
+  shape.focus_mm = summary.virtual_focus ? summary.virtual_focus->point_mm : Vec3{};
+  shape.centres_mm.push_back(shape.focus_mm);
+  if (surface.kind == SurfaceKind::sphere || surface.kind == SurfaceKind::cylinder) {
+    shape.centres_mm.push_back(surface.world_from_surface.origin_mm());
+  }
+  shape.mean_direction = summary.mean_direction.value_or(Vec3{});
+  Eigen::Matrix3d p2 = Eigen::Matrix3d::Zero();
+  double weight = 0.0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray r = rays.ray(i);
+    const Vec3 o = r.origin_mm - shape.focus_mm, p = o - dot(o, r.direction.vec()) * r.direction.vec();
+    const double w = static_cast<double>(rays.weight[i]);
+    const Eigen::Vector3d v(p.x, p.y, p.z);
+    p2 += w * v * v.transpose();
+    weight += w;
+  }
+  shape.spread_mm = std::sqrt(p2.trace() / weight);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(p2);
+  if (length(shape.mean_direction) > 0.1) add_axis(shape.axes, shape.mean_direction);
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d v = solver.eigenvectors().col(k);
+    add_axis(shape.axes, {v.x(), v.y(), v.z()});
+  }
+  for (const Vec3& v : {Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{0, 1, 0}}) add_axis(shape.axes, v);
+  return shape;
+}
+
+/// +z along `axis`; +x as near to the world's x (or y) as can be, so that upright sets keep their axes.
+Frame upright_frame(const Direction& axis, const Vec3& origin_mm) {
+  const Vec3 seed = std::abs(axis.x()) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Direction x = Direction::from(seed - dot(seed, axis.vec()) * axis.vec());
+  return {x.vec(), cross(axis.vec(), x.vec()), axis.vec(), origin_mm};
+}
+
+/// Radius and half length about the focus and along `axis` that hold nearly all of the light.
+std::array<double, 2> cylinder_size(const RayBlock& rays, const Frame& frame) {
+  Support probe;
+  probe.kind = SupportKind::axis;
+  probe.world_from_support = frame;
+  std::vector<double> along, across;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto p = probe.to_chart(rays.ray(i));
+    if (!p) continue;
+    along.push_back(std::abs(p->c[0]));
+    across.push_back(std::abs(p->c[1]));
+  }
+  return {quantile(std::move(across), 0.985), quantile(std::move(along), 0.97)};
+}
+
+void add_round(std::vector<Support>& all, const RayBlock& rays, const Direction& axis,
+               const Vec3& centre_mm) {
+  const Frame frame = upright_frame(axis, centre_mm);
+  Support s;
+  s.world_from_support = frame;
+  s.kind = SupportKind::axis;
+  all.push_back(s);
+  for (const PolarMap map : {PolarMap::polar, PolarMap::concentric}) {
+    s.kind = SupportKind::focal;
+    s.map = map;
+    all.push_back(s);
+  }
+  const auto [radius, half] = cylinder_size(rays, frame);
+  if (!(radius > 0.0 && half > 0.0)) return;
+  for (const PolarMap map : {PolarMap::polar, PolarMap::concentric}) {
+    s.map = map;
+    s.kind = SupportKind::cylinder;
+    s.radius_mm = 1.01 * radius;
+    s.half_size_mm = {s.radius_mm, s.radius_mm, 1.05 * half};
+    all.push_back(s);
+    s.kind = SupportKind::sphere;
+    s.half_size_mm = {};
+    s.radius_mm = 1.02 * std::max(radius, half);
+    all.push_back(s);
+  }
+}
+
+std::vector<Support> candidates(const RayBlock& rays, const Shape& shape, const BoundingSurface& surface) {
+  std::vector<Support> all;
+  for (const PolarMap map : {PolarMap::polar, PolarMap::concentric}) {
+    if (const auto given = support_on(surface, map)) all.push_back(*given);
+    for (const Direction& axis : shape.axes) {
+      Support s;
+      s.kind = SupportKind::plane;
+      s.map = map;
+      s.world_from_support = upright_frame(axis, shape.focus_mm);
+      all.push_back(s);
+      s.kind = SupportKind::disk;
+      all.push_back(s);
+    }
+  }
+  for (const Vec3& centre : shape.centres_mm) {
+    for (const Direction& axis : shape.axes) add_round(all, rays, axis, centre);
+  }
+  return all;
+}
+
+/// One step of a support: moved along an axis of its own by `length_mm`, turned about one by `angle`, or
+/// resized. Nothing for steps that change nothing.
+std::optional<Support> moved(const Support& s, int move, double length_mm, double angle) {
+  Support t = s;
+  const Frame& f = s.world_from_support;
+  const bool flat = s.kind == SupportKind::plane, round = s.radius_mm > 0.0;
+  if (move < 3) {
+    if (flat && move < 2) return std::nullopt;  // a plane moved in itself is the same plane
+    const Vec3 axis = move == 0 ? f.ex() : move == 1 ? f.ey() : f.ez();
+    t.world_from_support = {f.ex(), f.ey(), f.ez(), f.origin_mm() + length_mm * axis};
+    return t;
+  }
+  if (move < 6) {
+    const Direction local = move == 3   ? Direction::from({1, 0, 0})
+                            : move == 4 ? Direction::from({0, 1, 0})
+                                        : Direction();
+    t.world_from_support = f * Frame::rotation(local, angle);
+    return t;
+  }
+  if (move == 6 && round) {
+    t.radius_mm = s.radius_mm + length_mm;
+    if (!(t.radius_mm > 0.2 * s.radius_mm)) return std::nullopt;
+    if (s.kind == SupportKind::cylinder) t.half_size_mm.x = t.half_size_mm.y = t.radius_mm;
+    return t;
+  }
+  if (move == 7 && s.kind == SupportKind::cylinder) {
+    t.half_size_mm.z = s.half_size_mm.z + 2.0 * length_mm;
+    if (!(t.half_size_mm.z > 0.2 * s.half_size_mm.z)) return std::nullopt;
+    return t;
+  }
+  return std::nullopt;
+}
+constexpr int kMoves = 8;
+
+/// One round of compass search: the best of all single steps is taken while one gains.
+SupportScore refine_round(const SupportJudge& judge, SupportScore start, double length_mm, double angle,
+                          Progress& progress) {
+  constexpr double kWorthwhile = 2e-4;
+  constexpr int kMostSteps = 5;
+  for (int step = 0; step < kMostSteps; ++step) {
+    if (progress.stop_requested()) throw Interrupted();
+    std::vector<Support> tries;
+    for (int move = 0; move < kMoves; ++move) {
+      for (const double sign : {-1.0, 1.0}) {
+        if (const auto t = moved(start.on.support, move, sign * length_mm, sign * angle)) tries.push_back(*t);
+      }
+    }
+    const auto scores = judge.scores(tries);
+    const auto best = std::max_element(scores.begin(), scores.end(),
+                                       [](const auto& a, const auto& b) { return a.nats < b.nats; });
+    if (best == scores.end() || best->nats < start.nats + kWorthwhile) break;
+    start = *best;
+  }
+  return start;
+}
+
+/// Rounds with steps halved after each.
+SupportScore refine(const SupportJudge& judge, SupportScore start, double length_mm, double angle, int rounds,
+                    Progress& progress) {
+  for (int round = 0; round < rounds; ++round, length_mm *= 0.5, angle *= 0.5) {
+    start = refine_round(judge, std::move(start), length_mm, angle, progress);
+  }
+  return start;
+}
+
+std::vector<SupportScore> best_first(std::vector<SupportScore> scores) {
+  std::stable_sort(scores.begin(), scores.end(),
+                   [](const auto& a, const auto& b) { return a.nats > b.nats; });
+  return scores;
+}
+
+/// Rays through a point, parallel to one another, or through a line: the support in which most numbers are
+/// the same for all, turned to where the rest is simplest. Nothing if no number is.
+std::optional<SupportScore> degenerate_support(const RayBlock& rays, const Shape& shape, double tolerance_mm,
+                                               Progress& progress) {
+  std::vector<Support> best;
+  int fewest = 4;
+  // Where rays start on a line they say so exactly; the virtual focus is only near it.
+  const SurfaceGuess starts = guess_surface(rays);
+  const bool line = starts.shape == StartShape::line;
+  // Lines through a point also meet every axis through it: there an axis must do better than a focus. Lines
+  // through an axis have three numbers on both, but only the axis knows where they start.
+  for (const SupportKind kind : {SupportKind::focal, SupportKind::axis}) {
+    const int beaten = fewest;
+    std::vector<Frame> frames;
+    if (line) frames.push_back(upright_frame(starts.line, starts.point_mm));
+    for (const Direction& axis : shape.axes) frames.push_back(upright_frame(axis, shape.focus_mm));
+    for (const Frame& frame : frames) {
+      Support s;
+      s.kind = kind;
+      s.world_from_support = frame;
+      const Projection p = project(rays, rays.weight, bounded(s, rays), tolerance_mm);
+      if (p.charts.empty() || p.missed_weight > 1e-3 * (p.weight + p.missed_weight)) continue;
+      int dimensions = 0;
+      for (std::size_t d = 0; d < 4; ++d) dimensions += p.charts.front().box.width(d) > 0.0 ? 1 : 0;
+      const bool wins = kind == SupportKind::focal || dimensions < beaten || dimensions == 3;
+      if (!wins || dimensions > fewest) continue;
+      if (dimensions < fewest || (dimensions == 3 && best.front().kind != kind)) best.clear();
+      fewest = dimensions;
+      best.push_back(s);
+    }
+  }
+  if (best.empty() || fewest == 4) return std::nullopt;
+  const SupportJudge judge(rays, shape.focus_mm, tolerance_mm);
+  const SupportScore start = best_first(judge.scores(best)).front();
+  // Only turns leave the rays' numbers few; turns of a line's axis do not even that.
+  const bool free = start.on.support.kind == SupportKind::focal && fewest == 2;
+  return free ? refine(judge, start, 0.0, radians(12.0), 8, progress) : start;
+}
+
+}  // namespace
+
+double rounding_mm(const RayBlock& rays, const Vec3& about_mm) {
+  double farthest = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    farthest = std::max(farthest, length(rays.origin_mm(i) - about_mm));
+    size = std::max(size, length(rays.origin_mm(i)));
+  }
+  return 2e-6 * (farthest + size) + 1e-12;
+}
+
+RayBlock stratified_choice(const RayBlock& rays, std::size_t n, std::uint64_t seed) {
+  if (rays.size() <= n) return rays;
+  RayBlock chosen;
+  const double stretch = static_cast<double>(rays.size()) / static_cast<double>(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double place = (static_cast<double>(i) + Rng(seed, i).uniform()) * stretch;
+    chosen.append(rays, std::min(static_cast<std::size_t>(place), rays.size() - 1));
+  }
+  return chosen;
+}
+
+SearchResult find_support(const RayBlock& rays, const BoundingSurface& surface, std::uint64_t seed,
+                          Progress& progress) {
+  const RayBlock fine = stratified_choice(rays, kFineRays, seed);
+  const RayBlock coarse = stratified_choice(fine, kCoarseRays, seed + 1);
+  const Shape shape = shape_of(coarse, surface);
+  const double tolerance_mm = rounding_mm(fine, shape.focus_mm);
+  SearchResult result;
+  if (const auto flat = degenerate_support(coarse, shape, tolerance_mm, progress)) {
+    result.best = *flat;
+    result.degenerate = true;
+    return result;
+  }
+  progress.step("compress: supports", 0, 2);
+  const SupportJudge screen(stratified_choice(coarse, kScreenRays, seed + 2), shape.focus_mm, tolerance_mm);
+  std::vector<Support> promising;
+  std::array<std::size_t, kSupportKinds> of_kind{};
+  for (const SupportScore& score : best_first(screen.scores(candidates(coarse, shape, surface)))) {
+    if (of_kind[static_cast<std::size_t>(score.on.support.kind)]++ < 2 * kRefinedOfKind) {
+      promising.push_back(score.on.support);
+    }
+  }
+  const SupportJudge judge(coarse, shape.focus_mm, tolerance_mm);
+  std::vector<SupportScore> racers;
+  of_kind.fill(0);
+  for (const SupportScore& score : best_first(judge.scores(promising))) {
+    std::size_t& count = of_kind[static_cast<std::size_t>(score.on.support.kind)];
+    if (racers.size() < kRefined && count++ < kRefinedOfKind) racers.push_back(score);
+  }
+  double length_mm = 0.25 * shape.spread_mm, angle = radians(12.0);
+  for (std::size_t round = 0; round < kRacers.size(); ++round, length_mm *= 0.5, angle *= 0.5) {
+    for (SupportScore& racer : racers)
+      racer = refine_round(judge, std::move(racer), length_mm, angle, progress);
+    racers = best_first(std::move(racers));
+    for (; racers.size() > kRacers[round]; racers.pop_back()) result.rivals.push_back(racers.back());
+  }
+  progress.step("compress: supports", 1, 2);
+  result.rivals.insert(result.rivals.end(), racers.begin() + 1, racers.end());
+  result.rivals = best_first(std::move(result.rivals));
+  const SupportJudge fine_judge(fine, shape.focus_mm, tolerance_mm);
+  result.coarse_nats = racers.front().nats;
+  result.best = refine(fine_judge, fine_judge.score(racers.front().on.support), length_mm, angle, kFineRounds,
+                       progress);
+  return result;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lucerna/core/progress.h"
+#include "lucerna/source/support_fit.h"
+
+namespace lucerna {
+
+/// What a support is worth, judged on rays that its density was not made from.
+struct SupportScore {
+  BoundedSupport on;
+  /// Mean log density per ray, nats (1/(mm^2 sr)); comparable between supports.
+  double nats = 0.0;
+  /// Share of the flux that it carries.
+  double carried = 0.0;
+};
+
+struct SearchResult {
+  SupportScore best;
+  /// What it was chosen from, best first; their `nats` compare with `coarse_nats`, the best support's before
+  /// it was refined on more rays.
+  std::vector<SupportScore> rivals;
+  double coarse_nats = 0.0;
+  /// Set when the rays have no étendue: then `best` is the support on which they have fewest dimensions.
+  bool degenerate = false;
+};
+
+/// Finds the support that makes the density of `rays` simplest: places and sizes of every kind are proposed
+/// from the rays' virtual focus, mean direction, principal axes and `surface`, each is judged by held-out
+/// likelihood on some ten thousand rays, and the best few are moved, turned and scaled until nothing gains.
+/// Depends on rays and seed alone. Cost: 1 to 3 s, whatever the number of rays.
+SearchResult find_support(const RayBlock& rays, const BoundingSurface& surface, std::uint64_t seed,
+                          Progress& progress);
+
+/// Length below which a distance is rounding of the ray file, mm.
+double rounding_mm(const RayBlock& rays, const Vec3& about_mm);
+
+/// At most `n` of the rays, one from each of as many equal stretches, chosen by `seed`.
+RayBlock stratified_choice(const RayBlock& rays, std::size_t n, std::uint64_t seed);
+
+}  // namespace lucerna
