@@ -19,6 +19,9 @@ void check_positive(const char* what, double value_mm) {
   }
 }
 
+/// How far a formula is used beyond the rim, as a multiple of the rim's radius.
+constexpr double kGoesOn = 1.1;
+
 void widen(HeightRange& range, double z_mm) {
   range.low_mm = std::min(range.low_mm, z_mm);
   range.high_mm = std::max(range.high_mm, z_mm);
@@ -30,6 +33,11 @@ ConicProfile::ConicProfile(double curvature, double conic, double r_max_mm)
     : curvature_(curvature), conic_(conic) {
   check_positive("the outer radius", r_max_mm);
   r_max_mm_ = r_max_mm;
+  tangent_from_mm_ = kGoesOn * r_max_mm;
+  if (conic > -1.0) {
+    const double equator_mm = 1.0 / (curvature * std::sqrt(1.0 + conic));
+    tangent_from_mm_ = std::max(r_max_mm, std::min(tangent_from_mm_, 0.99 * equator_mm));
+  }
 }
 
 ConicProfile ConicProfile::parabola(double focal_mm, double r_max_mm) {
@@ -63,7 +71,7 @@ ConicProfile ConicProfile::hyperbola(double focal_mm, double focal2_mm, double r
 }
 
 ProfilePoint ConicProfile::at(double r_mm) const {
-  const double r = std::min(r_mm, r_max_mm_);
+  const double r = std::min(r_mm, tangent_from_mm_);
   const double cr = curvature_ * r;
   const double root = std::sqrt(1.0 - (1.0 + conic_) * cr * cr);
   const double slope = cr / root;
@@ -146,9 +154,10 @@ SplineProfile::SplineProfile(const std::vector<ProfileKnot>& knots) {
     pieces_.push_back({knots[i].r_mm, knots[i].z_mm, s[i], (3.0 * delta[i] - 2.0 * s[i] - s[i + 1]) / h[i],
                        (s[i] + s[i + 1] - 2.0 * delta[i]) / (h[i] * h[i])});
   }
-  end_ = {knots[m].z_mm, s[m]};
   r_min_mm_ = knots[0].r_mm;
   r_max_mm_ = knots[m].r_mm;
+  formula_from_mm_ = r_min_mm_ / kGoesOn;
+  formula_to_mm_ = r_max_mm_ * kGoesOn;
 }
 
 const SplineProfile::Piece& SplineProfile::piece(double r_mm) const {
@@ -158,27 +167,31 @@ const SplineProfile::Piece& SplineProfile::piece(double r_mm) const {
 }
 
 ProfilePoint SplineProfile::at(double r_mm) const {
-  if (r_mm >= r_max_mm_) return {end_.z_mm + end_.slope * (r_mm - r_max_mm_), end_.slope};
-  const Piece& p = piece(r_mm);
-  const double t = r_mm - p.r_mm;
-  if (t < 0.0) return {p.z + p.b * t, p.b};
-  return {p.z + t * (p.b + t * (p.c + t * p.d)), p.b + t * (2.0 * p.c + 3.0 * t * p.d)};
+  const double r = std::clamp(r_mm, formula_from_mm_, formula_to_mm_);
+  const Piece& p = piece(r);
+  const double t = r - p.r_mm, slope = p.b + t * (2.0 * p.c + 3.0 * t * p.d);
+  return {p.z + t * (p.b + t * (p.c + t * p.d)) + slope * (r_mm - r), slope};
 }
 
 HeightRange SplineProfile::range(double r0_mm, double r1_mm) const {
   const double z0 = at(r0_mm).z_mm;
   HeightRange range{z0, z0};
   widen(range, at(r1_mm).z_mm);
-  for (const Piece* p = &piece(r0_mm); p < pieces_.data() + pieces_.size() && p->r_mm < r1_mm; ++p) {
-    const double end = p + 1 < pieces_.data() + pieces_.size() ? (p + 1)->r_mm : r_max_mm_;
-    if (p->r_mm > r0_mm) widen(range, p->z);
-    if (end > r0_mm && end < r1_mm) widen(range, at(end).z_mm);
-    const double q = p->c * p->c - 3.0 * p->d * p->b;  // z' = b + 2 c t + 3 d t^2 = 0
+  const auto widen_at = [&](double r) {
+    if (r > r0_mm && r < r1_mm) widen(range, at(r).z_mm);
+  };
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const Piece& p = pieces_[i];
+    const double begin = i == 0 ? formula_from_mm_ : p.r_mm;
+    const double end = i + 1 < pieces_.size() ? pieces_[i + 1].r_mm : formula_to_mm_;
+    if (begin > r1_mm || end < r0_mm) continue;
+    widen_at(begin);
+    widen_at(end);
+    const double q = p.c * p.c - 3.0 * p.d * p.b;  // z' = b + 2 c t + 3 d t^2 = 0
     if (q < 0.0) continue;
-    const double w = -(p->c + std::copysign(std::sqrt(q), p->c));
-    for (const double t : {w / (3.0 * p->d), p->b / w}) {
-      const double r = p->r_mm + t;
-      if (t >= 0.0 && r <= end && r > r0_mm && r < r1_mm) widen(range, at(r).z_mm);
+    const double w = -(p.c + std::copysign(std::sqrt(q), p.c));
+    for (const double t : {w / (3.0 * p.d), p.b / w}) {
+      if (p.r_mm + t >= begin && p.r_mm + t <= end) widen_at(p.r_mm + t);
     }
   }
   return range;

@@ -51,6 +51,7 @@ class ConicProfile final : public Profile {
  private:
   ConicProfile(double curvature, double conic, double r_max_mm);
   double curvature_, conic_;
+  double tangent_from_mm_;
 };
 
 /// One given point of a spline profile.
@@ -77,7 +78,8 @@ class SplineProfile final : public Profile {
   };
   const Piece& piece(double r_mm) const;
   std::vector<Piece> pieces_;
-  ProfilePoint end_;
+  /// Tangents begin below and above these.
+  double formula_from_mm_ = 0.0, formula_to_mm_ = 0.0;
 };
 
 /// The surface that a profile sweeps about the z axis.

@@ -67,13 +67,17 @@ std::uint64_t SourceWord::count(std::size_t source, std::uint64_t n) const {
 
 RayNumbering::RayNumbering(const std::vector<PlacedSource>& sources, std::uint64_t seed)
     : word_(source_shares(sources)), seed_(seed) {
+  double flux = 0.0;
+  for (const PlacedSource& s : sources) flux += s.total_flux();
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const double per_block = static_cast<double>(kBlockRays) * static_cast<double>(word_.share(s)) /
                              static_cast<double>(word_.total());
     // The word deviates by less than 1 + log2(sources) at either end of a block.
     const double spread = 2.0 * (1.0 + std::log2(static_cast<double>(sources.size())));
     const std::uint64_t most = static_cast<std::uint64_t>(std::ceil(per_block + spread));
-    streams_.push_back({sources[s].rays->ray_count().has_value(), std::min(kBlockRays, most)});
+    const double share = per_block / static_cast<double>(kBlockRays);
+    streams_.push_back({sources[s].rays->ray_count().has_value(), std::min(kBlockRays, most),
+                        sources[s].total_flux() / flux / share});
   }
 }
 

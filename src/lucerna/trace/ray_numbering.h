@@ -60,6 +60,8 @@ class RayNumbering {
   /// Rays of a run whose number is not given: the sum of all shares.
   std::uint64_t default_count() const { return word_.total(); }
   const SourceWord& word() const { return word_; }
+  /// Flux of a ray of weight 1 of `source`, in units of the run's mean ray.
+  double ray_flux(std::size_t source) const { return streams_[source].ray_flux; }
 
   /// The runs that make up the rays [first, last), which must lie in one block.
   std::vector<SourceRun> runs(std::uint64_t first, std::uint64_t last) const;
@@ -69,6 +71,7 @@ class RayNumbering {
     bool finite;
     /// Numbers that a block sets aside in a replicate's stream.
     std::uint64_t slot;
+    double ray_flux;
   };
   SourceWord word_;
   std::vector<Stream> streams_;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "lucerna/core/progress.h"
 #include "lucerna/core/sequence.h"
@@ -10,6 +11,10 @@
 #include "lucerna/trace/trace_result.h"
 
 namespace lucerna {
+
+/// `fast`: height fields sampled on a grid and traced in vectors of float32. `reference`: the exact surfaces,
+/// one ray at a time in double; what the fast one is checked against.
+enum class EngineKind { fast, reference };
 
 /// How a scene is traced.
 struct TraceOptions {
@@ -21,6 +26,12 @@ struct TraceOptions {
   SequenceKind sequence = SequenceKind::sobol;
   /// Reflections after which a ray is given up and counted as lost; at least 1.
   int max_bounces = 100;
+  EngineKind engine = EngineKind::fast;
+  /// Cells a side of the height fields of the fast engine: a power of two, 8 to 8192.
+  int cells = 1024;
+  /// Instruction set of the fast engine: "portable", "avx2", "avx512"; empty = the best that the processor
+  /// has.
+  std::string isa;
 };
 
 /// Rays that are traced when no number is asked for: every ray of the ray files once, and 2^20 for the other

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "lucerna/reflector/reflector.h"
+
+namespace lucerna {
+
+/// One grid vertex of a HeightField: height and gradient of the surface less those of the field's quadric.
+struct FieldVertex {
+  float z_mm = 0.0F, dzdx = 0.0F, dzdy = 0.0F;
+};
+
+/// A plane slab over a square of cells: |z - (a + b (x - cx) + c (y - cy))| <= e with (cx, cy) the square's
+/// centre, z over the quadric. e < 0 where no part of the mirror is.
+struct FieldNode {
+  float a = 0.0F, b = 0.0F, c = 0.0F, e = -1.0F;
+};
+
+/// z = c0 + cx x + cy y + cxx x^2 + cxy x y + cyy y^2. Kept in float so that kernels and builders use the
+/// same numbers.
+struct Quadric {
+  float c0 = 0.0F, cx = 0.0F, cy = 0.0F, cxx = 0.0F, cxy = 0.0F, cyy = 0.0F;
+
+  SurfacePoint at(double x, double y) const {
+    const double a = cxx, b = cxy, c = cyy, p = cx, q = cy;
+    return {static_cast<double>(c0) + x * (p + a * x + b * y) + y * (q + c * y), p + 2.0 * a * x + b * y,
+            q + b * x + 2.0 * c * y};
+  }
+};
+
+/// A reflector sampled on a grid of cells x cells over its aperture's rectangle, for the fast tracers. What
+/// is between the vertices is a C0 surface of cubic pieces with the vertices' heights and gradients (Adini's
+/// rectangle, 12 numbers a cell): heights are exact to the fourth order of the cell, gradients to the third.
+/// Everything is kept over one least-squares quadric, so that float32 is enough and a ray's quadratic roots
+/// say where a hit is possible at all. Above it stands a quadtree of plane slabs that ends at squares of 8 x
+/// 8 cells. Memory: 12 bytes a vertex and 16 / 64 * 4 / 3 bytes a cell. Immutable but for `rebuild`; reading
+/// is thread safe.
+class HeightField {
+ public:
+  /// Cells per side of a leaf square.
+  static constexpr int kBlock = 8;
+
+  /// Samples `reflector`; `cells` a side, a power of two from 8 to 8192. Cost: cells^2 evaluations of the
+  /// surface.
+  HeightField(const Reflector& reflector, int cells);
+
+  int cells() const { return cells_; }
+  const Rectangle& region() const { return region_; }
+  const Aperture& aperture() const { return aperture_; }
+  const Quadric& quadric() const { return quadric_; }
+  float step_x_mm() const { return step_x_mm_; }
+  float step_y_mm() const { return step_y_mm_; }
+
+  /// Row after row, (cells + 1)^2.
+  const std::vector<FieldVertex>& vertices() const { return vertices_; }
+  std::vector<FieldVertex>& vertices() { return vertices_; }
+  /// All levels one after the other, leaves (level 0) first; row after row.
+  const std::vector<FieldNode>& nodes() const { return nodes_; }
+  /// Index of the first node of each level; the last level has one node.
+  const std::vector<std::int32_t>& level_offsets() const { return offsets_; }
+  /// Height over the quadric lies in [low, high] wherever the mirror is.
+  const HeightRange& band() const { return band_; }
+
+  /// Makes nodes and band again after `vertices()` changed. Same bits for any number of threads. O(cells^2).
+  void rebuild();
+
+  /// The surface of cubic pieces at (x, y), clamped to the region: what the fast tracers hit.
+  SurfacePoint at(double x_mm, double y_mm) const;
+
+ private:
+  void fit_quadric(const HeightSurface& surface);
+  void sample(const HeightSurface& surface);
+  FieldNode leaf(std::size_t bx, std::size_t by) const;
+  FieldNode parent(int level, std::size_t ix, std::size_t iy) const;
+
+  Aperture aperture_;
+  int cells_;
+  Rectangle region_;
+  float step_x_mm_, step_y_mm_;
+  Quadric quadric_;
+  std::vector<FieldVertex> vertices_;
+  std::vector<FieldNode> nodes_;
+  std::vector<std::uint8_t> leaf_is_mirror_;
+  std::vector<std::int32_t> offsets_;
+  HeightRange band_;
+};
+
+}  // namespace lucerna

@@ -1,0 +1,454 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// The first hit of rays with a HeightField, kLanes rays at a time (docs/algorithms/height-field-tracing.md).
+// Included by the kernel_*.cpp files only, see simd.h.
+
+#include "lucerna/trace/kernel.h"
+#include "lucerna/trace/simd.h"
+
+namespace lucerna {
+namespace {
+
+inline constexpr float kFar = 1e18f;
+
+inline Float reciprocal_of(Float d) {
+  const Float tiny = 1e-20f;
+  return Float(1.0f) / select(abs(d) < tiny, tiny, d);
+}
+
+/// Both roots of a t^2 + b t + c = 0 with a < 0, in order; none where the discriminant is below 0.
+struct Roots {
+  Float low, high;
+  Mask exist;
+};
+inline Roots roots(Float a, Float b, Float c) {
+  const Float disc = fma(b, b, Float(-4.0f) * a * c);
+  const Float root = sqrt(max(disc, 0.0f));
+  Float w = Float(-0.5f) * select(b < Float(0.0f), b - root, b + root);
+  w = select(abs(w) < Float(1e-30f), 1e-30f, w);
+  const Float r = w / a, s = c / w;
+  return {min(r, s), max(r, s), Float(0.0f) <= disc};
+}
+
+/// kLanes rays on their way through one field.
+class Packet {
+ public:
+  Packet(const FieldView& field, const LocalRays& rays, size_t first) : f_(field) {
+    ox_ = load(rays.x + first);
+    oy_ = load(rays.y + first);
+    oz_ = load(rays.z + first);
+    dx_ = load(rays.dx + first);
+    dy_ = load(rays.dy + first);
+    dz_ = load(rays.dz + first);
+    on_mirror_ = load(rays.on_mirror + first) == Int(1);
+  }
+
+  void run(uint32_t lanes, LocalHits& hits, size_t first) {
+    hit_state_ = Int(kMiss);
+    hit_t_ = kFar;
+    hit_gx_ = hit_gy_ = 0.0f;
+    prepare(mask_of(lanes));
+    while (any(node_ | leaf_)) {
+      while (any(node_)) node_step();
+      while (any(leaf_)) leaf_step();
+    }
+    store(hits.t + first, hit_t_);
+    store(hits.gx + first, hit_gx_);
+    store(hits.gy + first, hit_gy_);
+    store(hits.state + first, hit_state_);
+  }
+
+ private:
+  /// Height of the ray over the quadric at distance t.
+  Float over(Float t) const { return fma(fma(u2_, t, u1_), t, u0_); }
+  Float middle() const { return 0.5f * (f_.low + f_.high); }
+  Float half() const { return 0.5f * (f_.high - f_.low); }
+
+  void prepare(Mask lanes) {
+    idx_ = reciprocal_of(dx_);
+    idy_ = reciprocal_of(dy_);
+    const Float ax = (Float(f_.x0) - ox_) * idx_, bx = (Float(f_.x1) - ox_) * idx_;
+    const Float ay = (Float(f_.y0) - oy_) * idy_, by = (Float(f_.y1) - oy_) * idy_;
+    const Float t0 = max(max(min(ax, bx), min(ay, by)), 0.0f);
+    // A little past the region, so that its last border is crossed like any other.
+    const Float t1 = fma(min(min(max(ax, bx), max(ay, by)), kFar), 1.00001f, 1e-4f);
+    u0_ = oz_ - f_.q0 - ox_ * (Float(f_.qx) + f_.qxx * ox_ + f_.qxy * oy_) -
+          oy_ * (Float(f_.qy) + f_.qyy * oy_);
+    u1_ = dz_ - dx_ * (Float(f_.qx) + 2.0f * f_.qxx * ox_ + f_.qxy * oy_) -
+          dy_ * (Float(f_.qy) + f_.qxy * ox_ + 2.0f * f_.qyy * oy_);
+    u2_ = Float(0.0f) - (f_.qxx * dx_ * dx_ + f_.qxy * dx_ * dy_ + f_.qyy * dy_ * dy_);
+    // Where the ray is inside the band: on a concave parabola between its upper roots and its lower ones; an
+    // upward one is turned over.
+    const Mask up = Float(0.0f) < u2_;
+    const Float sign = select(up, -1.0f, 1.0f);
+    const Float a = min(sign * u2_, -1e-30f), b = sign * u1_, c = sign * u0_;
+    const Float high = half() + f_.slack + sign * middle(),
+                low = Float(0.0f) - half() - f_.slack + sign * middle();
+    const Roots upper = roots(a, b, c - high), lower = roots(a, b, c - low);
+    const Float first_end = select(upper.exist, upper.low, lower.high);
+    begin_ = max(lower.low, t0);
+    end_ = select(lower.exist, min(first_end, t1), -1.0f);
+    next_begin_ = max(upper.high, t0);
+    next_end_ = select(upper.exist & lower.exist, min(lower.high, t1), -1.0f);
+    node_ = leaf_ = mask_of(0);
+    start(lanes);
+  }
+
+  /// Lanes of `m` begin their interval, or the next one if it is empty.
+  void start(Mask m) {
+    const Mask empty = m & ~(begin_ < end_);
+    begin_ = select(empty, next_begin_, begin_);
+    end_ = select(empty, next_end_, end_);
+    next_end_ = select(empty, -1.0f, next_end_);
+    m = m & (begin_ < end_);
+    if (!any(m)) return;
+    t_ = select(m, begin_, t_);
+    const Float u = over(t_) - middle();
+    // On which side of the surface the ray is: plain outside the band, else it must be looked up; a ray just
+    // reflected is on the front.
+    Float side = u;
+    const Mask inside = m & (abs(u) < half() + 0.5f * f_.slack);
+    const Mask reflected = on_mirror_ & (t_ <= Float(0.0f));
+    if (any(inside & ~reflected)) {
+      Int ix, iy;
+      cell_at(t_, ix, iy);
+      side = select(inside, over(t_) - surface(t_, ix, iy).z, side);
+    }
+    side_ = select(m, select(reflected | (Float(0.0f) <= side), 1.0f, -1.0f), side_);
+    set_end(m);
+    // First look at a square about as large as the interval is long.
+    const Float length = end_ - t_;
+    const Float squares =
+        max(abs(dx_) * length * (0.125f / f_.step_x), abs(dy_) * length * (0.125f / f_.step_y));
+    const Int exponent = shift_right(float_bits(min(max(squares, 1.0f), 65536.0f)), Int(23)) - Int(127);
+    level_ = select(m, min(exponent, Int(f_.levels - 1)), level_);
+    Int cx, cy;
+    cell_at(t_, cx, cy);
+    bx_ = select(m, shift_right(cx, Int(3)), bx_);
+    by_ = select(m, shift_right(cy, Int(3)), by_);
+    node_ = node_ | m;
+  }
+
+  /// Does the ray leave the band on the other side at the end of its interval?
+  void set_end(Mask m) {
+    const Mask beyond = side_ * (over(end_) - middle()) < Float(0.0f) - half() - 0.5f * f_.slack;
+    crosses_ = (crosses_ & ~m) | (beyond & m);
+  }
+
+  void cell_at(Float t, Int& ix, Int& iy) const {
+    const int32_t last = f_.blocks * 8 - 1;
+    ix = min(max(truncate((fma(t, dx_, ox_) - f_.x0) * (1.0f / f_.step_x)), Int(0)), Int(last));
+    iy = min(max(truncate((fma(t, dy_, oy_) - f_.y0) * (1.0f / f_.step_y)), Int(0)), Int(last));
+  }
+
+  void node_step() {
+    const Int nx = shift_right(max(bx_, Int(0)), level_), ny = shift_right(max(by_, Int(0)), level_);
+    const Int per_side = shift_right(Int(f_.blocks), level_);
+    const Int node = shift_left(gather(f_.offsets, level_) + ny * per_side + nx, Int(2));
+    const Float a = gather(f_.nodes, node), b = gather(f_.nodes + 1, node), c = gather(f_.nodes + 2, node);
+    const Float e = gather(f_.nodes + 3, node);
+    const Float scale = to_float(shift_left(Int(8), level_));
+    const Float wx = scale * f_.step_x, wy = scale * f_.step_y;
+    const Float xl = fma(to_float(nx), wx, f_.x0), yl = fma(to_float(ny), wy, f_.y0);
+    const Mask right = Float(0.0f) < dx_, north = Float(0.0f) < dy_;
+    const Float tx = (select(right, xl + wx, xl) - ox_) * idx_,
+                ty = (select(north, yl + wy, yl) - oy_) * idy_;
+    const Float te = max(min(min(tx, ty), end_), t_);
+    const Float p0 = fma(b, ox_ - xl - 0.5f * wx, fma(c, oy_ - yl - 0.5f * wy, a)), p1 = fma(b, dx_, c * dy_);
+    const Float k0 = side_ * (u0_ - p0), k1 = side_ * (u1_ - p1), k2 = side_ * u2_;
+    const Float va = fma(fma(k2, t_, k1), t_, k0), vb = fma(fma(k2, te, k1), te, k0);
+    // Within the step a parabola leaves its chord by a quarter of k2 times the step squared, on the side of
+    // its sign.
+    const Float length = te - t_, sag = 0.25f * k2 * length * length;
+    const Float below = max(sag, 0.0f), above = max(Float(0.0f) - sag, 0.0f);
+    const Float reach = e + f_.slack;
+    const Mask skip = node_ & ((e < Float(0.0f)) | (reach < min(va, vb) - below));
+    const Mask enter = node_ & ~skip;
+
+    // Nearer: forward to where the ray can first touch the slab; at a leaf also back to where it is surely
+    // through.
+    const Float per_fall = length / max(va - vb, 1e-30f);
+    const Mask ahead = enter & (reach < va - below);
+    const Mask down = enter & (level_ == Int(0));
+    const Mask through = down & (vb + above < Float(0.0f) - reach) & (vb < va);
+    leaf_end_ = select(down, select(through, fma(va + above + reach, per_fall, t_), end_), leaf_end_);
+    leaf_crosses_ = (leaf_crosses_ & ~down) | (down & (through | crosses_));
+    t_ = select(ahead, min(fma(va - below - reach, per_fall, t_), te), t_);
+    Int cx, cy;
+    cell_at(t_, cx, cy);
+    const Int last = shift_left(Int(1), level_) - Int(1);
+    const Int fx = shift_left(nx, level_), fy = shift_left(ny, level_);
+    bx_ = select(enter, min(max(shift_right(cx, Int(3)), fx), fx + last), bx_);
+    by_ = select(enter, min(max(shift_right(cy, Int(3)), fy), fy + last), by_);
+    ix_ = select(down, min(max(cx, shift_left(bx_, Int(3))), shift_left(bx_, Int(3)) + Int(7)), ix_);
+    iy_ = select(down, min(max(cy, shift_left(by_, Int(3))), shift_left(by_, Int(3)) + Int(7)), iy_);
+    leaf_ = leaf_ | down;
+    node_ = node_ & ~down;
+    level_ = select(enter & ~down, level_ - Int(1), level_);
+    if (any(skip)) skip_node(skip, nx, ny, tx, ty, te);
+  }
+
+  /// On to the square behind this one, a level up where that has another parent.
+  void skip_node(Mask skip, Int nx, Int ny, Float tx, Float ty, Float te) {
+    t_ = select(skip, te, t_);
+    Int cx, cy;
+    cell_at(te, cx, cy);
+    const Mask by_x = tx <= ty;
+    const Int step_x = select(Float(0.0f) < dx_, Int(1), Int(-1)),
+              step_y = select(Float(0.0f) < dy_, Int(1), Int(-1));
+    const Int ex = nx + step_x, ey = ny + step_y;
+    const Int last = shift_left(Int(1), level_) - Int(1);
+    const Int fx = shift_left(nx, level_), fy = shift_left(ny, level_);
+    const Int along_x = min(max(shift_right(cx, Int(3)), fx), fx + last),
+              along_y = min(max(shift_right(cy, Int(3)), fy), fy + last);
+    const Int enter_x = select(step_x == Int(1), shift_left(ex, level_), fx - Int(1));
+    const Int enter_y = select(step_y == Int(1), shift_left(ey, level_), fy - Int(1));
+    const Int new_x = select(by_x, enter_x, along_x), new_y = select(by_x, along_y, enter_y);
+    bx_ = select(skip, new_x, bx_);
+    by_ = select(skip, new_y, by_);
+    const Mask same_x = shift_right(max(ex, Int(0)), Int(1)) == shift_right(nx, Int(1));
+    const Mask same_y = shift_right(max(ey, Int(0)), Int(1)) == shift_right(ny, Int(1));
+    const Mask same = (by_x & same_x) | (~by_x & same_y);
+    level_ = select(skip & ~same, min(level_ + Int(1), Int(f_.levels - 1)), level_);
+    finish_if_out(skip, te);
+  }
+
+  /// Lanes of `m` whose interval is over, or that left the grid, go to their next interval or stop.
+  void finish_if_out(Mask m, Float t) {
+    const Mask outside =
+        (bx_ < Int(0)) | (by_ < Int(0)) | (Int(f_.blocks - 1) < bx_) | (Int(f_.blocks - 1) < by_);
+    const Mask over = m & (outside | (end_ <= t));
+    if (!any(over)) return;
+    node_ = node_ & ~over;
+    leaf_ = leaf_ & ~over;
+    end_ = select(over, -1.0f, end_);
+    start(over);
+  }
+
+  void leaf_step() {
+    const Mask right = Float(0.0f) < dx_, north = Float(0.0f) < dy_;
+    const Int gx = ix_ + select(right, Int(1), Int(0)), gy = iy_ + select(north, Int(1), Int(0));
+    const Float tx = (fma(to_float(gx), f_.step_x, f_.x0) - ox_) * idx_;
+    const Float ty = (fma(to_float(gy), f_.step_y, f_.y0) - oy_) * idy_;
+    const Float exit = max(min(tx, ty), t_);
+    const Mask by_x = tx <= ty;
+    const Mask ends = leaf_ & (leaf_end_ <= exit);
+    const Float segment = min(exit, leaf_end_);
+    Mask cross = ends & leaf_crosses_;
+    const Mask border = leaf_ & ~ends;
+    if (any(border)) {
+      const Float f = side_ * (over(segment) - border_height(segment, by_x, gx, gy));
+      cross = cross | (border & (f < Float(0.0f) - f_.slack));
+    }
+    const Mask over_now = ends & ~cross;
+    const Mask go = border & ~cross;
+    if (any(cross)) hit(cross, segment);
+    t_ = select(go, segment, t_);
+    ix_ = select(go & by_x, ix_ + select(right, Int(1), Int(-1)), ix_);
+    iy_ = select(go & ~by_x, iy_ + select(north, Int(1), Int(-1)), iy_);
+    // Division by 8 that rounds down: one square before the first is -1.
+    const Int nbx = shift_right(ix_ + Int(8), Int(3)) - Int(1),
+              nby = shift_right(iy_ + Int(8), Int(3)) - Int(1);
+    const Mask leaves = go & ~((nbx == bx_) & (nby == by_));
+    if (any(leaves)) {
+      bx_ = select(leaves, nbx, bx_);
+      by_ = select(leaves, nby, by_);
+      leaf_ = leaf_ & ~leaves;
+      node_ = node_ | leaves;
+      level_ = select(leaves, Int(0), level_);
+      finish_if_out(leaves, t_);
+    }
+    if (any(over_now)) finish_if_out(over_now, kFar);
+  }
+
+  /// Height over the quadric where the ray crosses a grid line: a cubic between two vertices, the same for
+  /// both cells.
+  Float border_height(Float t, Mask by_x, Int gx, Int gy) const {
+    const Int per_row = Int(f_.blocks * 8 + 1);
+    const Int vx = select(by_x, gx, ix_), vy = select(by_x, iy_, gy);
+    const Int first = (vy * per_row + vx) * Int(3);
+    const Int second = first + select(by_x, per_row * Int(3), Int(3));
+    const Int slope = select(by_x, Int(2), Int(1));
+    const Float z0 = gather(f_.vertices, first), z1 = gather(f_.vertices, second);
+    const Float step = select(by_x, Float(f_.step_y), Float(f_.step_x));
+    const Float g0 = gather(f_.vertices, first + slope) * step,
+                g1 = gather(f_.vertices, second + slope) * step;
+    const Float along = select(by_x, (fma(t, dy_, oy_) - f_.y0) * (1.0f / f_.step_y) - to_float(iy_),
+                               (fma(t, dx_, ox_) - f_.x0) * (1.0f / f_.step_x) - to_float(ix_));
+    const Float u = min(max(along, 0.0f), 1.0f), w = Float(1.0f) - u;
+    const Float chord = z1 - z0;
+    return fma(u, chord, z0) + u * w * (w * (g0 - chord) - u * (g1 - chord));
+  }
+
+  struct Piece {
+    Float z, gx, gy;
+  };
+  /// Adini's piece of one cell (HeightField), over the quadric.
+  struct Cell {
+    Float z00, z10, z01, z11, p00, p10, p01, p11, q00, q10, q01, q11;
+  };
+  Cell cell(Int ix, Int iy) const {
+    const Int row = Int((f_.blocks * 8 + 1) * 3);
+    const Int a = iy * row + ix * Int(3), b = a + row;
+    const float* const z = f_.vertices;
+    Cell k;
+    k.z00 = gather(z, a);
+    k.z10 = gather(z + 3, a);
+    k.z01 = gather(z, b);
+    k.z11 = gather(z + 3, b);
+    const Float s = f_.step_x, q = f_.step_y;
+    k.p00 = s * gather(z + 1, a);
+    k.p10 = s * gather(z + 4, a);
+    k.p01 = s * gather(z + 1, b);
+    k.p11 = s * gather(z + 4, b);
+    k.q00 = q * gather(z + 2, a);
+    k.q10 = q * gather(z + 5, a);
+    k.q01 = q * gather(z + 2, b);
+    k.q11 = q * gather(z + 5, b);
+    return k;
+  }
+  static void bend(Float u, Float a, Float b, Float& value, Float& slope) {
+    const Float w = Float(1.0f) - u;
+    value = u * w * (w * a - u * b);
+    slope = w * (Float(1.0f) - 3.0f * u) * a - u * (Float(2.0f) - 3.0f * u) * b;
+  }
+  Piece piece(const Cell& k, Float t, Int ix, Int iy) const {
+    const Float u = (fma(t, dx_, ox_) - f_.x0) * (1.0f / f_.step_x) - to_float(ix);
+    const Float v = (fma(t, dy_, oy_) - f_.y0) * (1.0f / f_.step_y) - to_float(iy);
+    const Float um = Float(1.0f) - u, vm = Float(1.0f) - v;
+    const Float south = k.z10 - k.z00, north = k.z11 - k.z01, west = k.z01 - k.z00, east = k.z11 - k.z10;
+    Float s, ds, n, dn, w, dw, e, de;
+    bend(u, k.p00 - south, k.p10 - south, s, ds);
+    bend(u, k.p01 - north, k.p11 - north, n, dn);
+    bend(v, k.q00 - west, k.q01 - west, w, dw);
+    bend(v, k.q10 - east, k.q11 - east, e, de);
+    return {vm * (k.z00 + u * south + s) + v * (k.z01 + u * north + n) + um * w + u * e,
+            (vm * (south + ds) + v * (north + dn) - w + e) * (1.0f / f_.step_x),
+            (um * (west + dw) + u * (east + de) - s + n) * (1.0f / f_.step_y)};
+  }
+  Piece surface(Float t, Int ix, Int iy) const { return piece(cell(ix, iy), t, ix, iy); }
+
+  /// Lanes of `m` cross the surface between t_ and `segment`: finds where, by Newton's method in that
+  /// bracket.
+  void hit(Mask m, Float segment) {
+    const Cell k =
+        cell(min(max(ix_, Int(0)), Int(f_.blocks * 8 - 1)), min(max(iy_, Int(0)), Int(f_.blocks * 8 - 1)));
+    Float t = 0.5f * (t_ + segment);
+    for (int i = 0; i < 3; ++i) {
+      const Piece p = piece(k, t, ix_, iy_);
+      const Float f = over(t) - p.z, df = fma(2.0f * u2_, t, u1_) - p.gx * dx_ - p.gy * dy_;
+      t = min(max(t - f / select(abs(df) < Float(1e-20f), 1e-20f, df), t_), segment);
+    }
+    const Piece p = piece(k, t, ix_, iy_);
+    const Float x = fma(t, dx_, ox_), y = fma(t, dy_, oy_), r2 = x * x + y * y;
+    const Mask in_round = r2 <= Float(f_.half_x * f_.half_x);
+    const Mask in_box = (abs(x) <= Float(f_.half_x)) & (abs(y) <= Float(f_.half_y));
+    const Mask there = m & (Float(f_.hole * f_.hole) <= r2) & (f_.round ? in_round : in_box);
+    hit_t_ = select(there, t, hit_t_);
+    hit_gx_ = select(there, Float(f_.qx) + 2.0f * f_.qxx * x + f_.qxy * y + p.gx, hit_gx_);
+    hit_gy_ = select(there, Float(f_.qy) + f_.qxy * x + 2.0f * f_.qyy * y + p.gy, hit_gy_);
+    hit_state_ = select(there, select(Float(0.0f) < side_, Int(kFront), Int(kBack)), hit_state_);
+    leaf_ = leaf_ & ~there;
+    // Through the hole or past the rim: on, on the other side.
+    const Mask on = m & ~there;
+    if (!any(on)) return;
+    t_ = select(on, segment, t_);
+    side_ = select(on, Float(0.0f) - side_, side_);
+    set_end(on);
+    leaf_end_ = select(on, end_, leaf_end_);
+    leaf_crosses_ = (leaf_crosses_ & ~on) | (crosses_ & on);
+  }
+
+  const FieldView& f_;
+  Float ox_, oy_, oz_, dx_, dy_, dz_, idx_, idy_;
+  Float u0_, u1_, u2_;
+  Float begin_, end_, next_begin_, next_end_;
+  Float t_ = 0.0f, side_ = 1.0f, leaf_end_ = 0.0f;
+  Int level_{0}, bx_{0}, by_{0}, ix_{0}, iy_{0};
+  Mask on_mirror_, node_, leaf_, crosses_ = mask_of(0), leaf_crosses_ = mask_of(0);
+  Float hit_t_, hit_gx_, hit_gy_;
+  Int hit_state_;
+};
+
+inline void intersect(const FieldView& field, const LocalRays& rays, size_t n, LocalHits& hits) {
+  for (size_t i = 0; i < n; i += static_cast<size_t>(kLanes)) {
+    const size_t left = n - i;
+    const uint32_t lanes = left >= static_cast<size_t>(kLanes) ? (1u << kLanes) - 1u : (1u << left) - 1u;
+    Packet(field, rays, i).run(lanes, hits, i);
+  }
+}
+
+inline void to_local(const FrameView& k, const WorldRays& in, size_t n, int32_t index, LocalRays& out) {
+  for (size_t i = 0; i < n; i += static_cast<size_t>(kLanes)) {
+    const Float x = load(in.x + i), y = load(in.y + i), z = load(in.z + i);
+    const Float dx = load(in.dx + i), dy = load(in.dy + i), dz = load(in.dz + i);
+    store(out.x + i, k.m[0] * x + k.m[1] * y + k.m[2] * z + k.v[0]);
+    store(out.y + i, k.m[3] * x + k.m[4] * y + k.m[5] * z + k.v[1]);
+    store(out.z + i, k.m[6] * x + k.m[7] * y + k.m[8] * z + k.v[2]);
+    store(out.dx + i, k.m[0] * dx + k.m[1] * dy + k.m[2] * dz);
+    store(out.dy + i, k.m[3] * dx + k.m[4] * dy + k.m[5] * dz);
+    store(out.dz + i, k.m[6] * dx + k.m[7] * dy + k.m[8] * dz);
+    store(out.on_mirror + i, select(load(in.mirror + i) == Int(index), Int(1), Int(0)));
+  }
+}
+
+inline void reflect_rays(const FrameView& k, const LocalRays& rays, const LocalHits& hits, size_t n,
+                         WorldRays& out, float* cosine) {
+  for (size_t i = 0; i < n; i += static_cast<size_t>(kLanes)) {
+    const Mask m = load(hits.state + i) == Int(kFront);
+    const Float t = load(hits.t + i), gx = load(hits.gx + i), gy = load(hits.gy + i);
+    const Float dx = load(rays.dx + i), dy = load(rays.dy + i), dz = load(rays.dz + i);
+    const Float x = fma(t, dx, load(rays.x + i)), y = fma(t, dy, load(rays.y + i)),
+                z = fma(t, dz, load(rays.z + i));
+    const Float across = dz - gx * dx - gy * dy;  // d . n times the length of n = (-gx, -gy, 1)
+    const Float n2 = Float(1.0f) + gx * gx + gy * gy;
+    const Float twice = 2.0f * across / n2;
+    Float rx = fma(twice, gx, dx), ry = fma(twice, gy, dy), rz = dz - twice;
+    const Float unit = Float(1.0f) / sqrt(rx * rx + ry * ry + rz * rz);
+    rx = rx * unit;
+    ry = ry * unit;
+    rz = rz * unit;
+    store(cosine + i, abs(across) / sqrt(n2));
+    store(out.x + i, select(m, k.m[0] * x + k.m[1] * y + k.m[2] * z + k.v[0], load(out.x + i)));
+    store(out.y + i, select(m, k.m[3] * x + k.m[4] * y + k.m[5] * z + k.v[1], load(out.y + i)));
+    store(out.z + i, select(m, k.m[6] * x + k.m[7] * y + k.m[8] * z + k.v[2], load(out.z + i)));
+    store(out.dx + i, select(m, k.m[0] * rx + k.m[1] * ry + k.m[2] * rz, load(out.dx + i)));
+    store(out.dy + i, select(m, k.m[3] * rx + k.m[4] * ry + k.m[5] * rz, load(out.dy + i)));
+    store(out.dz + i, select(m, k.m[6] * rx + k.m[7] * ry + k.m[8] * rz, load(out.dz + i)));
+  }
+}
+
+/// atan2(y, x) as a share of a turn, [0, 1): a polynomial of degree 15 in the smaller over the larger, error
+/// 6e-9 of a turn before rounding (coefficients: least squares at Chebyshev nodes, reweighted to a level
+/// error).
+inline Float turn_of(Float y, Float x) {
+  const Float ax = abs(x), ay = abs(y);
+  const Float big = max(max(ax, ay), 1e-30f), q = min(ax, ay) / big, s = q * q;
+  Float p = fma(s, -6.45253366e-04f, 3.47940825e-03f);
+  p = fma(s, p, -8.89844209e-03f);
+  p = fma(s, p, 1.53458219e-02f);
+  p = fma(s, p, -2.21361863e-02f);
+  p = fma(s, p, 3.17459277e-02f);
+  p = fma(s, p, -5.30461194e-02f);
+  p = fma(s, p, 1.59154837e-01f);
+  p = p * q;
+  p = select(ax < ay, Float(0.25f) - p, p);
+  p = select(x < Float(0.0f), Float(0.5f) - p, p);
+  return select(y < Float(0.0f), Float(1.0f) - p, p);
+}
+
+inline void far_field_cells(const WorldRays& rays, size_t n, int32_t c_count, int32_t gamma_count,
+                            int32_t* cell) {
+  for (size_t i = 0; i < n; i += static_cast<size_t>(kLanes)) {
+    const Float dx = load(rays.dx + i), dy = load(rays.dy + i), dz = load(rays.dz + i);
+    const Float around = turn_of(dy, dx), from_nadir = turn_of(sqrt(dx * dx + dy * dy), Float(0.0f) - dz);
+    const Int c = truncate(fma(around, Float(static_cast<float>(c_count)), 0.5f));
+    const Int g = truncate(fma(from_nadir, Float(2.0f * static_cast<float>(gamma_count - 1)), 0.5f));
+    const Int inside = select(c < Int(c_count), c, Int(0));
+    store(cell + i, max(inside, Int(0)) * Int(gamma_count) + max(min(g, Int(gamma_count - 1)), Int(0)));
+  }
+}
+
+}  // namespace
+}  // namespace lucerna

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/field_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna {
+
+FieldView view_of(const HeightField& field) {
+  static_assert(sizeof(FieldVertex) == 3 * sizeof(float) && sizeof(FieldNode) == 4 * sizeof(float));
+  FieldView v{};
+  v.vertices = &field.vertices().front().z_mm;
+  v.nodes = &field.nodes().front().a;
+  std::copy(field.level_offsets().begin(), field.level_offsets().end(), v.offsets);
+  v.levels = static_cast<int32_t>(field.level_offsets().size());
+  v.blocks = field.cells() / HeightField::kBlock;
+  v.x0 = static_cast<float>(field.region().x0_mm);
+  v.x1 = static_cast<float>(field.region().x1_mm);
+  v.y0 = static_cast<float>(field.region().y0_mm);
+  v.y1 = static_cast<float>(field.region().y1_mm);
+  v.step_x = field.step_x_mm();
+  v.step_y = field.step_y_mm();
+  const Quadric& q = field.quadric();
+  v.q0 = q.c0;
+  v.qx = q.cx;
+  v.qy = q.cy;
+  v.qxx = q.cxx;
+  v.qxy = q.cxy;
+  v.qyy = q.cyy;
+  v.low = static_cast<float>(field.band().low_mm);
+  v.high = static_cast<float>(field.band().high_mm);
+  // Heights of ray and quadric are sums of a few float32 terms of this size; their rounding is about an ulp
+  // each.
+  const double extent = std::max(std::abs(field.region().x0_mm), std::abs(field.region().y0_mm));
+  const double height = std::abs(q.at(extent, extent).z_mm) + std::abs(q.at(-extent, extent).z_mm);
+  v.slack = static_cast<float>(4e-7 * (extent + height));
+  v.round = field.aperture().shape() == ApertureShape::circle;
+  v.half_x = static_cast<float>(field.aperture().half_x_mm());
+  v.half_y = static_cast<float>(field.aperture().half_y_mm());
+  v.hole = static_cast<float>(field.aperture().hole_radius_mm());
+  return v;
+}
+
+FrameView view_of(const Frame& frame) {
+  const auto f = [](double x) { return static_cast<float>(x); };
+  const Vec3 &x = frame.ex(), &y = frame.ey(), &z = frame.ez(), &o = frame.origin_mm();
+  return {{f(x.x), f(y.x), f(z.x), f(x.y), f(y.y), f(z.y), f(x.z), f(y.z), f(z.z)}, {f(o.x), f(o.y), f(o.z)}};
+}
+
+}  // namespace lucerna

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/kernel.h"
+
+#include <string_view>
+
+#include "lucerna/core/error.h"
+
+namespace lucerna {
+
+namespace {
+
+#if defined(LUCERNA_X86_KERNELS)
+bool has_avx2() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
+bool has_avx512() {
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+}
+#endif
+
+}  // namespace
+
+const Kernels& best_kernels() {
+#if defined(LUCERNA_X86_KERNELS)
+  if (has_avx512()) return avx512_kernels();
+  if (has_avx2()) return avx2_kernels();
+#endif
+  return portable_kernels();
+}
+
+const Kernels& kernels_named(const char* isa) {
+  const std::string_view name = isa;
+  if (name == "portable") return portable_kernels();
+#if defined(LUCERNA_X86_KERNELS)
+  if (name == "avx2" && has_avx2()) return avx2_kernels();
+  if (name == "avx512" && has_avx512()) return avx512_kernels();
+#endif
+  throw UsageError(fmt::format("instruction set '{}' is not one that this build and processor have", name));
+}
+
+}  // namespace lucerna

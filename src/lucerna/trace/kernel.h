@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+namespace lucerna {
+
+// What the tracing kernels share with the rest: plain data only, so that a kernel compiled for one
+// instruction set (or for a GPU) brings no other code along.
+
+/// Rays of a batch; arrays are padded to a whole number of vectors.
+inline constexpr size_t kBatch = 512;
+
+/// A HeightField as a kernel reads it.
+struct FieldView {
+  const float* vertices;  ///< 3 floats each, (cells + 1)^2
+  const float* nodes;     ///< 4 floats each
+  int32_t offsets[16];    ///< first node of each level
+  int32_t levels;         ///< of nodes
+  int32_t blocks;         ///< leaf squares a side, of 8 x 8 cells
+  float x0, y0, x1, y1;   ///< region
+  float step_x, step_y;
+  float q0, qx, qy, qxx, qxy, qyy;  ///< quadric
+  float low, high;                  ///< band of heights over the quadric
+  float slack;                      ///< rounding of a height over the quadric
+  bool round;                       ///< aperture: a circle of half_x, or a rectangle
+  float half_x, half_y, hole;       ///< half sizes and the hole's radius
+};
+
+/// Rays in a mirror's frame.
+struct LocalRays {
+  alignas(64) float x[kBatch], y[kBatch], z[kBatch];
+  alignas(64) float dx[kBatch], dy[kBatch], dz[kBatch];
+  /// 1 for a ray that was just reflected by this mirror: it starts on its front.
+  alignas(64) int32_t on_mirror[kBatch];
+};
+
+enum : int32_t { kMiss = 0, kFront = 1, kBack = 2 };
+
+/// Where they meet it.
+struct LocalHits {
+  alignas(64) float t[kBatch];
+  alignas(64) float gx[kBatch], gy[kBatch];  ///< gradient of the surface there
+  alignas(64) int32_t state[kBatch];         ///< kMiss, kFront, kBack
+};
+
+/// Rays in the luminaire frame, with what they carry.
+struct WorldRays {
+  alignas(64) float x[kBatch], y[kBatch], z[kBatch];
+  alignas(64) float dx[kBatch], dy[kBatch], dz[kBatch];
+  /// In mean rays.
+  alignas(64) float flux[kBatch];
+  /// Mirror that the ray was last reflected by, -1 if none.
+  alignas(64) int32_t mirror[kBatch];
+  /// Number within the batch as it was emitted.
+  alignas(64) int32_t number[kBatch];
+};
+
+/// A rotation by rows and a translation, in float: out = m p + v.
+struct FrameView {
+  float m[9];
+  float v[3];
+};
+
+/// The kernels of one instruction set.
+struct Kernels {
+  const char* isa;
+  /// Rays into a mirror's frame; `index` is the mirror's number.
+  void (*to_local)(const FrameView& local_from_world, const WorldRays& in, size_t n, int32_t index,
+                   LocalRays& out);
+  /// First hits of n rays with a height field.
+  void (*intersect)(const FieldView& field, const LocalRays& rays, size_t n, LocalHits& hits);
+  /// Reflected rays, in the luminaire frame, for lanes whose hit is kFront; also the cosine of incidence.
+  void (*reflect)(const FrameView& world_from_local, const LocalRays& rays, const LocalHits& hits, size_t n,
+                  WorldRays& out, float* cosine);
+  /// Type C cell of each direction, as FarFieldGrid::cell has it.
+  void (*far_field_cells)(const WorldRays& rays, size_t n, int32_t c_count, int32_t gamma_count,
+                          int32_t* cell);
+};
+
+const Kernels& portable_kernels();
+#if defined(LUCERNA_X86_KERNELS)
+const Kernels& avx2_kernels();
+const Kernels& avx512_kernels();
+#endif
+
+/// The best that this processor can run.
+const Kernels& best_kernels();
+/// "portable", "avx2" or "avx512"; throws UsageError if unknown, or if this processor or build has it not.
+const Kernels& kernels_named(const char* isa);
+
+}  // namespace lucerna

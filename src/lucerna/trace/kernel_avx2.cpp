@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/field_kernel.h"
+
+namespace lucerna {
+
+const Kernels& avx2_kernels() {
+  static constexpr Kernels kernels{"avx2", to_local, intersect, reflect_rays, far_field_cells};
+  return kernels;
+}
+
+}  // namespace lucerna

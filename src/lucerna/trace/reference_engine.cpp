@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <limits>
+
+#include "lucerna/trace/reference_tracer.h"
+#include "lucerna/trace/trace_engine.h"
+
+namespace lucerna {
+
+namespace {
+
+/// A scene made ready: hierarchies built, frames inverted. Shared by all threads, never changed.
+class ReferenceEngine final : public TraceEngine {
+ public:
+  ReferenceEngine(const Scene& scene, const RayNumbering& numbering, const TraceOptions& options)
+      : TraceEngine(scene),
+        scene_(scene),
+        numbering_(numbering),
+        max_bounces_(options.max_bounces),
+        kind_(options.sequence) {
+    for (const PlacedReflector& r : scene.reflectors) {
+      mirrors_.push_back({ReferenceTracer(r.reflector), r.world_from_reflector,
+                          r.world_from_reflector.inverse(), r.reflectance});
+    }
+  }
+
+  std::string isa() const override { return "reference"; }
+
+  /// Draws and traces the rays of one run.
+  void trace_run(const SourceRun& run, RayBlock& rays, Tally& tally) const override {
+    const PlacedSource& source = scene_.sources[run.source];
+    rays.resize(run.count, 0);
+    source.rays->emit(Sequence(kind_, run.sequence_seed), run.first, rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      trace_ray(source.world_from_source.ray(rays.ray(i)),
+                to_units(static_cast<double>(rays.weight[i]) * numbering_.ray_flux(run.source)), tally);
+    }
+  }
+
+ private:
+  struct Mirror {
+    ReferenceTracer tracer;
+    Frame world_from_mirror, mirror_from_world;
+    Reflectance reflectance;
+  };
+  struct Nearest {
+    const Mirror* mirror = nullptr;
+    Ray local;
+    MirrorHit hit{std::numeric_limits<double>::infinity(), {}, {}, true};
+  };
+
+  Nearest nearest(const Ray& ray) const {
+    Nearest best;
+    for (const Mirror& m : mirrors_) {
+      const Ray local = m.mirror_from_world.ray(ray);
+      const auto hit = m.tracer.first_hit(local);
+      if (hit && hit->t_mm < best.hit.t_mm) best = {&m, local, *hit};
+    }
+    return best;
+  }
+
+  static void lose(LostCause cause, std::int64_t energy, Tally& tally) {
+    tally.lost[static_cast<std::size_t>(cause)] += energy;
+    ++tally.lost_rays[static_cast<std::size_t>(cause)];
+  }
+
+  void trace_ray(Ray ray, std::int64_t energy, Tally& tally) const {
+    ++tally.rays;
+    tally.emitted += energy;
+    for (int bounce = 0;; ++bounce) {
+      if (!is_finite(ray.origin_mm) || !is_finite(ray.direction))
+        return lose(LostCause::not_finite, energy, tally);
+      const Nearest n = nearest(ray);
+      if (n.mirror == nullptr) {
+        (bounce == 0 ? tally.out_direct : tally.out_reflected) += energy;
+        for (std::size_t d = 0; d < far_fields().size(); ++d) {
+          tally.bins[d][far_fields()[d].cell(ray.direction)] += energy;
+        }
+        return;
+      }
+      if (!n.hit.front) {
+        tally.absorbed[static_cast<std::size_t>(MirrorLoss::back)] += energy;
+        return;
+      }
+      if (bounce == max_bounces_) return lose(LostCause::bounce_limit, energy, tally);
+      const double cosine = -dot(n.local.direction, n.hit.normal);
+      const auto kept = static_cast<std::int64_t>(
+          std::llround(static_cast<double>(energy) * n.mirror->reflectance.at(cosine)));
+      tally.absorbed[static_cast<std::size_t>(MirrorLoss::face)] += energy - kept;
+      energy = kept;
+      ++tally.reflections;
+      const Direction out = Direction::from(reflect(n.local.direction, n.hit.normal));
+      ray = n.mirror->world_from_mirror.ray({n.hit.point_mm, out});
+    }
+  }
+
+  const Scene& scene_;
+  const RayNumbering& numbering_;
+  int max_bounces_;
+  SequenceKind kind_;
+  std::vector<Mirror> mirrors_;
+};
+
+}  // namespace
+
+std::unique_ptr<TraceEngine> make_reference_engine(const Scene& scene, const RayNumbering& numbering,
+                                                   const TraceOptions& options) {
+  return std::make_unique<ReferenceEngine>(scene, numbering, options);
+}
+
+}  // namespace lucerna

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// Vectors of float and int32 lanes for the tracing kernels. Included only by the kernel_*.cpp files, each
+// compiled for one instruction set, so everything is in an anonymous namespace and nothing here may pull in
+// headers of the standard library with inline functions: the linker could keep a copy that uses instructions
+// the machine does not have.
+
+#include <stdint.h>
+
+#if defined(__AVX512F__) || defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
+namespace lucerna {
+namespace {
+
+#if defined(__AVX512F__)
+
+inline constexpr int kLanes = 16;
+struct Mask {
+  __mmask16 m;
+};
+struct Float {
+  __m512 v;
+  Float() = default;
+  Float(__m512 x) : v(x) {}
+  Float(float x) : v(_mm512_set1_ps(x)) {}
+};
+struct Int {
+  __m512i v;
+  Int() = default;
+  Int(__m512i x) : v(x) {}
+  explicit Int(int32_t x) : v(_mm512_set1_epi32(x)) {}
+};
+
+inline Mask operator&(Mask a, Mask b) { return {static_cast<__mmask16>(a.m & b.m)}; }
+inline Mask operator|(Mask a, Mask b) { return {static_cast<__mmask16>(a.m | b.m)}; }
+inline Mask operator~(Mask a) { return {static_cast<__mmask16>(~a.m)}; }
+inline uint32_t bits(Mask a) { return a.m; }
+inline Mask mask_of(uint32_t b) { return {static_cast<__mmask16>(b)}; }
+
+inline Float operator+(Float a, Float b) { return _mm512_add_ps(a.v, b.v); }
+inline Float operator-(Float a, Float b) { return _mm512_sub_ps(a.v, b.v); }
+inline Float operator*(Float a, Float b) { return _mm512_mul_ps(a.v, b.v); }
+inline Float operator/(Float a, Float b) { return _mm512_div_ps(a.v, b.v); }
+inline Float fma(Float a, Float b, Float c) { return _mm512_fmadd_ps(a.v, b.v, c.v); }
+inline Float min(Float a, Float b) { return _mm512_min_ps(a.v, b.v); }
+inline Float max(Float a, Float b) { return _mm512_max_ps(a.v, b.v); }
+inline Float sqrt(Float a) { return _mm512_sqrt_ps(a.v); }
+inline Float abs(Float a) { return _mm512_abs_ps(a.v); }
+inline Mask operator<(Float a, Float b) { return {_mm512_cmp_ps_mask(a.v, b.v, _CMP_LT_OQ)}; }
+inline Mask operator<=(Float a, Float b) { return {_mm512_cmp_ps_mask(a.v, b.v, _CMP_LE_OQ)}; }
+inline Float select(Mask m, Float a, Float b) { return _mm512_mask_blend_ps(m.m, b.v, a.v); }
+inline Float load(const float* p) { return _mm512_loadu_ps(p); }
+inline void store(float* p, Float a) { _mm512_storeu_ps(p, a.v); }
+inline Float gather(const float* p, Int i) { return _mm512_i32gather_ps(i.v, p, 4); }
+inline Int truncate(Float a) { return _mm512_cvttps_epi32(a.v); }
+inline Float to_float(Int a) { return _mm512_cvtepi32_ps(a.v); }
+
+inline Int operator+(Int a, Int b) { return _mm512_add_epi32(a.v, b.v); }
+inline Int operator-(Int a, Int b) { return _mm512_sub_epi32(a.v, b.v); }
+inline Int operator*(Int a, Int b) { return _mm512_mullo_epi32(a.v, b.v); }
+inline Int min(Int a, Int b) { return _mm512_min_epi32(a.v, b.v); }
+inline Int max(Int a, Int b) { return _mm512_max_epi32(a.v, b.v); }
+inline Int shift_left(Int a, Int n) { return _mm512_sllv_epi32(a.v, n.v); }
+inline Int shift_right(Int a, Int n) { return _mm512_srlv_epi32(a.v, n.v); }
+inline Mask operator<(Int a, Int b) { return {_mm512_cmplt_epi32_mask(a.v, b.v)}; }
+inline Mask operator==(Int a, Int b) { return {_mm512_cmpeq_epi32_mask(a.v, b.v)}; }
+inline Int select(Mask m, Int a, Int b) { return _mm512_mask_blend_epi32(m.m, b.v, a.v); }
+inline Int load(const int32_t* p) { return _mm512_loadu_si512(p); }
+inline void store(int32_t* p, Int a) { _mm512_storeu_si512(p, a.v); }
+inline Int gather(const int32_t* p, Int i) { return _mm512_i32gather_epi32(i.v, p, 4); }
+inline Int float_bits(Float a) { return _mm512_castps_si512(a.v); }
+
+#elif defined(__AVX2__)
+
+inline constexpr int kLanes = 8;
+struct Mask {
+  __m256 m;
+};
+struct Float {
+  __m256 v;
+  Float() = default;
+  Float(__m256 x) : v(x) {}
+  Float(float x) : v(_mm256_set1_ps(x)) {}
+};
+struct Int {
+  __m256i v;
+  Int() = default;
+  Int(__m256i x) : v(x) {}
+  explicit Int(int32_t x) : v(_mm256_set1_epi32(x)) {}
+};
+
+inline Mask operator&(Mask a, Mask b) { return {_mm256_and_ps(a.m, b.m)}; }
+inline Mask operator|(Mask a, Mask b) { return {_mm256_or_ps(a.m, b.m)}; }
+inline Mask operator~(Mask a) { return {_mm256_xor_ps(a.m, _mm256_castsi256_ps(_mm256_set1_epi32(-1)))}; }
+inline uint32_t bits(Mask a) { return static_cast<uint32_t>(_mm256_movemask_ps(a.m)); }
+inline Mask mask_of(uint32_t b) {
+  const __m256i lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+  const __m256i set = _mm256_and_si256(_mm256_set1_epi32(static_cast<int32_t>(b)), lane);
+  return {_mm256_castsi256_ps(_mm256_cmpeq_epi32(set, lane))};
+}
+
+inline Float operator+(Float a, Float b) { return _mm256_add_ps(a.v, b.v); }
+inline Float operator-(Float a, Float b) { return _mm256_sub_ps(a.v, b.v); }
+inline Float operator*(Float a, Float b) { return _mm256_mul_ps(a.v, b.v); }
+inline Float operator/(Float a, Float b) { return _mm256_div_ps(a.v, b.v); }
+inline Float fma(Float a, Float b, Float c) { return _mm256_fmadd_ps(a.v, b.v, c.v); }
+inline Float min(Float a, Float b) { return _mm256_min_ps(a.v, b.v); }
+inline Float max(Float a, Float b) { return _mm256_max_ps(a.v, b.v); }
+inline Float sqrt(Float a) { return _mm256_sqrt_ps(a.v); }
+inline Float abs(Float a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a.v); }
+inline Mask operator<(Float a, Float b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_LT_OQ)}; }
+inline Mask operator<=(Float a, Float b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ)}; }
+inline Float select(Mask m, Float a, Float b) { return _mm256_blendv_ps(b.v, a.v, m.m); }
+inline Float load(const float* p) { return _mm256_loadu_ps(p); }
+inline void store(float* p, Float a) { _mm256_storeu_ps(p, a.v); }
+inline Float gather(const float* p, Int i) { return _mm256_i32gather_ps(p, i.v, 4); }
+inline Int truncate(Float a) { return _mm256_cvttps_epi32(a.v); }
+inline Float to_float(Int a) { return _mm256_cvtepi32_ps(a.v); }
+
+inline Int operator+(Int a, Int b) { return _mm256_add_epi32(a.v, b.v); }
+inline Int operator-(Int a, Int b) { return _mm256_sub_epi32(a.v, b.v); }
+inline Int operator*(Int a, Int b) { return _mm256_mullo_epi32(a.v, b.v); }
+inline Int min(Int a, Int b) { return _mm256_min_epi32(a.v, b.v); }
+inline Int max(Int a, Int b) { return _mm256_max_epi32(a.v, b.v); }
+inline Int shift_left(Int a, Int n) { return _mm256_sllv_epi32(a.v, n.v); }
+inline Int shift_right(Int a, Int n) { return _mm256_srlv_epi32(a.v, n.v); }
+inline Mask operator<(Int a, Int b) { return {_mm256_castsi256_ps(_mm256_cmpgt_epi32(b.v, a.v))}; }
+inline Mask operator==(Int a, Int b) { return {_mm256_castsi256_ps(_mm256_cmpeq_epi32(a.v, b.v))}; }
+inline Int select(Mask m, Int a, Int b) { return _mm256_blendv_epi8(b.v, a.v, _mm256_castps_si256(m.m)); }
+inline Int load(const int32_t* p) { return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p)); }
+inline void store(int32_t* p, Int a) { _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), a.v); }
+inline Int gather(const int32_t* p, Int i) { return _mm256_i32gather_epi32(p, i.v, 4); }
+inline Int float_bits(Float a) { return _mm256_castps_si256(a.v); }
+
+#else
+
+inline constexpr int kLanes = 8;
+struct Mask {
+  int32_t m[kLanes];
+};
+struct Float {
+  float v[kLanes];
+  Float() = default;
+  Float(float x) {
+    for (float& lane : v) lane = x;
+  }
+};
+struct Int {
+  int32_t v[kLanes];
+  Int() = default;
+  explicit Int(int32_t x) {
+    for (int32_t& lane : v) lane = x;
+  }
+};
+
+// Loops of a fixed length that the compiler turns into whatever vectors it has.
+template <class R, class F>
+inline R lanes(F f) {
+  R r;
+  for (int i = 0; i < kLanes; ++i) r.v[i] = f(i);
+  return r;
+}
+template <class F>
+inline Mask mask_lanes(F f) {
+  Mask r;
+  for (int i = 0; i < kLanes; ++i) r.m[i] = f(i) ? -1 : 0;
+  return r;
+}
+
+inline Mask operator&(Mask a, Mask b) {
+  return mask_lanes([&](int i) { return (a.m[i] & b.m[i]) != 0; });
+}
+inline Mask operator|(Mask a, Mask b) {
+  return mask_lanes([&](int i) { return (a.m[i] | b.m[i]) != 0; });
+}
+inline Mask operator~(Mask a) {
+  return mask_lanes([&](int i) { return a.m[i] == 0; });
+}
+inline uint32_t bits(Mask a) {
+  uint32_t b = 0;
+  for (int i = 0; i < kLanes; ++i) b |= a.m[i] != 0 ? 1u << i : 0u;
+  return b;
+}
+inline Mask mask_of(uint32_t b) {
+  return mask_lanes([&](int i) { return ((b >> i) & 1u) != 0; });
+}
+
+inline Float operator+(Float a, Float b) {
+  return lanes<Float>([&](int i) { return a.v[i] + b.v[i]; });
+}
+inline Float operator-(Float a, Float b) {
+  return lanes<Float>([&](int i) { return a.v[i] - b.v[i]; });
+}
+inline Float operator*(Float a, Float b) {
+  return lanes<Float>([&](int i) { return a.v[i] * b.v[i]; });
+}
+inline Float operator/(Float a, Float b) {
+  return lanes<Float>([&](int i) { return a.v[i] / b.v[i]; });
+}
+inline Float fma(Float a, Float b, Float c) {
+  return lanes<Float>([&](int i) { return a.v[i] * b.v[i] + c.v[i]; });
+}
+inline Float min(Float a, Float b) {
+  return lanes<Float>([&](int i) { return a.v[i] < b.v[i] ? a.v[i] : b.v[i]; });
+}
+inline Float max(Float a, Float b) {
+  return lanes<Float>([&](int i) { return a.v[i] > b.v[i] ? a.v[i] : b.v[i]; });
+}
+inline Float sqrt(Float a) {
+  return lanes<Float>([&](int i) { return __builtin_sqrtf(a.v[i]); });
+}
+inline Float abs(Float a) {
+  return lanes<Float>([&](int i) { return __builtin_fabsf(a.v[i]); });
+}
+inline Mask operator<(Float a, Float b) {
+  return mask_lanes([&](int i) { return a.v[i] < b.v[i]; });
+}
+inline Mask operator<=(Float a, Float b) {
+  return mask_lanes([&](int i) { return a.v[i] <= b.v[i]; });
+}
+inline Float select(Mask m, Float a, Float b) {
+  return lanes<Float>([&](int i) { return m.m[i] != 0 ? a.v[i] : b.v[i]; });
+}
+inline Float load(const float* p) {
+  return lanes<Float>([&](int i) { return p[i]; });
+}
+inline void store(float* p, Float a) {
+  for (int i = 0; i < kLanes; ++i) p[i] = a.v[i];
+}
+inline Float gather(const float* p, Int k) {
+  return lanes<Float>([&](int i) { return p[k.v[i]]; });
+}
+/// Like the vector instructions: what does not fit becomes the least int.
+inline Int truncate(Float a) {
+  return lanes<Int>([&](int i) {
+    return __builtin_fabsf(a.v[i]) < 2147483648.0f ? static_cast<int32_t>(a.v[i]) : INT32_MIN;
+  });
+}
+inline Float to_float(Int a) {
+  return lanes<Float>([&](int i) { return static_cast<float>(a.v[i]); });
+}
+
+inline Int operator+(Int a, Int b) {
+  return lanes<Int>([&](int i) { return a.v[i] + b.v[i]; });
+}
+inline Int operator-(Int a, Int b) {
+  return lanes<Int>([&](int i) { return a.v[i] - b.v[i]; });
+}
+inline Int operator*(Int a, Int b) {
+  return lanes<Int>([&](int i) { return a.v[i] * b.v[i]; });
+}
+inline Int min(Int a, Int b) {
+  return lanes<Int>([&](int i) { return a.v[i] < b.v[i] ? a.v[i] : b.v[i]; });
+}
+inline Int max(Int a, Int b) {
+  return lanes<Int>([&](int i) { return a.v[i] > b.v[i] ? a.v[i] : b.v[i]; });
+}
+inline Int shift_left(Int a, Int n) {
+  return lanes<Int>([&](int i) { return static_cast<int32_t>(static_cast<uint32_t>(a.v[i]) << n.v[i]); });
+}
+inline Int shift_right(Int a, Int n) {
+  return lanes<Int>([&](int i) { return static_cast<int32_t>(static_cast<uint32_t>(a.v[i]) >> n.v[i]); });
+}
+inline Mask operator<(Int a, Int b) {
+  return mask_lanes([&](int i) { return a.v[i] < b.v[i]; });
+}
+inline Mask operator==(Int a, Int b) {
+  return mask_lanes([&](int i) { return a.v[i] == b.v[i]; });
+}
+inline Int select(Mask m, Int a, Int b) {
+  return lanes<Int>([&](int i) { return m.m[i] != 0 ? a.v[i] : b.v[i]; });
+}
+inline Int load(const int32_t* p) {
+  return lanes<Int>([&](int i) { return p[i]; });
+}
+inline void store(int32_t* p, Int a) {
+  for (int i = 0; i < kLanes; ++i) p[i] = a.v[i];
+}
+inline Int gather(const int32_t* p, Int k) {
+  return lanes<Int>([&](int i) { return p[k.v[i]]; });
+}
+inline Int float_bits(Float a) {
+  return lanes<Int>([&](int i) {
+    int32_t b;
+    __builtin_memcpy(&b, &a.v[i], sizeof b);
+    return b;
+  });
+}
+
+#endif
+
+inline bool any(Mask a) { return bits(a) != 0; }
+
+}  // namespace
+}  // namespace lucerna

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <limits>
+
+#include "lucerna/core/error.h"
+#include "lucerna/reflector/height_field.h"
+#include "lucerna/trace/field_view.h"
+#include "lucerna/trace/trace_engine.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Batches of rays go through all mirrors together, one reflection at a time; what leaves is binned at the
+/// end.
+class WavefrontEngine final : public TraceEngine {
+ public:
+  WavefrontEngine(const Scene& scene, const RayNumbering& numbering, const TraceOptions& options)
+      : TraceEngine(scene),
+        scene_(scene),
+        numbering_(numbering),
+        max_bounces_(options.max_bounces),
+        kind_(options.sequence),
+        kernels_(options.isa.empty() ? best_kernels() : kernels_named(options.isa.c_str())) {
+    for (const PlacedReflector& r : scene.reflectors) fields_.emplace_back(r.reflector, options.cells);
+    for (std::size_t i = 0; i < scene.reflectors.size(); ++i) {
+      const PlacedReflector& r = scene.reflectors[i];
+      mirrors_.push_back({view_of(fields_[i]), view_of(r.world_from_reflector),
+                          view_of(r.world_from_reflector.inverse()), &r.reflectance});
+    }
+  }
+
+  std::string isa() const override { return kernels_.isa; }
+
+  void trace_run(const SourceRun& run, RayBlock& rays, Tally& tally) const override {
+    const PlacedSource& source = scene_.sources[run.source];
+    rays.resize(run.count, 0);
+    source.rays->emit(Sequence(kind_, run.sequence_seed), run.first, rays);
+    Batch batch;
+    const std::size_t n =
+        emit(rays, source.world_from_source, numbering_.ray_flux(run.source), batch.rays, tally);
+    follow(batch, n, tally);
+  }
+
+ private:
+  struct Mirror {
+    FieldView field;
+    FrameView world_from_mirror, mirror_from_world;
+    const Reflectance* reflectance;
+  };
+  /// All rays of one run on their way.
+  struct Batch {
+    WorldRays rays;
+    WorldRays out;
+    std::size_t out_count = 0;
+    alignas(64) float cosine[kBatch];
+  };
+  struct Meeting {
+    LocalRays rays;
+    LocalHits hits;
+  };
+
+  static std::int64_t units(float flux) {
+    return static_cast<std::int64_t>(static_cast<double>(flux) * kUnitsPerRay + 0.5);
+  }
+
+  static void lose(LostCause cause, float flux, Tally& tally) {
+    tally.lost[static_cast<std::size_t>(cause)] += units(flux);
+    ++tally.lost_rays[static_cast<std::size_t>(cause)];
+  }
+
+  /// Rays of `in` to the luminaire frame; returns how many have finite numbers.
+  static std::size_t emit(const RayBlock& in, const Frame& frame, double ray_flux, WorldRays& out,
+                          Tally& tally) {
+    LUCERNA_CHECK(in.size() <= kBatch, "{} rays", in.size());
+    const FrameView k = view_of(frame);
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < in.size(); ++i) {
+      const float x = in.x_mm[i], y = in.y_mm[i], z = in.z_mm[i], dx = in.kx[i], dy = in.ky[i], dz = in.kz[i];
+      out.x[n] = k.m[0] * x + k.m[1] * y + k.m[2] * z + k.v[0];
+      out.y[n] = k.m[3] * x + k.m[4] * y + k.m[5] * z + k.v[1];
+      out.z[n] = k.m[6] * x + k.m[7] * y + k.m[8] * z + k.v[2];
+      out.dx[n] = k.m[0] * dx + k.m[1] * dy + k.m[2] * dz;
+      out.dy[n] = k.m[3] * dx + k.m[4] * dy + k.m[5] * dz;
+      out.dz[n] = k.m[6] * dx + k.m[7] * dy + k.m[8] * dz;
+      out.flux[n] = static_cast<float>(static_cast<double>(in.weight[i]) * ray_flux);
+      out.mirror[n] = -1;
+      out.number[n] = static_cast<std::int32_t>(i);
+      tally.emitted += units(out.flux[n]);
+      if (std::isfinite(x + y + z + dx + dy + dz)) {
+        ++n;
+      } else {
+        lose(LostCause::not_finite, out.flux[n], tally);
+      }
+    }
+    tally.rays += in.size();
+    return n;
+  }
+
+  void follow(Batch& batch, std::size_t n, Tally& tally) const {
+    std::vector<Meeting> meetings(mirrors_.size());
+    for (int bounce = 0; n > 0; ++bounce) {
+      const std::size_t left_before = batch.out_count;
+      meet(batch.rays, n, meetings);
+      n = sort_out(batch, n, meetings, bounce, tally);
+      std::int64_t& out = bounce == 0 ? tally.out_direct : tally.out_reflected;
+      for (std::size_t i = left_before; i < batch.out_count; ++i) out += units(batch.out.flux[i]);
+    }
+    alignas(64) std::int32_t cell[kBatch];
+    for (std::size_t d = 0; d < far_fields().size(); ++d) {
+      const FarFieldGrid& grid = far_fields()[d];
+      kernels_.far_field_cells(batch.out, batch.out_count, static_cast<std::int32_t>(grid.c_count()),
+                               static_cast<std::int32_t>(grid.gamma_count()), cell);
+      std::int64_t* const bins = tally.bins[d].data();
+      for (std::size_t i = 0; i < batch.out_count; ++i) bins[cell[i]] += units(batch.out.flux[i]);
+    }
+  }
+
+  /// First hits with every mirror; where a ray meets several, all but the nearest become misses.
+  void meet(const WorldRays& rays, std::size_t n, std::vector<Meeting>& meetings) const {
+    for (std::size_t m = 0; m < mirrors_.size(); ++m) {
+      kernels_.to_local(mirrors_[m].mirror_from_world, rays, n, static_cast<std::int32_t>(m),
+                        meetings[m].rays);
+      kernels_.intersect(mirrors_[m].field, meetings[m].rays, n, meetings[m].hits);
+    }
+    for (std::size_t m = 1; m < mirrors_.size(); ++m) {
+      for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t k = 0; k < m; ++k) {
+          LocalHits &a = meetings[k].hits, &b = meetings[m].hits;
+          if (a.state[i] == kMiss || b.state[i] == kMiss) continue;
+          (b.t[i] < a.t[i] ? a : b).state[i] = kMiss;
+        }
+      }
+    }
+  }
+
+  /// Reflects what was reflected, moves what leaves to `out`, and closes the gaps; returns how many rays
+  /// stay.
+  std::size_t sort_out(Batch& batch, std::size_t n, const std::vector<Meeting>& meetings, int bounce,
+                       Tally& tally) const {
+    WorldRays& rays = batch.rays;
+    alignas(64) std::int32_t mirror[kBatch];
+    for (std::size_t i = 0; i < n; ++i) mirror[i] = -1;
+    for (std::size_t m = 0; m < mirrors_.size(); ++m) {
+      const LocalHits& hits = meetings[m].hits;
+      kernels_.reflect(mirrors_[m].world_from_mirror, meetings[m].rays, hits, n, rays, batch.cosine);
+      const bool constant = mirrors_[m].reflectance->is_constant();
+      const double at_any_angle = mirrors_[m].reflectance->at(1.0);
+      for (std::size_t i = 0; i < n; ++i) {
+        if (hits.state[i] == kMiss) continue;
+        mirror[i] = static_cast<std::int32_t>(m);
+        const std::int64_t before = units(rays.flux[i]);
+        if (hits.state[i] == kBack) {
+          tally.absorbed[static_cast<std::size_t>(MirrorLoss::back)] += before;
+          mirror[i] = -2;
+        } else if (bounce == max_bounces_) {
+          lose(LostCause::bounce_limit, rays.flux[i], tally);
+          mirror[i] = -2;
+        } else {
+          const double kept =
+              constant ? at_any_angle : mirrors_[m].reflectance->at(static_cast<double>(batch.cosine[i]));
+          rays.flux[i] = static_cast<float>(static_cast<double>(rays.flux[i]) * kept);
+          tally.absorbed[static_cast<std::size_t>(MirrorLoss::face)] += before - units(rays.flux[i]);
+          ++tally.reflections;
+        }
+      }
+    }
+    std::size_t stay = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (mirror[i] == -2) continue;
+      WorldRays& to = mirror[i] < 0 ? batch.out : rays;
+      const std::size_t k = mirror[i] < 0 ? batch.out_count++ : stay++;
+      to.x[k] = rays.x[i];
+      to.y[k] = rays.y[i];
+      to.z[k] = rays.z[i];
+      to.dx[k] = rays.dx[i];
+      to.dy[k] = rays.dy[i];
+      to.dz[k] = rays.dz[i];
+      to.flux[k] = rays.flux[i];
+      to.mirror[k] = mirror[i];
+      to.number[k] = rays.number[i];
+    }
+    return stay;
+  }
+
+  const Scene& scene_;
+  const RayNumbering& numbering_;
+  int max_bounces_;
+  SequenceKind kind_;
+  const Kernels& kernels_;
+  std::vector<HeightField> fields_;
+  std::vector<Mirror> mirrors_;
+};
+
+}  // namespace
+
+std::unique_ptr<TraceEngine> make_wavefront_engine(const Scene& scene, const RayNumbering& numbering,
+                                                   const TraceOptions& options) {
+  return std::make_unique<WavefrontEngine>(scene, numbering, options);
+}
+
+}  // namespace lucerna
