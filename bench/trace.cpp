@@ -7,6 +7,7 @@
 #include "lucerna/trace/trace.h"
 
 #include <fmt/format.h>
+#include <time.h>
 
 #include <algorithm>
 #include <chrono>
@@ -37,9 +38,18 @@ double seconds(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-double best_of(int times, const std::function<void()>& work) {
+/// Seconds of processor time: on a machine that others use too, what one thread's work costs.
+double cpu_seconds(const std::function<void()>& work) {
+  timespec a{}, b{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &a);
+  work();
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &b);
+  return static_cast<double>(b.tv_sec - a.tv_sec) + 1e-9 * static_cast<double>(b.tv_nsec - a.tv_nsec);
+}
+
+double best_of(int times, double (*clock)(const std::function<void()>&), const std::function<void()>& work) {
   double best = 1e30;
-  for (int i = 0; i < times; ++i) best = std::min(best, seconds(work));
+  for (int i = 0; i < times; ++i) best = std::min(best, clock(work));
   return best;
 }
 
@@ -249,22 +259,22 @@ void run(const Case& c, int cells, const std::shared_ptr<RaySet>& rays) {
   std::unique_ptr<HeightField> field;
   const double build =
       seconds([&] { field = std::make_unique<HeightField>(scene.reflectors[0].reflector, cells); });
-  const double rebuild = best_of(5, [&] { field->rebuild(); });
+  const double rebuild = best_of(5, seconds, [&] { field->rebuild(); });
   const std::size_t beside = field->nodes().size() * sizeof(FieldNode);
   fmt::print(
       "{:5} {:4}  build with evaluation {:7.1f} ms  hierarchy {:6.2f} ms, {:.2f} MB  exit error {:.5f} deg\n",
       c.name, cells, 1e3 * build, 1e3 * rebuild, 1e-6 * static_cast<double>(beside),
       exit_error_deg(scene, cells));
   const double n = static_cast<double>(rays->rays.size());
-  const auto rate = [&](TraceOptions options) {
+  const auto rate = [&](TraceOptions options, double (*clock)(const std::function<void()>&)) {
     options.cells = cells;
     options.max_bounces = 4;
     options.last_ray = rays->rays.size();
     TraceOptions none = options;
     none.last_ray = 1;
-    const double setup = best_of(2, [&] { trace(scene, none); });
+    const double setup = best_of(2, clock, [&] { trace(scene, none); });
     TraceResult result;
-    const double t = best_of(2, [&] { result = trace(scene, options); }) - setup;
+    const double t = best_of(2, clock, [&] { result = trace(scene, options); }) - setup;
     fmt::print("            {:10} {} thread(s) {:7.2f} M rays/s  {:.3f} reflections a ray\n", result.isa,
                ThreadLimit::current(), 1e-6 * n / t, ledger(result).reflections_per_ray);
     return n / t;
@@ -275,17 +285,17 @@ void run(const Case& c, int cells, const std::shared_ptr<RaySet>& rays) {
     for (const char* isa : {"portable", "avx2", "avx512"}) {
       try {
         kernels_named(isa);
-        fast = rate({.isa = isa});
+        fast = rate({.isa = isa}, cpu_seconds);
       } catch (const UsageError&) {
       }
     }
   }
-  const double two = rate({});
+  const double two = rate({}, seconds);
   fmt::print("            all threads / one: {:.2f}\n", two / fast);
 #if defined(LUCERNA_EMBREE)
   const EmbreeTracer embree(*field);
   std::vector<double> bins(360 * 181);
-  const double t = best_of(2, [&] { embree.trace(rays->rays, c.focal_mm, 4, bins); });
+  const double t = best_of(2, cpu_seconds, [&] { embree.trace(rays->rays, c.focal_mm, 4, bins); });
   fmt::print("            embree     1 thread(s) {:7.2f} M rays/s  build {:.0f} ms; ours / Embree {:.1f}\n",
              1e-6 * n / t, 1e3 * embree.build_s, fast * t / n);
 #endif

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/reflector/trough_surface.h"
 
 namespace lucerna {
 
@@ -29,19 +30,40 @@ Reflector conic_reflector(ConicPreset preset, double focal_mm, double focal2_mm,
   return {std::make_shared<RevolutionSurface>(std::move(profile)), aperture};
 }
 
-Reflector profile_reflector(const std::vector<ProfileKnot>& knots, const Aperture& aperture) {
+Reflector conic_trough(ConicPreset preset, double focal_mm, double focal2_mm, const Aperture& aperture) {
+  auto profile =
+      std::make_shared<ConicProfile>(conic_profile(preset, focal_mm, focal2_mm, aperture.half_x_mm()));
+  return {std::make_shared<TroughSurface>(std::move(profile)), aperture};
+}
+
+namespace {
+
+std::shared_ptr<const SplineProfile> checked_profile(const std::vector<ProfileKnot>& knots, double reach_mm,
+                                                     double hole_mm) {
   auto profile = std::make_shared<SplineProfile>(knots);
-  if (aperture.outer_radius_mm() > profile->r_max_mm() * (1.0 + 1e-12)) {
+  if (reach_mm > profile->r_max_mm() * (1.0 + 1e-12)) {
     throw InputError(fmt::format("reflector: the profile ends at radius {} mm, the aperture reaches {} mm",
-                                 profile->r_max_mm(), aperture.outer_radius_mm()));
+                                 profile->r_max_mm(), reach_mm));
   }
-  if (profile->r_min_mm() > aperture.hole_radius_mm() * (1.0 + 1e-12)) {
+  if (profile->r_min_mm() > hole_mm * (1.0 + 1e-12)) {
     throw InputError(
         fmt::format("reflector: the profile starts at radius {} mm, the hole's radius is {} mm; "
                     "expected a profile from the axis or a hole at least as wide",
-                    profile->r_min_mm(), aperture.hole_radius_mm()));
+                    profile->r_min_mm(), hole_mm));
   }
-  return {std::make_shared<RevolutionSurface>(std::move(profile)), aperture};
+  return profile;
+}
+
+}  // namespace
+
+Reflector profile_reflector(const std::vector<ProfileKnot>& knots, const Aperture& aperture) {
+  return {std::make_shared<RevolutionSurface>(
+              checked_profile(knots, aperture.outer_radius_mm(), aperture.hole_radius_mm())),
+          aperture};
+}
+
+Reflector profile_trough(const std::vector<ProfileKnot>& knots, const Aperture& aperture) {
+  return {std::make_shared<TroughSurface>(checked_profile(knots, aperture.half_x_mm(), 0.0)), aperture};
 }
 
 }  // namespace lucerna

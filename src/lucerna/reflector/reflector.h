@@ -25,4 +25,9 @@ Reflector conic_reflector(ConicPreset preset, double focal_mm, double focal2_mm,
 /// the aperture is wider than the profile or the profile starts outside the hole.
 Reflector profile_reflector(const std::vector<ProfileKnot>& knots, const Aperture& aperture);
 
+/// Troughs along y from the same profiles, over |x|. Errors alike; the aperture's half width counts as its
+/// radius.
+Reflector conic_trough(ConicPreset preset, double focal_mm, double focal2_mm, const Aperture& aperture);
+Reflector profile_trough(const std::vector<ProfileKnot>& knots, const Aperture& aperture);
+
 }  // namespace lucerna

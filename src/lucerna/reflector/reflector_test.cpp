@@ -7,17 +7,36 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/random.h"
+#include "lucerna/reflector/faceted_surface.h"
 #include "lucerna/reflector/height_mipmap.h"
+#include "lucerna/reflector/spline_surface.h"
 
 namespace lucerna {
 namespace {
 
+SplineSurface bumps(std::shared_ptr<const HeightSurface> base) {
+  Rng rng(1, 0);
+  std::vector<double> c(9 * 7);
+  for (double& x : c) x = 3.0 * rng.uniform();
+  return {{-25.0, 25.0, -25.0, 25.0}, 9, 7, c, std::move(base)};
+}
+
 std::vector<Reflector> all_families() {
   const Aperture round = Aperture::circle(50.0, 6.0);
-  return {conic_reflector(ConicPreset::parabola, 15.0, 0.0, round),
-          conic_reflector(ConicPreset::ellipse, 12.0, 80.0, round),
-          conic_reflector(ConicPreset::hyperbola, 12.0, 80.0, Aperture::rectangle(40.0, 60.0)),
-          profile_reflector({{0.0, 0.0}, {8.0, 1.5}, {15.0, 3.0}, {25.0, 12.0}}, round)};
+  return {
+      conic_reflector(ConicPreset::parabola, 15.0, 0.0, round),
+      conic_reflector(ConicPreset::ellipse, 12.0, 80.0, round),
+      conic_reflector(ConicPreset::hyperbola, 12.0, 80.0, Aperture::rectangle(40.0, 60.0)),
+      profile_reflector({{0.0, 0.0}, {8.0, 1.5}, {15.0, 3.0}, {25.0, 12.0}}, round),
+      conic_trough(ConicPreset::parabola, 10.0, 0.0, Aperture::rectangle(40.0, 60.0)),
+      profile_trough({{0.0, 0.0}, {8.0, 1.5}, {15.0, 3.0}, {25.0, 12.0}}, Aperture::rectangle(50.0, 30.0)),
+      {std::make_shared<SplineSurface>(bumps(nullptr)), round},
+      {std::make_shared<SplineSurface>(
+           bumps(conic_reflector(ConicPreset::parabola, 15.0, 0.0, round).surface)),
+       round},
+      {std::make_shared<FacetedSurface>(conic_reflector(ConicPreset::parabola, 15.0, 0.0, round).surface, 5.0,
+                                        12.0),
+       round}};
 }
 
 TEST(Reflector, GradientsAreThoseOfTheHeight) {
@@ -26,11 +45,46 @@ TEST(Reflector, GradientsAreThoseOfTheHeight) {
   for (const Reflector& r : all_families()) {
     for (int i = 0; i < 200; ++i) {
       const double x = 30.0 * rng.uniform() - 15.0, y = 30.0 * rng.uniform() - 15.0;
+      if (std::abs(std::remainder(x, 5.0)) < 1e-4 || std::abs(std::remainder(y, 5.0)) < 1e-4) continue;
       const SurfacePoint s = r.surface->at(x, y);
       EXPECT_NEAR(s.dzdx, (r.surface->at(x + e, y).z_mm - r.surface->at(x - e, y).z_mm) / (2.0 * e), 1e-8);
       EXPECT_NEAR(s.dzdy, (r.surface->at(x, y + e).z_mm - r.surface->at(x, y - e).z_mm) / (2.0 * e), 1e-8);
     }
   }
+}
+
+TEST(SplineSurface, GoesThroughTheHeightsAndReproducesACubic) {
+  const auto cubic = [](double x, double y) {
+    return 0.01 * x * x * x - 0.2 * x * y + 0.03 * y * y + 0.001 * x * y * y * y;
+  };
+  const Rectangle region{-6.0, 8.0, -5.0, 5.0};
+  std::vector<double> heights;
+  for (int j = 0; j < 11; ++j) {
+    for (int i = 0; i < 8; ++i) heights.push_back(cubic(-6.0 + 2.0 * i, -5.0 + j));
+  }
+  const SplineSurface s = SplineSurface::through(region, 8, 11, heights);
+  for (double x = -6.0; x <= 8.0; x += 0.37) {
+    for (double y = -5.0; y <= 5.0; y += 0.41) EXPECT_NEAR(s.at(x, y).z_mm, cubic(x, y), 1e-11);
+  }
+}
+
+TEST(SplineSurface, RefusesBadInput) {
+  const Rectangle r{0.0, 1.0, 0.0, 1.0};
+  EXPECT_THROW(SplineSurface(r, 3, 5, std::vector<double>(15)), InputError);
+  EXPECT_THROW(SplineSurface(r, 4, 5, std::vector<double>(19)), InputError);
+  EXPECT_THROW(SplineSurface(r, 4, 4, std::vector<double>(16, std::nan(""))), InputError);
+  EXPECT_THROW(SplineSurface::through(r, 4, 4, std::vector<double>(16, INFINITY)), InputError);
+}
+
+TEST(FacetedSurface, TouchesItsBaseAtTheCentres) {
+  const Reflector base = conic_reflector(ConicPreset::parabola, 15.0, 0.0, Aperture::circle(50.0));
+  const FacetedSurface flat(base.surface, 5.0, INFINITY), pillow(base.surface, 5.0, 20.0);
+  EXPECT_EQ(flat.at(2.5, -7.5).z_mm, base.surface->at(2.5, -7.5).z_mm);
+  EXPECT_EQ(flat.at(4.9, -5.1).dzdx, base.surface->at(2.5, -7.5).dzdx);
+  EXPECT_NEAR(flat.at(2.5, -7.5).z_mm - pillow.at(4.5, -7.5).z_mm + 2.0 * flat.at(2.5, -7.5).dzdx, 0.1,
+              1e-12);
+  EXPECT_THROW(FacetedSurface(base.surface, 0.0, 10.0), InputError);
+  EXPECT_THROW(FacetedSurface(base.surface, 5.0, 0.0), InputError);
 }
 
 TEST(Reflector, RefusesAnApertureThatTheProfileDoesNotFill) {
@@ -57,7 +111,7 @@ TEST(HeightMipmap, HoldsTheSurfaceAtEveryLevel) {
         EXPECT_GE(tree.cell(level, ix, iy).high_mm, z);
       }
     }
-    EXPECT_LT(tree.cell(5, 3, 3).high_mm - tree.cell(5, 3, 3).low_mm, 8.0);
+    EXPECT_LT(tree.cell(5, 7, 7).high_mm - tree.cell(5, 7, 7).low_mm, 8.0);
   }
 }
 

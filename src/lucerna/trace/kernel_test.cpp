@@ -8,6 +8,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/random.h"
+#include "lucerna/reflector/spline_surface.h"
 #include "lucerna/trace/far_field.h"
 #include "lucerna/trace/field_view.h"
 #include "lucerna/trace/reference_tracer.h"
@@ -50,6 +51,15 @@ class Pillows final : public HeightSurface {
   double f_, k_ = 2.0 * std::numbers::pi / 8.0;
 };
 
+/// A free-form mirror on a paraboloid.
+std::shared_ptr<const HeightSurface> free_form() {
+  Rng rng(4, 0);
+  std::vector<double> c(14 * 12);
+  for (double& x : c) x = 2.0 * rng.uniform();
+  const Reflector base = conic_reflector(ConicPreset::parabola, 15.0, 0.0, Aperture::rectangle(90.0, 70.0));
+  return std::make_shared<SplineSurface>(Rectangle{-45.0, 45.0, -35.0, 35.0}, 14, 12, c, base.surface);
+}
+
 std::vector<Reflector> mirrors() {
   const Aperture round = Aperture::circle(90.0, 12.0), box = Aperture::rectangle(90.0, 70.0);
   return {conic_reflector(ConicPreset::parabola, 15.0, 0.0, round),
@@ -58,7 +68,10 @@ std::vector<Reflector> mirrors() {
           profile_reflector({{0.0, 0.0}, {10.0, 3.0}, {20.0, 4.0}, {30.0, 12.0}, {45.0, 40.0}}, round),
           profile_reflector({{0.0, 10.0}, {20.0, 6.0}, {30.0, 3.0}, {45.0, -5.0}}, round),
           {std::make_shared<Pillows>(15.0), box},
-          {std::make_shared<Pillows>(5.0), round}};
+          {std::make_shared<Pillows>(5.0), round},
+          {free_form(), box},
+          conic_trough(ConicPreset::parabola, 10.0, 0.0, box),
+          profile_trough({{0.0, 0.0}, {20.0, 9.0}, {30.0, 10.0}, {45.0, 40.0}}, box)};
 }
 
 struct Counts {

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "lucerna/trace/reference_tracer.h"
+#include "lucerna/trace/slope_error.h"
 #include "lucerna/trace/trace_engine.h"
 
 namespace lucerna {
@@ -19,7 +20,7 @@ class ReferenceEngine final : public TraceEngine {
         kind_(options.sequence) {
     for (const PlacedReflector& r : scene.reflectors) {
       mirrors_.push_back({ReferenceTracer(r.reflector), r.world_from_reflector,
-                          r.world_from_reflector.inverse(), r.reflectance});
+                          r.world_from_reflector.inverse(), r.reflectance, 1e-3 * r.slope_error_mrad});
     }
   }
 
@@ -32,7 +33,8 @@ class ReferenceEngine final : public TraceEngine {
     source.rays->emit(Sequence(kind_, run.sequence_seed), run.first, rays);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       trace_ray(source.world_from_source.ray(rays.ray(i)),
-                to_units(static_cast<double>(rays.weight[i]) * numbering_.ray_flux(run.source)), tally);
+                to_units(static_cast<double>(rays.weight[i]) * numbering_.ray_flux(run.source)),
+                {run.sequence_seed, run.first + i, 0}, tally);
     }
   }
 
@@ -41,6 +43,7 @@ class ReferenceEngine final : public TraceEngine {
     ReferenceTracer tracer;
     Frame world_from_mirror, mirror_from_world;
     Reflectance reflectance;
+    double slope_error_rad;
   };
   struct Nearest {
     const Mirror* mirror = nullptr;
@@ -63,7 +66,7 @@ class ReferenceEngine final : public TraceEngine {
     ++tally.lost_rays[static_cast<std::size_t>(cause)];
   }
 
-  void trace_ray(Ray ray, std::int64_t energy, Tally& tally) const {
+  void trace_ray(Ray ray, std::int64_t energy, ReflectionKey key, Tally& tally) const {
     ++tally.rays;
     tally.emitted += energy;
     for (int bounce = 0;; ++bounce) {
@@ -88,7 +91,10 @@ class ReferenceEngine final : public TraceEngine {
       tally.absorbed[static_cast<std::size_t>(MirrorLoss::face)] += energy - kept;
       energy = kept;
       ++tally.reflections;
-      const Direction out = Direction::from(reflect(n.local.direction, n.hit.normal));
+      key.bounce = bounce;
+      const double slope = n.mirror->slope_error_rad;
+      const Direction normal = slope > 0.0 ? tilted_normal(n.hit.normal, slope, key) : n.hit.normal;
+      const Direction out = Direction::from(reflect(n.local.direction, normal));
       ray = n.mirror->world_from_mirror.ray({n.hit.point_mm, out});
     }
   }

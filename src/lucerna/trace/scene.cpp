@@ -23,6 +23,12 @@ void check(const Scene& scene) {
     }
     if (s.rays->ray_count() == 0) throw InputError(fmt::format("source {} has no rays", i + 1));
   }
+  for (std::size_t i = 0; i < scene.reflectors.size(); ++i) {
+    const double slope = scene.reflectors[i].slope_error_mrad;
+    if (!(slope >= 0.0 && slope <= 1000.0)) {
+      throw InputError(fmt::format("reflector {}: slope_error_mrad = {}, expected 0 to 1000", i + 1, slope));
+    }
+  }
   std::set<std::string> names;
   for (const FarFieldDetector& d : scene.far_fields) {
     const FarFieldGrid checked(d);

@@ -29,6 +29,9 @@ struct PlacedReflector {
   Reflector reflector;
   Frame world_from_reflector;
   Reflectance reflectance{1.0};
+  /// Standard deviation of the surface normal's tilt about each of two perpendicular axes, Gaussian; >= 0.
+  /// Every reflection draws its own tilt.
+  double slope_error_mrad = 0.0;
 };
 
 /// All that light can meet, and what looks at it. Plain data; `trace` checks it.

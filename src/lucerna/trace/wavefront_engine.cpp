@@ -5,6 +5,7 @@
 #include "lucerna/core/error.h"
 #include "lucerna/reflector/height_field.h"
 #include "lucerna/trace/field_view.h"
+#include "lucerna/trace/slope_error.h"
 #include "lucerna/trace/trace_engine.h"
 
 namespace lucerna {
@@ -26,7 +27,8 @@ class WavefrontEngine final : public TraceEngine {
     for (std::size_t i = 0; i < scene.reflectors.size(); ++i) {
       const PlacedReflector& r = scene.reflectors[i];
       mirrors_.push_back({view_of(fields_[i]), view_of(r.world_from_reflector),
-                          view_of(r.world_from_reflector.inverse()), &r.reflectance});
+                          view_of(r.world_from_reflector.inverse()), &r.reflectance,
+                          1e-3 * r.slope_error_mrad});
     }
   }
 
@@ -39,7 +41,7 @@ class WavefrontEngine final : public TraceEngine {
     Batch batch;
     const std::size_t n =
         emit(rays, source.world_from_source, numbering_.ray_flux(run.source), batch.rays, tally);
-    follow(batch, n, tally);
+    follow(batch, n, run, tally);
   }
 
  private:
@@ -47,6 +49,7 @@ class WavefrontEngine final : public TraceEngine {
     FieldView field;
     FrameView world_from_mirror, mirror_from_world;
     const Reflectance* reflectance;
+    double slope_error_rad;
   };
   /// All rays of one run on their way.
   struct Batch {
@@ -97,11 +100,15 @@ class WavefrontEngine final : public TraceEngine {
     return n;
   }
 
-  void follow(Batch& batch, std::size_t n, Tally& tally) const {
+  void follow(Batch& batch, std::size_t n, const SourceRun& run, Tally& tally) const {
     std::vector<Meeting> meetings(mirrors_.size());
     for (int bounce = 0; n > 0; ++bounce) {
       const std::size_t left_before = batch.out_count;
       meet(batch.rays, n, meetings);
+      for (std::size_t m = 0; m < mirrors_.size(); ++m) {
+        if (mirrors_[m].slope_error_rad > 0.0)
+          tilt(mirrors_[m].slope_error_rad, batch.rays, n, run, bounce, meetings[m].hits);
+      }
       n = sort_out(batch, n, meetings, bounce, tally);
       std::int64_t& out = bounce == 0 ? tally.out_direct : tally.out_reflected;
       for (std::size_t i = left_before; i < batch.out_count; ++i) out += units(batch.out.flux[i]);
@@ -113,6 +120,20 @@ class WavefrontEngine final : public TraceEngine {
                                static_cast<std::int32_t>(grid.gamma_count()), cell);
       std::int64_t* const bins = tally.bins[d].data();
       for (std::size_t i = 0; i < batch.out_count; ++i) bins[cell[i]] += units(batch.out.flux[i]);
+    }
+  }
+
+  /// Gives the normals of all reflections of one mirror their slope error.
+  static void tilt(double slope_error_rad, const WorldRays& rays, std::size_t n, const SourceRun& run,
+                   int bounce, LocalHits& hits) {
+    for (std::size_t i = 0; i < n; ++i) {
+      if (hits.state[i] != kFront) continue;
+      const ReflectionKey key{run.sequence_seed, run.first + static_cast<std::uint64_t>(rays.number[i]),
+                              bounce};
+      const Vec3 normal{-static_cast<double>(hits.gx[i]), -static_cast<double>(hits.gy[i]), 1.0};
+      const Vec3 t = tilted_normal(Direction::from(normal), slope_error_rad, key);
+      hits.gx[i] = static_cast<float>(-t.x / t.z);
+      hits.gy[i] = static_cast<float>(-t.y / t.z);
     }
   }
 
