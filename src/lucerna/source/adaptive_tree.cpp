@@ -263,7 +263,10 @@ double exact_exp(double x) {
   return std::ldexp(e, static_cast<int>(k));
 }
 
-double step_width(double f, double rays) { return 1.0 / std::sqrt(std::max(1.0, rays * f * (1.0 - f))); }
+double step_width(double f, double rays) {
+  constexpr double kFinestStep = 1.0 / 256.0;
+  return std::max(kFinestStep, 1.0 / std::sqrt(std::max(1.0, rays * f * (1.0 - f))));
+}
 
 std::int16_t settled_step(const GrownTree& grown, std::size_t i, double rays) {
   const auto& node = grown.nodes[i];

@@ -40,10 +40,10 @@ struct TreeNode {
   friend bool operator==(const TreeNode&, const TreeNode&) = default;
 };
 
-inline constexpr std::int16_t kLeftEmpty = -32768, kRightEmpty = 32767, kLargestStep = 2047;
+inline constexpr std::int16_t kLeftEmpty = -32768, kRightEmpty = 32767, kLargestStep = 4095;
 
 /// Share of a node's flux that its left child has: with f = cut / kTreeCuts, odds f / (1 - f) * exp(step *
-/// h), h = 1 / sqrt(rays f (1 - f)) the standard error of the log odds, at most 1. `rays` is what the node
+/// h), h = 1 / sqrt(rays f (1 - f)) the standard error of the log odds, 1 / 256 to 1. `rays` is what the node
 /// holds. Uses no library function but sqrt, so that every machine decodes the same bits.
 double tree_share(const TreeNode& node, double rays);
 

@@ -63,7 +63,7 @@ void TreeCodec::node(Side& side, TreeNode& n, const Context& c, std::uint64_t tr
   bool negative = n.step < 0;
   const auto magnitude = static_cast<std::uint32_t>(std::abs(n.step));
   std::uint32_t length = static_cast<std::uint32_t>(std::bit_width(magnitude)), coded = 0;
-  for (; coded < 11; ++coded) {
+  for (; coded < 12; ++coded) {
     bool more = coded < length;
     side.bit(length_[axis][coded], more);
     if (!more) break;

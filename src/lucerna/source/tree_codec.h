@@ -40,9 +40,9 @@ class TreeCodec {
   std::array<AdaptiveSymbol<4>, 4> cut_;
   std::array<std::array<AdaptiveBit, 3>, 4> empty_;
   std::array<std::array<AdaptiveBit, 2>, 4> sign_;
-  std::array<std::array<AdaptiveBit, 12>, 4> length_;
-  std::array<std::array<std::array<AdaptiveBit, 2>, 12>, 4> mantissa_;
-  std::array<AdaptiveBit, 12> rest_;
+  std::array<std::array<AdaptiveBit, 13>, 4> length_;
+  std::array<std::array<std::array<AdaptiveBit, 2>, 13>, 4> mantissa_;
+  std::array<AdaptiveBit, 13> rest_;
 };
 
 }  // namespace lucerna

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/source/adaptive_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lucerna/core/error.h"
+#include "lucerna/source/support_batch.h"
+#include "lucerna/source/warp.h"
+
+namespace lucerna {
+
+namespace {
+
+constexpr std::size_t kQuadrature = 4096;
+
+bool has_volume(const TreeBox& box) {
+  for (std::size_t d = 0; d < 4; ++d) {
+    if (box.width(d) <= 0.0) return false;
+  }
+  return true;
+}
+
+/// Outward normal of a bounding surface at a point on it.
+Vec3 normal_at(const BoundingSurface& surface, const Vec3& point_mm) {
+  const Vec3 p = surface.world_from_surface.inverse().point(point_mm);
+  const Vec3& h = surface.half_size_mm;
+  Vec3 n{0, 0, 1};
+  if (surface.kind == SurfaceKind::sphere) n = p / std::max(length(p), 1e-300);
+  if (surface.kind == SurfaceKind::cylinder) {
+    const double rho = std::hypot(p.x, p.y);
+    const bool cap = h.z - std::abs(p.z) < surface.radius_mm - rho;
+    n = cap ? Vec3{0, 0, p.z > 0 ? 1.0 : -1.0} : Vec3{p.x / rho, p.y / rho, 0};
+  }
+  if (surface.kind == SurfaceKind::box) {
+    const double gx = h.x - std::abs(p.x), gy = h.y - std::abs(p.y), gz = h.z - std::abs(p.z);
+    if (gx <= gy && gx <= gz)
+      n = {p.x > 0 ? 1.0 : -1.0, 0, 0};
+    else if (gy <= gz)
+      n = {0, p.y > 0 ? 1.0 : -1.0, 0};
+    else
+      n = {0, 0, p.z > 0 ? 1.0 : -1.0};
+  }
+  return surface.world_from_surface.vector(n);
+}
+
+}  // namespace
+
+std::size_t AdaptiveData::leaves() const {
+  std::size_t n = 0;
+  for (const AdaptiveLayer& layer : layers) {
+    for (const AdaptiveChart& chart : layer.charts) {
+      for (const DensityTree& tree : chart.trees) n += tree.leaves();
+    }
+  }
+  return n;
+}
+
+AdaptiveModel::AdaptiveModel(AdaptiveData data) : data_(std::move(data)) { build_sampler(); }
+
+std::unique_ptr<AdaptiveModel> AdaptiveModel::from_nfl(const NflFile& file, std::string_view name) {
+  return std::make_unique<AdaptiveModel>(decode_adaptive(file, name));
+}
+
+void AdaptiveModel::build_sampler() {
+  constexpr double kAll = 4294967296.0;
+  double before = 0.0, total = 0.0;
+  for (const AdaptiveLayer& layer : data_.layers) {
+    for (const AdaptiveChart& chart : layer.charts) total += layer.share * chart.share;
+  }
+  for (const AdaptiveLayer& layer : data_.layers) {
+    for (const AdaptiveChart& chart : layer.charts) {
+      const double share = layer.share * chart.share / total;
+      has_etendue_ = has_etendue_ && has_volume(chart.box);
+      places_.push_back({&layer.support, chart.chart, share / static_cast<double>(chart.trees.size()), {}});
+      const auto place = static_cast<std::uint32_t>(places_.size() - 1);
+      for (const DensityTree& tree : chart.trees) {
+        places_.back().trees.emplace_back(tree, chart.box);
+        for_each_leaf(tree, chart.box, [&](const TreeBox& box, double leaf_share) {
+          const double first = std::round(before * kAll);
+          before += leaf_share * places_[place].share;
+          if (std::round(before * kAll) <= first || first >= kAll) return;
+          SamplerLeaf leaf;
+          for (std::size_t d = 0; d < 4; ++d) {
+            leaf.low[d] = static_cast<float>(box.low[d]);
+            leaf.width[d] = static_cast<float>(box.width(d));
+          }
+          leaf.first = static_cast<std::uint32_t>(first);
+          leaf.place = place;
+          leaves_.push_back(leaf);
+        });
+      }
+    }
+  }
+  LUCERNA_CHECK(!leaves_.empty(), "an adaptive model of {} layers has no leaf", data_.layers.size());
+  leaves_.front().first = 0;
+  leaves_.push_back({});  // where the last one ends: 2^32, as 32 bits have it
+  unsigned bits = 1;
+  while (bits < 24 && (std::size_t{1} << bits) < 4 * leaves_.size()) ++bits;
+  guide_shift_ = 32 - bits;
+  guide_.resize(std::size_t{1} << bits);
+  std::size_t leaf = 0;
+  for (std::size_t g = 0; g < guide_.size(); ++g) {
+    while (leaf + 2 < leaves_.size() && leaves_[leaf + 1].first <= g << guide_shift_) ++leaf;
+    guide_[g] = static_cast<std::uint32_t>(leaf);
+  }
+}
+
+std::size_t AdaptiveModel::leaf_of(std::uint32_t bits) const {
+  std::size_t i = guide_[bits >> guide_shift_];
+  while (i + 2 < leaves_.size() && leaves_[i + 1].first <= bits) ++i;
+  return i;
+}
+
+/// The part of the leaf's stretch of first numbers that lies below `bits`.
+double AdaptiveModel::place_in(std::size_t leaf, std::uint32_t bits) const {
+  // One less than the length, so that the rest of 2^32 at the last leaf wraps as it should.
+  const std::uint32_t first = leaves_[leaf].first, length = leaves_[leaf + 1].first - first - 1;
+  return (static_cast<double>(bits - first) + 0.5) * (1.0 / (static_cast<double>(length) + 1.0));
+}
+
+Ray AdaptiveModel::sample(const std::array<double, 4>& u) const {
+  const auto bits = static_cast<std::uint32_t>(u[0] * 4294967296.0);
+  const std::size_t i = leaf_of(bits);
+  const SamplerLeaf& leaf = leaves_[i];
+  const Place& place = places_[leaf.place];
+  ChartPoint p{place.chart, {}};
+  for (std::size_t d = 0; d < 4; ++d) {
+    const double t = d == 0 ? place_in(i, bits) : u[d];
+    p.c[d] = static_cast<double>(leaf.low[d]) + t * static_cast<double>(leaf.width[d]);
+  }
+  return start_on(data_.surface, place.support->from_chart(p));
+}
+
+void AdaptiveModel::emit_batch(const Sequence& sequence, std::uint64_t first, std::size_t at, std::size_t n,
+                               RayBlock& out) const {
+  std::array<BatchColumn, 4> c;
+  std::array<std::uint32_t, kSupportBatch> places{}, order{};
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto u = sequence.point<4>(first + at + i);
+    const auto bits = static_cast<std::uint32_t>(u[0] * 4294967296.0);
+    const std::size_t k = leaf_of(bits);
+    const SamplerLeaf& leaf = leaves_[k];
+    places[i] = leaf.place;
+    c[0][i] = static_cast<double>(leaf.low[0]) + place_in(k, bits) * static_cast<double>(leaf.width[0]);
+    for (std::size_t d = 1; d < 4; ++d) {
+      c[d][i] = static_cast<double>(leaf.low[d]) + u[d] * static_cast<double>(leaf.width[d]);
+    }
+  }
+  RayBatch rays;
+  for (std::uint32_t place = 0; place < places_.size(); ++place) {
+    // The rays of one place are packed, made and put back; mostly they are all of the batch.
+    std::size_t m = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      order[m] = static_cast<std::uint32_t>(i);
+      m += places[i] == place ? 1 : 0;
+    }
+    if (m == 0) continue;
+    std::array<BatchColumn, 4> packed;
+    for (std::size_t d = 0; d < 4; ++d) {
+      for (std::size_t j = 0; j < m; ++j) packed[d][j] = c[d][order[j]];
+    }
+    rays_from_chart(*places_[place].support, places_[place].chart, packed, m, rays);
+    start_batch_on(data_.surface, m, rays);
+    for (std::size_t j = 0; j < m; ++j) {
+      const std::size_t i = at + order[j];
+      out.x_mm[i] = static_cast<float>(rays.x[j]);
+      out.y_mm[i] = static_cast<float>(rays.y[j]);
+      out.z_mm[i] = static_cast<float>(rays.z[j]);
+      out.kx[i] = static_cast<float>(rays.kx[j]);
+      out.ky[i] = static_cast<float>(rays.ky[j]);
+      out.kz[i] = static_cast<float>(rays.kz[j]);
+      out.weight[i] = 1.0f;
+    }
+  }
+}
+
+void AdaptiveModel::emit(const Sequence& sequence, std::uint64_t first, RayBlock& out) const {
+  for (std::size_t at = 0; at < out.size(); at += kSupportBatch) {
+    emit_batch(sequence, first, at, std::min(kSupportBatch, out.size() - at), out);
+  }
+}
+
+double AdaptiveModel::density(const Ray& ray) const {
+  double sum = 0.0;
+  const Support* last = nullptr;
+  std::optional<ChartPoint> p;
+  for (const Place& place : places_) {
+    if (place.support != last) p = place.support->to_chart(ray), last = place.support;
+    if (!p || p->chart != place.chart) continue;
+    for (const TreeLookup& tree : place.trees) sum += place.share * tree.density(p->c);
+  }
+  return sum;
+}
+
+double AdaptiveModel::pdf_etendue(const Ray& ray) const {
+  if (!has_etendue_) {
+    throw InputError(
+        "this source's rays fill no étendue (all on one point or line, or parallel): it has no "
+        "density per mm^2 sr");
+  }
+  return density(ray);
+}
+
+double AdaptiveModel::radiance_at(const Vec3& point_mm, const Direction& d) const {
+  const double g = density({point_mm, d});
+  if (!has_etendue_) {
+    // The density is per sr for rays through a point; on a line the azimuth's area function shrinks with the
+    // sine of the angle to it.
+    const Support& s = data_.layers.front().support;
+    if (s.kind != SupportKind::axis) return g;
+    const double cosine = dot(d.vec(), s.world_from_support.ez());
+    return g * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  }
+  if (data_.surface.kind == SurfaceKind::none) return g;
+  return g * std::max(0.0, std::abs(dot(d.vec(), normal_at(data_.surface, point_mm))));
+}
+
+double AdaptiveModel::pdf_area(const Vec3& point_mm) const {
+  if (!has_etendue_ || data_.surface.kind == SurfaceKind::none) {
+    throw InputError("this source's starts fill no area: it has no density per mm^2");
+  }
+  const double size = length(point_mm) + 1.0;
+  if (std::abs(data_.surface.outside_mm(point_mm)) > 1e-5 * size) return 0.0;
+  const Direction normal = Direction::from(normal_at(data_.surface, point_mm));
+  const Sequence sequence(SequenceKind::sobol, 1);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < kQuadrature; ++i) {
+    const auto u = sequence.point<2>(i);
+    sum += density({point_mm, warp::about(normal, warp::cosine_hemisphere(u[0], u[1]))});
+  }
+  return std::numbers::pi * sum / static_cast<double>(kQuadrature);
+}
+
+double AdaptiveModel::pdf_solid_angle(const Vec3& point_mm, const Direction& direction) const {
+  const Sequence sequence(SequenceKind::sobol, 1);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < kQuadrature; ++i) {
+    const auto u = sequence.point<2>(i);
+    sum += radiance_at(point_mm, warp::sphere(u[0], u[1]));
+  }
+  const double all = 4.0 * std::numbers::pi * sum / static_cast<double>(kQuadrature);
+  return all > 0.0 ? radiance_at(point_mm, direction) / all : 0.0;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lucerna/rayset/ray_set.h"
+#include "lucerna/source/adaptive_tree.h"
+#include "lucerna/source/source_model.h"
+#include "lucerna/source/support.h"
+
+namespace lucerna {
+
+inline constexpr NflTag kAdaptiveMethod{'A', 'D', 'A', 'P'};
+
+/// The density in one chart of a support: the mean of its trees.
+struct AdaptiveChart {
+  std::uint32_t chart = 0;
+  /// Of the layer's flux.
+  double share = 0.0;
+  TreeBox box;
+  std::vector<DensityTree> trees;
+  friend bool operator==(const AdaptiveChart&, const AdaptiveChart&) = default;
+};
+
+/// Light that is written down on one support.
+struct AdaptiveLayer {
+  Support support;
+  /// Of the model's flux; shares of all layers sum to 1.
+  double share = 0.0;
+  std::vector<AdaptiveChart> charts;
+  /// Why this support, for people: "plane: 3.21 nats per ray better than the bounding surface".
+  std::string why;
+  friend bool operator==(const AdaptiveLayer&, const AdaptiveLayer&) = default;
+};
+
+/// All that an adaptive model stores.
+struct AdaptiveData {
+  double flux = 0.0;
+  FluxUnit flux_unit = FluxUnit::lumen;
+  std::uint64_t training_rays = 0;
+  /// Where sampled rays start; `none`: on the supports themselves.
+  BoundingSurface surface;
+  std::vector<AdaptiveLayer> layers;
+  /// Spectra of the ray file, as they were; none of the rays' own wavelengths.
+  std::vector<SpectralTable> spectra;
+
+  std::size_t leaves() const;
+};
+
+/// The file's sections, and back (docs/nfl-format.md); `name` is for messages. Every count and tree is
+/// checked.
+NflFile encode_adaptive(const AdaptiveData& data);
+AdaptiveData decode_adaptive(const NflFile& file, std::string_view name);
+
+/// A leaf as the sampler reads it: 40 bytes, the same on a GPU. A ray of the leaf is `low + t * width` in the
+/// four numbers of its place, t in [0, 1)^4.
+struct SamplerLeaf {
+  std::array<float, 4> low{}, width{};
+  /// First of the 2^32 values of a random number that choose this leaf.
+  std::uint32_t first = 0;
+  /// Index into the model's places (layer and chart).
+  std::uint32_t place = 0;
+};
+
+/// The adaptive model as a source. A ray takes four numbers of the sequence: the first chooses the leaf (by
+/// inverting the sum of their shares through a guide table: O(1)) and, with what the choice leaves of it, the
+/// first number of the ray in the leaf; 1-3 are the others. Even points stay even this way: leaves are in the
+/// order of their trees, so that neighbours in the first number are neighbours in the source.
+class AdaptiveModel final : public SourceModel {
+ public:
+  /// `data` must be as decode_adaptive checks it.
+  explicit AdaptiveModel(AdaptiveData data);
+  static std::unique_ptr<AdaptiveModel> from_nfl(const NflFile& file, std::string_view name);
+
+  double flux() const override { return data_.flux; }
+  FluxUnit flux_unit() const override { return data_.flux_unit; }
+  void emit(const Sequence& sequence, std::uint64_t first, RayBlock& out) const override;
+
+  std::string_view method() const override { return "adaptive"; }
+  std::size_t layers() const override { return data_.layers.size(); }
+  std::size_t leaves() const override { return data_.leaves(); }
+  std::uint64_t training_rays() const override { return data_.training_rays; }
+
+  /// Integrals of pdf_etendue over 4096 even directions: to about 1 % for wide beams.
+  double pdf_area(const Vec3& point_mm) const override;
+  double pdf_solid_angle(const Vec3& point_mm, const Direction& direction) const override;
+  /// Radiance over flux of the ray's line, wherever on it the ray starts: the sum over layers of share times
+  /// density. Throws InputError if a layer has no étendue (rays through one point or line, or parallel).
+  double pdf_etendue(const Ray& ray) const override;
+  NflFile to_nfl() const override { return encode_adaptive(data_); }
+
+  const AdaptiveData& data() const { return data_; }
+  /// False if some layer's rays have no étendue.
+  bool has_etendue() const { return has_etendue_; }
+
+  /// Ray of the point `u` of the unit cube (multiples of 2^-32).
+  Ray sample(const std::array<double, 4>& u) const;
+
+ private:
+  struct Place {
+    const Support* support;
+    std::uint32_t chart;
+    double share;
+    std::vector<TreeLookup> trees;
+  };
+  double density(const Ray& ray) const;
+  double radiance_at(const Vec3& point_mm, const Direction& d) const;
+  void build_sampler();
+  std::size_t leaf_of(std::uint32_t bits) const;
+  double place_in(std::size_t leaf, std::uint32_t bits) const;
+  void emit_batch(const Sequence& sequence, std::uint64_t first, std::size_t at, std::size_t n,
+                  RayBlock& out) const;
+
+  AdaptiveData data_;
+  std::vector<Place> places_;
+  std::vector<SamplerLeaf> leaves_;  // and one more that only ends the last
+  std::vector<std::uint32_t> guide_;
+  unsigned guide_shift_ = 31;
+  bool has_etendue_ = true;
+};
+
+}  // namespace lucerna
