@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hidden reflectors: recovers mirrors of each family from their far field alone, starting from the plain
+// paraboloid, and prints what a re-trace with independent rays says of the result.
+//   bench_design [case ...]     cases: n10 n49-near n49-far n400
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "lucerna/core/random.h"
+#include "lucerna/design/fit.h"
+#include "lucerna/design/window.h"
+#include "lucerna/source/emitter.h"
+
+using namespace lucerna;
+
+namespace {
+
+struct Suite {
+  std::string name;
+  bool revolution;
+  int intervals;
+  double size_mm;        ///< coefficients are uniform in +- this
+  double low, high;      ///< relative RMS of the start that a hidden target must have
+  double bar, seconds;
+};
+
+PlacedSource cylinder() {
+  EmitterOptions options;
+  options.kind = EmitterKind::cylinder;
+  return {make_emitter(options), Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 15}), {}};
+}
+
+DesignShape plain(const Suite& s) {
+  return s.revolution ? DesignShape::revolution(15, Aperture::circle(100), s.intervals)
+                      : DesignShape::bspline(15, Aperture::rectangle(100, 100), s.intervals, s.intervals);
+}
+
+DesignShape hidden(const Suite& s, std::uint64_t seed) {
+  const DesignShape shape = plain(s);
+  Eigen::VectorXd p = shape.parameters();
+  Rng rng(seed, 0);
+  for (double& x : p) x = s.size_mm * (2.0 * rng.uniform() - 1.0);
+  return shape.with(p);
+}
+
+double seconds_since(std::chrono::steady_clock::time_point t) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - t).count();
+}
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+struct Outcome {
+  double start = 0.0, error = 0.0, floor = 0.0, excess = 0.0, wall = 0.0, cpu = 0.0;
+  double rays = 0.0;
+  int evaluations = 0;
+};
+
+constexpr std::uint64_t kTruthRays = 1 << 22;
+
+EvaluationOptions reflected_only(std::uint64_t rays) {
+  EvaluationOptions o;
+  o.rays = rays;
+  o.derivatives = false;
+  o.direct_light = false;
+  return o;
+}
+
+/// The window of the hidden mirror's light.
+TentBins window(const Suite& s, const DesignShape& truth, const DesignRays& rays) {
+  const TentBins all = TentBins::square(Frame(), 1.0, 400);
+  const Evaluation e = evaluate(truth, Reflectance(1.0), rays, all, reflected_only(1 << 18));
+  std::vector<DirectedFlux> light;
+  for (int j = 0; j < 400; ++j) {
+    for (int i = 0; i < 400; ++i) {
+      const double u = (i + 0.5) / 200.0 - 1.0, v = (j + 0.5) / 200.0 - 1.0;
+      const double flux = e.flux[j * 400 + i];
+      if (u * u + v * v < 1.0 && flux > 0.0) {
+        light.push_back({Direction::from_unit({u, v, std::sqrt(1.0 - u * u - v * v)}), flux});
+      }
+    }
+  }
+  return s.revolution ? ring_window(light, Direction()) : square_window(light, Direction());
+}
+
+bool solve(const Suite& s, std::uint64_t seed, bool verbose, Outcome& out) {
+  const DesignShape truth = hidden(s, seed);
+  DesignRays truth_rays({cylinder()}, Frame(), 1000 + seed);
+  truth_rays.grow(kTruthRays);
+  const TentBins bins = window(s, truth, truth_rays);
+  const Reflectance mirror(1.0);
+  FitProblem problem{nullptr, mirror, {}, bins, TargetMode::absolute, false};
+  double target_wall = 0.0, target_cpu = 0.0;  // making the hidden mirror's light is not part of the design
+  problem.target = [&](const TentBins& b) {
+    const auto from = std::chrono::steady_clock::now();
+    const double from_cpu = cpu_seconds();
+    Eigen::VectorXd flux = evaluate(truth, mirror, truth_rays, b, reflected_only(kTruthRays)).flux;
+    target_wall += seconds_since(from);
+    target_cpu += cpu_seconds() - from_cpu;
+    return flux;
+  };
+  const Evaluation target = evaluate(truth, mirror, truth_rays, bins, reflected_only(kTruthRays));
+  const BinError start = bin_error(evaluate(plain(s), mirror, truth_rays, bins, reflected_only(1 << 18)),
+                                   target.flux, bins, TargetMode::absolute);
+  out.start = start.relative_rms;
+  if (out.start < s.low || out.start > s.high) return false;
+
+  const auto clock = std::chrono::steady_clock::now();
+  const double cpu = cpu_seconds();
+  DesignRays rays({cylinder()}, Frame(), 5);
+  problem.rays = &rays;
+  const DesignShape begin = plain(s);
+  Fit fit(problem, ladder(begin, bins, 1 << 20, out.start > 0.2), begin);
+  while (!fit.done()) {
+    const FitRecord r = fit.step();
+    if (verbose) {
+      fmt::print("  stage {} step {:2} rays {:8} error {:.5f} floor {:.5f} lambda {:.1e} {} {:.2f} s\n", r.stage,
+                 r.step, r.rays, r.error, r.floor, r.lambda, r.accepted ? "" : "refused", seconds_since(clock) - target_wall);
+      std::fflush(stdout);
+    }
+  }
+  out.wall = seconds_since(clock) - target_wall;
+  out.cpu = cpu_seconds() - cpu - target_cpu;
+  out.rays = static_cast<double>(fit.state().total_rays);
+  out.evaluations = fit.state().evaluations;
+
+  DesignRays judge({cylinder()}, Frame(), 777 + seed);
+  judge.grow(kTruthRays);
+  const Evaluation result = evaluate(fit.shape(), mirror, judge, bins, reflected_only(kTruthRays));
+  const BinError error = bin_error(result, target.flux, bins, TargetMode::absolute);
+  const BinError noise = bin_error(target, target.flux, bins, TargetMode::absolute);
+  out.error = error.relative_rms;
+  out.floor = std::hypot(error.floor, noise.floor);
+  out.excess = std::sqrt(std::max(0.0, out.error * out.error - out.floor * out.floor));
+  return true;
+}
+
+double median(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  const std::size_t n = v.size();
+  return n % 2 == 1 ? v[n / 2] : 0.5 * (v[n / 2 - 1] + v[n / 2]);
+}
+
+void run(const Suite& s, int targets, bool verbose) {
+  std::vector<Outcome> outcomes;
+  for (std::uint64_t seed = 1; static_cast<int>(outcomes.size()) < targets && seed < 400; ++seed) {
+    Outcome o;
+    if (!solve(s, seed, verbose, o)) continue;
+    outcomes.push_back(o);
+    fmt::print("{:9} target {:2} (seed {:3}): start {:6.2f} %  result {:7.3f} %  floor {:.3f} %  excess {:6.3f} %  {:6.2f} s wall "
+               "{:6.2f} s cpu  {:3} evaluations  {:.1f} M rays\n",
+               s.name, outcomes.size(), seed, 100 * o.start, 100 * o.error, 100 * o.floor, 100 * o.excess, o.wall, o.cpu,
+               o.evaluations, 1e-6 * o.rays);
+    std::fflush(stdout);
+  }
+  const auto of = [&](auto member) {
+    std::vector<double> v;
+    for (const Outcome& o : outcomes) v.push_back(o.*member);
+    return v;
+  };
+  const std::vector<double> errors = of(&Outcome::error), walls = of(&Outcome::wall),
+                            excess = of(&Outcome::excess);
+  fmt::print("{:9} median {:.3f} %, worst {:.3f} %; excess median {:.3f} %, worst {:.3f} %, bar {} %; seconds median {:.2f}, worst {:.2f}, bar {}\n\n",
+             s.name, 100 * median(errors), 100 * *std::max_element(errors.begin(), errors.end()), 100 * median(excess),
+             100 * *std::max_element(excess.begin(), excess.end()), 100 * s.bar,
+             median(walls), *std::max_element(walls.begin(), walls.end()), s.seconds);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<Suite> suites{
+      {"n10", true, 8, 1.0, 0.0, 10.0, 0.005, 10},
+      {"n49-near", false, 4, 0.5, 0.05, 0.15, 0.005, 5},
+      {"n49-far", false, 4, 2.0, 0.25, 0.5, 0.015, 20},
+      {"n400", false, 17, 2.0, 0.0, 10.0, 0.02, 60},
+  };
+  int targets = 10;
+  bool verbose = false;
+  std::vector<std::string> names;
+  for (int i = 1; i < argc; ++i) {
+    const std::string a = argv[i];
+    if (a == "-v") {
+      verbose = true;
+    } else if (a.rfind("-n", 0) == 0) {
+      targets = std::stoi(a.substr(2));
+    } else {
+      names.push_back(a);
+    }
+  }
+  for (const Suite& s : suites) {
+    if (names.empty() || std::find(names.begin(), names.end(), s.name) != names.end()) run(s, targets, verbose);
+  }
+}

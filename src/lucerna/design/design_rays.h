@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "lucerna/core/progress.h"
+#include "lucerna/trace/ray_numbering.h"
+
+namespace lucerna {
+
+/// The rays that every evaluation of a design traces again (common random numbers), in the frame of the
+/// mirror. Drawn as `trace` numbers them: blocks of kBlockRays, block b of replicate b mod kReplicates, so
+/// that any first 2^k blocks are spread over all sources and all independent replicates. Grows on demand and
+/// never changes what is there. 28 bytes per ray. Not thread safe while it grows.
+class DesignRays {
+ public:
+  /// `sources` in the luminaire frame. Throws InputError as `check(Scene)` does for sources.
+  DesignRays(std::vector<PlacedSource> sources, const Frame& mirror_from_world, std::uint64_t seed);
+
+  /// Makes sure that there are at least `n` rays (rounded up to kReplicates blocks). Progress phase "rays".
+  void grow(std::uint64_t n, Progress& progress = no_progress());
+
+  std::uint64_t size() const { return block_.size() * kBlockRays; }
+  /// Flux of all sources, in their unit.
+  double flux() const { return flux_; }
+  FluxUnit unit() const { return sources_.front().rays->flux_unit(); }
+
+  struct Block {
+    std::array<float, kBlockRays> x_mm, y_mm, z_mm, kx, ky, kz;
+    /// Flux in mean rays.
+    std::array<float, kBlockRays> weight;
+  };
+  const Block& block(std::uint64_t b) const { return block_[b]; }
+
+ private:
+  void fill(std::uint64_t b);
+
+  std::vector<PlacedSource> sources_;
+  Frame mirror_from_world_;
+  RayNumbering numbering_;
+  double flux_ = 0.0;
+  std::vector<double> ray_flux_;
+  std::vector<Block> block_;
+};
+
+}  // namespace lucerna

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/design_shape.h"
+
+#include <gtest/gtest.h>
+
+#include "lucerna/core/error.h"
+#include "lucerna/core/random.h"
+
+namespace lucerna {
+namespace {
+
+DesignShape shaken(const DesignShape& shape, std::uint64_t seed) {
+  Eigen::VectorXd p = shape.parameters();
+  Rng rng(seed, 0);
+  for (double& x : p) x = rng.uniform();
+  return shape.with(p);
+}
+
+/// The largest difference of height and slope between two shapes over the aperture.
+double difference(const DesignShape& a, const DesignShape& b) {
+  double most = 0.0;
+  for (double x = -24.9; x < 25.0; x += 1.7) {
+    for (double y = -24.9; y < 25.0; y += 1.9) {
+      if (!a.aperture().contains(x, y)) continue;
+      const SurfacePoint p = a.at(x, y), q = b.at(x, y);
+      most = std::max({most, std::abs(p.z_mm - q.z_mm), std::abs(p.dzdx - q.dzdx), std::abs(p.dzdy - q.dzdy)});
+    }
+  }
+  return most;
+}
+
+TEST(DesignShape, DoublingTheKnotsKeepsTheSurface) {
+  const Aperture round = Aperture::circle(50), square = Aperture::rectangle(50, 50);
+  const DesignShape a = shaken(DesignShape::revolution(10, round, 5), 1);
+  EXPECT_LT(difference(a, a.refined(10, 0)), 1e-11);
+  EXPECT_LT(difference(a, a.refined(15, 0)), 1e-11);
+  EXPECT_GT(difference(a, a.refined(7, 0)), 1e-4);
+  const DesignShape b = shaken(DesignShape::bspline(10, square, 2, 3), 2);
+  EXPECT_LT(difference(b, b.refined(4, 6)), 1e-11);
+  EXPECT_GT(difference(b, b.refined(3, 4)), 1e-4);
+  const DesignShape c = shaken(DesignShape::bspline(10, square, 2, 3, ShapeSymmetry::mirror_y), 3);
+  EXPECT_LT(difference(c, c.refined(4, 6)), 1e-11);
+}
+
+TEST(DesignShape, CountsParameters) {
+  const Aperture square = Aperture::rectangle(50, 50);
+  EXPECT_EQ(DesignShape::revolution(10, Aperture::circle(50), 8).parameter_count(), 10u);
+  EXPECT_EQ(DesignShape::bspline(10, square, 4, 4).parameter_count(), 49u);
+  EXPECT_EQ(DesignShape::bspline(10, square, 4, 4, ShapeSymmetry::mirror_x).parameter_count(), 28u);
+  EXPECT_EQ(DesignShape::bspline(10, square, 4, 4, ShapeSymmetry::both).parameter_count(), 16u);
+}
+
+TEST(DesignShape, HoldsItsSymmetry) {
+  const Aperture square = Aperture::rectangle(50, 50);
+  const DesignShape y = shaken(DesignShape::bspline(10, square, 3, 4, ShapeSymmetry::mirror_y), 4);
+  EXPECT_NEAR(y.at(7, 11).z_mm, y.at(7, -11).z_mm, 1e-12);
+  EXPECT_GT(std::abs(y.at(7, 11).z_mm - y.at(-7, 11).z_mm), 1e-3);
+  const DesignShape x = shaken(DesignShape::bspline(10, square, 3, 4, ShapeSymmetry::mirror_x), 5);
+  EXPECT_NEAR(x.at(7, 11).z_mm, x.at(-7, 11).z_mm, 1e-12);
+}
+
+TEST(DesignShape, RangesHoldTheSurface) {
+  for (const DesignShape& s : {shaken(DesignShape::revolution(10, Aperture::circle(50), 5), 6),
+                               shaken(DesignShape::bspline(10, Aperture::circle(50), 4, 3), 7)}) {
+    const auto surface = s.surface();
+    const Rectangle r{3, 6, -4, -2};
+    const HeightRange range = surface->range(r);
+    for (double x = 3; x <= 6; x += 0.1) {
+      for (double y = -4; y <= -2; y += 0.1) {
+        EXPECT_LE(surface->at(x, y).z_mm, range.high_mm);
+        EXPECT_GE(surface->at(x, y).z_mm, range.low_mm);
+      }
+    }
+  }
+}
+
+TEST(DesignShape, RefusesWhatCannotBe) {
+  EXPECT_THROW(DesignShape::revolution(0, Aperture::circle(50), 8), InputError);
+  EXPECT_THROW(DesignShape::revolution(10, Aperture::rectangle(50, 50), 8), InputError);
+  EXPECT_THROW(DesignShape::bspline(10, Aperture::circle(50), 0, 8), InputError);
+}
+
+}  // namespace
+}  // namespace lucerna

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "lucerna/design/design_rays.h"
+#include "lucerna/design/design_shape.h"
+#include "lucerna/design/tent_bins.h"
+#include "lucerna/trace/reflectance.h"
+
+namespace lucerna {
+
+/// Bins by parameters; row by row, as the rays touch it.
+using BinJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// What one evaluation traces.
+struct EvaluationOptions {
+  std::uint64_t rays = 1 << 16;
+  /// Also the derivatives; about twice the time.
+  bool derivatives = true;
+  /// Light that misses the mirror counts too (it does in a luminaire; the hidden-reflector suite leaves it
+  /// out, so that it cannot flatter the error).
+  bool direct_light = true;
+};
+
+/// The far field of one shape in the bins, as shares of the sources' flux.
+struct Evaluation {
+  Eigen::VectorXd flux;
+  /// Variance of each entry of `flux`, from the scatter of the independent replicates.
+  Eigen::VectorXd variance;
+  /// d flux / d parameter; empty unless asked for.
+  BinJacobian jacobian;
+  /// Shares of the sources' flux: light that leaves after, and without, a reflection; that mirrors absorbed;
+  /// that met the back; that was given up.
+  double reflected = 0.0, direct = 0.0, absorbed = 0.0, back = 0.0, lost = 0.0;
+  std::uint64_t rays = 0;
+};
+
+/// Traces the first `options.rays` rays through the shape into the bins (whose frame must map into the
+/// mirror's), with exact pathwise derivatives through all reflections: for every ray, tent weights are
+/// differentiated by the leaving direction and that by the coefficients that each hit touches. What is left
+/// out are rays that change from hitting to missing (rims, shadow edges), which have measure zero among given
+/// rays. A reflectance that depends on the angle is taken at the ray's own angle, its change is left out.
+/// `rays` must hold that many. Rays of one replicate are summed in order, replicates are added in order: the
+/// same bits for any number of threads. Thread safe.
+Evaluation evaluate(const DesignShape& shape, const Reflectance& reflectance, const DesignRays& rays,
+                    const TentBins& bins, const EvaluationOptions& options);
+
+}  // namespace lucerna

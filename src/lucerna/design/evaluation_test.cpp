@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/evaluation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lucerna/core/parallel.h"
+#include "lucerna/design/smooth_path.h"
+#include "lucerna/source/emitter.h"
+#include "lucerna/trace/reference_tracer.h"
+
+namespace lucerna {
+namespace {
+
+DesignRays cylinder_rays(std::uint64_t n, double focal_mm) {
+  EmitterOptions options;
+  options.kind = EmitterKind::cylinder;
+  PlacedSource source{make_emitter(options), Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, focal_mm}), {}};
+  DesignRays rays({source}, Frame(), 7);
+  rays.grow(n);
+  return rays;
+}
+
+Eigen::VectorXd random_parameters(std::size_t n, double size_mm, std::uint64_t seed) {
+  Eigen::VectorXd p(static_cast<Eigen::Index>(n));
+  Rng rng(seed, 0);
+  for (double& x : p) x = size_mm * (2.0 * rng.uniform() - 1.0);
+  return p;
+}
+
+/// A family with a name for messages.
+struct Case {
+  const char* name;
+  DesignShape shape;
+  TentBins bins;
+};
+
+std::vector<Case> cases() {
+  const Frame up;  // mirror frames open along +z, where the light goes
+  const auto wild = [](const DesignShape& s, double mm, std::uint64_t seed) {
+    return s.with(random_parameters(s.parameter_count(), mm, seed));
+  };
+  const Aperture square = Aperture::rectangle(100, 100, 8), round = Aperture::circle(100);
+  return {
+      {"revolution", wild(DesignShape::revolution(15, round, 8), 0.5, 1), TentBins::rings(up, 0.5, 48)},
+      {"revolution, two bounces", wild(DesignShape::revolution(4, round, 8), 0.3, 2),
+       TentBins::rings(up, 0.5, 48)},
+      {"bspline", wild(DesignShape::bspline(15, square, 4, 4), 0.6, 3), TentBins::square(up, 0.4, 48)},
+      {"bspline, fine", wild(DesignShape::bspline(15, round, 11, 7), 0.3, 4), TentBins::square(up, 0.4, 32)},
+      {"bspline, two bounces", wild(DesignShape::bspline(4, square, 4, 4), 0.4, 5),
+       TentBins::square(up, 0.5, 32)},
+      {"bspline, symmetric", wild(DesignShape::bspline(15, square, 5, 6, ShapeSymmetry::both), 0.5, 6),
+       TentBins::square(up, 0.4, 48)},
+  };
+}
+
+TEST(SmoothPath, FindsTheHitsOfTheReferenceTracer) {
+  DesignRays rays = cylinder_rays(1 << 13, 4.0);
+  for (const Case& c : cases()) {
+    const ReferenceTracer reference(c.shape.reflector(), 8);
+    int differing = 0, hits = 0;
+    std::visit(
+        [&](const auto& s) {
+          using Shape = std::decay_t<decltype(s)>;
+          const SmoothTracer<Shape> tracer(s, c.shape.aperture());
+          Path<Shape> path;
+          for (std::size_t i = 0; i < 4096; ++i) {
+            const DesignRays::Block& b = rays.block(i / kBlockRays);
+            const std::size_t k = i % kBlockRays;
+            Ray ray{{b.x_mm[k], b.y_mm[k], b.z_mm[k]}, Direction::from({b.kx[k], b.ky[k], b.kz[k]})};
+            tracer.trace(ray.origin_mm, ray.direction.vec(), path);
+            int bounces = 0;
+            PathEnd end = PathEnd::lost;
+            for (;;) {
+              const auto hit = reference.first_hit(ray);
+              if (!hit) {
+                end = bounces == 0 ? PathEnd::direct : PathEnd::reflected;
+                break;
+              }
+              if (!hit->front) {
+                end = PathEnd::back;
+                break;
+              }
+              ++bounces;
+              ray = {hit->point_mm, Direction::from(reflect(ray.direction, hit->normal))};
+            }
+            hits += bounces;
+            const bool same = end == path.end && (end == PathEnd::back || bounces == path.hits) &&
+                              (end == PathEnd::back || length(path.direction - ray.direction.vec()) < 1e-6);
+            if (!same) ++differing;
+          }
+        },
+        c.shape.family());
+    EXPECT_GT(hits, 2000) << c.name;
+    // The reference misses what grazes the surface twice within one of its cells.
+    EXPECT_LE(differing, 2) << c.name;
+  }
+}
+
+TEST(Evaluation, DerivativesAgreeWithCentralDifferences) {
+  DesignRays rays = cylinder_rays(1 << 13, 15.0);
+  const Reflectance reflectance(0.9);
+  EvaluationOptions options;
+  options.rays = 1 << 13;
+  int checked = 0;
+  for (const Case& c : cases()) {
+    const Evaluation e = evaluate(c.shape, reflectance, rays, c.bins, options);
+    EvaluationOptions plain = options;
+    plain.derivatives = false;
+    const auto n = static_cast<Eigen::Index>(c.shape.parameter_count());
+    for (Eigen::Index p = 0; p < n; ++p) {
+      // Small enough that almost no ray crosses the ridge of a tent or a rim; a few do, so the sum over bins
+      // with random signs is compared in the mean over steps.
+      double best = 1e9;
+      for (const double step : {1e-5, 1e-6, 1e-7}) {
+        Eigen::VectorXd x = c.shape.parameters();
+        x[p] += step;
+        const Eigen::VectorXd plus = evaluate(c.shape.with(x), reflectance, rays, c.bins, plain).flux;
+        x[p] -= 2.0 * step;
+        const Eigen::VectorXd minus = evaluate(c.shape.with(x), reflectance, rays, c.bins, plain).flux;
+        const Eigen::VectorXd difference = (plus - minus) / (2.0 * step);
+        // A coefficient at the edge of the light moves a ray or two; it counts against the others.
+        const double scale = difference.norm() + 1e-3 * e.jacobian.colwise().norm().maxCoeff();
+        best = std::min(best, (difference - e.jacobian.col(p)).norm() / scale);
+      }
+      if (e.jacobian.col(p).norm() == 0.0) continue;
+      ++checked;
+      EXPECT_LT(best, 1e-3) << c.name << ", parameter " << p;
+    }
+  }
+  EXPECT_GT(checked, 200);
+}
+
+TEST(Evaluation, IsTheSameForAnyNumberOfThreads) {
+  DesignRays rays = cylinder_rays(1 << 15, 15.0);
+  const Case c = cases()[2];
+  EvaluationOptions options;
+  options.rays = 1 << 15;
+  const Evaluation many = evaluate(c.shape, Reflectance(0.9), rays, c.bins, options);
+  const ThreadLimit limit(1);
+  const Evaluation one = evaluate(c.shape, Reflectance(0.9), rays, c.bins, options);
+  EXPECT_EQ(many.flux, one.flux);
+  EXPECT_EQ(many.jacobian, one.jacobian);
+  EXPECT_EQ(many.variance, one.variance);
+}
+
+TEST(Evaluation, ClosesTheEnergy) {
+  DesignRays rays = cylinder_rays(1 << 14, 4.0);
+  for (const Case& c : cases()) {
+    EvaluationOptions options;
+    options.rays = 1 << 14;
+    const Evaluation e = evaluate(c.shape, Reflectance(0.8), rays, c.bins, options);
+    EXPECT_NEAR(e.reflected + e.direct + e.absorbed + e.back + e.lost, 1.0, 1e-12) << c.name;
+    EXPECT_EQ(e.lost, 0.0) << c.name;
+    EXPECT_GT(e.reflected, 0.3) << c.name;
+  }
+}
+
+}  // namespace
+}  // namespace lucerna

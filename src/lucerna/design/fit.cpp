@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lucerna/core/error.h"
+#include "lucerna/design/window.h"
+
+namespace lucerna {
+
+namespace {
+
+Eigen::VectorXd to_eigen(const std::vector<double>& v) {
+  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
+}
+
+}  // namespace
+
+Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignShape& shape)
+    : problem_(problem), stages_(std::move(stages)), shape_(shape), bins_(problem.bins) {
+  LUCERNA_CHECK(!stages_.empty(), "a fit without stages");
+  state_.intervals_x = shape.intervals_x();
+  state_.intervals_y = shape.intervals_y();
+  state_.parameters.assign(shape.parameters().begin(), shape.parameters().end());
+}
+
+Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignShape& family,
+         const FitState& state)
+    : problem_(problem),
+      stages_(std::move(stages)),
+      shape_(family.refined(state.intervals_x, state.intervals_y).with(to_eigen(state.parameters))),
+      state_(state),
+      bins_(problem.bins) {}
+
+Evaluation Fit::evaluate_at(const DesignShape& shape) {
+  EvaluationOptions options;
+  options.rays = stage().rays;
+  options.direct_light = problem_.direct_light;
+  return evaluate(shape, problem_.reflectance, *problem_.rays, bins_, options);
+}
+
+void Fit::begin_stage(Progress& progress) {
+  const FitStage& s = stage();
+  problem_.rays->grow(s.rays, progress);
+  if (s.intervals_x != shape_.intervals_x() || s.intervals_y != shape_.intervals_y()) {
+    shape_ = shape_.refined(s.intervals_x, s.intervals_y);
+  }
+  bins_ = rebinned(problem_.bins, s.widen, s.bins);
+  target_ = problem_.target(bins_);
+  now_ = evaluate_at(shape_);
+  equations_ = normal_equations(now_, target_, bins_, problem_.mode);
+  ready_ = true;
+}
+
+bool Fit::stalled() const {
+  const std::vector<double>& c = state_.costs;
+  if (c.size() < 3) return false;
+  return std::sqrt(c.back()) > (1.0 - stage().least_gain) * std::sqrt(c[c.size() - 3]);
+}
+
+void Fit::finish_stage() {
+  ++state_.stage;
+  state_.step = 0;
+  state_.costs.clear();
+  state_.lambda = std::clamp(state_.lambda, 1e-4, 1e-2);
+  ready_ = false;
+}
+
+double Fit::error() const { return std::sqrt(equations_.cost); }
+
+FitRecord Fit::step(Progress& progress) {
+  LUCERNA_CHECK(!done(), "a step after the last stage");
+  if (!ready_) {
+    begin_stage(progress);
+    if (state_.step == 0) {
+      ++state_.evaluations;
+      state_.total_rays += now_.rays;
+      state_.costs = {equations_.cost};
+    }
+  }
+  const Eigen::VectorXd move = damped_step(equations_, state_.lambda);
+  FitRecord record;
+  record.stage = state_.stage;
+  record.step = ++state_.step;
+  record.lambda = state_.lambda;
+  const DesignShape trial = shape_.with(shape_.parameters() + move);
+  Evaluation e = evaluate_at(trial);
+  ++state_.evaluations;
+  state_.total_rays += e.rays;
+  NormalEquations equations = normal_equations(e, target_, bins_, problem_.mode);
+  record.accepted = equations.cost < equations_.cost;
+  const double predicted =
+      -(equations_.gradient.dot(move) * 2.0 +
+        move.dot(equations_.hessian.selfadjointView<Eigen::Lower>() * move));
+  if (record.accepted) {
+    const double gain = (equations_.cost - equations.cost) / predicted;
+    state_.lambda = std::max(1e-7, state_.lambda * (gain > 0.75 ? 0.2 : (gain > 0.25 ? 0.6 : 2.0)));
+    shape_ = trial;
+    now_ = std::move(e);
+    equations_ = std::move(equations);
+    state_.costs.push_back(equations_.cost);
+  } else {
+    state_.lambda *= 6.0;
+  }
+  state_.parameters.assign(shape_.parameters().begin(), shape_.parameters().end());
+  state_.intervals_x = shape_.intervals_x();
+  state_.intervals_y = shape_.intervals_y();
+  const BinError error = bin_error(now_, target_, bins_, problem_.mode);
+  record.rays = now_.rays;
+  record.total_rays = state_.total_rays;
+  record.evaluations = state_.evaluations;
+  record.error = error.relative_rms;
+  record.floor = error.floor;
+  record.efficiency = now_.reflected + now_.direct;
+  if (state_.step >= stage().most_steps || state_.lambda > 1e4 || stalled()) finish_stage();
+  return record;
+}
+
+}  // namespace lucerna

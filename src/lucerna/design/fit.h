@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "lucerna/core/progress.h"
+#include "lucerna/design/least_squares.h"
+
+namespace lucerna {
+
+/// What is fitted: all that stays the same while the shape changes.
+struct FitProblem {
+  DesignRays* rays = nullptr;
+  Reflectance reflectance{1.0};
+  /// Flux that the target puts into any bins over its window, as shares of the sources' flux.
+  std::function<Eigen::VectorXd(const TentBins&)> target;
+  /// The bins in which the result is judged.
+  TentBins bins;
+  TargetMode mode = TargetMode::shape;
+  bool direct_light = true;
+};
+
+/// One step of the ladder from coarse to fine.
+struct FitStage {
+  int intervals_x = 1, intervals_y = 1;
+  /// Bins across, and how much wider than the target's window they reach.
+  int bins = 48;
+  double widen = 1.0;
+  std::uint64_t rays = 1 << 16;
+  int most_steps = 30;
+  /// The stage ends when the last two accepted steps gained less than this share of the error.
+  double least_gain = 0.03;
+};
+
+/// One line of a design's history.
+struct FitRecord {
+  int stage = 0, step = 0;
+  std::uint64_t rays = 0;   ///< of this evaluation
+  std::uint64_t total_rays = 0;
+  int evaluations = 0;
+  double error = 0.0, floor = 0.0;  ///< in the stage's bins
+  double lambda = 0.0;
+  bool accepted = true;
+  double efficiency = 0.0;
+};
+
+/// All that a fit's next step depends on; a checkpoint holds exactly this.
+struct FitState {
+  std::vector<double> parameters;
+  int intervals_x = 1, intervals_y = 1;
+  int stage = 0, step = 0;
+  double lambda = 1e-2;
+  /// Costs after the last accepted steps of this stage, newest last.
+  std::vector<double> costs;
+  int evaluations = 0;
+  std::uint64_t total_rays = 0;
+};
+
+/// Levenberg-Marquardt through a list of stages. Every decision depends on the state alone, so that a fit
+/// that is stopped after any step and taken up from its state goes on to the same bits.
+class Fit {
+ public:
+  /// Starts at `shape` (refined to the first stage's knots).
+  Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignShape& shape);
+  /// Goes on from a state of the same problem, stages and shape family.
+  Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignShape& family,
+      const FitState& state);
+
+  bool done() const { return state_.stage >= static_cast<int>(stages_.size()); }
+  /// One trial step (one evaluation with derivatives, two where a stage begins).
+  FitRecord step(Progress& progress = no_progress());
+
+  const DesignShape& shape() const { return shape_; }
+  const FitState& state() const { return state_; }
+  double error() const;
+
+ private:
+  void begin_stage(Progress& progress);
+  void finish_stage();
+  const FitStage& stage() const { return stages_[static_cast<std::size_t>(state_.stage)]; }
+  Evaluation evaluate_at(const DesignShape& shape);
+  bool stalled() const;
+
+  FitProblem problem_;
+  std::vector<FitStage> stages_;
+  DesignShape shape_;
+  FitState state_;
+  /// Of the current stage; empty until it begins.
+  bool ready_ = false;
+  TentBins bins_;
+  Eigen::VectorXd target_;
+  Evaluation now_;
+  NormalEquations equations_;
+};
+
+/// Stages for a shape that ends with the given knots: `rays` at the end, bins up to the problem's.
+std::vector<FitStage> ladder(const DesignShape& shape, const TentBins& bins, std::uint64_t rays, bool far);
+
+}  // namespace lucerna

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/least_squares.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "lucerna/core/error.h"
+#include "lucerna/core/parallel.h"
+
+namespace lucerna {
+
+namespace {
+
+/// 1 / Omega per bin; 0 where a bin has no solid angle.
+Eigen::VectorXd weights(const TentBins& bins) {
+  Eigen::VectorXd w(static_cast<Eigen::Index>(bins.size()));
+  for (Eigen::Index i = 0; i < w.size(); ++i) {
+    const double omega = bins.solid_angle_sr()[static_cast<std::size_t>(i)];
+    w[i] = omega > 0.0 ? 1.0 / omega : 0.0;
+  }
+  return w;
+}
+
+double best_scale(const Eigen::VectorXd& flux, const Eigen::VectorXd& target, const Eigen::VectorXd& w,
+                  TargetMode mode) {
+  if (mode == TargetMode::absolute) return 1.0;
+  const double own = w.dot(flux.cwiseAbs2());
+  return own > 0.0 ? w.dot(flux.cwiseProduct(target)) / own : 1.0;
+}
+
+}  // namespace
+
+BinError bin_error(const Evaluation& e, const Eigen::VectorXd& target, const TentBins& bins,
+                   TargetMode mode) {
+  const Eigen::VectorXd w = weights(bins);
+  BinError error;
+  error.scale = best_scale(e.flux, target, w, mode);
+  const double norm = w.dot(target.cwiseAbs2());
+  LUCERNA_CHECK(norm > 0.0, "a target without light in its window");
+  error.relative_rms = std::sqrt(w.dot((error.scale * e.flux - target).cwiseAbs2()) / norm);
+  error.floor = error.scale * std::sqrt(w.dot(e.variance) / norm);
+  return error;
+}
+
+NormalEquations normal_equations(const Evaluation& e, const Eigen::VectorXd& target, const TentBins& bins,
+                                 TargetMode mode) {
+  const Eigen::VectorXd w = weights(bins);
+  const double norm = w.dot(target.cwiseAbs2());
+  LUCERNA_CHECK(norm > 0.0, "a target without light in its window");
+  const double scale = best_scale(e.flux, target, w, mode);
+  const Eigen::VectorXd residual = scale * e.flux - target;
+  const Eigen::Index n = e.jacobian.cols();
+
+  struct Part {
+    Eigen::VectorXd g, f;
+    Eigen::MatrixXd h;
+  };
+  constexpr std::size_t kRows = 288;
+  const auto parts = parallel_map_blocks<Part>(bins.size(), kRows, [&](std::size_t first, std::size_t last) {
+    const auto row = static_cast<Eigen::Index>(first), rows = static_cast<Eigen::Index>(last - first);
+    const Eigen::VectorXd root = w.segment(row, rows).cwiseSqrt();
+    const Eigen::MatrixXd j = root.asDiagonal() * e.jacobian.middleRows(row, rows);
+    Part p;
+    p.h = Eigen::MatrixXd::Zero(n, n);
+    p.h.selfadjointView<Eigen::Lower>().rankUpdate(j.transpose());
+    p.g = j.transpose() * root.cwiseProduct(residual.segment(row, rows));
+    p.f = j.transpose() * root.cwiseProduct(e.flux.segment(row, rows));
+    return p;
+  });
+  NormalEquations out;
+  out.cost = w.dot(residual.cwiseAbs2()) / norm;
+  out.gradient = Eigen::VectorXd::Zero(n);
+  out.hessian = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd along = Eigen::VectorXd::Zero(n);
+  for (const Part& p : parts) {
+    out.gradient += p.g;
+    along += p.f;
+    out.hessian += p.h;
+  }
+  if (mode == TargetMode::shape) {  // what only scales the result is no improvement
+    const double own = w.dot(e.flux.cwiseAbs2());
+    out.gradient -= along * (w.dot(e.flux.cwiseProduct(residual)) / own);
+    out.hessian.selfadjointView<Eigen::Lower>().rankUpdate(along, -1.0 / own);
+  }
+  out.gradient *= scale / norm;
+  out.hessian *= scale * scale / norm;
+  return out;
+}
+
+Eigen::VectorXd damped_step(const NormalEquations& equations, double lambda) {
+  Eigen::MatrixXd a = equations.hessian;
+  const Eigen::VectorXd diagonal = a.diagonal();
+  a.diagonal() += lambda * (diagonal.array() + 1e-2 * diagonal.mean() + 1e-300).matrix();
+  const Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> solver(a);
+  return -solver.solve(equations.gradient);
+}
+
+}  // namespace lucerna

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "lucerna/design/evaluation.h"
+
+namespace lucerna {
+
+/// How light counts against a target.
+enum class TargetMode {
+  shape,     ///< only the distribution: the result is scaled to fit best
+  absolute,  ///< as it is
+};
+
+/// Comparison of an evaluation with a target in the same bins.
+struct BinError {
+  /// Root of the solid-angle-weighted sum of squared differences of intensity, over that of the target.
+  double relative_rms = 0.0;
+  /// What counting noise alone makes of it.
+  double floor = 0.0;
+  /// What the result was multiplied by (1 in absolute mode).
+  double scale = 1.0;
+};
+
+/// `target` is flux per bin in the evaluation's unit (shares of the sources' flux).
+BinError bin_error(const Evaluation& e, const Eigen::VectorXd& target, const TentBins& bins, TargetMode mode);
+
+/// The normal equations of a least-squares step: cost = |r|^2 with gradient 2 g and Gauss-Newton Hessian 2 H.
+struct NormalEquations {
+  double cost = 0.0;
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd hessian;
+};
+
+/// Of the relative residuals r = (scale * F - T) / sqrt(Omega) / |T / sqrt(Omega)|, so that cost = relative
+/// RMS^2. In shape mode the best scale is projected out (variable projection, Kaufman's approximation). The
+/// evaluation must have derivatives. Summed in fixed blocks of bins: the same bits for any thread count.
+NormalEquations normal_equations(const Evaluation& e, const Eigen::VectorXd& target, const TentBins& bins,
+                                 TargetMode mode);
+
+/// The step -(H + lambda D)^-1 g, D the diagonal of H and a little of its mean, so that parameters without
+/// light stay where they are.
+Eigen::VectorXd damped_step(const NormalEquations& equations, double lambda);
+
+}  // namespace lucerna
