@@ -25,8 +25,8 @@ struct Suite {
   std::string name;
   bool revolution;
   int intervals;
-  double size_mm;        ///< coefficients are uniform in +- this
-  double low, high;      ///< relative RMS of the start that a hidden target must have
+  double size_mm;    ///< coefficients are uniform in +- this
+  double low, high;  ///< relative RMS of the start that a hidden target must have
   double bar, seconds;
 };
 
@@ -94,6 +94,7 @@ bool solve(const Suite& s, std::uint64_t seed, bool verbose, Outcome& out) {
   const TentBins bins = window(s, truth, truth_rays);
   const Reflectance mirror(1.0);
   FitProblem problem{nullptr, mirror, {}, bins, TargetMode::absolute, false};
+
   double target_wall = 0.0, target_cpu = 0.0;  // making the hidden mirror's light is not part of the design
   problem.target = [&](const TentBins& b) {
     const auto from = std::chrono::steady_clock::now();
@@ -118,8 +119,9 @@ bool solve(const Suite& s, std::uint64_t seed, bool verbose, Outcome& out) {
   while (!fit.done()) {
     const FitRecord r = fit.step();
     if (verbose) {
-      fmt::print("  stage {} step {:2} rays {:8} error {:.5f} floor {:.5f} lambda {:.1e} {} {:.2f} s\n", r.stage,
-                 r.step, r.rays, r.error, r.floor, r.lambda, r.accepted ? "" : "refused", seconds_since(clock) - target_wall);
+      fmt::print("  stage {} step {:2} rays {:8} error {:.5f} floor {:.5f} lambda {:.1e} {} {:.2f} s\n",
+                 r.stage, r.step, r.rays, r.error, r.floor, r.lambda, r.accepted ? "" : "refused",
+                 seconds_since(clock) - target_wall);
       std::fflush(stdout);
     }
   }
@@ -151,10 +153,12 @@ void run(const Suite& s, int targets, bool verbose) {
     Outcome o;
     if (!solve(s, seed, verbose, o)) continue;
     outcomes.push_back(o);
-    fmt::print("{:9} target {:2} (seed {:3}): start {:6.2f} %  result {:7.3f} %  floor {:.3f} %  excess {:6.3f} %  {:6.2f} s wall "
-               "{:6.2f} s cpu  {:3} evaluations  {:.1f} M rays\n",
-               s.name, outcomes.size(), seed, 100 * o.start, 100 * o.error, 100 * o.floor, 100 * o.excess, o.wall, o.cpu,
-               o.evaluations, 1e-6 * o.rays);
+    fmt::print(
+        "{:9} target {:2} (seed {:3}): start {:6.2f} %  result {:7.3f} %  floor {:.3f} %  excess {:6.3f} %  "
+        "{:6.2f} s wall "
+        "{:6.2f} s cpu  {:3} evaluations  {:.1f} M rays\n",
+        s.name, outcomes.size(), seed, 100 * o.start, 100 * o.error, 100 * o.floor, 100 * o.excess, o.wall,
+        o.cpu, o.evaluations, 1e-6 * o.rays);
     std::fflush(stdout);
   }
   const auto of = [&](auto member) {
@@ -164,10 +168,12 @@ void run(const Suite& s, int targets, bool verbose) {
   };
   const std::vector<double> errors = of(&Outcome::error), walls = of(&Outcome::wall),
                             excess = of(&Outcome::excess);
-  fmt::print("{:9} median {:.3f} %, worst {:.3f} %; excess median {:.3f} %, worst {:.3f} %, bar {} %; seconds median {:.2f}, worst {:.2f}, bar {}\n\n",
-             s.name, 100 * median(errors), 100 * *std::max_element(errors.begin(), errors.end()), 100 * median(excess),
-             100 * *std::max_element(excess.begin(), excess.end()), 100 * s.bar,
-             median(walls), *std::max_element(walls.begin(), walls.end()), s.seconds);
+  fmt::print(
+      "{:9} median {:.3f} %, worst {:.3f} %; excess median {:.3f} %, worst {:.3f} %, bar {} %; seconds "
+      "median {:.2f}, worst {:.2f}, bar {}\n\n",
+      s.name, 100 * median(errors), 100 * *std::max_element(errors.begin(), errors.end()),
+      100 * median(excess), 100 * *std::max_element(excess.begin(), excess.end()), 100 * s.bar, median(walls),
+      *std::max_element(walls.begin(), walls.end()), s.seconds);
 }
 
 }  // namespace
@@ -193,6 +199,7 @@ int main(int argc, char** argv) {
     }
   }
   for (const Suite& s : suites) {
-    if (names.empty() || std::find(names.begin(), names.end(), s.name) != names.end()) run(s, targets, verbose);
+    if (names.empty() || std::find(names.begin(), names.end(), s.name) != names.end())
+      run(s, targets, verbose);
   }
 }

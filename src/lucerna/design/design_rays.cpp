@@ -17,27 +17,35 @@ std::vector<PlacedSource> checked(std::vector<PlacedSource> sources) {
   return scene.sources;
 }
 
+/// As RayNumbering deals them: a file by its rays, other sources by their flux.
+std::vector<std::uint64_t> shares(const std::vector<PlacedSource>& sources) {
+  const RayNumbering numbering(sources, 0);
+  std::vector<std::uint64_t> out;
+  for (std::size_t i = 0; i < sources.size(); ++i) out.push_back(numbering.word().share(i));
+  return out;
+}
+
 }  // namespace
 
 DesignRays::DesignRays(std::vector<PlacedSource> sources, const Frame& mirror_from_world, std::uint64_t seed)
     : sources_(checked(std::move(sources))),
       mirror_from_world_(mirror_from_world),
-      numbering_(sources_, seed) {
+      word_(shares(sources_)),
+      seed_(seed) {
   for (const PlacedSource& s : sources_) flux_ += s.total_flux();
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    const double share =
-        static_cast<double>(numbering_.word().share(i)) / static_cast<double>(numbering_.word().total());
+    const double share = static_cast<double>(word_.share(i)) / static_cast<double>(word_.total());
     ray_flux_.push_back(sources_[i].total_flux() / flux_ / share);
   }
 }
 
 void DesignRays::grow(std::uint64_t n, Progress& progress) {
-  const std::uint64_t unit = kBlockRays * kReplicates;
-  const std::size_t blocks = (n + unit - 1) / unit * kReplicates, old = block_.size();
+  const std::uint64_t unit = kBlockRays * kDesignTasks;
+  const std::size_t blocks = (n + unit - 1) / unit * kDesignTasks, old = block_.size();
   if (blocks <= old) return;
   block_.resize(blocks);
   std::atomic<std::uint64_t> done{0};
-  parallel_blocks(blocks - old, kReplicates, [&](std::size_t first, std::size_t last) {
+  parallel_blocks(blocks - old, kDesignTasks, [&](std::size_t first, std::size_t last) {
     for (std::size_t b = old + first; b < old + last; ++b) fill(b);
     done += last - first;
     progress.update("rays", done * kBlockRays, (blocks - old) * kBlockRays);
@@ -48,11 +56,15 @@ void DesignRays::fill(std::uint64_t b) {
   Block& block = block_[b];
   std::size_t at = 0;
   RayBlock rays;
-  for (const SourceRun& run : numbering_.runs(b * kBlockRays, (b + 1) * kBlockRays)) {
-    const PlacedSource& source = sources_[run.source];
+  const std::uint64_t stream = b % kDesignStreams, first = b / kDesignStreams * kBlockRays;
+  for (std::size_t k = 0; k < sources_.size(); ++k) {
+    const PlacedSource& source = sources_[k];
     const Frame mirror_from_source = mirror_from_world_ * source.world_from_source;
-    rays.resize(run.count, 0);
-    source.rays->emit(Sequence(SequenceKind::sobol, run.sequence_seed), run.first, rays);
+    const std::uint64_t from = word_.count(k, first), to = word_.count(k, first + kBlockRays);
+    if (from == to) continue;
+    rays.resize(to - from, 0);
+    const std::uint64_t seed = detail::mix_bits(seed_ * 0x9E3779B97F4A7C15ull + k * kDesignStreams + stream);
+    source.rays->emit(Sequence(SequenceKind::sobol, seed), from, rays);
     for (std::size_t i = 0; i < rays.size(); ++i, ++at) {
       const Ray ray = mirror_from_source.ray(rays.ray(i));
       block.x_mm[at] = static_cast<float>(ray.origin_mm.x);
@@ -61,7 +73,7 @@ void DesignRays::fill(std::uint64_t b) {
       block.kx[at] = static_cast<float>(ray.direction.x());
       block.ky[at] = static_cast<float>(ray.direction.y());
       block.kz[at] = static_cast<float>(ray.direction.z());
-      block.weight[at] = static_cast<float>(static_cast<double>(rays.weight[i]) * ray_flux_[run.source]);
+      block.weight[at] = static_cast<float>(static_cast<double>(rays.weight[i]) * ray_flux_[k]);
     }
   }
   LUCERNA_CHECK(at == kBlockRays, "{} rays in a block", at);

@@ -132,8 +132,7 @@ class DesignSurface final : public HeightSurface {
     const double x = 0.5 * (r.x0_mm + r.x1_mm), y = 0.5 * (r.y0_mm + r.y1_mm);
     const double a = 0.5 * (r.x1_mm - r.x0_mm), b = 0.5 * (r.y1_mm - r.y0_mm);
     const SurfacePoint p = at(x, y);
-    const double bend =
-        std::visit([](const auto& s) { return s.bend_bound() + 0.5 / s.focal_mm(); }, shape_);
+    const double bend = std::visit([](const auto& s) { return s.bend_bound() + 0.5 / s.focal_mm(); }, shape_);
     const double reach = std::abs(p.dzdx) * a + std::abs(p.dzdy) * b + 0.5 * bend * (a * a + b * b);
     return {p.z_mm - reach, p.z_mm + reach};
   }

@@ -23,7 +23,8 @@ double difference(const DesignShape& a, const DesignShape& b) {
     for (double y = -24.9; y < 25.0; y += 1.9) {
       if (!a.aperture().contains(x, y)) continue;
       const SurfacePoint p = a.at(x, y), q = b.at(x, y);
-      most = std::max({most, std::abs(p.z_mm - q.z_mm), std::abs(p.dzdx - q.dzdx), std::abs(p.dzdy - q.dzdy)});
+      most =
+          std::max({most, std::abs(p.z_mm - q.z_mm), std::abs(p.dzdx - q.dzdx), std::abs(p.dzdy - q.dzdy)});
     }
   }
   return most;

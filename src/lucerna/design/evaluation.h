@@ -23,12 +23,17 @@ struct EvaluationOptions {
   /// Light that misses the mirror counts too (it does in a luminaire; the hidden-reflector suite leaves it
   /// out, so that it cannot flatter the error).
   bool direct_light = true;
+  /// Derivatives include the light that crosses the rims (outline and hole) as the surface moves, estimated
+  /// from the hits in a strip of this width inside them. 0 leaves it out: then the derivatives are exactly
+  /// those of the given rays' sums.
+  double rim_mm = 0.0;
 };
 
 /// The far field of one shape in the bins, as shares of the sources' flux.
 struct Evaluation {
   Eigen::VectorXd flux;
-  /// Variance of each entry of `flux`, from the scatter of the independent replicates.
+  /// Variance of each entry of `flux` from the scatter of the few independent streams: rough for one bin,
+  /// good in sums over many.
   Eigen::VectorXd variance;
   /// d flux / d parameter; empty unless asked for.
   BinJacobian jacobian;
@@ -40,11 +45,12 @@ struct Evaluation {
 
 /// Traces the first `options.rays` rays through the shape into the bins (whose frame must map into the
 /// mirror's), with exact pathwise derivatives through all reflections: for every ray, tent weights are
-/// differentiated by the leaving direction and that by the coefficients that each hit touches. What is left
-/// out are rays that change from hitting to missing (rims, shadow edges), which have measure zero among given
-/// rays. A reflectance that depends on the angle is taken at the ray's own angle, its change is left out.
-/// `rays` must hold that many. Rays of one replicate are summed in order, replicates are added in order: the
-/// same bits for any number of threads. Thread safe.
+/// differentiated by the leaving direction and that by the coefficients that each hit touches. Rays that
+/// change from hitting to missing have measure zero among given rays but not in the mean: at rims they are
+/// counted by EvaluationOptions::rim_mm, at edges of the mirror's own shadow they are left out. A reflectance
+/// that depends on the angle is taken at the ray's own angle, its change is left out. `rays` must hold that
+/// many. Rays of one task are summed in order, tasks are added in order: the same bits for any number of
+/// threads. Thread safe.
 Evaluation evaluate(const DesignShape& shape, const Reflectance& reflectance, const DesignRays& rays,
                     const TentBins& bins, const EvaluationOptions& options);
 

@@ -12,6 +12,12 @@ namespace lucerna {
 
 namespace {
 
+/// Width of the strip that stands for a rim, over the mirror's radius.
+constexpr double kRimShare = 0.02;
+
+/// A start is good when its error is at most this many times the noise: above it something is left to gain.
+constexpr double kGateFloors = 1.5;
+
 Eigen::VectorXd to_eigen(const std::vector<double>& v) {
   return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
 }
@@ -19,25 +25,36 @@ Eigen::VectorXd to_eigen(const std::vector<double>& v) {
 }  // namespace
 
 Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignShape& shape)
-    : problem_(problem), stages_(std::move(stages)), shape_(shape), bins_(problem.bins) {
+    : problem_(problem), stages_(std::move(stages)), family_(shape), shape_(shape), bins_(problem.bins) {
   LUCERNA_CHECK(!stages_.empty(), "a fit without stages");
   state_.intervals_x = shape.intervals_x();
   state_.intervals_y = shape.intervals_y();
-  state_.parameters.assign(shape.parameters().begin(), shape.parameters().end());
+  set_shape({}, stages_[0].intervals_x, stages_[0].intervals_y);
+  state_.start_parameters = state_.parameters;
 }
 
 Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignShape& family,
          const FitState& state)
     : problem_(problem),
       stages_(std::move(stages)),
+      family_(family),
       shape_(family.refined(state.intervals_x, state.intervals_y).with(to_eigen(state.parameters))),
       state_(state),
       bins_(problem.bins) {}
+
+void Fit::set_shape(const std::vector<double>& parameters, int intervals_x, int intervals_y) {
+  shape_ = family_.refined(intervals_x, intervals_y);
+  if (!parameters.empty()) shape_ = shape_.with(to_eigen(parameters));
+  state_.parameters.assign(shape_.parameters().begin(), shape_.parameters().end());
+  state_.intervals_x = intervals_x;
+  state_.intervals_y = intervals_y;
+}
 
 Evaluation Fit::evaluate_at(const DesignShape& shape) {
   EvaluationOptions options;
   options.rays = stage().rays;
   options.direct_light = problem_.direct_light;
+  options.rim_mm = kRimShare * shape.aperture().outer_radius_mm();
   return evaluate(shape, problem_.reflectance, *problem_.rays, bins_, options);
 }
 
@@ -47,6 +64,9 @@ void Fit::begin_stage(Progress& progress) {
   if (s.intervals_x != shape_.intervals_x() || s.intervals_y != shape_.intervals_y()) {
     shape_ = shape_.refined(s.intervals_x, s.intervals_y);
   }
+  state_.intervals_x = s.intervals_x;
+  state_.intervals_y = s.intervals_y;
+  state_.parameters.assign(shape_.parameters().begin(), shape_.parameters().end());
   bins_ = rebinned(problem_.bins, s.widen, s.bins);
   target_ = problem_.target(bins_);
   now_ = evaluate_at(shape_);
@@ -61,11 +81,34 @@ bool Fit::stalled() const {
 }
 
 void Fit::finish_stage() {
+  const bool gate = stage().gate;
   ++state_.stage;
   state_.step = 0;
   state_.costs.clear();
   state_.lambda = std::clamp(state_.lambda, 1e-4, 1e-2);
   ready_ = false;
+  if (gate) pass_gate();
+}
+
+void Fit::pass_gate() {
+  const int x = state_.intervals_x, y = state_.intervals_y;
+  if (state_.starts == 0 || equations_.cost < state_.gate_cost) {
+    state_.gate_cost = equations_.cost;
+    state_.gate_parameters = state_.parameters;
+  }
+  const double floor = bin_error(now_, target_, bins_, problem_.mode).floor;
+  ++state_.starts;
+  if (state_.gate_cost <= kGateFloors * kGateFloors * floor * floor || state_.starts > problem_.restarts) {
+    set_shape(state_.gate_parameters, x, y);
+    return;
+  }
+  std::vector<double> shaken = state_.start_parameters;
+  Rng rng(problem_.seed, static_cast<std::uint64_t>(state_.starts));
+  const double size = problem_.shake * shape_.aperture().outer_radius_mm();
+  for (double& p : shaken) p += size * (2.0 * rng.uniform() - 1.0);
+  state_.stage = 0;
+  state_.lambda = FitState{}.lambda;
+  set_shape(shaken, stages_[0].intervals_x, stages_[0].intervals_y);
 }
 
 double Fit::error() const { return std::sqrt(equations_.cost); }
@@ -91,9 +134,8 @@ FitRecord Fit::step(Progress& progress) {
   state_.total_rays += e.rays;
   NormalEquations equations = normal_equations(e, target_, bins_, problem_.mode);
   record.accepted = equations.cost < equations_.cost;
-  const double predicted =
-      -(equations_.gradient.dot(move) * 2.0 +
-        move.dot(equations_.hessian.selfadjointView<Eigen::Lower>() * move));
+  const double predicted = -(equations_.gradient.dot(move) * 2.0 +
+                             move.dot(equations_.hessian.selfadjointView<Eigen::Lower>() * move));
   if (record.accepted) {
     const double gain = (equations_.cost - equations.cost) / predicted;
     state_.lambda = std::max(1e-7, state_.lambda * (gain > 0.75 ? 0.2 : (gain > 0.25 ? 0.6 : 2.0)));

@@ -20,6 +20,10 @@ struct FitProblem {
   TentBins bins;
   TargetMode mode = TargetMode::shape;
   bool direct_light = true;
+  int restarts = 4;
+  /// Size of the shakes, over the mirror's outer radius.
+  double shake = 0.015;
+  std::uint64_t seed = 1;
 };
 
 /// One step of the ladder from coarse to fine.
@@ -32,12 +36,15 @@ struct FitStage {
   int most_steps = 30;
   /// The stage ends when the last two accepted steps gained less than this share of the error.
   double least_gain = 0.03;
+  /// Where this stage ends well above the noise, the fit starts again from a shaken start, as often as
+  /// FitProblem::restarts says, and goes on with the best.
+  bool gate = false;
 };
 
 /// One line of a design's history.
 struct FitRecord {
   int stage = 0, step = 0;
-  std::uint64_t rays = 0;   ///< of this evaluation
+  std::uint64_t rays = 0;  ///< of this evaluation
   std::uint64_t total_rays = 0;
   int evaluations = 0;
   double error = 0.0, floor = 0.0;  ///< in the stage's bins
@@ -56,6 +63,12 @@ struct FitState {
   std::vector<double> costs;
   int evaluations = 0;
   std::uint64_t total_rays = 0;
+  /// Starts so far, the best cost at the gate and the shape that had it.
+  int starts = 0;
+  double gate_cost = 0.0;
+  std::vector<double> gate_parameters;
+  /// What shaken starts begin from.
+  std::vector<double> start_parameters;
 };
 
 /// Levenberg-Marquardt through a list of stages. Every decision depends on the state alone, so that a fit
@@ -79,13 +92,15 @@ class Fit {
  private:
   void begin_stage(Progress& progress);
   void finish_stage();
+  void pass_gate();
+  void set_shape(const std::vector<double>& parameters, int intervals_x, int intervals_y);
   const FitStage& stage() const { return stages_[static_cast<std::size_t>(state_.stage)]; }
   Evaluation evaluate_at(const DesignShape& shape);
   bool stalled() const;
 
   FitProblem problem_;
   std::vector<FitStage> stages_;
-  DesignShape shape_;
+  DesignShape family_, shape_;
   FitState state_;
   /// Of the current stage; empty until it begins.
   bool ready_ = false;

@@ -8,18 +8,23 @@ namespace lucerna {
 std::vector<FitStage> ladder(const DesignShape& shape, const TentBins& bins, std::uint64_t rays, bool far) {
   const int nx = shape.intervals_x(), ny = shape.intervals_y(), k = bins.count();
   std::vector<FitStage> stages;
-  const auto add = [&](int count, double widen, int log_rays, double gain) {
-    if ((std::uint64_t{1} << log_rays) <= rays) stages.push_back({nx, ny, count, widen, std::uint64_t{1} << log_rays, 30, gain});
+  const auto add = [&](int mx, int my, int count, double widen, int log_rays, double gain) {
+    const std::uint64_t n = std::uint64_t{1} << log_rays;
+    if (n <= rays) stages.push_back({mx, my, count, widen, n, 30, gain});
   };
   if (far) {
-    add(k / 6, 1.5, 16, 0.02);
-    add(k / 4, 1.2, 16, 0.02);
+    const int few = shape.is_revolution() ? 4 : 2, gentle = std::min(nx, few), gentle_y = std::min(ny, few);
+    add(gentle, gentle_y, k / 6, 1.5, 16, 0.03);
+    add(gentle, gentle_y, k / 4, 1.2, 16, 0.03);
+    add(nx, ny, k / 6, 1.5, 16, 0.02);
+    add(nx, ny, k / 4, 1.2, 16, 0.02);
   }
-  add(k / 3, 1.0, 16, 0.03);
-  add(k / 3, 1.0, 18, 0.03);
-  add(k / 2, 1.0, 18, 0.03);
-  add(k / 2, 1.0, 20, 0.03);
-  add(k , 1.0, 20, 0.03);
+  add(nx, ny, k / 3, 1.0, 16, 0.03);
+  add(nx, ny, k / 3, 1.0, 18, 0.03);
+  if (far) stages.back().gate = true;
+  add(nx, ny, k / 2, 1.0, 18, 0.03);
+  add(nx, ny, k / 2, 1.0, 20, 0.03);
+  add(nx, ny, k, 1.0, 20, 0.03);
   return stages;
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "lucerna/core/direction.h"
+#include "lucerna/design/smooth_shape.h"
 #include "lucerna/reflector/aperture.h"
 
 namespace lucerna {
@@ -21,10 +22,11 @@ inline constexpr int kMostPathHits = 24;
 template <class Shape>
 struct Path {
   struct Hit {
-    Vec3 d;      ///< where the ray came along
-    double t;    ///< how far it came
-    Vec3 g;      ///< (-h_x, -h_y, 1)
-    double m;    ///< d . g, negative on the face
+    Vec3 d;       ///< where the ray came along
+    double t;     ///< how far it came
+    double x, y;  ///< where on the mirror
+    Vec3 g;       ///< (-h_x, -h_y, 1)
+    double m;     ///< d . g, negative on the face
     typename Shape::Local local;
   };
   PathEnd end = PathEnd::direct;
@@ -39,8 +41,9 @@ struct Path {
 /// Along a ray, f(t) = q(t) - s(x(t), y(t)) with q the quadratic of the base paraboloid. Where |s''| <= B
 /// along every direction, f(t + tau) >= f + f' tau - A tau^2 with A = c2 + B |d_xy|^2 / 2: the positive root
 /// of the right side never passes the first zero of f, and converges to it quadratically. So the first hit is
-/// found without hierarchy or sampling, however often the ray crosses. The band of s skips the air above the
-/// surface at once. Immutable, thread safe.
+/// found without hierarchy or sampling, however often the ray crosses. Where the bounds show that f falls all
+/// the way to its only zero, the steps of the paraboloid's own curvature are taken instead, which need about
+/// two looks. The band of s skips the air above the surface at once. Immutable, thread safe.
 template <class Shape>
 class SmoothTracer {
  public:
@@ -51,8 +54,9 @@ class SmoothTracer {
   void trace(Vec3 o, Vec3 d, Path<Shape>& path) const {
     path.hits = 0;
     bool on_surface = false;
+    double slope = 0.0;
     for (;;) {
-      const Found found = first_hit(o, d, on_surface);
+      const Found found = first_hit(o, d, on_surface, slope);
       if (found.what == What::nothing) {
         path.end = path.hits == 0 ? PathEnd::direct : PathEnd::reflected;
         path.direction = d;
@@ -66,12 +70,15 @@ class SmoothTracer {
       const double x = o.x + found.t * d.x, y = o.y + found.t * d.y;
       hit.local = shape_.local(x, y);
       hit.d = d;
+      hit.x = x;
+      hit.y = y;
       hit.t = found.t;
       hit.g = {-hit.local.hx, -hit.local.hy, 1.0};
       hit.m = dot(d, hit.g);
       o = {x, y, o.z + found.t * d.z};
       d = d - (2.0 * hit.m / dot(hit.g, hit.g)) * hit.g;
       on_surface = true;
+      slope = -hit.m;  // reflection turns f' round
     }
   }
 
@@ -109,7 +116,8 @@ class SmoothTracer {
     t1 = std::min(t1, std::max(a, b));
   }
 
-  Found first_hit(const Vec3& o, const Vec3& d, bool on_surface) const {
+  /// `slope` is f' where the ray starts on the surface.
+  Found first_hit(const Vec3& o, const Vec3& d, bool on_surface, double slope) const {
     double t = 0.0, t_end = std::numeric_limits<double>::infinity();
     clip(o, d, t, t_end);
     if (!(t <= t_end)) return {};
@@ -125,35 +133,49 @@ class SmoothTracer {
       rise = c1 > 0.0 ? -2.0 * above / (c1 + w) : (c1 - w) / (2.0 * c2);
       fall = c1 > 0.0 ? (c1 + w) / (2.0 * c2) : 2.0 * above / (w - c1);
     }
-    double side = 0.0;  // +1 in front of the mirror, -1 behind it; set by the first look
-    if (on_surface) side = 1.0;
+    // Beyond `low` the ray is below the band.
+    const double under = c0 - band.low_mm, low_root = c1 * c1 + 4.0 * c2 * under;
+    const double low = low_root > 0.0 ? (c1 + std::sqrt(low_root)) / (2.0 * c2) : -1.0;
+    const double rising_bend = std::max(0.0, 2.0 * (bend - 2.0 * c2));  // f'' is at most this
+    double side = on_surface ? 1.0 : 0.0;  // +1 in front of the mirror, -1 behind it; set by the first look
+    bool only_one = false;                 // f falls from here to its only zero: plain steps may overshoot
+    bool known = on_surface;               // f and df of this place are known without a look
+    double f = 0.0, df = on_surface ? slope : 0.0;
     constexpr int kMostSteps = 200;
     for (int step = 0; step < kMostSteps; ++step) {
-      if (t >= rise && t < fall) {
+      if (!only_one && t >= rise && t < fall) {
         side = 1.0;
         t = fall;
+        known = false;
       }
-      if (t > t_end) return {};
-      const double q = c0 + t * (c1 - t * c2);
-      const ShapeOffset s = shape_.offset(o.x + t * d.x, o.y + t * d.y);
-      double f = q - s.s, df = c1 - 2.0 * t * c2 - (s.sx * d.x + s.sy * d.y);
-      if (side == 0.0) side = f < 0.0 ? -1.0 : 1.0;
-      f = std::max(0.0, side * f);
-      df *= side;
-      if (f <= kTouch_mm && df < 0.0) {
+      if (t > t_end && !only_one) return {};
+      if (!known) {
+        const ShapeOffset s = shape_.offset(o.x + t * d.x, o.y + t * d.y);
+        f = c0 + t * (c1 - t * c2) - s.s;
+        df = c1 - 2.0 * t * c2 - (s.sx * d.x + s.sy * d.y);
+        if (side == 0.0) side = f < 0.0 ? -1.0 : 1.0;
+        f *= side;
+        df *= side;
+        if (!only_one) f = std::max(0.0, f);
+      }
+      known = false;
+      if (std::abs(f) <= kTouch_mm && df < 0.0) {
         const double hit_t = t - f / df;
         const double x = o.x + hit_t * d.x, y = o.y + hit_t * d.y;
         const double hole = aperture_.hole_radius_mm();
+        if (hit_t > t_end) return {};
         if (x * x + y * y >= hole * hole) return {side > 0.0 ? What::front : What::back, hit_t};
         side = -side;  // through the hole, to the other side
         df = -df;
         f = 0.0;
         t = hit_t;
+        only_one = false;
       }
-      const double a = side > 0.0 ? bend : std::max(bend - 2.0 * c2, 1e-30);
-      const double w = std::sqrt(df * df + 4.0 * a * f);
+      if (side > 0.0 && df < 0.0 && low > t && df + rising_bend * (low - t) < 0.0) only_one = true;
+      const double a = only_one ? c2 : (side > 0.0 ? bend : std::max(bend - 2.0 * c2, 1e-30));
+      const double w = std::sqrt(std::max(0.0, df * df + 4.0 * a * f));
       const double ahead = df > 0.0 ? (df + w) / (2.0 * a) : 2.0 * f / (w - df);
-      if (!(ahead > 0.0)) return {What::failed, t};
+      if (!(ahead > 0.0) && !only_one) return {What::failed, t};
       t += ahead;
     }
     return {What::failed, t};
@@ -173,13 +195,15 @@ struct HitAdjoint {
   double alpha = 0.0, beta = 0.0, gamma = 0.0;
 };
 
-/// Exact derivative of a figure whose gradient with respect to the leaving direction is `seed`, by the
-/// adjoint of the path, last hit first: `out[i]` belongs to hit i. The hit moves along the ray as the surface
-/// rises, the normal turns with the slope there and with the place, and every later hit sees both.
+/// Exact derivatives of a figure of the path by its adjoint, last hit first: `direction` is the figure's
+/// gradient with respect to the direction that leaves hit `last`, `point` with respect to that hit's place.
+/// `out[i]` belongs to hit i <= last. A hit moves along its ray as the surface rises, the normal turns with
+/// the slope there and with the place, and every later hit sees both.
 template <class Shape>
-void path_adjoint(const Path<Shape>& path, const Vec3& seed, HitAdjoint* out) {
-  Vec3 a = seed, b{};  // adjoints of the direction and of the point that leave the hit
-  for (int i = path.hits - 1; i >= 0; --i) {
+void path_adjoint(const Path<Shape>& path, int last, const Vec3& direction, const Vec3& point,
+                  HitAdjoint* out) {
+  Vec3 a = direction, b = point;
+  for (int i = last; i >= 0; --i) {
     const typename Path<Shape>::Hit& hit = path.hit[static_cast<std::size_t>(i)];
     const Vec3& g = hit.g;
     const double gg = dot(g, g), ag = dot(a, g);
@@ -194,6 +218,26 @@ void path_adjoint(const Path<Shape>& path, const Vec3& seed, HitAdjoint* out) {
     b = b - lift * g;
     a = ad + hit.t * b;
   }
+}
+
+/// How far inside the nearest rim of the mirror (outline or hole) a point is, and the gradient of that.
+struct RimDistance {
+  double inside_mm = 0.0;
+  Vec3 gradient;
+};
+inline RimDistance rim_distance(const Aperture& aperture, double x, double y) {
+  const double r = std::sqrt(x * x + y * y), per_r = r > 0.0 ? 1.0 / r : 0.0;
+  RimDistance rim;
+  if (aperture.shape() == ApertureShape::circle) {
+    rim = {aperture.half_x_mm() - r, {-x * per_r, -y * per_r, 0.0}};
+  } else {
+    const double a = aperture.half_x_mm() - std::abs(x), b = aperture.half_y_mm() - std::abs(y);
+    rim = a < b ? RimDistance{a, {x > 0.0 ? -1.0 : 1.0, 0.0, 0.0}}
+                : RimDistance{b, {0.0, y > 0.0 ? -1.0 : 1.0, 0.0}};
+  }
+  const double hole = r - aperture.hole_radius_mm();
+  if (aperture.hole_radius_mm() > 0.0 && hole < rim.inside_mm) rim = {hole, {x * per_r, y * per_r, 0.0}};
+  return rim;
 }
 
 }  // namespace lucerna

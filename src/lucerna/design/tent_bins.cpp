@@ -10,9 +10,13 @@
 namespace lucerna {
 
 TentBins::TentBins(bool rings, const Frame& axes, double extent, int count)
-    : rings_(rings), axes_(axes), extent_(extent), cell_((rings ? 1.0 : 2.0) * extent / count), count_(count) {
-  LUCERNA_CHECK(count >= 2 && extent > 0.0 && extent <= (rings ? std::numbers::pi : 1.0),
-                "{} bins over {}", count, extent);
+    : rings_(rings),
+      axes_(axes),
+      extent_(extent),
+      cell_((rings ? 1.0 : 2.0) * extent / count),
+      count_(count) {
+  LUCERNA_CHECK(count >= 2 && extent > 0.0 && extent <= (rings ? std::numbers::pi : 1.0), "{} bins over {}",
+                count, extent);
   solid_angle_ = flux_of([](const Direction&) { return 1.0; });
 }
 
