@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 #include "lucerna/core/error.h"
@@ -112,35 +113,6 @@ BsplineShape refine(const BsplineShape& s, int intervals_x, int intervals_y) {
   return {s.focal_mm(), x, y, std::move(coefficients)};
 }
 
-/// A design's surface as tracers and exporters see one.
-class DesignSurface final : public HeightSurface {
- public:
-  explicit DesignSurface(std::variant<RevolutionShape, BsplineShape> shape) : shape_(std::move(shape)) {}
-
-  SurfacePoint at(double x, double y) const override {
-    return std::visit(
-        [&](const auto& s) {
-          const double k = 0.25 / s.focal_mm();
-          const ShapeOffset o = s.offset(x, y);
-          return SurfacePoint{k * (x * x + y * y) + o.s, 2.0 * k * x + o.sx, 2.0 * k * y + o.sy};
-        },
-        shape_);
-  }
-
-  /// Height at the middle, give or take slope and bend: |h - h0 - grad (p - p0)| <= bend |p - p0|^2 / 2.
-  HeightRange range(const Rectangle& r) const override {
-    const double x = 0.5 * (r.x0_mm + r.x1_mm), y = 0.5 * (r.y0_mm + r.y1_mm);
-    const double a = 0.5 * (r.x1_mm - r.x0_mm), b = 0.5 * (r.y1_mm - r.y0_mm);
-    const SurfacePoint p = at(x, y);
-    const double bend = std::visit([](const auto& s) { return s.bend_bound() + 0.5 / s.focal_mm(); }, shape_);
-    const double reach = std::abs(p.dzdx) * a + std::abs(p.dzdy) * b + 0.5 * bend * (a * a + b * b);
-    return {p.z_mm - reach, p.z_mm + reach};
-  }
-
- private:
-  std::variant<RevolutionShape, BsplineShape> shape_;
-};
-
 }  // namespace
 
 DesignShape::DesignShape(std::variant<RevolutionShape, BsplineShape> shape, const Aperture& aperture,
@@ -215,9 +187,13 @@ int DesignShape::intervals_y() const {
 }
 
 std::shared_ptr<const HeightSurface> DesignShape::surface() const {
-  return std::make_shared<DesignSurface>(shape_);
+  return std::visit([](const auto& s) -> std::shared_ptr<const HeightSurface> {
+    return std::make_shared<SmoothSurface<std::decay_t<decltype(s)>>>(s);
+  }, shape_);
 }
 
-SurfacePoint DesignShape::at(double x_mm, double y_mm) const { return DesignSurface(shape_).at(x_mm, y_mm); }
+SurfacePoint DesignShape::at(double x_mm, double y_mm) const {
+  return std::visit([&](const auto& s) { return smooth_point(s, x_mm, y_mm); }, shape_);
+}
 
 }  // namespace lucerna

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "lucerna/design/smooth_shape.h"
+#include "lucerna/reflector/smooth_shape.h"
 #include "lucerna/reflector/aperture.h"
 #include "lucerna/reflector/reflector.h"
 

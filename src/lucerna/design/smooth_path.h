@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "lucerna/core/direction.h"
-#include "lucerna/design/smooth_shape.h"
+#include "lucerna/reflector/smooth_shape.h"
 #include "lucerna/reflector/aperture.h"
 
 namespace lucerna {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/trace/project.h"
 
+#include <cmath>
 #include <map>
 #include <sstream>
 
 #include "lucerna/core/error.h"
 #include "lucerna/rayset/ray_file.h"
+#include "lucerna/reflector/smooth_shape.h"
 #include "lucerna/source/emitter.h"
 #include "lucerna/source/ray_set_source.h"
 #include "lucerna/trace/toml_reader.h"
@@ -156,6 +158,26 @@ Reflector read_revolution(TomlReader& reader) {
   return at_key(reader, "profile_mm", [&] { return profile_reflector(knots, aperture); });
 }
 
+/// The free-form family: a bicubic B-spline of heights over a paraboloid (docs/algorithms/design.md).
+Reflector read_bspline(TomlReader& reader) {
+  const auto focal = reader.positive("focal_mm");
+  if (!focal) reader.fail("focal_mm", "is missing: the paraboloid that the spline stands on");
+  const auto intervals = reader.numbers("intervals", 2).value_or(std::vector<double>{4.0, 4.0});
+  for (const double n : intervals) {
+    if (!(n >= 1.0 && n <= 1000.0 && n == std::floor(n))) {
+      reader.fail("intervals", fmt::format("found {}, expected whole numbers from 1 to 1000", n));
+    }
+  }
+  const Aperture aperture = read_aperture(reader, std::nullopt);
+  const double a = aperture.half_x_mm(), b = aperture.half_y_mm();
+  const KnotRow x{-a, 2.0 * a / intervals[0], static_cast<int>(intervals[0])};
+  const KnotRow y{-b, 2.0 * b / intervals[1], static_cast<int>(intervals[1])};
+  const auto n = static_cast<std::size_t>(x.coefficients()) * static_cast<std::size_t>(y.coefficients());
+  std::vector<double> c(n, 0.0);
+  if (reader.has("coefficients_mm")) c = *reader.numbers("coefficients_mm", n);
+  return {std::make_shared<SmoothSurface<BsplineShape>>(BsplineShape(*focal, x, y, std::move(c))), aperture};
+}
+
 Reflectance read_reflectance(TomlReader& reader) {
   return at_key(reader, "reflectance", [&] { return Reflectance(reader.number("reflectance", 1.0)); });
 }
@@ -164,8 +186,10 @@ PlacedReflector read_reflector(TomlReader reader) {
   PlacedReflector placed;
   placed.world_from_reflector = read_placement(reader);
   const std::string family = reader.required_text("family");
-  if (family != "revolution") reader.fail("family", fmt::format("found '{}', expected revolution", family));
-  placed.reflector = read_revolution(reader);
+  if (family != "revolution" && family != "bspline") {
+    reader.fail("family", fmt::format("found '{}', expected revolution or bspline", family));
+  }
+  placed.reflector = family == "bspline" ? read_bspline(reader) : read_revolution(reader);
   placed.reflectance = read_reflectance(reader);
   reader.finish();
   return placed;

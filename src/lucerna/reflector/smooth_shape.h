@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <span>
+#include <utility>
 #include <vector>
 
-#include "lucerna/design/cubic_basis.h"
+#include "lucerna/reflector/cubic_basis.h"
 #include "lucerna/reflector/height_surface.h"
 
 namespace lucerna {
@@ -125,6 +125,37 @@ class RevolutionShape {
   std::vector<double> c_;
   HeightRange band_;
   double bend_bound_ = 0.0;
+};
+
+/// Height and gradient of a smooth shape.
+template <class Shape>
+SurfacePoint smooth_point(const Shape& shape, double x, double y) {
+  const double k = 0.25 / shape.focal_mm();
+  const ShapeOffset o = shape.offset(x, y);
+  return {k * (x * x + y * y) + o.s, 2.0 * k * x + o.sx, 2.0 * k * y + o.sy};
+}
+
+/// A smooth shape as tracers and exporters see a surface.
+template <class Shape>
+class SmoothSurface final : public HeightSurface {
+ public:
+  explicit SmoothSurface(Shape shape) : shape_(std::move(shape)) {}
+  const Shape& shape() const { return shape_; }
+
+  SurfacePoint at(double x, double y) const override { return smooth_point(shape_, x, y); }
+
+  /// Height at the middle, give or take slope and bend: |h - h0 - grad (p - p0)| <= bend |p - p0|^2 / 2.
+  HeightRange range(const Rectangle& r) const override {
+    const double x = 0.5 * (r.x0_mm + r.x1_mm), y = 0.5 * (r.y0_mm + r.y1_mm);
+    const double a = 0.5 * (r.x1_mm - r.x0_mm), b = 0.5 * (r.y1_mm - r.y0_mm);
+    const SurfacePoint p = at(x, y);
+    const double bend = shape_.bend_bound() + 0.5 / shape_.focal_mm();
+    const double reach = std::abs(p.dzdx) * a + std::abs(p.dzdy) * b + 0.5 * bend * (a * a + b * b);
+    return {p.z_mm - reach, p.z_mm + reach};
+  }
+
+ private:
+  Shape shape_;
 };
 
 }  // namespace lucerna

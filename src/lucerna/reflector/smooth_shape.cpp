@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/design/smooth_shape.h"
+#include "lucerna/reflector/smooth_shape.h"
 
 #include <algorithm>
 #include <utility>
