@@ -8,10 +8,13 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/rayset/asap.h"
+#include "lucerna/rayset/lighttools_ascii.h"
 #include "lucerna/rayset/lighttools_binary.h"
 #include "lucerna/rayset/speos.h"
+#include "lucerna/rayset/text_rays.h"
 #include "lucerna/rayset/tm25.h"
 #include "lucerna/rayset/zemax_binary.h"
+#include "lucerna/rayset/zemax_text.h"
 
 namespace lucerna {
 
@@ -32,7 +35,10 @@ constexpr std::array kFormats{
     Format{"lighttools-binary", looks_like_lighttools_binary, open_lighttools_binary,
            create_lighttools_binary},
     Format{"speos", looks_like_speos, open_speos, create_speos},
-    Format{"asap", looks_like_asap, open_asap, create_asap}};
+    Format{"asap", looks_like_asap, open_asap, create_asap},
+    Format{"lighttools-ascii", looks_like_lighttools_ascii, open_lighttools_ascii, create_lighttools_ascii},
+    Format{"zemax-text", looks_like_zemax_text, open_zemax_text, create_zemax_text},
+    Format{"text", looks_like_text_rays, open_text_rays, create_text_rays}};
 
 constexpr auto kNames = [] {
   std::array<std::string_view, kFormats.size()> names;
