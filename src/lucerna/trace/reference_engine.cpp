@@ -27,14 +27,15 @@ class ReferenceEngine final : public TraceEngine {
   std::string isa() const override { return "reference"; }
 
   /// Draws and traces the rays of one run.
-  void trace_run(const SourceRun& run, RayBlock& rays, Tally& tally) const override {
+  void trace_run(const SourceRun& run, TraceScratch& scratch, Tally& tally) const override {
+    RayBlock& rays = scratch.rays;
     const PlacedSource& source = scene_.sources[run.source];
     rays.resize(run.count, 0);
     source.rays->emit(Sequence(kind_, run.sequence_seed), run.first, rays);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       trace_ray(source.world_from_source.ray(rays.ray(i)),
                 to_units(static_cast<double>(rays.weight[i]) * numbering_.ray_flux(run.source)),
-                {run.sequence_seed, run.first + i, 0}, tally);
+                {run.sequence_seed, run.first + i, 0}, scratch, tally);
     }
   }
 
@@ -66,7 +67,7 @@ class ReferenceEngine final : public TraceEngine {
     ++tally.lost_rays[static_cast<std::size_t>(cause)];
   }
 
-  void trace_ray(Ray ray, std::int64_t energy, ReflectionKey key, Tally& tally) const {
+  void trace_ray(Ray ray, std::int64_t energy, ReflectionKey key, TraceScratch& scratch, Tally& tally) const {
     ++tally.rays;
     tally.emitted += energy;
     for (int bounce = 0;; ++bounce) {
@@ -78,6 +79,7 @@ class ReferenceEngine final : public TraceEngine {
         for (std::size_t d = 0; d < far_fields().size(); ++d) {
           tally.bins[d][far_fields()[d].cell(ray.direction)] += energy;
         }
+        leave(ray, energy, scratch, tally);
         return;
       }
       if (!n.hit.front) {

@@ -30,9 +30,20 @@ void check(const Scene& scene) {
     }
   }
   std::set<std::string> names;
+  const auto add_name = [&](const std::string& name) {
+    if (!names.insert(name).second) throw InputError(fmt::format("two detectors are named '{}'", name));
+  };
   for (const FarFieldDetector& d : scene.far_fields) {
     const FarFieldGrid checked(d);
-    if (!names.insert(d.name).second) throw InputError(fmt::format("two detectors are named '{}'", d.name));
+    add_name(d.name);
+  }
+  for (const PlaneDetector& d : scene.planes) {
+    check(d);
+    add_name(d.name);
+  }
+  for (const LuminanceDetector& d : scene.luminances) {
+    check(d);
+    add_name(d.name);
   }
 }
 

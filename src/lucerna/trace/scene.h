@@ -10,6 +10,7 @@
 #include "lucerna/reflector/reflector.h"
 #include "lucerna/source/ray_source.h"
 #include "lucerna/trace/far_field.h"
+#include "lucerna/trace/plane_detector.h"
 #include "lucerna/trace/reflectance.h"
 
 namespace lucerna {
@@ -39,6 +40,10 @@ struct Scene {
   std::vector<PlacedSource> sources;
   std::vector<PlacedReflector> reflectors;
   std::vector<FarFieldDetector> far_fields;
+  std::vector<PlaneDetector> planes;
+  std::vector<LuminanceDetector> luminances;
+  /// Keep all rays that leave, as TraceResult::out_rays.
+  bool keep_rays = false;
 };
 
 /// Throws InputError if the scene cannot be traced: no source, a flux that is not above 0, lm and W together,

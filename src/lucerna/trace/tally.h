@@ -39,7 +39,7 @@ struct Tally {
   /// By cause: kLostCauses; and how many rays that were.
   std::vector<std::int64_t> lost;
   std::vector<std::uint64_t> lost_rays;
-  /// One array of bins per detector.
+  /// One array of bins per detector: far fields, planes, luminances.
   std::vector<std::vector<std::int64_t>> bins;
 
   /// Adds another tally of the same scene.

@@ -43,6 +43,8 @@ TraceResult trace(const Scene& scene, const TraceOptions& options, Progress& pro
   result.unit = scene.sources.front().rays->flux_unit();
   for (const PlacedSource& s : scene.sources) result.flux += s.total_flux();
   result.far_fields = scene.far_fields;
+  result.planes = scene.planes;
+  result.luminances = scene.luminances;
 
   const auto engine = options.engine == EngineKind::reference
                           ? make_reference_engine(scene, numbering, options)
@@ -55,23 +57,26 @@ TraceResult trace(const Scene& scene, const TraceOptions& options, Progress& pro
   // the range.
   const std::uint64_t row = kTaskBlocks * kReplicates * kBlockRays;
   const std::uint64_t first_row = result.first_ray / row, rows = (result.last_ray - 1) / row + 1 - first_row;
+  std::vector<RayBlock> out_rays(scene.keep_rays ? rows * kReplicates : 0);
   parallel_blocks(rows * kReplicates, 1, [&](std::size_t task, std::size_t) {
     const std::uint64_t replicate = task % kReplicates;
     const std::uint64_t row_begin = (first_row + task / kReplicates) * row;
     Tally tally = engine->empty_tally();
-    RayBlock rays;
+    TraceScratch scratch;
     for (std::uint64_t k = 0; k < kTaskBlocks; ++k) {
       const std::uint64_t begin = row_begin + (k * kReplicates + replicate) * kBlockRays;
       const std::uint64_t from = std::max(begin, result.first_ray);
       const std::uint64_t to = std::min(begin + kBlockRays, result.last_ray);
       if (from >= to) continue;
-      for (const SourceRun& run : numbering.runs(from, to)) engine->trace_run(run, rays, tally);
+      for (const SourceRun& run : numbering.runs(from, to)) engine->trace_run(run, scratch, tally);
     }
     const std::lock_guard lock(mutex);
+    if (scene.keep_rays) out_rays[task] = std::move(scratch.out_rays);
     result.replicates[replicate] += tally;
     done += tally.rays;
     progress.step("trace", done, result.last_ray - result.first_ray);
   });
+  for (const RayBlock& block : out_rays) result.out_rays.append(block);
   return result;
 }
 

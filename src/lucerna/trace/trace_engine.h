@@ -12,20 +12,29 @@
 
 namespace lucerna {
 
+/// What one task works with.
+struct TraceScratch {
+  RayBlock rays;
+  /// Rays that left, in the order of their numbers, if the scene keeps them; weights in mean rays.
+  RayBlock out_rays;
+};
+
 /// What `trace` drives: a scene made ready (hierarchies built, frames inverted) and a way to send one run of
 /// rays through it. Shared by all threads, never changed.
 class TraceEngine {
  public:
-  explicit TraceEngine(const Scene& scene) {
+  explicit TraceEngine(const Scene& scene) : keep_rays_(scene.keep_rays) {
     for (const FarFieldDetector& d : scene.far_fields) far_fields_.emplace_back(d);
+    for (const PlaneDetector& d : scene.planes) planes_.emplace_back(d);
+    for (const LuminanceDetector& d : scene.luminances) planes_.emplace_back(d);
   }
   virtual ~TraceEngine() = default;
 
   /// What TraceResult::isa says.
   virtual std::string isa() const = 0;
 
-  /// Draws the rays of `run` into `rays` (scratch) and adds all that becomes of them to `tally`.
-  virtual void trace_run(const SourceRun& run, RayBlock& rays, Tally& tally) const = 0;
+  /// Draws the rays of `run` and adds all that becomes of them to `tally`.
+  virtual void trace_run(const SourceRun& run, TraceScratch& scratch, Tally& tally) const = 0;
 
   /// A tally with room for all causes and detectors.
   Tally empty_tally() const {
@@ -34,14 +43,32 @@ class TraceEngine {
     t.lost.resize(kLostCauses);
     t.lost_rays.resize(kLostCauses);
     for (const FarFieldGrid& grid : far_fields_) t.bins.emplace_back(grid.size());
+    for (const PlaneBins& bins : planes_) t.bins.emplace_back(bins.size());
     return t;
   }
 
  protected:
+  /// Does any detector look at where rays leave, not only at where they go?
+  bool looks_at_places() const { return keep_rays_ || !planes_.empty(); }
+
+  /// Gives the last leg of a ray to all detectors but far fields. `units` is what it carries.
+  void leave(const Ray& ray, std::int64_t units, TraceScratch& scratch, Tally& tally) const {
+    for (std::size_t i = 0; i < planes_.size(); ++i) {
+      if (const auto cell = planes_[i].cell(ray)) tally.bins[far_fields_.size() + i][*cell] += units;
+    }
+    if (!keep_rays_) return;
+    RayBlock& out = scratch.out_rays;
+    out.resize(out.size() + 1);
+    out.set(out.size() - 1, ray);
+    out.weight.back() = static_cast<float>(static_cast<double>(units) / kUnitsPerRay);
+  }
+
   const std::vector<FarFieldGrid>& far_fields() const { return far_fields_; }
 
  private:
   std::vector<FarFieldGrid> far_fields_;
+  std::vector<PlaneBins> planes_;
+  bool keep_rays_;
 };
 
 /// EngineKind::reference. Scene and numbering must outlive it.

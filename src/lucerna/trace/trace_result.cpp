@@ -96,6 +96,39 @@ FarField far_field(const TraceResult& result, std::size_t index) {
   return f;
 }
 
+namespace {
+
+PlaneImage image(const TraceResult& result, std::size_t bins, const std::string& name, const PlaneGrid& grid,
+                 double per_flux) {
+  PlaneImage i{name, grid, result.unit, std::vector<double>(grid.size()), std::vector<double>(grid.size())};
+  const Normaliser normal(result);
+  for (std::size_t k = 0; k < grid.size(); ++k) {
+    const Estimate e = normal.estimate([&](const Tally& t) { return t.bins[bins][k]; });
+    i.value[k] = e.mean * per_flux;
+    i.standard_error[k] = e.standard_error * per_flux;
+  }
+  return i;
+}
+
+constexpr double kSquareMillimetresPerSquareMetre = 1e6;
+
+}  // namespace
+
+PlaneImage illuminance(const TraceResult& result, std::size_t index) {
+  LUCERNA_CHECK(index < result.planes.size(), "index = {}", index);
+  const PlaneDetector& d = result.planes[index];
+  return image(result, result.far_fields.size() + index, d.name, d.grid,
+               kSquareMillimetresPerSquareMetre / d.grid.cell_mm2());
+}
+
+PlaneImage luminance(const TraceResult& result, std::size_t index) {
+  LUCERNA_CHECK(index < result.luminances.size(), "index = {}", index);
+  const LuminanceDetector& d = result.luminances[index];
+  const double sine = std::sin(radians(d.half_angle_deg));
+  return image(result, result.far_fields.size() + result.planes.size() + index, d.name, d.grid,
+               kSquareMillimetresPerSquareMetre / (d.grid.cell_mm2() * std::numbers::pi * sine * sine));
+}
+
 TraceResult merge(const TraceResult& a, const TraceResult& b) {
   const auto need = [](bool same, const char* what) {
     if (!same) throw InputError(fmt::format("the traces cannot be added: they differ in {}", what));
@@ -107,10 +140,15 @@ TraceResult merge(const TraceResult& a, const TraceResult& b) {
         fmt::format("the traces cannot be added: one was made with {}, the other with {}", a.isa, b.isa));
   }
   need(a.flux == b.flux && a.unit == b.unit, "the sources' flux");
-  need(a.far_fields == b.far_fields && a.replicates.size() == b.replicates.size(), "detectors");
+  need(a.far_fields == b.far_fields && a.planes == b.planes && a.luminances == b.luminances &&
+           a.replicates.size() == b.replicates.size(),
+       "detectors");
   if (a.last_ray != b.first_ray && b.last_ray != a.first_ray) {
     throw InputError(fmt::format("the traces cannot be added: rays {}:{} and {}:{} do not meet end to end",
                                  a.first_ray, a.last_ray, b.first_ray, b.last_ray));
+  }
+  if (!a.out_rays.empty() || !b.out_rays.empty()) {
+    throw InputError("traces that keep their rays cannot be added; convert can join the ray files");
   }
   TraceResult sum = a;
   sum.first_ray = std::min(a.first_ray, b.first_ray);

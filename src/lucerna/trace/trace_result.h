@@ -9,7 +9,9 @@
 #include "lucerna/core/estimate.h"
 #include "lucerna/core/flux_unit.h"
 #include "lucerna/core/sequence.h"
+#include "lucerna/rayset/ray_block.h"
 #include "lucerna/trace/far_field.h"
+#include "lucerna/trace/plane_detector.h"
 #include "lucerna/trace/tally.h"
 
 namespace lucerna {
@@ -27,8 +29,13 @@ struct TraceResult {
   double flux = 0.0;
   FluxUnit unit = FluxUnit::lumen;
   std::vector<FarFieldDetector> far_fields;
+  std::vector<PlaneDetector> planes;
+  std::vector<LuminanceDetector> luminances;
   /// kReplicates tallies.
   std::vector<Tally> replicates;
+  /// If the scene keeps them: where rays left and where to, the same for any number of threads. Together they
+  /// carry ledger().out_direct + out_reflected; weights are in mean rays.
+  RayBlock out_rays;
 };
 
 /// Where the light went. Every figure in the unit of the sources' flux. A standard error is NaN where it is
@@ -63,6 +70,23 @@ struct FarField {
 
 /// The far field that detector `index` of TraceResult::far_fields saw.
 FarField far_field(const TraceResult& result, std::size_t index);
+
+/// A figure by cell of a plane grid, numbered iy * nx + ix.
+struct PlaneImage {
+  std::string name;
+  PlaneGrid grid;
+  FluxUnit unit = FluxUnit::lumen;
+  /// Illuminance in lx, or luminance in cd/m2 (W/m2 and W/(m2 sr) when `unit` is watt).
+  std::vector<double> value;
+  /// NaN where not known, as in Ledger.
+  std::vector<double> standard_error;
+};
+
+/// Illuminance on TraceResult::planes[index].
+PlaneImage illuminance(const TraceResult& result, std::size_t index);
+/// Luminance in TraceResult::luminances[index]: flux over cell area and projected solid angle pi sin^2 of the
+/// cone.
+PlaneImage luminance(const TraceResult& result, std::size_t index);
 
 /// Adds two traces of the same scene over different rays: the result is, to the bit, that of one run over
 /// both, whatever the order. Throws InputError if they differ in seed, sequence, bounces, instruction set,

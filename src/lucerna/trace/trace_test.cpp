@@ -262,6 +262,52 @@ TEST(TraceStatistical, SlopeErrorDoublesInTheBeam) {
   EXPECT_NEAR(square / flux, 0.0016 * (1.0 + 0.5 * (1.0 + mean_cos)), 0.0016 * 0.02);
 }
 
+// A Lambertian disk of radius a lights a point on its axis at distance d with pi L a^2 / (a^2 + d^2).
+TEST(TraceStatistical, IlluminanceAndLuminanceOfADisk) {
+  Scene scene = downlight(emitter({.kind = EmitterKind::disk, .radius_mm = 5.0, .flux = 1000.0}));
+  scene.reflectors.clear();
+  const Frame facing_down = Frame::from_axis(Direction::from({0, 0, -1}), 0.0, {0, 0, 50});
+  scene.planes = {{"plane", {facing_down, 10.0, 10.0, 1, 1}}};
+  scene.luminances = {{"image", {Frame(), 20.0, 20.0, 5, 5}, 10.0}};
+  for (const EngineKind engine : {EngineKind::reference, EngineKind::fast}) {
+    const TraceResult result = trace(scene, {.last_ray = 1000000, .engine = engine});
+    const double luminance_cd_m2 = 1000.0 / (std::numbers::pi * std::numbers::pi * 25.0) * 1e6;
+    const PlaneImage lx = illuminance(result, 0);
+    const double expected = std::numbers::pi * luminance_cd_m2 * 25.0 / (25.0 + 2500.0);
+    // The mean over the 10 mm square is a little below the value in its middle: cos^4 falls by 2 x (x/50)^2.
+    EXPECT_NEAR(lx.value[0], expected * (1.0 - 2.0 * (100.0 / 6.0) / 2525.0), 0.01 * expected);
+    EXPECT_LT(std::abs(lx.standard_error[0]), 0.01 * expected);
+    const PlaneImage cd = luminance(result, 0);
+    EXPECT_NEAR(cd.value[12], luminance_cd_m2, 0.02 * luminance_cd_m2);
+    EXPECT_EQ(cd.value[0], 0.0);
+  }
+}
+
+TEST(Trace, KeptRaysCarryWhatLeft) {
+  Scene scene = downlight(emitter({.kind = EmitterKind::cylinder}));
+  scene.keep_rays = true;
+  const auto run = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return trace(scene, {.last_ray = 50000});
+  };
+  const TraceResult a = run(1), b = run(2);
+  EXPECT_EQ(a.out_rays, b.out_rays);
+  double sum = 0.0;
+  const FarFieldGrid grid(scene.far_fields[0]);
+  std::vector<double> bins(grid.size());
+  for (std::size_t i = 0; i < a.out_rays.size(); ++i) {
+    sum += static_cast<double>(a.out_rays.weight[i]);
+    bins[grid.cell(a.out_rays.direction(i))] += static_cast<double>(a.out_rays.weight[i]);
+  }
+  const Ledger l = ledger(a);
+  EXPECT_NEAR(sum / 50000.0, (l.out_direct.mean + l.out_reflected.mean) / l.emitted, 1e-6);
+  const FarField far = far_field(a, 0);
+  double moved = 0.0;
+  for (std::size_t i = 0; i < bins.size(); ++i)
+    moved += std::abs(bins[i] / 50000.0 - far.flux[i] / l.emitted);
+  EXPECT_LT(moved, 1e-3);
+}
+
 TEST(Reflectance, TableIsLinearInTheAngle) {
   const Reflectance r({{10.0, 0.9}, {60.0, 0.8}});
   EXPECT_NEAR(r.at(1.0), 0.9, 1e-15);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
 #include "lucerna/core/error.h"
 #include "lucerna/reflector/height_field.h"
@@ -34,14 +36,15 @@ class WavefrontEngine final : public TraceEngine {
 
   std::string isa() const override { return kernels_.isa; }
 
-  void trace_run(const SourceRun& run, RayBlock& rays, Tally& tally) const override {
+  void trace_run(const SourceRun& run, TraceScratch& scratch, Tally& tally) const override {
+    RayBlock& rays = scratch.rays;
     const PlacedSource& source = scene_.sources[run.source];
     rays.resize(run.count, 0);
     source.rays->emit(Sequence(kind_, run.sequence_seed), run.first, rays);
     Batch batch;
     const std::size_t n =
         emit(rays, source.world_from_source, numbering_.ray_flux(run.source), batch.rays, tally);
-    follow(batch, n, run, tally);
+    follow(batch, n, run, scratch, tally);
   }
 
  private:
@@ -100,7 +103,7 @@ class WavefrontEngine final : public TraceEngine {
     return n;
   }
 
-  void follow(Batch& batch, std::size_t n, const SourceRun& run, Tally& tally) const {
+  void follow(Batch& batch, std::size_t n, const SourceRun& run, TraceScratch& scratch, Tally& tally) const {
     std::vector<Meeting> meetings(mirrors_.size());
     for (int bounce = 0; n > 0; ++bounce) {
       const std::size_t left_before = batch.out_count;
@@ -113,13 +116,30 @@ class WavefrontEngine final : public TraceEngine {
       std::int64_t& out = bounce == 0 ? tally.out_direct : tally.out_reflected;
       for (std::size_t i = left_before; i < batch.out_count; ++i) out += units(batch.out.flux[i]);
     }
+    detect(batch.out, batch.out_count, scratch, tally);
+  }
+
+  /// Gives all that left to the detectors.
+  void detect(const WorldRays& out, std::size_t n, TraceScratch& scratch, Tally& tally) const {
     alignas(64) std::int32_t cell[kBatch];
     for (std::size_t d = 0; d < far_fields().size(); ++d) {
       const FarFieldGrid& grid = far_fields()[d];
-      kernels_.far_field_cells(batch.out, batch.out_count, static_cast<std::int32_t>(grid.c_count()),
+      kernels_.far_field_cells(out, n, static_cast<std::int32_t>(grid.c_count()),
                                static_cast<std::int32_t>(grid.gamma_count()), cell);
       std::int64_t* const bins = tally.bins[d].data();
-      for (std::size_t i = 0; i < batch.out_count; ++i) bins[cell[i]] += units(batch.out.flux[i]);
+      for (std::size_t i = 0; i < n; ++i) bins[cell[i]] += units(out.flux[i]);
+    }
+    if (!looks_at_places()) return;
+    // Rays leave after different numbers of reflections; by number they are in the order they were emitted
+    // in.
+    std::array<std::size_t, kBatch> order;
+    std::iota(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n), std::size_t{0});
+    std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n),
+              [&](std::size_t a, std::size_t b) { return out.number[a] < out.number[b]; });
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t i = order[k];
+      leave({{out.x[i], out.y[i], out.z[i]}, Direction::from({out.dx[i], out.dy[i], out.dz[i]})},
+            units(out.flux[i]), scratch, tally);
     }
   }
 
