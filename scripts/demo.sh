@@ -11,5 +11,6 @@ cd "$here/demo"
 "$lucerna" info led.tm25ray
 "$lucerna" init --force -o led.toml
 sed -i 's|^kind = "led".*|file = "led.tm25ray"|' led.toml
-"$lucerna" trace led.toml -o led --force
+"$lucerna" trace led.toml -o led --force --report led.html
 echo "The light distribution: demo/led/far.svg (polar diagram), far.ldt, far.ies, far.csv"
+echo "The report: demo/led.html, for any browser"

@@ -16,9 +16,10 @@ void add_info(CLI::App& app, Session& session, int& exit_code);
 void add_convert(CLI::App& app, Session& session, int& exit_code);
 void add_make_source(CLI::App& app, Session& session, int& exit_code);
 void add_trace(CLI::App& app, Session& session, int& exit_code);
+void add_report(CLI::App& app, Session& session, int& exit_code);
 
 /// In the order of `lucerna --help`.
-inline constexpr std::array<AddCommand, 5> kCommands{add_init, add_info, add_convert, add_make_source,
-                                                     add_trace};
+inline constexpr std::array<AddCommand, 6> kCommands{add_init,        add_info,  add_convert,
+                                                     add_make_source, add_trace, add_report};
 
 }  // namespace lucerna::cli

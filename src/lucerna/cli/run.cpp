@@ -28,6 +28,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", std::string(version()));
   app.require_subcommand(1);
   Session session;
+  session.set_command(argc, argv);
   int exit_code = kDone;
   for (const AddCommand add : kCommands) add(app, session, exit_code);
   try {

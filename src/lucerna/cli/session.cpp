@@ -93,6 +93,16 @@ Session::PhaseTimer::~PhaseTimer() {
   }
 }
 
+void Session::set_command(int argc, char** argv) {
+  command_ = "lucerna";
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool plain =
+        !word.empty() && word.find_first_of(" \t\n'\"\\$*?[](){}<>|&;`#~!") == std::string::npos;
+    command_ += plain ? " " + word : " '" + word + "'";
+  }
+}
+
 double Session::seconds(const std::string& phase) const {
   for (const auto& [name, elapsed] : phases_) {
     if (name == phase) return elapsed;
@@ -104,6 +114,7 @@ Json Session::json_head(std::optional<std::uint64_t> seed, const std::string& is
   Json head;
   head["program_version"] = std::string(version());
   head["schema_version"] = kJsonSchemaVersion;
+  head["command"] = command_;
   head["seed"] = seed ? Json(*seed) : Json();
   head["threads"] = ThreadLimit::current();
   head["isa"] = isa;

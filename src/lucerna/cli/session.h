@@ -60,6 +60,9 @@ class Session {
   }
   double seconds(const std::string& phase) const;
 
+  /// Notes the words of the command line, for the record.
+  void set_command(int argc, char** argv);
+
   /// Notes a file that the result depends on.
   void add_input(const std::filesystem::path& path) { inputs_.push_back(path); }
 
@@ -86,6 +89,7 @@ class Session {
   std::unique_ptr<TerminalProgress> progress_;
   std::vector<std::pair<std::string, double>> phases_;
   std::vector<std::filesystem::path> inputs_;
+  std::string command_;
 };
 
 /// The folder that a command writes to: made if missing; refused (InputError) when it holds files, unless

@@ -6,6 +6,8 @@
 #include "lucerna/cli/arguments.h"
 #include "lucerna/cli/commands.h"
 #include "lucerna/core/error.h"
+#include "lucerna/core/file.h"
+#include "lucerna/report/report_trace.h"
 #include "lucerna/report/trace_files.h"
 #include "lucerna/trace/project.h"
 
@@ -14,7 +16,7 @@ namespace lucerna::cli {
 namespace {
 
 struct TraceArguments {
-  std::string project, output, rays, seed = "1", sequence = "sobol", device = "auto";
+  std::string project, output, rays, seed = "1", sequence = "sobol", device = "auto", report;
 };
 
 TraceOptions trace_options(const TraceArguments& a) {
@@ -56,6 +58,10 @@ void run_trace(const TraceArguments& a, Session& session) {
       ThreadLimit::current(), session.seconds("read"), session.seconds("figures")));
   for (const std::string& line : trace_summary(figures)) session.say(line);
   session.say(fmt::format("  written: {}", fmt::join(names, " ")));
+  if (!a.report.empty()) {
+    write_file(a.report, trace_report_html(read_trace_folder(a.output), {.scene = &project.scene}));
+    session.say(fmt::format("  report: {}", a.report));
+  }
 }
 
 }  // namespace
@@ -70,6 +76,7 @@ void add_trace(CLI::App& app, Session& session, int&) {
   command.add_option("--seed", a.seed, "Seed of the random numbers")->capture_default_str();
   command.add_option("--sequence", a.sequence, "random or sobol")->capture_default_str();
   command.add_option("--device", a.device, "cpu, cuda or auto")->capture_default_str();
+  command.add_option("--report", a.report, "Also write the report as one HTML file");
   command.add_flag("--force", session.force, "Write into a folder that is not empty");
   session.add_json(command);
   session.add_common(command);

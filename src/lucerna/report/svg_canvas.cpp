@@ -91,12 +91,16 @@ void SvgCanvas::begin_clip(SvgPoint corner, double width, double height) {
 
 void SvgCanvas::end_clip() { body_ += "</g>\n"; }
 
+void SvgCanvas::data(std::string_view name, std::string_view value) {
+  data_ += fmt::format(" data-{}=\"{}\"", name, escaped(value));
+}
+
 std::string SvgCanvas::str() const {
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:g}\" height=\"{1:g}\" viewBox=\"0 0 {0:g} "
       "{1:g}\" "
-      "font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\">\n{2}</svg>\n",
-      width_, height_, body_);
+      "font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\"{3}>\n{2}</svg>\n",
+      width_, height_, body_, data_);
 }
 
 double nice_step(double maximum, int wanted) {

@@ -46,6 +46,11 @@ class SvgCanvas {
   void begin_clip(SvgPoint corner, double width, double height);
   void end_clip();
 
+  /// Adds data-NAME="value" to the document's root: how the page's script finds the value under the cursor.
+  /// Diagrams set `plot` (their kind), and either polar ("cx cy units-per-intensity") or x and y ("first last
+  /// value-at-first value-at-last", in units of the drawing; append " log" for a logarithmic axis).
+  void data(std::string_view name, std::string_view value);
+
   double width() const { return width_; }
   double height() const { return height_; }
 
@@ -55,7 +60,7 @@ class SvgCanvas {
  private:
   double width_, height_;
   int clips_ = 0;
-  std::string body_;
+  std::string body_, data_;
 };
 
 /// A round step (1, 2, 2.5 or 5 times a power of ten) that divides [0, `maximum`] into `wanted` parts or a

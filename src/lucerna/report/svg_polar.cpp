@@ -178,6 +178,8 @@ std::string polar_svg(const IntensityDistribution& d, const PolarOptions& option
   const PolarFrame frame = frame_for(d, options.reference, step * rings);
 
   SvgCanvas canvas(kWidth, frame.bottom + 76.0);
+  canvas.data("plot", "polar");
+  canvas.data("polar", fmt::format("{:g} {:g} {:.9g}", frame.centre.x, frame.centre.y, frame.unit_per_cd));
   canvas.text({0.5 * kWidth, 28.0}, options.title.empty() ? "Luminous intensity" : options.title,
               {.size = 17.0, .anchor = "middle", .bold = true});
   canvas.text({0.5 * kWidth, 48.0},

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// Values under the cursor, saved plots and tables, light and dark. Needs no network; the page reads without it.
+'use strict';
+const lucerna = (() => {
+  const json = id => {
+    const element = document.getElementById(id);
+    return element ? JSON.parse(element.textContent) : null;
+  };
+  const floats = text => new Float32Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
+  const fields = (json('far-fields') || []).map(f => ({
+    ...f, intensity: floats(f.intensity), standardError: floats(f.standard_error),
+  }));
+  const figure = (value, digits = 4) => {
+    if (!Number.isFinite(value)) return '–';
+    const text = value.toPrecision(digits);
+    return text.includes('e') ? String(Number(text)) : text;
+  };
+
+  // Index of the grid step that holds x, and how far x is into it.
+  const locate = (angles, x) => {
+    let low = 0, high = angles.length - 1;
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (angles[middle] <= x) low = middle; else high = middle;
+    }
+    return [low, high, high > low ? (x - angles[low]) / (angles[high] - angles[low]) : 0];
+  };
+  // Bilinear in (C, gamma), periodic in C, as intensity_at of the library.
+  const intensityAt = (field, c, gamma, values = field.intensity) => {
+    const gammas = field.gamma_deg, planes = field.c_deg, n = gammas.length;
+    if (gamma < gammas[0] || gamma > gammas[n - 1]) return 0;
+    const turn = ((c % 360) + 360) % 360;
+    const [c0, c1, u] = turn > planes[planes.length - 1]
+      ? [planes.length - 1, 0, (turn - planes[planes.length - 1]) / (360 - planes[planes.length - 1])]
+      : locate(planes, turn);
+    const [g0, g1, v] = locate(gammas, gamma);
+    const row = i => values[i * n + g0] * (1 - v) + values[i * n + g1] * v;
+    return row(c0) * (1 - u) + row(c1) * u;
+  };
+
+  const svgElement = (name, attributes) => {
+    const element = document.createElementNS('http://www.w3.org/2000/svg', name);
+    for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+    return element;
+  };
+  const mark = svg => {
+    let group = svg.querySelector('.mark');
+    if (!group) svg.append(group = svgElement('g', { class: 'mark', 'aria-hidden': 'true' }));
+    group.replaceChildren();
+    return group;
+  };
+
+  // What each kind of plot says of a point (in units of the drawing), and how it is walked by keys.
+  const polar = (plot, field) => {
+    const svg = plot.querySelector('svg'), output = plot.querySelector('output.cursor');
+    const slider = plot.querySelector('input[type="range"]');
+    const [cx, cy, unit] = svg.dataset.polar.split(' ').map(Number);
+    const place = (gamma, side, cd) => {
+      const angle = gamma * Math.PI / 180;
+      return [cx + side * cd * unit * Math.sin(angle), cy + cd * unit * Math.cos(angle)];
+    };
+    const show = (gamma, side) => {
+      const pairs = side > 0 ? [0, 90] : [180, 270];
+      if (slider) pairs.push(Number(slider.value) + (side > 0 ? 0 : 180));
+      const group = mark(svg), radius = 250;
+      const end = place(gamma, side, radius / unit);
+      group.append(svgElement('line', { x1: cx, y1: cy, x2: end[0], y2: end[1] }));
+      const parts = [...new Set(pairs)].map(c => {
+        const cd = intensityAt(field, c, gamma), [x, y] = place(gamma, side, cd);
+        group.append(svgElement('circle', { cx: x, cy: y, r: 3.5 }));
+        const se = field.standardError.length ? intensityAt(field, c, gamma, field.standardError) : NaN;
+        return `C${c}: ${figure(cd)}${se > 0 ? ' ± ' + figure(se, 2) : ''}`;
+      });
+      output.textContent = `γ ${figure(gamma, 4)}°  ${parts.join(' · ')} ${field.unit}`;
+    };
+    let cursor = 0;
+    const drawExtra = () => {
+      let line = svg.querySelector('.extra');
+      if (!line) svg.append(line = svgElement('polyline', { class: 'extra' }));
+      const c = Number(slider.value), points = [];
+      for (let g = 180; g >= 0; --g) points.push(place(g, -1, intensityAt(field, c + 180, g)));
+      for (let g = 0; g <= 180; ++g) points.push(place(g, 1, intensityAt(field, c, g)));
+      line.setAttribute('points', c % 90 ? points.map(p => p.map(x => x.toFixed(1)).join(',')).join(' ') : '');
+      plot.querySelector('.control output').textContent = `C${c} – C${c + 180}`;
+      show(Math.abs(cursor), cursor < 0 ? -1 : 1);
+    };
+    if (slider) slider.addEventListener('input', drawExtra);
+    return {
+      at: ([x, y]) => {
+        cursor = Math.atan2(x - cx, y - cy) * 180 / Math.PI;
+        show(Math.abs(cursor), cursor < 0 ? -1 : 1);
+      },
+      step: (across, along) => {
+        cursor = Math.max(-180, Math.min(180, Math.round(cursor) + across + 10 * along));
+        show(Math.abs(cursor), cursor < 0 ? -1 : 1);
+      },
+    };
+  };
+
+  const save = (name, type, text) => {
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(new Blob([text], { type }));
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  };
+  const csvOf = field => {
+    const unit = field.unit === 'cd' ? 'cd' : 'w_per_sr';
+    const lines = [`c_deg,gamma_deg,intensity_${unit},standard_error_${unit}`];
+    field.c_deg.forEach((c, i) => field.gamma_deg.forEach((g, k) => {
+      const at = i * field.gamma_deg.length + k;
+      const error = field.standardError.length ? Number(field.standardError[at].toPrecision(4)) : '';
+      lines.push(`${c},${g},${Number(field.intensity[at].toPrecision(7))},${error}`);
+    }));
+    return lines.join('\n') + '\n';
+  };
+  const svgOf = plot => {
+    const copy = plot.querySelector('svg').cloneNode(true);
+    copy.querySelectorAll('.mark').forEach(e => e.remove());
+    copy.querySelectorAll('.extra').forEach(e => {
+      e.setAttribute('fill', 'none');
+      e.setAttribute('stroke', '#009e73');
+      e.setAttribute('stroke-width', '2.2');
+      e.setAttribute('stroke-dasharray', '2 4');
+    });
+    return new XMLSerializer().serializeToString(copy);
+  };
+
+  const kinds = { polar };
+  for (const plot of document.querySelectorAll('figure.plot')) {
+    const field = fields[Number(plot.dataset.detector)], svg = plot.querySelector('svg');
+    const make = kinds[svg.dataset.plot];
+    plot.querySelector('[data-save="svg"]').addEventListener('click', () =>
+      save(plot.dataset.file + '.svg', 'image/svg+xml', svgOf(plot)));
+    plot.querySelector('[data-save="csv"]').addEventListener('click', () =>
+      save(plot.dataset.file + '.csv', 'text/csv', csvOf(field)));
+    if (!make || !field) continue;
+    const cursor = make(plot, field), stage = plot.querySelector('.stage');
+    stage.addEventListener('pointermove', event => {
+      const p = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
+      cursor.at([p.x, p.y]);
+    });
+    stage.addEventListener('pointerleave', () => mark(svg));
+    stage.addEventListener('keydown', event => {
+      const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+      if (!step) return;
+      event.preventDefault();
+      cursor.step(...step);
+    });
+  }
+
+  const themes = ['auto', 'light', 'dark'];
+  let theme = 0;
+  const button = document.getElementById('theme');
+  button.addEventListener('click', () => {
+    theme = (theme + 1) % themes.length;
+    if (theme) document.documentElement.dataset.theme = themes[theme];
+    else delete document.documentElement.dataset.theme;
+    button.textContent = `Theme: ${themes[theme]}`;
+    document.dispatchEvent(new Event('lucerna-theme'));
+  });
+  document.getElementById('print').addEventListener('click', () => window.print());
+  // Paper cannot be unfolded.
+  const opened = [];
+  addEventListener('beforeprint', () => document.querySelectorAll('details:not([open])').forEach(d => {
+    d.open = true;
+    opened.push(d);
+  }));
+  addEventListener('afterprint', () => opened.splice(0).forEach(d => { d.open = false; }));
+  return { json, floats, fields, figure, intensityAt };
+})();

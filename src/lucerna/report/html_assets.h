@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+/// Texts that every report carries, built into the library by cmake/EmbedText.cmake.
+namespace lucerna::assets {
+
+/// report/assets/report.css: the style, light and dark, screen and paper.
+extern const std::string_view report_css;
+/// report/assets/report.js: values under the cursor, downloads, theme.
+extern const std::string_view report_js;
+/// report/assets/scene3d.js: the 3D view; needs `three_js` before it.
+extern const std::string_view scene3d_js;
+/// third_party/three: the part of three.js that is used, as the global THREE, with its licence.
+extern const std::string_view three_js;
+
+}  // namespace lucerna::assets

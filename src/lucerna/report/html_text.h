@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// How figures and data become HTML. All functions are pure and thread safe.
+namespace lucerna {
+
+/// UTF-8 text made safe for element content and quoted attributes; control characters are dropped.
+std::string html_escaped(std::string_view text);
+
+/// A figure for people: 5 significant digits, no exponent between 1e-4 and 1e9; a dash if not finite.
+std::string figure_text(double value);
+
+/// "823.1 ± 0.3": as many digits as the standard error supports (two of its own). As `figure_text(value)`
+/// where the error is not known (NaN) or 0.
+std::string figure_text(double value, double standard_error);
+
+/// Numbers as little-endian float32 in base 64: what the page's scripts read without a parser.
+std::string base64_floats(std::span<const double> values);
+
+/// An SVG document as a part of a page: its ids get `prefix`, so that pictures do not share them, and it gets
+/// role "img" with `label`. Throws InputError if `svg` does not begin as an SVG document.
+std::string inline_svg(std::string_view svg, const std::string& prefix, std::string_view label);
+
+/// <script type="application/json" id="...">: data for the scripts, safe whatever strings it holds.
+std::string data_element(const std::string& id, const nlohmann::ordered_json& data);
+
+/// A table in a box that scrolls by itself where the page is narrow. `head` and `rows` are HTML already; the
+/// first cell of a row is its header, and cells that begin with a digit, sign or dash are set right.
+struct HtmlTable {
+  std::string label;  ///< plain text; what the table shows
+  std::vector<std::string> head;
+  std::vector<std::vector<std::string>> rows;
+};
+std::string html_table(const HtmlTable& table);
+
+}  // namespace lucerna

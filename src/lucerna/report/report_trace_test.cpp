@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/report/report_trace.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <regex>
+#include <set>
+
+#include "lucerna/core/error.h"
+#include "lucerna/core/file.h"
+#include "lucerna/core/version.h"
+#include "lucerna/report/html_text.h"
+#include "lucerna/report/trace_files.h"
+#include "lucerna/trace/project.h"
+#include "lucerna/trace/trace.h"
+#include "tests/support/random_rays.h"
+#include "tests/support/temp_dir.h"
+
+namespace lucerna {
+namespace {
+
+constexpr const char* kProject = R"([[source]]
+kind = "led"
+[[reflector]]
+family = "revolution"
+preset = "parabola"
+focal_mm = 15.0
+diameter_mm = 80.0
+position_mm = [0, 0, 15]
+axis = "-z"
+reflectance = 0.9
+[[detector]]
+kind = "far-field"
+name = "far <b>"
+)";
+
+/// Traces kProject into `dir`.
+void make_trace(const test::TempDir& dir, const std::string& project_toml = kProject) {
+  write_file(dir / "p.toml", project_toml);
+  const Project project = read_project(dir / "p.toml");
+  TraceOptions options;
+  options.last_ray = 20'000;
+  const TraceFigures figures = trace_figures(trace(project.scene, options));
+  nlohmann::ordered_json json{{"program_version", std::string(version())},
+                              {"schema_version", kJsonSchemaVersion},
+                              {"command", "lucerna trace"},
+                              {"seed", 1},
+                              {"threads", 2},
+                              {"isa", "reference"},
+                              {"inputs", {{{"path", "p.toml"}, {"sha256", std::string(64, 'a')}}}},
+                              {"wall_s", {{"trace", 0.25}}},
+                              {"sequence", "sobol"},
+                              {"rays", {{"first", 0}, {"last", 20'000}}}};
+  json.update(trace_json(figures));
+  write_trace_files(dir.path(), project, figures, json);
+}
+
+/// The first way in which `html` is not well-formed: every element closed in order, attributes quoted, ids
+/// unique; empty if none. Enough of a parser for what we write.
+std::string html_fault(const std::string& html) {
+  static const std::set<std::string> kVoid{"meta", "input", "br", "!DOCTYPE"};
+  static const std::regex kTag(R"re(^<(/?)([!a-zA-Z0-9]+)((?:\s+[-:a-zA-Z0-9]+(?:="[^"<>]*")?)*)\s*(/?)>)re");
+  static const std::regex kId(R"re(\sid="([^"]*)")re");
+  std::vector<std::string> open;
+  std::set<std::string> ids;
+  for (std::size_t at = html.find('<'); at != std::string::npos; at = html.find('<', at)) {
+    const std::size_t end = html.find('>', at);
+    if (end == std::string::npos) return "unclosed tag";
+    const std::string tag = html.substr(at, end + 1 - at);
+    std::smatch m;
+    if (!std::regex_search(tag, m, kTag)) return "not a tag: " + tag.substr(0, 200);
+    at = end + 1;
+    const std::string name = m[2], attributes = m[3];
+    std::smatch id;
+    if (std::regex_search(attributes, id, kId) && !ids.insert(id[1]).second)
+      return "second id " + id[1].str();
+    if (kVoid.contains(name) || m[4].length() > 0) continue;
+    if (m[1].length() == 0) {
+      open.push_back(name);
+      if (name == "script" || name == "style") {
+        at = html.find("</" + name + ">", at);
+        if (at == std::string::npos) return "unclosed " + name;
+      }
+    } else if (open.empty() || open.back() != name) {
+      return "closes " + name + " inside " + (open.empty() ? "nothing" : open.back());
+    } else {
+      open.pop_back();
+    }
+  }
+  return open.empty() ? "" : "unclosed " + open.back();
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(ReportTrace, IsOneWellFormedFileThatAsksNothingOfAnyNetwork) {
+  const test::TempDir dir;
+  make_trace(dir);
+  write_trace_report(dir.path(), dir / "report.html");
+  const std::string html = read_file(dir / "report.html", 1 << 24);
+  EXPECT_EQ(html_fault(html), "");
+  EXPECT_LT(html.size(), 1'500'000u);
+  EXPECT_TRUE(has(html, "default-src 'none'"));
+  // Names that are no requests: XML namespaces.
+  std::string rest = std::regex_replace(html, std::regex("http://www\\.w3\\.org/[0-9a-z/]*"), "");
+  for (const char* part : {"http:", "https:", "//cdn", "@import", "src=\"", "<link", "<iframe", "fetch("}) {
+    EXPECT_FALSE(has(rest, part)) << part << " at " << rest.substr(rest.find(part), 120);
+  }
+  EXPECT_TRUE(has(html, "three.js authors")) << "the licence of the bundle goes with it";
+}
+
+TEST(ReportTrace, CheckSeesBrokenHtml) {
+  EXPECT_EQ(html_fault("<p><b>x</b></p>"), "");
+  EXPECT_NE(html_fault("<p><b>x</p></b>"), "");
+  EXPECT_NE(html_fault("<p>"), "");
+  EXPECT_NE(html_fault("<p a=b></p>"), "");
+  EXPECT_NE(html_fault("<p id=\"a\"></p><p id=\"a\"></p>"), "");
+}
+
+TEST(ReportTrace, EveryKeyedFigureIsTheOneOfTheJson) {
+  const test::TempDir dir;
+  make_trace(dir);
+  const TraceFolder folder = read_trace_folder(dir.path());
+  const std::string html = trace_report_html(folder);
+  static const std::regex kKeyed("<span data-key=\"([^\"]*)\">([-0-9.e+]*)");
+  std::set<std::string> seen;
+  for (std::sregex_iterator it(html.begin(), html.end(), kKeyed), end; it != end; ++it) {
+    const std::string key = (*it)[1], shown = (*it)[2];
+    seen.insert(key);
+    const auto& value = folder.result.at(nlohmann::ordered_json::json_pointer(key));
+    if (shown.empty()) {
+      EXPECT_TRUE(value.is_null()) << key;
+      continue;
+    }
+    const std::size_t point = shown.find('.');
+    const double digit =
+        point == std::string::npos ? 1.0 : std::pow(10.0, -static_cast<double>(shown.size() - point - 1));
+    EXPECT_NEAR(std::stod(shown), value.get<double>(), 0.5001 * digit) << key;
+  }
+  for (const char* key :
+       {"/ledger/emitted", "/ledger/out_reflected", "/ledger/absorbed/mirror", "/detectors/0/flux",
+        "/detectors/0/peak/intensity", "/detectors/0/planes/0/beam_angle_of_maximum_deg", "/seed"}) {
+    EXPECT_TRUE(seen.contains(key)) << key;
+  }
+}
+
+TEST(ReportTrace, NamesOfTheUserAreText) {
+  const test::TempDir dir;
+  make_trace(dir);
+  const std::string html = trace_report_html(read_trace_folder(dir.path()));
+  EXPECT_FALSE(has(html, "far <b>"));
+  EXPECT_TRUE(has(html, "far &lt;b&gt;"));
+}
+
+TEST(ReportTrace, SaysWhyThereIsNoView) {
+  const test::TempDir dir;
+  make_trace(dir);
+  write_file(dir / "project.toml", "[[source]]\nfile = 'gone.tm25ray'\n");
+  write_trace_report(dir.path(), dir / "report.html");
+  const std::string html = read_file(dir / "report.html", 1 << 24);
+  EXPECT_TRUE(has(html, "There is no 3D view: "));
+  EXPECT_TRUE(has(html, "gone.tm25ray"));
+  EXPECT_FALSE(has(html, "three.js authors"));
+  EXPECT_LT(html.size(), 500'000u);
+  EXPECT_EQ(html_fault(html), "");
+}
+
+TEST(ReportTrace, MissingFiguresNameTheirKey) {
+  const test::TempDir dir;
+  make_trace(dir);
+  TraceFolder folder = read_trace_folder(dir.path());
+  folder.result["ledger"].erase("out_direct");
+  const std::string message = test::message_of<InputError>([&] { trace_report_html(folder); });
+  EXPECT_TRUE(has(message, "/ledger/out_direct: is missing")) << message;
+}
+
+TEST(ReportTrace, WattsStayWatts) {
+  const test::TempDir dir;
+  std::string project = kProject;
+  project.replace(project.find("kind = \"led\""), 12, "kind = \"led\"\nflux_w = 2.5");
+  make_trace(dir, project);
+  const std::string html = trace_report_html(read_trace_folder(dir.path()));
+  EXPECT_TRUE(has(html, "W/sr"));
+  EXPECT_FALSE(has(html, "<small>lm</small>"));
+}
+
+}  // namespace
+}  // namespace lucerna

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/report/scene3d.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "lucerna/report/html_text.h"
+#include "lucerna/trace/ray_paths.h"
+
+namespace lucerna {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kRings = 32, kSpokes = 96;
+
+void append(std::vector<double>& out, const Vec3& v) { out.insert(out.end(), {v.x, v.y, v.z}); }
+
+/// Azimuths of the mesh: evenly spaced; of a rectangle the nearest ones go to its corners, so that those are
+/// there.
+std::vector<double> azimuths(const Aperture& aperture) {
+  std::vector<double> phi(kSpokes);
+  const double step = 2.0 * std::numbers::pi / kSpokes;
+  for (std::size_t i = 0; i < kSpokes; ++i) phi[i] = static_cast<double>(i) * step;
+  if (aperture.shape() == ApertureShape::circle) return phi;
+  const double corner = std::atan2(aperture.half_y_mm(), aperture.half_x_mm());
+  for (const double at :
+       {corner, std::numbers::pi - corner, std::numbers::pi + corner, 2.0 * std::numbers::pi - corner}) {
+    phi[static_cast<std::size_t>(std::lround(at / step)) % kSpokes] = at;
+  }
+  return phi;
+}
+
+/// Distance of the outer rim from the axis.
+double rim_mm(const Aperture& aperture, double phi) {
+  if (aperture.shape() == ApertureShape::circle) return aperture.half_x_mm();
+  const double c = std::abs(std::cos(phi)), s = std::abs(std::sin(phi));
+  return 1.0 / std::max(c / aperture.half_x_mm(), s / aperture.half_y_mm());
+}
+
+/// Mean curvature of z = h(x, y), positive where it is hollow towards +z (M. do Carmo, "Differential Geometry
+/// of Curves and Surfaces", section 3-3).
+double mean_curvature(const HeightSurface& surface, double x, double y, double step) {
+  const SurfacePoint at = surface.at(x, y);
+  const SurfacePoint east = surface.at(x + step, y), west = surface.at(x - step, y);
+  const SurfacePoint north = surface.at(x, y + step), south = surface.at(x, y - step);
+  const double hxx = (east.dzdx - west.dzdx) / (2.0 * step), hyy = (north.dzdy - south.dzdy) / (2.0 * step);
+  const double hxy = (east.dzdy - west.dzdy + north.dzdx - south.dzdx) / (4.0 * step);
+  const double p = at.dzdx, q = at.dzdy, w = 1.0 + p * p + q * q;
+  return ((1.0 + q * q) * hxx - 2.0 * p * q * hxy + (1.0 + p * p) * hyy) / (2.0 * w * std::sqrt(w));
+}
+
+/// The smallest sphere about a box's centre that holds what is seen.
+struct Extent {
+  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+
+  void add(const Vec3& p) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  Vec3 centre() const { return 0.5 * (low + high); }
+  double radius() const { return std::max(1e-3, 0.5 * length(high - low)); }
+};
+
+Json mirror_json(const PlacedReflector& placed, std::size_t index, Extent& extent) {
+  const Aperture& aperture = placed.reflector.aperture;
+  const HeightSurface& surface = *placed.reflector.surface;
+  const double step = 1e-4 * aperture.outer_radius_mm();
+  std::vector<double> position, normal, slope, curvature;
+  const std::vector<double> phi = azimuths(aperture);
+  for (std::size_t ring = 0; ring <= kRings; ++ring) {
+    const double t = static_cast<double>(ring) / kRings;
+    for (const double angle : phi) {
+      const double r = aperture.hole_radius_mm() + t * (rim_mm(aperture, angle) - aperture.hole_radius_mm());
+      const double x = r * std::cos(angle), y = r * std::sin(angle);
+      const SurfacePoint at = surface.at(x, y);
+      const Vec3 world = placed.world_from_reflector.point({x, y, at.z_mm});
+      extent.add(world);
+      append(position, world);
+      append(normal, placed.world_from_reflector.direction(Direction::from({-at.dzdx, -at.dzdy, 1.0})).vec());
+      slope.push_back(degrees(std::atan(std::hypot(at.dzdx, at.dzdy))));
+      // Beyond its rims the surface goes on straight: differences are taken just inside them.
+      const double inside =
+          std::clamp(r, aperture.hole_radius_mm() + 2.0 * step, rim_mm(aperture, angle) - 2.0 * step);
+      curvature.push_back(mean_curvature(surface, inside * std::cos(angle), inside * std::sin(angle), step));
+    }
+  }
+  return {{"name", fmt::format("mirror {}", index + 1)},
+          {"rings", kRings + 1},
+          {"spokes", kSpokes},
+          {"position", base64_floats(position)},
+          {"normal", base64_floats(normal)},
+          {"slope_deg", base64_floats(slope)},
+          {"curvature_per_mm", base64_floats(curvature)}};
+}
+
+/// The starts of the run's first rays.
+std::vector<double> source_points(const Scene& scene, const Scene3dOptions& options, Extent& extent) {
+  // Without mirrors a path is its start alone.
+  Scene bare{scene.sources, {}, scene.far_fields};
+  std::vector<double> points;
+  for (const RayPath& path :
+       ray_paths(bare, options.source_points,
+                 {.seed = options.seed, .sequence = options.sequence, .first_ray = options.first_ray})) {
+    extent.add(path.points_mm.front());
+    append(points, path.points_mm.front());
+  }
+  return points;
+}
+
+Json rays_json(const std::vector<RayPath>& paths, double beyond_mm) {
+  std::vector<double> position;
+  Json bounces = Json::array();
+  for (const RayPath& path : paths) {
+    std::vector<Vec3> points = path.points_mm;
+    if (path.end == PathEnd::out) points.push_back(points.back() + beyond_mm * path.last_direction.vec());
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+      append(position, points[i]);
+      append(position, points[i + 1]);
+      bounces.push_back(i);
+    }
+  }
+  return {{"count", paths.size()}, {"position", base64_floats(position)}, {"bounces", bounces}};
+}
+
+}  // namespace
+
+Json scene3d_json(const Scene& scene, const Scene3dOptions& options) {
+  Extent extent;
+  Json mirrors = Json::array();
+  for (std::size_t i = 0; i < scene.reflectors.size(); ++i) {
+    mirrors.push_back(mirror_json(scene.reflectors[i], i, extent));
+  }
+  const std::vector<double> starts = source_points(scene, options, extent);
+  const Vec3 centre = extent.centre();
+  const double radius = extent.radius();
+  const auto paths =
+      ray_paths(scene, options.rays,
+                {.seed = options.seed, .sequence = options.sequence, .first_ray = options.first_ray});
+  return {{"centre_mm", {centre.x, centre.y, centre.z}},
+          {"radius_mm", radius},
+          {"mirrors", mirrors},
+          {"source", {{"position", base64_floats(starts)}}},
+          {"rays", rays_json(paths, 1.2 * radius)}};
+}
+
+}  // namespace lucerna

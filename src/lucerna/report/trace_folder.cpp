@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/report/trace_folder.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "lucerna/core/error.h"
+#include "lucerna/core/file.h"
+#include "lucerna/core/version.h"
+
+namespace lucerna {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint64_t kMostTextBytes = std::uint64_t{1} << 24;   // result.json, project.toml
+constexpr std::uint64_t kMostTableBytes = std::uint64_t{1} << 30;  // 16 M cells of 60 bytes
+
+/// Takes the part of `text` before the next `end`, which goes too.
+std::string_view take_until(std::string_view& text, char end) {
+  const std::size_t at = std::min(text.find(end), text.size());
+  const std::string_view part = text.substr(0, at);
+  text.remove_prefix(std::min(at + 1, text.size()));
+  return part;
+}
+
+/// Reads the lines of a far-field table one by one.
+class TableReader {
+ public:
+  TableReader(std::string_view text, const std::string& file) : rest_(text), file_(file) {}
+
+  FluxUnit header() {
+    const std::string_view line = next_line();
+    if (line == "c_deg,gamma_deg,intensity_cd,standard_error_cd") return FluxUnit::lumen;
+    if (line == "c_deg,gamma_deg,intensity_w_per_sr,standard_error_w_per_sr") return FluxUnit::watt;
+    fail("found '{}', expected the header of a far-field table", line.substr(0, 80));
+  }
+
+  struct Row {
+    double c_deg, gamma_deg, intensity, standard_error;
+  };
+  bool next(Row& row) {
+    if (rest_.empty()) return false;
+    std::string_view line = next_line();
+    row.c_deg = number(take_until(line, ','));
+    row.gamma_deg = number(take_until(line, ','));
+    row.intensity = number(take_until(line, ','));
+    row.standard_error = line.empty() ? std::nan("") : number(line);
+    return true;
+  }
+
+  template <class... Args>
+  [[noreturn]] void fail(fmt::format_string<Args...> text, Args&&... args) const {
+    throw_input_error(file_, fmt::format("line {}", line_), text, std::forward<Args>(args)...);
+  }
+
+ private:
+  std::string_view next_line() {
+    ++line_;
+    std::string_view line = take_until(rest_, '\n');
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return line;
+  }
+
+  double number(std::string_view word) const {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value) || value < 0.0) {
+      fail("found '{}', expected a number, 0 or more", word.substr(0, 40));
+    }
+    return value;
+  }
+
+  std::string_view rest_;
+  const std::string& file_;
+  std::size_t line_ = 0;
+};
+
+Json read_result(const std::filesystem::path& path) {
+  const std::string text = read_file(path, kMostTextBytes);
+  Json result = Json::parse(text, nullptr, false);
+  const std::string file = path.string();
+  if (result.is_discarded()) throw_input_error(file, "", "is no JSON");
+  if (!result.is_object() || !result.contains("ledger") || !result.contains("detectors")) {
+    throw_input_error(file, "", "found no ledger and detectors, expected the result of `lucerna trace`");
+  }
+  const Json schema = result.value("schema_version", Json());
+  if (schema != Json(kJsonSchemaVersion)) {
+    throw_input_error(file, "schema_version", "found {}, expected {}", schema.dump(), kJsonSchemaVersion);
+  }
+  return result;
+}
+
+/// The name of a detector: it names a file, so it may not lead elsewhere.
+std::string detector_name(const Json& detector, const std::string& file) {
+  const Json name = detector.is_object() ? detector.value("name", Json()) : Json();
+  if (!name.is_string() || name.get<std::string>().find_first_of("/\\") != std::string::npos) {
+    throw_input_error(file, "detectors", "found the name {}, expected a file's name", name.dump());
+  }
+  return name.get<std::string>();
+}
+
+}  // namespace
+
+FarFieldTable far_field_table(std::string_view csv, const std::string& file) {
+  TableReader reader(csv, file);
+  FarFieldTable table;
+  IntensityDistribution& d = table.distribution;
+  d.unit = reader.header();
+  bool error_known = true;
+  TableReader::Row row;
+  while (reader.next(row)) {
+    if (d.c_deg.empty() || row.c_deg != d.c_deg.back()) d.c_deg.push_back(row.c_deg);
+    if (d.c_deg.size() == 1) d.gamma_deg.push_back(row.gamma_deg);
+    const std::size_t g = d.cd.size() - (d.c_deg.size() - 1) * d.gamma_deg.size();
+    if (g >= d.gamma_deg.size() || row.gamma_deg != d.gamma_deg[g]) {
+      reader.fail("found gamma {:g}, expected the gammas of the first plane in every plane", row.gamma_deg);
+    }
+    d.cd.push_back(row.intensity);
+    table.standard_error.push_back(row.standard_error);
+    error_known = error_known && std::isfinite(row.standard_error);
+  }
+  if (!error_known) table.standard_error.clear();
+  if (const std::string fault = grid_fault(d); !fault.empty()) throw_input_error(file, "", "{}", fault);
+  return table;
+}
+
+TraceFolder read_trace_folder(const std::filesystem::path& folder) {
+  TraceFolder read;
+  read.path = folder;
+  read.result = read_result(folder / "result.json");
+  read.project = read_file(folder / "project.toml", kMostTextBytes);
+  const std::string result_file = (folder / "result.json").string();
+  for (const Json& detector : read.result["detectors"]) {
+    const std::string name = detector_name(detector, result_file);
+    if (detector.value("kind", "") != "far-field") continue;
+    const std::filesystem::path csv = folder / (name + ".csv");
+    read.far_fields.push_back(far_field_table(read_file(csv, kMostTableBytes), csv.string()));
+    read.far_fields.back().name = name;
+  }
+  return read;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lucerna/photometry/intensity_distribution.h"
+
+namespace lucerna {
+
+/// One far field of a trace, as its NAME.csv has it.
+struct FarFieldTable {
+  std::string name;
+  IntensityDistribution distribution;
+  /// Standard error of each value; empty if it is not known.
+  std::vector<double> standard_error;
+};
+
+/// What `trace` left in a folder, read back: all that a report needs.
+struct TraceFolder {
+  std::filesystem::path path;
+  /// result.json, whole.
+  nlohmann::ordered_json result;
+  /// project.toml, whole.
+  std::string project;
+  /// In the order of result.json's `detectors`.
+  std::vector<FarFieldTable> far_fields;
+};
+
+/// Reads result.json, project.toml and the tables of the detectors. Throws InputError with file, place, found
+/// and expected if one is missing, is no result of `lucerna trace`, or has another schema version.
+TraceFolder read_trace_folder(const std::filesystem::path& folder);
+
+/// The inverse of `far_field_csv` (trace_files.h): values to the digits of the file. `file` names it in
+/// errors. Throws InputError with the line if a number, a column or a grid angle is missing. O(bytes).
+FarFieldTable far_field_table(std::string_view csv, const std::string& file);
+
+}  // namespace lucerna

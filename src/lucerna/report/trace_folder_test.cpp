@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/report/trace_folder.h"
+
+#include <gtest/gtest.h>
+
+#include "lucerna/core/error.h"
+#include "lucerna/core/file.h"
+#include "lucerna/report/trace_files.h"
+#include "tests/support/random_rays.h"
+#include "tests/support/temp_dir.h"
+
+namespace lucerna {
+namespace {
+
+constexpr const char* kHeader = "c_deg,gamma_deg,intensity_cd,standard_error_cd\n";
+
+std::string fault(const std::string& csv) {
+  return test::message_of<InputError>([&] { far_field_table(csv, "f.csv"); });
+}
+
+TEST(TraceFolder, TableIsTheInverseOfItsWriter) {
+  FarFieldFigures figures;
+  figures.intensity.distribution = uniform_distribution(90.0, 45.0);
+  auto& d = figures.intensity.distribution;
+  for (std::size_t i = 0; i < d.cd.size(); ++i) {
+    d.cd[i] = 0.1 * static_cast<double>(i * i);
+    figures.intensity.standard_error_cd.push_back(0.01 * static_cast<double>(i));
+  }
+  const FarFieldTable table = far_field_table(far_field_csv(figures), "f.csv");
+  EXPECT_EQ(table.distribution.c_deg, d.c_deg);
+  EXPECT_EQ(table.distribution.gamma_deg, d.gamma_deg);
+  EXPECT_EQ(table.standard_error.size(), d.cd.size());
+  for (std::size_t i = 0; i < d.cd.size(); ++i)
+    EXPECT_NEAR(table.distribution.cd[i], d.cd[i], 1e-8 * d.cd[i]);
+  figures.intensity.standard_error_cd.clear();
+  EXPECT_TRUE(far_field_table(far_field_csv(figures), "f.csv").standard_error.empty());
+}
+
+TEST(TraceFolder, BrokenTablesNameTheirLine) {
+  const std::string head = kHeader;
+  EXPECT_NE(fault("nonsense\n").find("f.csv: line 1: found 'nonsense'"), std::string::npos);
+  EXPECT_NE(fault(head + "0,0,1,\n0,x,1,\n").find("line 3: found 'x'"), std::string::npos);
+  EXPECT_NE(fault(head + "0,0,nan,\n").find("line 2"), std::string::npos);
+  EXPECT_NE(fault(head + "0,0,-1,\n").find("line 2"), std::string::npos);
+  EXPECT_NE(fault(head + "0,0,1,\n0,90,1,\n90,0,1,\n90,80,1,\n").find("line 5"), std::string::npos);
+  EXPECT_NE(fault(head + "0,0,1,\n0,90,1,\n90,0,1,\n"), "no exception");
+  EXPECT_NE(fault(head), "no exception");
+}
+
+TEST(TraceFolder, SaysWhatIsNoTrace) {
+  const test::TempDir dir;
+  const auto message = [&] { return test::message_of<InputError>([&] { read_trace_folder(dir.path()); }); };
+  EXPECT_NE(message().find("result.json"), std::string::npos);
+  write_file(dir / "result.json", "{");
+  EXPECT_NE(message().find("is no JSON"), std::string::npos);
+  write_file(dir / "result.json", "{}");
+  EXPECT_NE(message().find("expected the result of `lucerna trace`"), std::string::npos);
+  write_file(dir / "result.json", R"({"ledger": {}, "detectors": [], "schema_version": 99})");
+  EXPECT_NE(message().find("found 99, expected 1"), std::string::npos);
+  write_file(dir / "project.toml", "");
+  write_file(dir / "result.json",
+             R"({"ledger": {}, "detectors": [{"name": "../x", "kind": "far-field"}], "schema_version": 1})");
+  EXPECT_NE(message().find("../x"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lucerna
