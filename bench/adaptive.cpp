@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Quality of the adaptive source model against analytic emitters: bytes, excess in the five views against
 // what the training rays themselves show, time.
+// KIND may be a ray file: then one half of its rays trains and the other is the truth.
 //   bench_adaptive KIND RAYS [max-bytes|0] [trees|0] [penalty|0] [test rays]
 #include <fmt/format.h>
 
 #include <chrono>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <string>
 
 #include "lucerna/rayset/compare.h"
+#include "lucerna/rayset/ray_file.h"
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/draw_rays.h"
 #include "lucerna/source/emitter.h"
@@ -36,8 +39,12 @@ void add_drawn(ViewCounts& counts, const RaySource& source, const Sequence& sequ
 
 int main(int argc, char** argv) {
   const auto argument = [&](int i, double otherwise) { return argc > i ? std::atof(argv[i]) : otherwise; };
+  const std::string name = argc > 1 ? argv[1] : "led";
+  const bool from_file = std::filesystem::exists(name);
+  RaySet file;
+  if (from_file) file = read_ray_set(name);
   EmitterOptions kind;
-  kind.kind = emitter_kind(argc > 1 ? argv[1] : "led");
+  if (!from_file) kind.kind = emitter_kind(name);
   const auto emitter = make_emitter(kind);
   const auto n = static_cast<std::size_t>(argument(2, 1e6));
   AdaptiveOptions options;
@@ -46,7 +53,15 @@ int main(int argc, char** argv) {
   if (argument(5, 0) > 0) options.penalty_nats = argument(5, 0);
   const auto tests = static_cast<std::uint64_t>(argument(6, 4e6));
   RaySet rays;
-  rays.rays = draw_rays(*emitter, Sequence(SequenceKind::random, 11), n);
+  RayBlock reference;
+  if (from_file) {
+    for (RayBlock* half : {&rays.rays, &reference}) half->resize(0, file.rays.extra.size());
+    for (std::size_t i = 0; i < file.rays.size(); ++i)
+      (i % 2 == 0 ? reference : rays.rays).append(file.rays, i);
+  } else {
+    rays.rays = draw_rays(*emitter, Sequence(SequenceKind::random, 11), n);
+    reference = draw_rays(*emitter, Sequence(SequenceKind::random, 12), 1 << 19);
+  }
   rays.header.set_flux(1000.0);
   const auto start = std::chrono::steady_clock::now();
   const auto model = compress_adaptive(rays, options);
@@ -63,10 +78,12 @@ int main(int argc, char** argv) {
         s.world_from_support.ez().z, s.world_from_support.ex().x, s.world_from_support.ex().y,
         s.world_from_support.ex().z, layer.why);
   }
-  const RayBlock reference = draw_rays(*emitter, Sequence(SequenceKind::random, 12), 1 << 19);
   const Views views(reference);
   ViewCounts truth(views), test(views), training(views);
-  add_drawn(truth, *emitter, Sequence(SequenceKind::random, 13), tests);
+  if (from_file)
+    truth.add(reference);
+  else
+    add_drawn(truth, *emitter, Sequence(SequenceKind::random, 13), tests);
   RayBlock some;
   some.resize(1 << 20, 0);
   model->emit(Sequence(SequenceKind::random, 6), 0, some);

@@ -8,6 +8,7 @@
 #include "lucerna/core/random.h"
 #include "lucerna/rayset/ray_statistics.h"
 #include "lucerna/rayset/surface_guess.h"
+#include "lucerna/source/penalty_choice.h"
 #include "lucerna/source/support_search.h"
 
 namespace lucerna {
@@ -16,7 +17,12 @@ namespace {
 
 /// Charts with less of the flux than this are dropped, and their flux given to the others.
 constexpr double kSmallestShare = 1e-7;
-constexpr double kGrowPenalty = 4.0;
+/// Trees are grown a little further than they are kept, so that splits which pay later are found.
+constexpr double kGrowShare = 0.7;
+
+/// Views sum over much of the four dimensions, where noise averages out and blur does not: they want deeper
+/// trees than the likelihood of single rays does (docs/algorithms/adaptive.md has the figures).
+constexpr double kDeeper = 0.7;
 
 /// A layer whose trees are grown and not yet pruned.
 struct GrownLayer {
@@ -29,12 +35,12 @@ struct Setting {
   double penalty_nats = 6.0;
 };
 
-/// More trees smooth what few rays leave rough; many rays need no smoothing and cost time.
-Setting default_setting(std::size_t rays) {
-  if (rays <= 400'000) return {8, 6.0};
-  if (rays <= 1'500'000) return {6, 6.0};
-  if (rays <= 4'500'000) return {4, 6.0};
-  return {2, 6.0};
+/// More trees smooth what few rays leave rough; many rays need less smoothing and cost time.
+int default_trees(std::size_t rays) {
+  if (rays <= 250'000) return 16;
+  if (rays <= 1'000'000) return 8;
+  if (rays <= 4'500'000) return 4;
+  return 2;
 }
 
 GrownLayer grown_layer(Projection& p, const Support& support, double total_weight, int trees, double penalty,
@@ -178,18 +184,24 @@ std::unique_ptr<AdaptiveModel> compress(const RayBlock& rays, const RaySetHeader
   data.spectra = header.spectra;
   data.surface = starting_surface(rays);
   const SearchResult search = find_support(rays, data.surface, options.seed, progress);
-  Setting setting = default_setting(rays.size());
-  setting.trees = options.trees.value_or(setting.trees);
-  setting.penalty_nats = options.penalty_nats.value_or(setting.penalty_nats);
   const double tolerance = rounding_mm(rays, search.best.on.support.world_from_support.origin_mm());
+  Setting setting;
+  setting.trees = options.trees.value_or(default_trees(rays.size()));
+  progress.step("compress: depth", 0, 1);
+  setting.penalty_nats = options.penalty_nats.value_or(0.0);
+  if (!options.penalty_nats) {
+    const double likeliest = choose_penalty(rays, search.best.on, tolerance, setting.trees, options.seed + 3);
+    setting.penalty_nats = std::max(kPenalties.front(), kDeeper * likeliest);
+  }
   std::vector<GrownLayer> grown;
   Projection p = project(rays, rays.weight, search.best.on, tolerance);
-  const double total = p.weight + p.missed_weight, penalty = std::min(kGrowPenalty, setting.penalty_nats);
+  const double total = p.weight + p.missed_weight, penalty = kGrowShare * setting.penalty_nats;
   const RayBlock missed = chosen_rays(rays, p.missed);
   if (!search.degenerate) widen(p, search.best.on.support, tolerance);
   p.missed = {};
   grown.push_back(grown_layer(p, search.best.on.support, total, setting.trees, penalty, progress));
-  grown.back().layer.why = describe_choice(search);
+  grown.back().layer.why = fmt::format("{}; {} trees, {} nats a split", describe_choice(search),
+                                       setting.trees, setting.penalty_nats);
   if (missed.size() > 0) {
     const BoundedSupport rest = background_support(search.best.on, missed);
     Projection q = project(missed, missed.weight, rest, tolerance);

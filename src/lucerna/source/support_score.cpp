@@ -67,11 +67,28 @@ SupportScore SupportJudge::score(const Support& support) const {
     if (!(w > 0.0)) continue;
     const double d =
         (1.0 - kPlainShare) * density_of(charts, support, held_.ray(i)) + plain_share * plain_[i];
-    sum += w * std::log(d);
+    const double log_d = std::log(d);
+    score.log_density.push_back(static_cast<float>(log_d));
+    sum += w * log_d;
     weight += w;
   }
   score.nats = weight > 0.0 ? sum / weight : -1e300;
   return score;
+}
+
+bool SupportJudge::clearly_better(const SupportScore& a, const SupportScore& b) const {
+  constexpr double kClear = 1.5;
+  double squares = 0.0, weight = 0.0;
+  std::size_t k = 0;
+  const double mean = a.nats - b.nats;
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    const double w = static_cast<double>(held_.weight[i]);
+    if (!(w > 0.0)) continue;
+    const double d = static_cast<double>(a.log_density[k]) - static_cast<double>(b.log_density[k]) - mean;
+    ++k;
+    squares += w * w * d * d, weight += w;
+  }
+  return weight > 0.0 && mean > kClear * std::sqrt(squares) / weight;
 }
 
 std::vector<SupportScore> SupportJudge::scores(const std::vector<Support>& supports) const {

@@ -16,6 +16,9 @@ class SupportJudge {
   SupportJudge(const RayBlock& rays, const Vec3& focus_mm, double tolerance_mm);
 
   SupportScore score(const Support& support) const;
+  /// True if `a` is better than `b` by more than chance would have it: the mean of the rays' differences is
+  /// above 1.5 of its standard errors. Both must be scores of this judge.
+  bool clearly_better(const SupportScore& a, const SupportScore& b) const;
   /// All at once, on all threads.
   std::vector<SupportScore> scores(const std::vector<Support>& supports) const;
 

@@ -27,7 +27,7 @@ constexpr int kFineRounds = 3;
 /// What the candidates are made from.
 struct Shape {
   Vec3 focus_mm, mean_direction;
-  /// The focus, and the centre of the bounding surface if it is round.
+  /// The centre of the bounding surface if it is round, and the focus.
   std::vector<Vec3> centres_mm;
   std::vector<Direction> axes;
   double spread_mm = 0.0;  // RMS distance of the lines from the focus
@@ -49,14 +49,13 @@ void add_axis(std::vector<Direction>& axes, const Vec3& v) {
   axes.push_back(d);
 }
 
-Shape shape_of(const RayBlock& rays, const BoundingSurface& surface) {
-  const RaySummary summary = summarize(rays);
+Shape shape_of(const RayBlock& rays, const RaySummary& summary, const BoundingSurface& surface) {
   Shape shape;
   shape.focus_mm = summary.virtual_focus ? summary.virtual_focus->point_mm : Vec3{};
-  shape.centres_mm.push_back(shape.focus_mm);
   if (surface.kind == SurfaceKind::sphere || surface.kind == SurfaceKind::cylinder) {
     shape.centres_mm.push_back(surface.world_from_surface.origin_mm());
   }
+  shape.centres_mm.push_back(shape.focus_mm);
   shape.mean_direction = summary.mean_direction.value_or(Vec3{});
   Eigen::Matrix3d p2 = Eigen::Matrix3d::Zero();
   double weight = 0.0;
@@ -185,7 +184,6 @@ constexpr int kMoves = 8;
 /// One round of compass search: the best of all single steps is taken while one gains.
 SupportScore refine_round(const SupportJudge& judge, SupportScore start, double length_mm, double angle,
                           Progress& progress) {
-  constexpr double kWorthwhile = 2e-4;
   constexpr int kMostSteps = 5;
   for (int step = 0; step < kMostSteps; ++step) {
     if (progress.stop_requested()) throw Interrupted();
@@ -198,7 +196,7 @@ SupportScore refine_round(const SupportJudge& judge, SupportScore start, double 
     const auto scores = judge.scores(tries);
     const auto best = std::max_element(scores.begin(), scores.end(),
                                        [](const auto& a, const auto& b) { return a.nats < b.nats; });
-    if (best == scores.end() || best->nats < start.nats + kWorthwhile) break;
+    if (best == scores.end() || !judge.clearly_better(*best, start)) break;
     start = *best;
   }
   return start;
@@ -284,7 +282,7 @@ SearchResult find_support(const RayBlock& rays, const BoundingSurface& surface, 
                           Progress& progress) {
   const RayBlock fine = stratified_choice(rays, kFineRays, seed);
   const RayBlock coarse = stratified_choice(fine, kCoarseRays, seed + 1);
-  const Shape shape = shape_of(coarse, surface);
+  const Shape shape = shape_of(coarse, summarize(rays), surface);
   const double tolerance_mm = rounding_mm(fine, shape.focus_mm);
   SearchResult result;
   if (const auto flat = degenerate_support(coarse, shape, tolerance_mm, progress)) {

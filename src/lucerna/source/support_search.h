@@ -17,6 +17,8 @@ struct SupportScore {
   double nats = 0.0;
   /// Share of the flux that it carries.
   double carried = 0.0;
+  /// Log density of each held-out ray with flux, and the rays' weights: what differences are judged by.
+  std::vector<float> log_density;
 };
 
 struct SearchResult {

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/source/penalty_choice.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lucerna/core/parallel.h"
+#include "lucerna/source/support_search.h"
+
+namespace lucerna {
+
+namespace {
+
+constexpr std::size_t kRays = 250'000, kBlock = 4096;
+/// Nothing is impossible: the least density of a held-out ray, as a share of even light.
+constexpr double kFloor = 1e-4;
+
+/// Sum over held-out rays of log(mean density of the trees), weighted.
+double log_likelihood(const std::vector<TreeLookup>& trees, const std::vector<TreeItem>& held,
+                      double volume) {
+  const auto sums =
+      parallel_map_blocks<double>(held.size(), kBlock, [&](std::size_t first, std::size_t last) {
+        double sum = 0.0;
+        for (std::size_t i = first; i < last; ++i) {
+          std::array<double, 4> c;
+          for (std::size_t d = 0; d < 4; ++d) c[d] = static_cast<double>(held[i].c[d]);
+          double density = 0.0;
+          for (const TreeLookup& tree : trees) density += tree.density(c);
+          density = (1.0 - kFloor) * density / static_cast<double>(trees.size()) + kFloor / volume;
+          sum += static_cast<double>(held[i].weight) * std::log(density);
+        }
+        return sum;
+      });
+  double sum = 0.0;
+  for (const double s : sums) sum += s;
+  return sum;
+}
+
+}  // namespace
+
+double choose_penalty(const RayBlock& rays, const BoundedSupport& on, double tolerance_mm, int trees,
+                      std::uint64_t seed) {
+  const RayBlock some = stratified_choice(rays, kRays, seed);
+  RayBlock train, held;
+  for (std::size_t i = 0; i < some.size(); ++i) (i % 5 == 4 ? held : train).append(some, i);
+  Projection p = project(train, train.weight, on, tolerance_mm);
+  Projection q = project(held, held.weight, on, tolerance_mm);
+  std::array<double, kPenalties.size()> score{};
+  for (ChartItems& chart : p.charts) {
+    const auto judge = std::find_if(q.charts.begin(), q.charts.end(),
+                                    [&](const ChartItems& c) { return c.chart == chart.chart; });
+    if (judge == q.charts.end()) continue;
+    std::vector<GrownTree> grown;
+    for (int t = 0; t < trees; ++t) {
+      grown.push_back(grow_tree(chart.items, chart.box,
+                                {.penalty_nats = kPenalties.front(),
+                                 .tree_number = static_cast<std::uint64_t>(t),
+                                 .coarse_cuts = trees > 1}));
+    }
+    for (std::size_t k = 0; k < kPenalties.size(); ++k) {
+      std::vector<TreeLookup> lookups;
+      for (const GrownTree& g : grown) lookups.emplace_back(prune_tree(g, kPenalties[k]), chart.box);
+      score[k] += log_likelihood(lookups, judge->items, chart.box.volume());
+    }
+  }
+  const auto best = std::max_element(score.begin(), score.end());
+  return kPenalties[static_cast<std::size_t>(best - score.begin())];
+}
+
+}  // namespace lucerna
