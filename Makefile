@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # The two commands of the README, and the longer suites. Each installs what is missing first (scripts/packages.sh).
-.PHONY: demo test test-slow test-asan bench packages build format clean
+.PHONY: demo test test-report gallery test-slow test-asan bench packages build format clean
 
 BUILD := build/release
 
@@ -15,6 +15,16 @@ test-slow: build
 
 test-asan: packages
 	cmake --preset asan && cmake --build --preset asan && ctest --preset asan
+
+# The HTML reports in a real browser: needs Chromium and two npm packages, which nothing else here does.
+test-report: build
+	scripts/packages.sh scripts/packages-report.txt
+	cd tests/report && npm ci --no-audit --no-fund && LUCERNA=$(abspath $(BUILD)/lucerna) npm test
+
+# The pictures of the README, from reports in the same browser.
+gallery: build
+	scripts/packages.sh scripts/packages-report.txt
+	scripts/gallery.sh $(BUILD)/lucerna
 
 bench: build
 	$(BUILD)/lucerna bench

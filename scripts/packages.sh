@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Installs the Debian packages of packages.txt that are missing. Without root it prints the line to run and stops.
+# Installs the Debian packages of packages.txt (or of the list given) that are missing. Without root it prints the line to run and stops.
 set -eu
 here=$(dirname "$0")
 missing=""
-for package in $(sed 's/#.*//' "$here/packages.txt"); do
+for package in $(sed 's/#.*//' "${1:-$here/packages.txt}"); do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing="$missing $package"
 done
 [ -n "$missing" ] || exit 0
