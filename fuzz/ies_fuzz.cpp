@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// libFuzzer entry: any bytes either read as a sound grid or are refused with InputError; nothing else may
+// happen.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "lucerna/core/error.h"
+#include "lucerna/photometry/photometric_io.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    const auto file = lucerna::read_ies({reinterpret_cast<const char*>(data), size}, "fuzz");
+    if (!lucerna::grid_fault(file.distribution).empty()) std::abort();
+  } catch (const lucerna::InputError&) {
+  }
+  return 0;
+}
