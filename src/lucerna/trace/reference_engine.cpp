@@ -74,6 +74,18 @@ class ReferenceEngine final : public TraceEngine {
       if (!is_finite(ray.origin_mm) || !is_finite(ray.direction))
         return lose(LostCause::not_finite, energy, tally);
       const Nearest n = nearest(ray);
+      if (const auto hit = bodies().first_hit(ray, n.hit.t_mm, bounce > 0)) {
+        if (bounce == max_bounces_) return lose(LostCause::bounce_limit, energy, tally);
+        const double cosine = -dot(ray.direction, hit->normal);
+        const std::int64_t kept =
+            std::llround(static_cast<double>(energy) * scene_.bodies[hit->body].reflectance.at(cosine));
+        tally.absorbed[kMirrorLosses + hit->body] += energy - kept;
+        energy = kept;
+        if (energy == 0) return;
+        ++tally.reflections;
+        ray = {ray.at(hit->t_mm), Direction::from(reflect(ray.direction, hit->normal))};
+        continue;
+      }
       if (n.mirror == nullptr) {
         (bounce == 0 ? tally.out_direct : tally.out_reflected) += energy;
         for (std::size_t d = 0; d < far_fields().size(); ++d) {

@@ -29,6 +29,11 @@ void check(const Scene& scene) {
       throw InputError(fmt::format("reflector {}: slope_error_mrad = {}, expected 0 to 1000", i + 1, slope));
     }
   }
+  std::set<std::string> causes{"mirror", "mirror_back"};
+  for (const Body& b : scene.bodies) {
+    if (!causes.insert(b.name).second)
+      throw InputError(fmt::format("two causes of loss are named '{}'", b.name));
+  }
   std::set<std::string> names;
   const auto add_name = [&](const std::string& name) {
     if (!names.insert(name).second) throw InputError(fmt::format("two detectors are named '{}'", name));

@@ -9,6 +9,7 @@
 #include "lucerna/core/frame.h"
 #include "lucerna/reflector/reflector.h"
 #include "lucerna/source/ray_source.h"
+#include "lucerna/trace/body.h"
 #include "lucerna/trace/far_field.h"
 #include "lucerna/trace/plane_detector.h"
 #include "lucerna/trace/reflectance.h"
@@ -44,6 +45,7 @@ struct Scene {
   std::vector<LuminanceDetector> luminances;
   /// Keep all rays that leave, as TraceResult::out_rays.
   bool keep_rays = false;
+  std::vector<Body> bodies;
 };
 
 /// Throws InputError if the scene cannot be traced: no source, a flux that is not above 0, lm and W together,

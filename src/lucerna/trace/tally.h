@@ -34,7 +34,7 @@ struct Tally {
   std::int64_t emitted = 0;
   /// What left without and after meeting a mirror.
   std::int64_t out_direct = 0, out_reflected = 0;
-  /// By cause: kMirrorLosses.
+  /// By cause: kMirrorLosses, then one per body.
   std::vector<std::int64_t> absorbed;
   /// By cause: kLostCauses; and how many rays that were.
   std::vector<std::int64_t> lost;

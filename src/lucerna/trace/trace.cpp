@@ -43,6 +43,7 @@ TraceResult trace(const Scene& scene, const TraceOptions& options, Progress& pro
   result.unit = scene.sources.front().rays->flux_unit();
   for (const PlacedSource& s : scene.sources) result.flux += s.total_flux();
   result.far_fields = scene.far_fields;
+  for (const Body& b : scene.bodies) result.body_names.push_back(b.name);
   result.planes = scene.planes;
   result.luminances = scene.luminances;
 

@@ -23,7 +23,8 @@ struct TraceScratch {
 /// rays through it. Shared by all threads, never changed.
 class TraceEngine {
  public:
-  explicit TraceEngine(const Scene& scene) : keep_rays_(scene.keep_rays) {
+  explicit TraceEngine(const Scene& scene) : bodies_(scene.bodies), keep_rays_(scene.keep_rays) {
+    body_count_ = scene.bodies.size();
     for (const FarFieldDetector& d : scene.far_fields) far_fields_.emplace_back(d);
     for (const PlaneDetector& d : scene.planes) planes_.emplace_back(d);
     for (const LuminanceDetector& d : scene.luminances) planes_.emplace_back(d);
@@ -39,7 +40,7 @@ class TraceEngine {
   /// A tally with room for all causes and detectors.
   Tally empty_tally() const {
     Tally t;
-    t.absorbed.resize(kMirrorLosses);
+    t.absorbed.resize(kMirrorLosses + body_count_);
     t.lost.resize(kLostCauses);
     t.lost_rays.resize(kLostCauses);
     for (const FarFieldGrid& grid : far_fields_) t.bins.emplace_back(grid.size());
@@ -63,9 +64,12 @@ class TraceEngine {
     out.weight.back() = static_cast<float>(static_cast<double>(units) / kUnitsPerRay);
   }
 
+  const BodyTracer& bodies() const { return bodies_; }
   const std::vector<FarFieldGrid>& far_fields() const { return far_fields_; }
 
  private:
+  BodyTracer bodies_;
+  std::size_t body_count_ = 0;
   std::vector<FarFieldGrid> far_fields_;
   std::vector<PlaneBins> planes_;
   bool keep_rays_;

@@ -122,6 +122,7 @@ void describe_head(Archive& archive, Result& r) {
     r.sequence = sobol != 0 ? SequenceKind::sobol : SequenceKind::random;
     r.unit = watt != 0 ? FluxUnit::watt : FluxUnit::lumen;
   }
+  each(archive, r.body_names, 8, archive);
   each(archive, r.far_fields, 24, [&](auto& d) {
     archive(d.name);
     archive(d.c_step_deg);
@@ -167,7 +168,7 @@ void check_shape(const TraceResult& r, const Reader& reader) {
   std::uint64_t rays = 0;
   std::int64_t emitted = 0;
   for (const Tally& t : r.replicates) {
-    bool good = t.absorbed.size() == kMirrorLosses && t.lost.size() == kLostCauses &&
+    bool good = t.absorbed.size() == kMirrorLosses + r.body_names.size() && t.lost.size() == kLostCauses &&
                 t.lost_rays.size() == kLostCauses && t.bins.size() == sizes.size() && t.rays <= kMostRays &&
                 t.emitted >= 0 && t.emitted <= INT64_MAX / static_cast<std::int64_t>(2 * kReplicates);
     for (std::size_t d = 0; good && d < sizes.size(); ++d) good = t.bins[d].size() == sizes[d];

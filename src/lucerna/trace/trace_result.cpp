@@ -55,8 +55,9 @@ Ledger ledger(const TraceResult& result) {
   l.emitted = result.flux;
   l.out_direct = normal.estimate([](const Tally& t) { return t.out_direct; });
   l.out_reflected = normal.estimate([](const Tally& t) { return t.out_reflected; });
-  const char* const absorbed[kMirrorLosses] = {"mirror", "mirror_back"};
-  for (std::size_t i = 0; i < kMirrorLosses; ++i) {
+  std::vector<std::string> absorbed{"mirror", "mirror_back"};
+  absorbed.insert(absorbed.end(), result.body_names.begin(), result.body_names.end());
+  for (std::size_t i = 0; i < absorbed.size(); ++i) {
     l.absorbed.emplace_back(absorbed[i], normal.estimate([i](const Tally& t) { return t.absorbed[i]; }));
   }
   const char* const lost[kLostCauses] = {"bounce_limit", "not_finite"};
@@ -140,6 +141,7 @@ TraceResult merge(const TraceResult& a, const TraceResult& b) {
         fmt::format("the traces cannot be added: one was made with {}, the other with {}", a.isa, b.isa));
   }
   need(a.flux == b.flux && a.unit == b.unit, "the sources' flux");
+  need(a.body_names == b.body_names, "bodies");
   need(a.far_fields == b.far_fields && a.planes == b.planes && a.luminances == b.luminances &&
            a.replicates.size() == b.replicates.size(),
        "detectors");

@@ -31,6 +31,8 @@ struct TraceResult {
   std::vector<FarFieldDetector> far_fields;
   std::vector<PlaneDetector> planes;
   std::vector<LuminanceDetector> luminances;
+  /// Causes of absorption after the mirrors'.
+  std::vector<std::string> body_names;
   /// kReplicates tallies.
   std::vector<Tally> replicates;
   /// If the scene keeps them: where rays left and where to, the same for any number of threads. Together they
@@ -45,7 +47,7 @@ struct Ledger {
   /// Exactly the flux of the sources.
   double emitted = 0.0;
   Estimate out_direct, out_reflected;
-  /// By cause: "mirror" (what its face kept), "mirror_back".
+  /// By cause: "mirror" (what its face kept), "mirror_back", then the bodies.
   std::vector<std::pair<std::string, Estimate>> absorbed;
   /// By cause: "bounce_limit", "not_finite"; rays beside it.
   std::vector<std::pair<std::string, Estimate>> lost;

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <optional>
 
 #include "lucerna/core/error.h"
 #include "lucerna/reflector/height_field.h"
@@ -54,12 +56,17 @@ class WavefrontEngine final : public TraceEngine {
     const Reflectance* reflectance;
     double slope_error_rad;
   };
+  /// What becomes of a ray that no mirror reflects.
+  static constexpr std::int32_t kLeaves = -1, kGone = -2, kOnBody = -3;
+
   /// All rays of one run on their way.
   struct Batch {
     WorldRays rays;
     WorldRays out;
     std::size_t out_count = 0;
     alignas(64) float cosine[kBatch];
+    /// First hits with bodies, where those come before all mirrors.
+    std::array<std::optional<BodyHit>, kBatch> body;
   };
   struct Meeting {
     LocalRays rays;
@@ -108,6 +115,7 @@ class WavefrontEngine final : public TraceEngine {
     for (int bounce = 0; n > 0; ++bounce) {
       const std::size_t left_before = batch.out_count;
       meet(batch.rays, n, meetings);
+      if (!bodies().empty()) meet_bodies(batch, n, bounce > 0, meetings);
       for (std::size_t m = 0; m < mirrors_.size(); ++m) {
         if (mirrors_[m].slope_error_rad > 0.0)
           tilt(mirrors_[m].slope_error_rad, batch.rays, n, run, bounce, meetings[m].hits);
@@ -175,13 +183,55 @@ class WavefrontEngine final : public TraceEngine {
     }
   }
 
+  /// First hits with bodies; mirrors behind them become misses.
+  void meet_bodies(Batch& batch, std::size_t n, bool returning, std::vector<Meeting>& meetings) const {
+    for (std::size_t i = 0; i < n; ++i) {
+      double nearest = std::numeric_limits<float>::max();
+      for (const Meeting& m : meetings) {
+        if (m.hits.state[i] != kMiss) nearest = std::min(nearest, static_cast<double>(m.hits.t[i]));
+      }
+      batch.body[i] = bodies().first_hit(ray_of(batch.rays, i), nearest, returning);
+      if (!batch.body[i]) continue;
+      for (Meeting& m : meetings) m.hits.state[i] = kMiss;
+    }
+  }
+
+  static Ray ray_of(const WorldRays& rays, std::size_t i) {
+    return {{rays.x[i], rays.y[i], rays.z[i]}, Direction::from({rays.dx[i], rays.dy[i], rays.dz[i]})};
+  }
+
+  /// Absorbs or reflects ray `i` where it met a body; returns what sort_out notes of it.
+  std::int32_t leave_body(WorldRays& rays, std::size_t i, const BodyHit& hit, int bounce,
+                          Tally& tally) const {
+    if (bounce == max_bounces_) {
+      lose(LostCause::bounce_limit, rays.flux[i], tally);
+      return kGone;
+    }
+    const Ray ray = ray_of(rays, i);
+    const double kept = scene_.bodies[hit.body].reflectance.at(-dot(ray.direction, hit.normal));
+    const std::int64_t before = units(rays.flux[i]);
+    rays.flux[i] = static_cast<float>(static_cast<double>(rays.flux[i]) * kept);
+    tally.absorbed[kMirrorLosses + hit.body] += before - units(rays.flux[i]);
+    if (kept == 0.0) return kGone;
+    ++tally.reflections;
+    const Vec3 p = ray.at(hit.t_mm);
+    const Direction d = Direction::from(reflect(ray.direction, hit.normal));
+    rays.x[i] = static_cast<float>(p.x);
+    rays.y[i] = static_cast<float>(p.y);
+    rays.z[i] = static_cast<float>(p.z);
+    rays.dx[i] = static_cast<float>(d.x());
+    rays.dy[i] = static_cast<float>(d.y());
+    rays.dz[i] = static_cast<float>(d.z());
+    return kOnBody;
+  }
+
   /// Reflects what was reflected, moves what leaves to `out`, and closes the gaps; returns how many rays
   /// stay.
   std::size_t sort_out(Batch& batch, std::size_t n, const std::vector<Meeting>& meetings, int bounce,
                        Tally& tally) const {
     WorldRays& rays = batch.rays;
     alignas(64) std::int32_t mirror[kBatch];
-    for (std::size_t i = 0; i < n; ++i) mirror[i] = -1;
+    for (std::size_t i = 0; i < n; ++i) mirror[i] = kLeaves;
     for (std::size_t m = 0; m < mirrors_.size(); ++m) {
       const LocalHits& hits = meetings[m].hits;
       kernels_.reflect(mirrors_[m].world_from_mirror, meetings[m].rays, hits, n, rays, batch.cosine);
@@ -193,10 +243,10 @@ class WavefrontEngine final : public TraceEngine {
         const std::int64_t before = units(rays.flux[i]);
         if (hits.state[i] == kBack) {
           tally.absorbed[static_cast<std::size_t>(MirrorLoss::back)] += before;
-          mirror[i] = -2;
+          mirror[i] = kGone;
         } else if (bounce == max_bounces_) {
           lose(LostCause::bounce_limit, rays.flux[i], tally);
-          mirror[i] = -2;
+          mirror[i] = kGone;
         } else {
           const double kept =
               constant ? at_any_angle : mirrors_[m].reflectance->at(static_cast<double>(batch.cosine[i]));
@@ -206,11 +256,14 @@ class WavefrontEngine final : public TraceEngine {
         }
       }
     }
+    for (std::size_t i = 0; !bodies().empty() && i < n; ++i) {
+      if (batch.body[i]) mirror[i] = leave_body(rays, i, *batch.body[i], bounce, tally);
+    }
     std::size_t stay = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      if (mirror[i] == -2) continue;
-      WorldRays& to = mirror[i] < 0 ? batch.out : rays;
-      const std::size_t k = mirror[i] < 0 ? batch.out_count++ : stay++;
+      if (mirror[i] == kGone) continue;
+      WorldRays& to = mirror[i] == kLeaves ? batch.out : rays;
+      const std::size_t k = mirror[i] == kLeaves ? batch.out_count++ : stay++;
       to.x[k] = rays.x[i];
       to.y[k] = rays.y[i];
       to.z[k] = rays.z[i];

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/body.h"
+
+#include "lucerna/core/error.h"
+
+#if defined(LUCERNA_EMBREE)
+#include <embree3/rtcore.h>
+#endif
+
+namespace lucerna {
+
+#if defined(LUCERNA_EMBREE)
+
+struct BodyTracer::Device {
+  RTCDevice device = nullptr;
+  /// What light straight from the source meets, and what all other light does (Debian's Embree has no ray
+  /// masks).
+  RTCScene direct = nullptr, returning = nullptr;
+  ~Device() {
+    if (direct != nullptr) rtcReleaseScene(direct);
+    if (returning != nullptr) rtcReleaseScene(returning);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+};
+
+namespace {
+
+RTCGeometry geometry(RTCDevice device, const Body& body) {
+  if (!body.mesh || body.mesh->triangles.empty())
+    throw InputError(fmt::format("body '{}' has no triangles", body.name));
+  const Mesh& mesh = *body.mesh;
+  RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* v = static_cast<float*>(
+      rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.vertices_mm.size()));
+  auto* t = static_cast<std::uint32_t*>(
+      rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangles.size()));
+  if (v == nullptr || t == nullptr)
+    throw InputError(fmt::format("body '{}' does not fit the memory", body.name));
+  for (const Vec3& p : mesh.vertices_mm) {
+    const Vec3 w = body.world_from_body.point(p);
+    for (const double x : {w.x, w.y, w.z}) *v++ = static_cast<float>(x);
+  }
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t k : triangle) *t++ = k;
+  }
+  rtcCommitGeometry(g);
+  return g;
+}
+
+}  // namespace
+
+BodyTracer::BodyTracer(const std::vector<Body>& bodies)
+    : count_(bodies.size()), device_(std::make_unique<Device>()) {
+  if (bodies.empty()) return;
+  device_->device = rtcNewDevice(nullptr);
+  if (device_->device == nullptr) throw Error("Embree gives no device");
+  device_->direct = rtcNewScene(device_->device);
+  device_->returning = rtcNewScene(device_->device);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    RTCGeometry g = geometry(device_->device, bodies[i]);
+    rtcAttachGeometryByID(device_->returning, g, static_cast<unsigned>(i));
+    if (!bodies[i].only_returning_light) rtcAttachGeometryByID(device_->direct, g, static_cast<unsigned>(i));
+    rtcReleaseGeometry(g);
+  }
+  for (RTCScene scene : {device_->direct, device_->returning}) {
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcCommitScene(scene);
+  }
+}
+
+std::optional<BodyHit> BodyTracer::first_hit(const Ray& ray, double t_max_mm, bool returning) const {
+  if (empty()) return std::nullopt;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit q{};
+  q.ray.org_x = static_cast<float>(ray.origin_mm.x);
+  q.ray.org_y = static_cast<float>(ray.origin_mm.y);
+  q.ray.org_z = static_cast<float>(ray.origin_mm.z);
+  q.ray.dir_x = static_cast<float>(ray.direction.x());
+  q.ray.dir_y = static_cast<float>(ray.direction.y());
+  q.ray.dir_z = static_cast<float>(ray.direction.z());
+  q.ray.tnear = returning ? 1e-3F : 0.0F;
+  q.ray.tfar = static_cast<float>(t_max_mm);
+  q.ray.mask = 0xFFFFFFFFU;
+  q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(returning ? device_->returning : device_->direct, &context, &q);
+  if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  const Direction n = Direction::from({q.hit.Ng_x, q.hit.Ng_y, q.hit.Ng_z});
+  return BodyHit{static_cast<double>(q.ray.tfar), q.hit.geomID, dot(n, ray.direction) > 0.0 ? -n : n};
+}
+
+#else
+
+struct BodyTracer::Device {};
+
+BodyTracer::BodyTracer(const std::vector<Body>& bodies) : count_(bodies.size()) {
+  if (!bodies.empty()) throw InputError("the scene has bodies, and this program was built without Embree");
+}
+
+std::optional<BodyHit> BodyTracer::first_hit(const Ray&, double, bool) const { return std::nullopt; }
+
+#endif
+
+BodyTracer::~BodyTracer() = default;
+
+}  // namespace lucerna
