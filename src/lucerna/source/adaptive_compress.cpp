@@ -81,7 +81,14 @@ std::vector<AdaptiveLayer> pruned(const std::vector<GrownLayer>& grown, double p
   return layers;
 }
 
-std::uint64_t file_bytes(const AdaptiveData& data) { return encode_nfl(encode_adaptive(data)).size(); }
+/// The file's size. Large trees are counted before zstd, which does nothing for them but take time.
+std::uint64_t file_bytes(const AdaptiveData& data) {
+  constexpr std::uint64_t kFrame = 256, kLarge = 30'000;
+  const NflFile file = encode_adaptive(data);
+  std::uint64_t bytes = kFrame;
+  for (const auto& section : file.sections) bytes += section.bytes.size();
+  return bytes > kLarge ? bytes : encode_nfl(file).size();
+}
 
 /// Prunes until the file fits: first by penalty, then with fewer trees.
 void fit_to_size(AdaptiveData& data, const std::vector<GrownLayer>& grown, const Setting& setting,
@@ -101,7 +108,7 @@ void fit_to_size(AdaptiveData& data, const std::vector<GrownLayer>& grown, const
       if (trees > 1) continue;
       throw InputError(fmt::format("a model of these rays does not fit in {} bytes", max_bytes));
     }
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0; i < 6; ++i) {
       const double middle = std::sqrt(low * high);
       data.layers = pruned(grown, middle, trees);
       (file_bytes(data) <= max_bytes ? high : low) = middle;
@@ -200,7 +207,7 @@ std::unique_ptr<AdaptiveModel> compress(const RayBlock& rays, const RaySetHeader
   if (!search.degenerate) widen(p, search.best.on.support, tolerance);
   p.missed = {};
   grown.push_back(grown_layer(p, search.best.on.support, total, setting.trees, penalty, progress));
-  grown.back().layer.why = fmt::format("{}; {} trees, {} nats a split", describe_choice(search),
+  grown.back().layer.why = fmt::format("{}; {} trees, {:.1f} nats a split", describe_choice(search),
                                        setting.trees, setting.penalty_nats);
   if (missed.size() > 0) {
     const BoundedSupport rest = background_support(search.best.on, missed);

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Four sources that no method was tuned on, for bench_adaptive: dome, tilted, strip, arc.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string_view>
+
+#include "lucerna/core/frame.h"
+#include "lucerna/rayset/bounding_surface.h"
+#include "lucerna/source/ray_source.h"
+#include "lucerna/source/warp.h"
+
+namespace lucerna::bench {
+
+struct WeightedRay {
+  Ray ray;
+  double weight = 1.0;
+};
+using OwnNumbers = std::array<double, 5>;
+
+/// A 1 mm die in a hemisphere of index 1.5 and radius 1.4 mm; Fresnel transmission as weight; what is totally
+/// reflected is lost. Caught on a sphere of 3 mm.
+inline WeightedRay dome_ray(const OwnNumbers& u) {
+  constexpr double kIndex = 1.5, kRadius = 1.4;
+  const Ray inside{{u[2] - 0.5, u[3] - 0.5, 0.0}, warp::cosine_hemisphere(u[0], u[1])};
+  const double t = *BoundingSurface::sphere(kRadius).exit_distance_mm(inside);
+  const Vec3 p = inside.at(t), n = p / kRadius;
+  const double ci = dot(inside.direction.vec(), n), sine2 = kIndex * kIndex * (1.0 - ci * ci);
+  if (sine2 >= 1.0) return {{p, Direction::from_unit(n)}, 0.0};
+  const double ct = std::sqrt(1.0 - sine2);
+  const Direction d = Direction::from(kIndex * inside.direction.vec() + (ct - kIndex * ci) * n);
+  const double rs = (kIndex * ci - ct) / (kIndex * ci + ct), rp = (kIndex * ct - ci) / (kIndex * ct + ci);
+  const Ray out{p, d};
+  const double far = *BoundingSurface::sphere(3.0).exit_distance_mm(out);
+  return {{out.at(far), d}, 1.0 - 0.5 * (rs * rs + rp * rp)};
+}
+
+/// Three 0.4 x 2 mm bars, tilted and far off centre, weights from 0 to 2 whatever the ray.
+inline WeightedRay tilted_ray(const OwnNumbers& u) {
+  const Frame placed = Frame::from_axis(Direction::from({0.4, -0.7, 0.6}), 0.5, {14.0, -6.0, 3.0});
+  const double bar = std::floor(3.0 * u[2]), x = 0.8 * (bar - 1.0) + 0.4 * (3.0 * u[2] - bar - 0.5);
+  return {placed.ray({{x, 2.0 * u[3] - 1.0, 0.0}, warp::cosine_hemisphere(u[0], u[1])}), 2.0 * u[4]};
+}
+
+/// A 12 x 2 mm phosphor strip with ten Gaussian hot spots (half of the light), on a box.
+inline WeightedRay strip_ray(const OwnNumbers& u) {
+  double x = 12.0 * u[2] - 6.0, y = 2.0 * u[3] - 1.0;
+  if (u[4] < 0.5) {
+    const double spot = std::floor(20.0 * u[4]), r = 0.3 * std::sqrt(-2.0 * std::log(1.0 - u[2] * 0.999));
+    const double phi = 2.0 * std::numbers::pi * u[3];
+    x = 1.2 * (spot - 4.5) + r * std::cos(phi);
+    y = std::clamp(r * std::sin(phi), -1.0, 1.0);
+  }
+  const Ray ray{{x, y, 0.0}, warp::cosine_hemisphere(u[0], u[1])};
+  const BoundingSurface box = BoundingSurface::box({16.0, 6.0, 4.0});
+  return {{ray.at(*box.exit_distance_mm(ray)), ray.direction}};
+}
+
+/// A short arc: light from a volume, two hot spots before the electrodes and a column between, isotropic but
+/// for the electrodes' shadow cones; on a sphere of 10 mm.
+inline WeightedRay arc_ray(const OwnNumbers& u) {
+  const Direction d = warp::sphere(0.07 + 0.86 * u[0], u[1]);
+  const double r = 0.15 * std::sqrt(-2.0 * std::log(1.0 - 0.9999 * u[2])),
+               phi = 2.0 * std::numbers::pi * u[4];
+  const double side = u[3] < 0.5 ? 1.0 : -1.0, v = u[3] < 0.5 ? 2.0 * u[3] : 2.0 * u[3] - 1.0;
+  const double z = side * (0.9 + 0.25 * std::log(1.0 - 0.97 * v));
+  const Ray ray{{r * std::cos(phi), r * std::sin(phi), z}, d};
+  return {{ray.at(*BoundingSurface::sphere(10.0).exit_distance_mm(ray)), d}};
+}
+
+class OwnSource final : public RaySource {
+ public:
+  using Sampler = WeightedRay (*)(const OwnNumbers&);
+  explicit OwnSource(Sampler sampler) : sample_(sampler) {}
+  double flux() const override { return 1000.0; }
+  FluxUnit flux_unit() const override { return FluxUnit::lumen; }
+  void emit(const Sequence& sequence, std::uint64_t first, RayBlock& out) const override {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const WeightedRay w = sample_(sequence.point<5>(first + i));
+      out.set(i, w.ray);
+      out.weight[i] = static_cast<float>(w.weight);
+    }
+  }
+
+ private:
+  Sampler sample_;
+};
+
+/// The source of that name, or nothing.
+inline std::unique_ptr<RaySource> own_source(std::string_view name) {
+  if (name == "dome") return std::make_unique<OwnSource>(dome_ray);
+  if (name == "tilted") return std::make_unique<OwnSource>(tilted_ray);
+  if (name == "strip") return std::make_unique<OwnSource>(strip_ray);
+  if (name == "arc") return std::make_unique<OwnSource>(arc_ray);
+  return nullptr;
+}
+
+}  // namespace lucerna::bench
