@@ -143,7 +143,9 @@ class Packet {
   }
 
   void node_step() {
-    const Int nx = shift_right(max(bx_, Int(0)), level_), ny = shift_right(max(by_, Int(0)), level_);
+    const Int last_square = Int(f_.blocks - 1);
+    const Int nx = shift_right(min(max(bx_, Int(0)), last_square), level_);
+    const Int ny = shift_right(min(max(by_, Int(0)), last_square), level_);
     const Int per_side = shift_right(Int(f_.blocks), level_);
     const Int node = shift_left(gather(f_.offsets, level_) + ny * per_side + nx, Int(2));
     const Float a = gather(f_.nodes, node), b = gather(f_.nodes + 1, node), c = gather(f_.nodes + 2, node);
@@ -266,7 +268,10 @@ class Packet {
   /// both cells.
   Float border_height(Float t, Mask by_x, Int gx, Int gy) const {
     const Int per_row = Int(f_.blocks * 8 + 1);
-    const Int vx = select(by_x, gx, ix_), vy = select(by_x, iy_, gy);
+    // Lanes that are done keep places off the grid and must read within it all the same.
+    const Int last = Int(f_.blocks * 8 - 1), zero = Int(0), one = Int(1);
+    const Int vx = min(max(select(by_x, gx, ix_), zero), select(by_x, last + one, last));
+    const Int vy = min(max(select(by_x, iy_, gy), zero), select(by_x, last, last + one));
     const Int first = (vy * per_row + vx) * Int(3);
     const Int second = first + select(by_x, per_row * Int(3), Int(3));
     const Int slope = select(by_x, Int(2), Int(1));
