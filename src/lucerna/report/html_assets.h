@@ -10,7 +10,9 @@ namespace lucerna::assets {
 extern const std::string_view report_css;
 /// report/assets/report.js: values under the cursor, downloads, theme.
 extern const std::string_view report_js;
-/// report/assets/scene3d.js: the 3D view; needs `three_js` before it.
+/// report/assets/far_field_map.js: false-colour maps; needs `report_js` before it.
+extern const std::string_view far_field_map_js;
+/// report/assets/scene3d.js: the 3D view; needs `report_js` and `three_js` before it.
 extern const std::string_view scene3d_js;
 /// third_party/three: the part of three.js that is used, as the global THREE, with its licence.
 extern const std::string_view three_js;

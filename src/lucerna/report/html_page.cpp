@@ -62,6 +62,7 @@ std::string HtmlPage::str() const {
       html_escaped(kind_), html_escaped(title_), contents_, body_, version());
   out += data_;
   out += fmt::format("<script>\n{}</script>\n", assets::report_js);
+  out += fmt::format("<script>\n{}</script>\n", assets::far_field_map_js);
   if (scene3d_) {
     out +=
         fmt::format("<script>\n{}</script>\n<script>\n{}</script>\n", assets::three_js, assets::scene3d_js);

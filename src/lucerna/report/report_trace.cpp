@@ -264,11 +264,35 @@ std::string plane_slider(const IntensityDistribution& d) {
       180.0 - d.c_deg[1], d.c_deg[1]);
 }
 
+/// The false-colour map that assets/far_field_map.js draws.
+std::string map_figure(const FarFieldTable& field, std::size_t index) {
+  return fmt::format(
+      "<figure class=\"map\" data-detector=\"{1}\" data-file=\"{0}-map\">\n<div class=\"stage\" "
+      "tabindex=\"0\" "
+      "role=\"group\" aria-label=\"False-colour map of {0}: left and right arrow keys turn C, up and down "
+      "move "
+      "gamma\"><canvas width=\"560\" height=\"560\" role=\"img\" aria-label=\"Intensity of {0} by "
+      "direction\">"
+      "</canvas></div>\n<div class=\"ramp\"></div><div class=\"ends\"></div>\n"
+      "<output class=\"cursor\" aria-live=\"polite\">Point at the map to read values.</output>\n"
+      "<div class=\"control\"><label>Out to <select class=\"reach\"></select></label> <label>Colours <select "
+      "class=\"colours\"><option>viridis</option><option>cividis</option></select></label> <label><input "
+      "type=\"checkbox\" class=\"log\"> logarithmic</label></div>\n"
+      "<figcaption>{0} by direction: γ outward, C around; lines at 1, 3, 10, 30, 50, 70 and 90 % of the "
+      "maximum"
+      "<span class=\"save\"><button type=\"button\" data-save=\"png\" aria-label=\"Save the map of {0} as "
+      "PNG\">"
+      "PNG</button><button type=\"button\" data-save=\"csv\" aria-label=\"Save the values of {0} as CSV\">CSV"
+      "</button></span></figcaption>\n</figure>\n",
+      html_escaped(field.name), index);
+}
+
 std::string plots(const FarFieldTable& field, std::size_t index, bool thinned) {
   const std::string attributes = fmt::format("data-detector=\"{}\"", index);
   std::string out = "<div class=\"plots\">\n";
   out += plot_figure(polar_svg(field.distribution, {.title = field.name}), field.name + "-polar",
                      "Polar diagram of " + field.name, attributes, plane_slider(field.distribution));
+  out += map_figure(field, index);
   out += "</div>\n";
   if (thinned) {
     out += fmt::format(

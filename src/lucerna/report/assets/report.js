@@ -16,6 +16,23 @@ const lucerna = (() => {
     return text.includes('e') ? String(Number(text)) : text;
   };
 
+  // Without trailing zeros.
+  const plain = value => String(Number(value.toPrecision(6)));
+
+  // Viridis and cividis at nine even steps (S. van der Walt, N. Smith; J. Nuñez, C. Anderton, R. Renslow 2018).
+  const ramps = {
+    viridis: [0x440154, 0x472d7b, 0x3b528b, 0x2c728e, 0x21918c, 0x28ae80, 0x5ec962, 0xaddc30, 0xfde725],
+    cividis: [0x00224e, 0x123570, 0x3b496c, 0x575d6d, 0x707173, 0x8a8678, 0xa59c74, 0xc3b369, 0xfee838],
+  };
+  const rampAt = (name, t) => {
+    const ramp = ramps[name], x = Math.max(0, Math.min(1, t)) * (ramp.length - 1), i = Math.min(ramp.length - 2, x | 0);
+    return [16, 8, 0].map(shift => {
+      const a = ramp[i] >> shift & 255, b = ramp[i + 1] >> shift & 255;
+      return a + (b - a) * (x - i);
+    });
+  };
+  const rampCss = name => `linear-gradient(90deg, ${ramps[name].map(c => '#' + c.toString(16).padStart(6, '0')).join(',')})`;
+
   // Index of the grid step that holds x, and how far x is into it.
   const locate = (angles, x) => {
     let low = 0, high = angles.length - 1;
@@ -97,9 +114,9 @@ const lucerna = (() => {
     };
   };
 
-  const save = (name, type, text) => {
+  const save = (name, blob) => {
     const link = document.createElement('a');
-    link.href = URL.createObjectURL(new Blob([text], { type }));
+    link.href = URL.createObjectURL(blob);
     link.download = name;
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
@@ -131,9 +148,9 @@ const lucerna = (() => {
     const field = fields[Number(plot.dataset.detector)], svg = plot.querySelector('svg');
     const make = kinds[svg.dataset.plot];
     plot.querySelector('[data-save="svg"]').addEventListener('click', () =>
-      save(plot.dataset.file + '.svg', 'image/svg+xml', svgOf(plot)));
+      save(plot.dataset.file + '.svg', new Blob([svgOf(plot)], { type: 'image/svg+xml' })));
     plot.querySelector('[data-save="csv"]').addEventListener('click', () =>
-      save(plot.dataset.file + '.csv', 'text/csv', csvOf(field)));
+      save(plot.dataset.file + '.csv', new Blob([csvOf(field)], { type: 'text/csv' })));
     if (!make || !field) continue;
     const cursor = make(plot, field), stage = plot.querySelector('.stage');
     stage.addEventListener('pointermove', event => {
@@ -167,5 +184,5 @@ const lucerna = (() => {
     opened.push(d);
   }));
   addEventListener('afterprint', () => opened.splice(0).forEach(d => { d.open = false; }));
-  return { json, floats, fields, figure, intensityAt };
+  return { json, floats, fields, figure, plain, intensityAt, ramps, rampAt, rampCss, save, csvOf };
 })();

@@ -20,20 +20,11 @@
   const view = { azimuth: -1.15, height: 0.18, distance: radius * 4.1, target: centre.clone().add(new THREE.Vector3(0, 0, -0.35 * radius)) };
   const home = view.target.clone(), start = { ...view };
   camera.up.set(0, 0, 1);
-  world.add(new THREE.HemisphereLight(0xffffff, 0x777788, 1.9));
+  world.add(new THREE.HemisphereLight(0xffffff, 0x9999aa, 2.6));
   const lamp = new THREE.DirectionalLight(0xffffff, 1.6);
   world.add(lamp);
 
-  // Viridis and cividis at nine even steps (S. van der Walt, N. Smith; J. Nuñez, C. Anderton, R. Renslow 2018).
-  const ramps = {
-    viridis: [0x440154, 0x472d7b, 0x3b528b, 0x2c728e, 0x21918c, 0x28ae80, 0x5ec962, 0xaddc30, 0xfde725],
-    cividis: [0x00224e, 0x123570, 0x3b496c, 0x575d6d, 0x707173, 0x8a8678, 0xa59c74, 0xc3b369, 0xfee838],
-  };
-  const colourAt = (name, t, out) => {
-    const ramp = ramps[name], x = Math.max(0, Math.min(1, t)) * (ramp.length - 1), i = Math.min(ramp.length - 2, x | 0);
-    return out.set(ramp[i]).lerp(new THREE.Color(ramp[i + 1]), x - i);
-  };
-  const rampCss = name => `linear-gradient(90deg, ${ramps[name].map(c => '#' + c.toString(16).padStart(6, '0')).join(',')})`;
+  const colourAt = (name, t, out) => out.setRGB(...lucerna.rampAt(name, t).map(v => v / 255), 'srgb');
 
   const layers = {};
   const layer = (id, label, object, key = '') => {
@@ -183,7 +174,7 @@
       }
       colours.needsUpdate = true;
     }
-    ramp.style.background = mode === 'plain' ? 'none' : rampCss(name);
+    ramp.style.background = mode === 'plain' ? 'none' : lucerna.rampCss(name);
     const unit = mode === 'slope' ? '°' : ' 1/mm';
     ends.replaceChildren(...(mode === 'plain' ? [] : [low, high].map(v => element('span', { textContent: lucerna.figure(v, 4) + unit }))));
   };
