@@ -31,8 +31,5 @@ await shoot('filament.html', 'solid.png', 'light', { width: 1024, height: 900 },
   await page.locator('#colouring').selectOption('curvature');
   return page.locator('.scene3d canvas');
 });
-await shoot('filament.html', 'intensity.png', 'light', { width: 1180, height: 900 }, async page => {
-  await page.locator('.log').check();
-  return page.locator('.plots');
-});
+await shoot('filament.html', 'intensity.png', 'light', { width: 620, height: 900 }, async page => page.locator('figure.map'));
 await browser.close();
