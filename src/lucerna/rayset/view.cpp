@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/rayset/view.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,6 +8,7 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/core/random.h"
+#include "lucerna/rayset/ray_statistics.h"
 
 namespace lucerna {
 
@@ -42,63 +42,6 @@ double quantile(std::vector<Weighted>& items, double share) {
     if (sum >= share * total) return item.value;
   }
   return items.empty() ? 0.0 : items.back().value;
-}
-
-/// Sums over all rays that fix axis and focus.
-struct Moments {
-  double weight = 0.0;
-  Vec3 direction, start;
-  std::array<double, 9> system{};  // upper triangle of sum w (1 - d d^T), then its product with the starts
-};
-
-Moments moments_of(const RayBlock& rays, std::size_t first, std::size_t last) {
-  Moments m;
-  for (std::size_t i = first; i < last; ++i) {
-    const double w = static_cast<double>(rays.weight[i]);
-    if (w <= 0.0) continue;
-    const Vec3 p = rays.origin_mm(i), d = rays.direction(i);
-    m.weight += w;
-    m.direction += w * d;
-    m.start += w * p;
-    const Vec3 across = p - dot(p, d) * d;
-    const std::array<double, 9> terms{1.0 - d.x * d.x, -d.x * d.y, -d.x * d.z, 1.0 - d.y * d.y, -d.y * d.z,
-                                      1.0 - d.z * d.z, across.x,   across.y,   across.z};
-    for (std::size_t k = 0; k < 9; ++k) m.system[k] += w * terms[k];
-  }
-  return m;
-}
-
-Moments moments_of(const RayBlock& rays) {
-  const auto parts = parallel_map_blocks<Moments>(
-      rays.size(), kBlock,
-      [&](std::size_t first, std::size_t last) { return moments_of(rays, first, last); });
-  Moments sum;
-  for (const Moments& part : parts) {
-    sum.weight += part.weight;
-    sum.direction += part.direction;
-    sum.start += part.start;
-    for (std::size_t k = 0; k < 9; ++k) sum.system[k] += part.system[k];
-  }
-  return sum;
-}
-
-/// The point nearest to all lines; along directions that the lines leave free, the mean start's coordinate.
-Vec3 virtual_focus(const Moments& m) {
-  const auto& s = m.system;
-  Eigen::Matrix3d matrix;
-  matrix << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
-  const Vec3 mean = m.start / m.weight;
-  const Eigen::Vector3d middle(mean.x, mean.y, mean.z);
-  const Eigen::Vector3d right = Eigen::Vector3d(s[6], s[7], s[8]) - matrix * middle;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(matrix);
-  Eigen::Vector3d focus = middle;
-  for (int k = 0; k < 3; ++k) {
-    // Rounding of float directions leaves about 1e-14 of curvature along parallel lines.
-    const double curvature = solver.eigenvalues()[k];
-    if (curvature < 1e-10 * m.weight) continue;
-    focus += solver.eigenvectors().col(k) * (solver.eigenvectors().col(k).dot(right) / curvature);
-  }
-  return {focus.x(), focus.y(), focus.z()};
 }
 
 /// The rays that fix quantiles: all, or one at random out of each of kWindowRays equal runs.
@@ -265,11 +208,12 @@ void fit_cap(const Points& points, const std::vector<double>& weights, ViewWindo
 }  // namespace
 
 Views::Views(const RayBlock& reference) {
-  const Moments m = moments_of(reference);
-  if (!(m.weight > 0.0)) throw InputError("no rays with flux to compare with");
-  const Vec3 mean = m.direction / m.weight;
+  const RaySummary summary = summarize(reference);
+  if (!summary.virtual_focus || !summary.mean_direction)
+    throw InputError("no rays with flux to compare with");
+  const Vec3 mean = *summary.mean_direction;
   const Direction axis = length(mean) < kLeastMeanLength ? Direction() : Direction::from(mean);
-  frame_.world_from_view = Frame::from_axis(axis, 0.0, virtual_focus(m));
+  frame_.world_from_view = Frame::from_axis(axis, 0.0, summary.virtual_focus->point_mm);
   view_from_world_ = frame_.world_from_view.inverse();
   const Reach reach = reach_of(reference, view_from_world_);
   frame_.near_plane_mm = reach.along_mm + kNearPlaneGap_mm;

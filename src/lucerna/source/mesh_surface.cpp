@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/source/mesh_surface.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "lucerna/core/error.h"
+#include "lucerna/rayset/surface_guess.h"
 #include "lucerna/source/mesh_triangulation.h"
 
 namespace lucerna {
@@ -17,9 +17,8 @@ namespace {
 
 constexpr std::array<std::string_view, 7> kNames{"point",    "line", "plane", "sphere",
                                                  "cylinder", "box",  "hull"};
-/// Starts belong to a surface when they are this near, in shares of their extent: text files have four
-/// digits.
-constexpr double kTolerance = 1e-3;
+/// Share of the flux that must start on a surface; strays are put back on it.
+constexpr double kLeastShare = 0.99;
 /// The facets of a hull of some thousand points lie below the surface that they sample by up to about this
 /// share.
 constexpr double kHullTolerance = 1e-2;
@@ -40,121 +39,15 @@ Vec3 mean_of(const Points& points) {
   return sum / static_cast<double>(points.size());
 }
 
-struct Extent {
-  Vec3 mean;
-  double size = 0.0;              // largest distance from the mean
-  std::array<Vec3, 3> axes;       // principal axes, the widest first
-  std::array<double, 3> reach{};  // largest distance from the mean along each
-};
-
-Extent extent_of(const Points& points) {
-  Extent e;
-  e.mean = mean_of(points);
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Vec3& p : points) {
-    const Vec3 q = p - e.mean;
-    const Eigen::Vector3d v(q.x, q.y, q.z);
-    covariance += v * v.transpose();
-    e.size = std::max(e.size, length(q));
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3d v = solver.eigenvectors().col(2 - k);
-    e.axes[static_cast<std::size_t>(k)] = {v.x(), v.y(), v.z()};
-  }
-  for (const Vec3& p : points) {
-    for (std::size_t k = 0; k < 3; ++k)
-      e.reach[k] = std::max(e.reach[k], std::abs(dot(p - e.mean, e.axes[k])));
-  }
-  return e;
+double size_of(const Points& points, const Vec3& mean) {
+  double size = 0.0;
+  for (const Vec3& p : points) size = std::max(size, length(p - mean));
+  return size;
 }
 
-/// Centre and radius by linear least squares in `dimensions` (2: x and y) coordinates.
-struct Round {
-  Vec3 centre;
-  double radius = 0.0;
-};
-
-std::optional<Round> fit_round(const Points& points, int dimensions, const Vec3& about) {
-  const int n = dimensions + 1;
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
-  for (const Vec3& p : points) {
-    const Vec3 q = p - about;
-    Eigen::VectorXd row(n);
-    row << 2.0 * q.x, 2.0 * q.y, (dimensions == 3 ? 2.0 * q.z : 1.0), Eigen::VectorXd::Ones(n - 3);
-    const double value = q.x * q.x + q.y * q.y + (dimensions == 3 ? q.z * q.z : 0.0);
-    matrix += row * row.transpose();
-    right += value * row;
-  }
-  const Eigen::VectorXd x = matrix.ldlt().solve(right);
-  if (!x.allFinite()) return std::nullopt;
-  const Vec3 centre{x[0], x[1], dimensions == 3 ? x[2] : 0.0};
-  const double squared = x[n - 1] + dot(centre, centre);
-  if (!(squared > 0.0)) return std::nullopt;
-  return Round{about + centre, std::sqrt(squared)};
-}
-
-std::optional<MeshSurface> as_sphere(const Points& points, const Extent& e) {
-  const auto fit = fit_round(points, 3, e.mean);
-  // A far centre is a nearly flat cap that any curved patch fits.
-  if (!fit || fit->radius > 10.0 * e.size) return std::nullopt;
-  for (const Vec3& p : points) {
-    if (std::abs(length(p - fit->centre) - fit->radius) > kTolerance * e.size) return std::nullopt;
-  }
-  MeshSurface s{MeshSurfaceKind::sphere, {}, fit->radius, {}, fit->centre};
-  s.world_from_surface = Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, fit->centre);
-  return s;
-}
-
-std::optional<MeshSurface> as_cylinder(const Points& points, const Extent& e, const Vec3& axis) {
-  const Frame turned = Frame::from_axis(Direction::from(axis), 0.0, e.mean);
-  const Frame inverse = turned.inverse();
-  const double tolerance = kTolerance * e.size;
-  Points local;
-  double low = 1e300, high = -1e300;
-  for (const Vec3& p : points) {
-    local.push_back(inverse.point(p));
-    low = std::min(low, local.back().z);
-    high = std::max(high, local.back().z);
-  }
-  Points mantle;
-  for (const Vec3& p : local) {
-    if (p.z > low + tolerance && p.z < high - tolerance) mantle.push_back(p);
-  }
-  if (mantle.size() < 8) return std::nullopt;
-  const auto fit = fit_round(mantle, 2, {});
-  if (!fit || fit->radius > 10.0 * e.size) return std::nullopt;
-  for (const Vec3& p : local) {
-    const double r = std::hypot(p.x - fit->centre.x, p.y - fit->centre.y);
-    const bool on_mantle = std::abs(r - fit->radius) <= tolerance;
-    const bool on_end = (p.z <= low + tolerance || p.z >= high - tolerance) && r <= fit->radius + tolerance;
-    if (!on_mantle && !on_end) return std::nullopt;
-  }
-  MeshSurface s{
-      MeshSurfaceKind::cylinder, {}, fit->radius, {fit->radius, fit->radius, 0.5 * (high - low)}, {}};
-  s.centre_mm = turned.point({fit->centre.x, fit->centre.y, 0.5 * (low + high)});
-  s.world_from_surface = Frame(turned.ex(), turned.ey(), turned.ez(), s.centre_mm);
-  return s;
-}
-
-std::optional<MeshSurface> as_box(const Points& points, const Extent& e) {
-  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-  for (const Vec3& p : points) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  for (const Vec3& p : points) {
-    const double inside =
-        std::min({p.x - low.x, high.x - p.x, p.y - low.y, high.y - p.y, p.z - low.z, high.z - p.z});
-    if (inside > kTolerance * e.size) return std::nullopt;
-  }
-  MeshSurface s{MeshSurfaceKind::box, {}, 0.0, 0.5 * (high - low), 0.5 * (low + high)};
-  s.world_from_surface = Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, s.centre_mm);
-  return s;
-}
-
-std::optional<MeshSurface> as_hull(const Points& points, const Extent& e) {
+std::optional<MeshSurface> as_hull(const Points& points) {
+  const Vec3 mean = mean_of(points);
+  const double size_mm = size_of(points, mean);
   Points some;
   const std::size_t n = std::min(points.size(), kHullPoints);
   for (std::size_t i = 0; i < n; ++i) some.push_back(points[i * points.size() / n]);
@@ -166,26 +59,16 @@ std::optional<MeshSurface> as_hull(const Points& points, const Extent& e) {
   for (const Triangle& t : convex_hull(some)) {
     const Vec3 normal = cross(some[t[1]] - some[t[0]], some[t[2]] - some[t[0]]);
     const double size = length(normal);
-    if (size < 1e-9 * e.size * e.size) continue;  // slivers on flat faces have no direction of their own
-    const double sign = dot(normal, some[t[0]] - e.mean) < 0.0 ? -1.0 : 1.0;
+    if (size < 1e-9 * size_mm * size_mm) continue;  // slivers on flat faces have no direction of their own
+    const double sign = dot(normal, some[t[0]] - mean) < 0.0 ? -1.0 : 1.0;
     planes.push_back({(sign / size) * normal, dot((sign / size) * normal, some[t[0]])});
   }
   for (const Vec3& p : some) {
     double inside = 1e300;
     for (const Plane& plane : planes) inside = std::min(inside, plane.offset - dot(plane.normal, p));
-    if (inside > kHullTolerance * e.size) return std::nullopt;
+    if (inside > kHullTolerance * size_mm) return std::nullopt;
   }
-  return MeshSurface{MeshSurfaceKind::hull, {}, 0.0, {}, e.mean};
-}
-
-/// The plane's normal points where the light goes.
-MeshSurface as_plane(const RayBlock& rays, const Extent& e) {
-  Vec3 mean;
-  for (std::size_t i = 0, n = std::min(rays.size(), kLookAt); i < n; ++i)
-    mean += rays.direction(i * rays.size() / n);
-  const Vec3 normal = dot(mean, e.axes[2]) < 0.0 ? -e.axes[2] : e.axes[2];
-  const Frame frame = Frame::from_axis(Direction::from(normal), 0.0, e.mean);
-  return {MeshSurfaceKind::plane, frame, 0.0, {}, e.mean - e.size * normal};
+  return MeshSurface{MeshSurfaceKind::hull, {}, 0.0, {}, mean};
 }
 
 BoundingSurface bounding(const MeshSurface& s) {
@@ -252,33 +135,49 @@ Vec3 MeshSurface::normal(const Vec3& point_mm) const {
   return distance > 0.0 ? out / distance : Vec3{0, 0, 1};
 }
 
+namespace {
+
+Frame at(const Vec3& origin_mm) { return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, origin_mm}; }
+
+FoundSurface enclosing_sphere(const RayBlock& rays, const Vec3& centre_mm) {
+  double radius = 0.0;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    radius = std::max(radius, length(rays.origin_mm(i) - centre_mm));
+  // A little wider: the farthest start, rounded, must still be inside.
+  return {{MeshSurfaceKind::sphere, at(centre_mm), 1.001 * radius, {}, centre_mm}, true};
+}
+
+}  // namespace
+
 FoundSurface find_mesh_surface(const RayBlock& rays) {
   LUCERNA_CHECK(!rays.empty(), "no rays");
+  const SurfaceGuess guess = guess_surface(rays, kLeastShare);
   const Points points = look_at(rays);
-  const Extent e = extent_of(points);
-  // Starts at one point in a file of float32 differ by their rounding.
-  const double rounding = 1e-6 * (length(e.mean) + e.size);
-  if (e.reach[0] <= rounding) {
-    return {{MeshSurfaceKind::point, Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, e.mean), 0.0, {}, e.mean}};
+  const Frame& placed = guess.surface.world_from_surface;
+  switch (guess.shape) {
+    case StartShape::point:
+      return {{MeshSurfaceKind::point, at(guess.point_mm), 0.0, {}, guess.point_mm}};
+    case StartShape::line: {
+      const Frame z = Frame::from_axis(guess.line, 0.0, guess.point_mm);
+      return {
+          {MeshSurfaceKind::line, Frame(z.ez(), z.ex(), z.ey(), guess.point_mm), 0.0, {}, guess.point_mm}};
+    }
+    case StartShape::surface:
+      break;
+    case StartShape::scattered:
+      if (const auto s = as_hull(points)) return {*s};
+      return enclosing_sphere(rays, mean_of(points));
   }
-  const double flat = std::max(rounding, kTolerance * e.size);
-  if (e.reach[1] <= flat) {
-    const Direction along = Direction::from(e.axes[0]);
-    const Frame z = Frame::from_axis(along, 0.0, e.mean);
-    return {{MeshSurfaceKind::line, Frame(z.ez(), z.ex(), z.ey(), e.mean), 0.0, {}, e.mean}};
+  MeshSurface s{MeshSurfaceKind::sphere, placed, guess.surface.radius_mm, guess.surface.half_size_mm,
+                placed.origin_mm()};
+  if (guess.surface.kind == SurfaceKind::cylinder) s.kind = MeshSurfaceKind::cylinder;
+  if (guess.surface.kind == SurfaceKind::box) s.kind = MeshSurfaceKind::box;
+  if (guess.surface.kind == SurfaceKind::plane) {
+    s.kind = MeshSurfaceKind::plane;
+    const Vec3 middle = mean_of(points);
+    s.centre_mm = s.put_back(middle) - size_of(points, middle) * placed.ez();
   }
-  if (e.reach[2] <= flat) return {as_plane(rays, e)};
-  if (const auto s = as_sphere(points, e)) return {*s};
-  for (const Vec3& axis : {Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, e.axes[0], e.axes[1], e.axes[2]}) {
-    if (const auto s = as_cylinder(points, e, axis)) return {*s};
-  }
-  if (const auto s = as_box(points, e)) return {*s};
-  if (const auto s = as_hull(points, e)) return {*s};
-  double radius = 0.0;
-  for (std::size_t i = 0; i < rays.size(); ++i) radius = std::max(radius, length(rays.origin_mm(i) - e.mean));
-  MeshSurface s{
-      MeshSurfaceKind::sphere, Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, e.mean), 1.001 * radius, {}, e.mean};
-  return {s, true};
+  return {s};
 }
 
 }  // namespace lucerna

@@ -59,9 +59,9 @@ struct FoundSurface {
   bool slide = false;
 };
 
-/// The surface that the starts lie on, to within 1e-3 of their extent: point, line, plane, sphere, cylinder
-/// (about a coordinate or principal axis; open or closed), box along the axes, or their own convex hull; else
-/// a sphere round them. Needs one ray. Deterministic; looks at no more than 2^16 rays.
+/// The surface that the starts lie on: what rayset/surface_guess.h finds for 99 % of the flux (point, line,
+/// plane, sphere, cylinder, box), their own convex hull if no start of some thousand lies more than 1 % of
+/// the extent inside it, else a sphere round them. Needs one ray. Deterministic.
 FoundSurface find_mesh_surface(const RayBlock& rays);
 
 }  // namespace lucerna
