@@ -13,13 +13,17 @@ using AddCommand = void (*)(CLI::App& app, Session& session, int& exit_code);
 
 void add_init(CLI::App& app, Session& session, int& exit_code);
 void add_info(CLI::App& app, Session& session, int& exit_code);
+void add_check(CLI::App& app, Session& session, int& exit_code);
 void add_convert(CLI::App& app, Session& session, int& exit_code);
 void add_make_source(CLI::App& app, Session& session, int& exit_code);
+void add_compress(CLI::App& app, Session& session, int& exit_code);
+void add_sample(CLI::App& app, Session& session, int& exit_code);
 void add_trace(CLI::App& app, Session& session, int& exit_code);
+void add_compare(CLI::App& app, Session& session, int& exit_code);
 void add_report(CLI::App& app, Session& session, int& exit_code);
 
 /// In the order of `lucerna --help`.
-inline constexpr std::array<AddCommand, 6> kCommands{add_init,        add_info,  add_convert,
-                                                     add_make_source, add_trace, add_report};
+inline constexpr std::array kCommands{add_init,     add_info,   add_check, add_convert, add_make_source,
+                                      add_compress, add_sample, add_trace, add_compare, add_report};
 
 }  // namespace lucerna::cli

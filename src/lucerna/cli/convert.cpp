@@ -5,6 +5,7 @@
 
 #include "lucerna/cli/arguments.h"
 #include "lucerna/cli/commands.h"
+#include "lucerna/cli/photometric_arguments.h"
 #include "lucerna/core/error.h"
 #include "lucerna/rayset/ray_file.h"
 
@@ -13,9 +14,10 @@ namespace lucerna::cli {
 namespace {
 
 struct ConvertArguments {
-  std::string input, output, to, rays, seed = "1", flux, move;
+  std::string input, output, from, to, rays, seed = "1", flux, move;
   std::vector<std::string> rotations;
   bool salvage = false;
+  PhotometricArguments photometric;
 };
 
 RayConversion conversion_of(const ConvertArguments& a, bool strict) {
@@ -38,12 +40,30 @@ RayConversion conversion_of(const ConvertArguments& a, bool strict) {
   return conversion;
 }
 
-void convert(const ConvertArguments& a, Session& session) {
-  session.start();
+void convert_photometry(const ConvertArguments& a, Session& session) {
+  const auto format = photometric_format_for(a.output, a.to);
+  if (!format) {
+    throw UsageError(
+        fmt::format("{}: the input is a photometric file; give --to ies-2002, ies-2019 or ldt", a.output));
+  }
+  if (!a.rays.empty() || !a.flux.empty() || !a.rotations.empty() || !a.move.empty() || a.salvage) {
+    throw UsageError("--rays, --flux, --rotate, --move and --salvage are for ray files");
+  }
+  const PhotometricFile file = read_photometric_file(a.input, a.photometric.read_options(session.strict));
+  for (const Fault& repair : file.repairs)
+    session.note(fmt::format("{}: line {}: {}", a.input, repair.line, repair.text));
+  for (const Fault& note : file.notes) session.note(fmt::format("{}: {}", a.input, note.text));
+  write_photometric_file(a.output, file, *format, a.photometric.write_options());
+  session.say(fmt::format(
+      "{}: written; IES angles taken as {}", a.output,
+      a.photometric.ies_turn == "90" ? "H = C - 90, sizes kept" : "H = C, width and length swapped"));
+}
+
+void convert_rays(const ConvertArguments& a, Session& session) {
   const RayConversion conversion = conversion_of(a, session.strict);
   const std::string format = ray_format_for(a.output, a.to);
   const auto result = session.timed("convert", [&] {
-    return convert_ray_file(a.input, a.output, format, conversion, {.salvage = a.salvage},
+    return convert_ray_file(a.input, a.output, format, conversion, {.salvage = a.salvage, .format = a.from},
                             session.progress());
   });
   for (const std::string& warning : result.warnings) session.note(warning);
@@ -52,14 +72,25 @@ void convert(const ConvertArguments& a, Session& session) {
       result.flux ? fmt::format(" of {:.6g} {}", *result.flux, symbol(result.flux_unit)) : "", format));
 }
 
+void convert(const ConvertArguments& a, Session& session) {
+  session.start();
+  if (a.from.empty() && is_photometric_file(a.input)) {
+    convert_photometry(a, session);
+  } else {
+    convert_rays(a, session);
+  }
+}
+
 }  // namespace
 
 void add_convert(CLI::App& app, Session& session, int&) {
-  CLI::App& command = *app.add_subcommand("convert", "Convert, thin, turn and move a ray file");
+  CLI::App& command =
+      *app.add_subcommand("convert", "Convert ray files (thin, turn, move) and photometric files");
   auto arguments = std::make_shared<ConvertArguments>();
   ConvertArguments& a = *arguments;
   command.add_option("IN", a.input, "The file to read")->required();
   command.add_option("OUT", a.output, "The file to write")->required();
+  command.add_option("--from", a.from, "Read IN as this ray-file format, whatever its content says");
   command.add_option("--to", a.to, "Format of OUT (default: by its ending)");
   command.add_option("--rays", a.rays,
                      "Keep so many rays, spread over the file; their flux stays that of all");
@@ -69,6 +100,7 @@ void add_convert(CLI::App& app, Session& session, int&) {
   command.add_option("--rotate", a.rotations, "Turn about an axis through the origin: z:90; may be repeated")
       ->allow_extra_args(false);
   command.add_option("--move", a.move, "Then move by X,Y,Z mm");
+  a.photometric.add_read(command);
   session.add_strict(command);
   session.add_common(command);
   command.callback([arguments, &session] { convert(*arguments, session); });

@@ -129,6 +129,72 @@ TEST(ProgramCli, TwoSourcesAdd) {
   EXPECT_EQ(Json::parse(run.out)["ledger"]["emitted"], 1500.0);
 }
 
+TEST(ProgramCli, AModelIsMadeSampledComparedAndTraced) {
+  const TempDir dir;
+  make_source(dir, "disk -n 30000 --surface sphere --surface-mm 3 --flux-lm 200");
+  const auto made = run_lucerna(dir.path(), "compress s.tm25ray -o s.nfl --json --method clusters");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const Json result = Json::parse(made.out);
+  EXPECT_EQ(result["method"], "clusters");
+  EXPECT_EQ(result["rays"], 30000);
+  EXPECT_NEAR(result["flux_lm"].get<double>(), 200.0, 2e-4);
+  EXPECT_EQ(result["bytes"], std::filesystem::file_size(dir / "s.nfl"));
+  const Json info = Json::parse(run_lucerna(dir.path(), "info s.nfl --json").out)["files"][0];
+  EXPECT_EQ(info["format"], "nfl");
+  ASSERT_EQ(run_lucerna(dir.path(), "sample s.nfl -n 2e4 -o t.tm25ray --sequence sobol").exit_code, 0);
+  EXPECT_EQ(run_lucerna(dir.path(), "sample s.nfl -n 0 -o u.tm25ray").exit_code, 1);
+  const auto compared = run_lucerna(dir.path(), "compare s.tm25ray t.tm25ray --json");
+  ASSERT_EQ(compared.exit_code, 0) << compared.err;
+  const Json views = Json::parse(compared.out)["views"];
+  for (const char* view : {"far", "near", "focus", "beam", "four_d"}) {
+    for (const char* key : {"error", "floor", "excess", "standard_error", "raw"})
+      EXPECT_TRUE(views[view].contains(key));
+  }
+  EXPECT_LT(views["far"]["excess"].get<double>(), 0.5);
+  std::string project = kProject;
+  project.replace(project.find("s.tm25ray"), 9, "s.nfl");
+  write_file(dir / "p.toml", project);
+  const auto traced = run_lucerna(dir.path(), "trace p.toml -o out --rays 2e4 --json");
+  ASSERT_EQ(traced.exit_code, 0) << traced.err;
+  EXPECT_NEAR(Json::parse(traced.out)["ledger"]["emitted"].get<double>(), 200.0, 1e-3);
+}
+
+TEST(ProgramCli, DamagedModelsAreOneClearLine) {
+  const TempDir dir;
+  make_source(dir, "disk -n 5000");
+  ASSERT_EQ(run_lucerna(dir.path(), "compress s.tm25ray -o s.nfl").exit_code, 0);
+  const std::string whole = slurp(dir / "s.nfl");
+  std::string flipped = whole;
+  flipped[flipped.size() / 2] = static_cast<char>(flipped[flipped.size() / 2] ^ 0x10);
+  write_file(dir / "flipped.nfl", flipped);
+  write_file(dir / "cut.nfl", whole.substr(0, whole.size() - 9));
+  for (const char* name : {"flipped.nfl", "cut.nfl"}) {
+    const auto run = run_lucerna(dir.path(), std::string("info ") + name);
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_EQ(lines(run.err), 1u) << run.err;
+    EXPECT_TRUE(has(run.err, name)) << run.err;
+  }
+}
+
+TEST(ProgramCli, PhotometricFilesAreDescribedCheckedConvertedAndCompared) {
+  const TempDir dir;
+  make_source(dir);
+  write_file(dir / "p.toml", kProject);
+  ASSERT_EQ(run_lucerna(dir.path(), "trace p.toml -o out --rays 2e4").exit_code, 0);
+  const Json info = Json::parse(run_lucerna(dir.path(), "info out/far-field.ldt --json").out)["files"][0];
+  EXPECT_NEAR(info["flux_lm"].get<double>(), 900.0, 1.0);
+  ASSERT_EQ(run_lucerna(dir.path(), "convert out/far-field.ldt b.ies --to ies-2002").exit_code, 0);
+  const Json compared = Json::parse(run_lucerna(dir.path(), "compare out/far-field.ldt b.ies --json").out);
+  EXPECT_LT(compared["relative_rms"].get<double>(), 1e-5);
+  EXPECT_NEAR(compared["overlap"].get<double>(), 1.0, 1e-5);
+  EXPECT_EQ(run_lucerna(dir.path(), "check out/far-field.ldt out/far-field.ies b.ies").exit_code, 0);
+  write_file(dir / "bad.ies", slurp(dir / "b.ies").substr(0, 900));
+  const auto checked = run_lucerna(dir.path(), "check bad.ies b.ies --json");
+  EXPECT_EQ(checked.exit_code, 1);
+  EXPECT_EQ(Json::parse(checked.out)["with_errors"], 1);
+  EXPECT_EQ(run_lucerna(dir.path(), "compare b.ies s.tm25ray").exit_code, 1);
+}
+
 TEST(ProgramCli, InitWritesAProjectThatTraces) {
   const TempDir dir;
   ASSERT_EQ(run_lucerna(dir.path(), "init -o p.toml").exit_code, 0);

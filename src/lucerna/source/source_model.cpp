@@ -6,6 +6,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
+#include "lucerna/source/adaptive_model.h"
 #include "lucerna/source/cluster_model.h"
 
 namespace lucerna {
@@ -14,8 +15,10 @@ std::unique_ptr<SourceModel> load_source_model(const std::filesystem::path& path
   const std::string bytes = read_file(path, kNflLargestFile);
   const NflFile file = decode_nfl(bytes, path.string());
   if (file.method == kClusterMethod) return ClusterModel::from_nfl(file, path.string());
-  throw_input_error(path.string(), "byte 12", "method '{}' is not known; expected '{}'",
-                    printable_tag(file.method), printable_tag(kClusterMethod));
+  if (file.method == kAdaptiveMethod) return AdaptiveModel::from_nfl(file, path.string());
+  throw_input_error(path.string(), "byte 12", "method '{}' is not known; expected '{}' or '{}'",
+                    printable_tag(file.method), printable_tag(kClusterMethod),
+                    printable_tag(kAdaptiveMethod));
 }
 
 std::uint64_t save_source_model(const std::filesystem::path& path, const SourceModel& model) {

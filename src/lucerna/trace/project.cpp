@@ -10,6 +10,7 @@
 #include "lucerna/reflector/smooth_shape.h"
 #include "lucerna/source/emitter.h"
 #include "lucerna/source/ray_set_source.h"
+#include "lucerna/source/source_model.h"
 #include "lucerna/trace/toml_reader.h"
 
 namespace lucerna {
@@ -91,6 +92,18 @@ std::shared_ptr<const RaySource> read_ray_file_source(TomlReader& reader, const 
   return std::make_shared<RaySetSource>(std::move(rays), file.string());
 }
 
+/// A model; PlacedSource::flux overrides what it holds.
+std::shared_ptr<const RaySource> read_model_source(TomlReader& reader, const fs::path& file,
+                                                   const std::optional<GivenFlux>& flux) {
+  std::shared_ptr<const RaySource> model = load_source_model(file);
+  if (flux && flux->unit != model->flux_unit()) {
+    reader.fail(flux->unit == FluxUnit::lumen ? "flux_lm" : "flux_w",
+                fmt::format("the model {} carries {}; lumen and watt are never mixed", file.string(),
+                            symbol(model->flux_unit())));
+  }
+  return model;
+}
+
 PlacedSource read_source(TomlReader reader, Project& project, Progress& progress) {
   PlacedSource source;
   source.world_from_source = read_placement(reader);
@@ -99,7 +112,12 @@ PlacedSource read_source(TomlReader reader, Project& project, Progress& progress
   if (file) {
     if (reader.has("kind")) reader.fail("kind", "a source has either a file or a kind");
     project.inputs.push_back(*file);
-    source.rays = read_ray_file_source(reader, *file, flux, project, progress);
+    if (is_source_model(*file)) {
+      source.rays = read_model_source(reader, *file, flux);
+      if (flux) source.flux = flux->flux;
+    } else {
+      source.rays = read_ray_file_source(reader, *file, flux, project, progress);
+    }
   } else {
     if (!reader.has("kind")) reader.fail("kind", "is missing: a source needs a file or a kind");
     source.rays = read_emitter(reader, flux);

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/rayset/compare.h"
+
+#include <fmt/format.h>
+
+#include "lucerna/cli/arguments.h"
+#include "lucerna/cli/commands.h"
+#include "lucerna/cli/describe.h"
+#include "lucerna/cli/photometric_arguments.h"
+#include "lucerna/core/error.h"
+#include "lucerna/photometry/compare_distributions.h"
+#include "lucerna/rayset/ray_file.h"
+#include "lucerna/source/draw_rays.h"
+#include "lucerna/source/source_model.h"
+
+namespace lucerna::cli {
+
+namespace {
+
+struct CompareArguments {
+  std::string reference, test, rays = "4e6", seed = "1";
+  PhotometricArguments photometric;
+};
+
+/// The rays of a file, or as many as asked for from a model.
+RayBlock rays_of(const std::string& path, const CompareArguments& a, std::uint64_t stream, Session& session) {
+  session.add_input(path);
+  if (!is_source_model(path)) {
+    std::vector<std::string> warnings;
+    RaySet set = read_ray_set(path, {}, session.progress(), &warnings);
+    for (const std::string& warning : warnings) session.note(warning);
+    return std::move(set.rays);
+  }
+  const auto model = load_source_model(path);
+  const Sequence sequence(SequenceKind::random, parse_count(a.seed) + stream);
+  return draw_rays(*model, sequence, static_cast<std::size_t>(parse_count(a.rays)));
+}
+
+Json views_json(const RaySetComparison& comparison) {
+  Json views;
+  for (const ViewKind kind : kViewKinds) {
+    const ViewDifference& d = comparison[kind];
+    views[std::string(to_string(kind))] = {{"error", to_json(d.error)},
+                                           {"floor", to_json(d.floor)},
+                                           {"excess", to_json(d.excess)},
+                                           {"standard_error", to_json(d.standard_error)},
+                                           {"raw", to_json(d.raw)}};
+  }
+  return views;
+}
+
+void compare_photometry(const CompareArguments& a, Session& session) {
+  const auto read = [&](const std::string& path) {
+    session.add_input(path);
+    return read_photometric_file(path, a.photometric.read_options(session.strict)).distribution;
+  };
+  const IntensityDistribution reference = session.timed("read", [&] { return read(a.reference); });
+  const IntensityDistribution test = session.timed("read", [&] { return read(a.test); });
+  const DistributionComparison c =
+      session.timed("compare", [&] { return compare_distributions(reference, test); });
+  Json json = session.json_head(std::nullopt);
+  json["relative_rms"] = c.relative_rms;
+  json["bergen_fit"] = c.bergen_fit;
+  json["bergen_fit_unweighted"] = c.bergen_fit_unweighted;
+  json["flux_ratio"] = c.flux_ratio;
+  json["peak_ratio"] = c.peak_ratio;
+  json["wasserstein_deg"] = c.wasserstein_deg;
+  json["overlap"] = c.overlap;
+  if (c.alignment) {
+    json["alignment"] = {{"tilt_deg", c.alignment->tilt_deg},
+                         {"tilt_toward_c_deg", c.alignment->tilt_toward_c_deg},
+                         {"turn_deg", c.alignment->turn_deg},
+                         {"relative_rms", c.alignment->relative_rms}};
+  }
+  session.print_json(json);
+  session.say(fmt::format("{} against {}", a.test, a.reference));
+  session.say(fmt::format("  relative RMS        {:.4g} %", 100.0 * c.relative_rms));
+  session.say(fmt::format("  Bergen fit          {:.3f} (100 = equal; by solid angle), {:.3f} unweighted",
+                          c.bergen_fit, c.bergen_fit_unweighted));
+  session.say(fmt::format("  flux, peak          {:.5g}, {:.5g} times", c.flux_ratio, c.peak_ratio));
+  session.say(fmt::format("  Wasserstein-1       {:.4g} deg", c.wasserstein_deg));
+  session.say(
+      fmt::format("  overlap             {:.3f} % of the flux in the right place", 100.0 * c.overlap));
+  if (c.alignment) {
+    session.say(fmt::format(
+        "  best alignment      tilt {:.3g} deg toward C {:.0f}, turn {:.3g} deg; then relative RMS {:.4g} %",
+        c.alignment->tilt_deg, c.alignment->tilt_toward_c_deg, c.alignment->turn_deg,
+        100.0 * c.alignment->relative_rms));
+  }
+}
+
+void compare_rays(const CompareArguments& a, Session& session) {
+  const RayBlock reference = session.timed("read", [&] { return rays_of(a.reference, a, 0, session); });
+  const RayBlock test = session.timed("read", [&] { return rays_of(a.test, a, 1, session); });
+  const RaySetComparison comparison =
+      session.timed("compare", [&] { return compare_ray_sets(reference, test); });
+  Json json = session.json_head(parse_count(a.seed));
+  json["rays"] = {reference.size(), test.size()};
+  json["views"] = views_json(comparison);
+  session.print_json(json);
+  session.say(fmt::format("{} ({} rays) against {} ({} rays); shares of the l2 norm, in per cent", a.test,
+                          test.size(), a.reference, reference.size()));
+  session.say(
+      fmt::format("  {:<8}{:>10}{:>10}{:>10}{:>10}{:>10}", "view", "error", "floor", "excess", "+-", "raw"));
+  for (const ViewKind kind : kViewKinds) {
+    const ViewDifference& d = comparison[kind];
+    session.say(fmt::format("  {:<8}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}", to_string(kind),
+                            100.0 * d.error, 100.0 * d.floor, 100.0 * d.excess, 100.0 * d.standard_error,
+                            100.0 * d.raw));
+  }
+}
+
+void compare(const CompareArguments& a, Session& session) {
+  session.start();
+  const bool photometric = is_photometric_file(a.reference);
+  if (photometric != is_photometric_file(a.test)) {
+    throw InputError(fmt::format("{}: a photometric file and a ray file or model cannot be compared",
+                                 photometric ? a.reference : a.test));
+  }
+  if (photometric) {
+    compare_photometry(a, session);
+  } else {
+    compare_rays(a, session);
+  }
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, Session& session, int&) {
+  CLI::App& command =
+      *app.add_subcommand("compare", "Compare two ray sets or models, or two photometric files");
+  auto arguments = std::make_shared<CompareArguments>();
+  CompareArguments& a = *arguments;
+  command.add_option("A", a.reference, "Reference: a ray file, model, IES or EULUMDAT file")->required();
+  command.add_option("B", a.test, "Test: likewise")->required();
+  command.add_option("--rays", a.rays, "Rays drawn from a model")->capture_default_str();
+  command.add_option("--seed", a.seed, "Seed of those rays")->capture_default_str();
+  a.photometric.add_read(command);
+  session.add_json(command);
+  session.add_strict(command);
+  session.add_common(command);
+  command.callback([arguments, &session] { compare(*arguments, session); });
+}
+
+}  // namespace lucerna::cli

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "lucerna/cli/arguments.h"
+#include "lucerna/cli/commands.h"
+#include "lucerna/core/error.h"
+#include "lucerna/rayset/ray_file.h"
+#include "lucerna/rayset/superpose.h"
+#include "lucerna/source/adaptive_compress.h"
+#include "lucerna/source/cluster_compress.h"
+
+namespace lucerna::cli {
+
+namespace {
+
+struct CompressArguments {
+  std::vector<std::string> inputs;
+  std::string output, method = "adaptive", max_bytes, flux, seed = "1";
+};
+
+/// All inputs as one set; a given flux replaces what one file states, or scales the sum of several.
+RaySet read_inputs(const CompressArguments& a, Session& session) {
+  RaySet all;
+  std::vector<std::string> warnings;
+  for (const std::string& path : a.inputs) {
+    RaySet set = read_ray_set(path, {}, session.progress(), &warnings);
+    session.add_input(path);
+    if (a.inputs.size() == 1) {
+      all = std::move(set);
+    } else {
+      superpose(all, std::move(set), path);
+    }
+  }
+  for (const std::string& warning : warnings) {
+    if (session.strict) throw InputError(warning);
+    session.note(warning);
+  }
+  if (!a.flux.empty()) {
+    const double flux = parse_number(a.flux);
+    if (!(flux > 0.0)) throw UsageError(fmt::format("--flux {} is not > 0", a.flux));
+    all.header.set_flux(flux);
+  }
+  require_flux(all.header, a.inputs.front());
+  return all;
+}
+
+std::unique_ptr<SourceModel> make_model(const CompressArguments& a, const RaySet& rays, Session& session) {
+  std::optional<std::uint64_t> max_bytes;
+  if (!a.max_bytes.empty()) max_bytes = parse_size(a.max_bytes);
+  const std::uint64_t seed = parse_count(a.seed);
+  if (a.method == "adaptive") {
+    return compress_adaptive(rays, {.max_bytes = max_bytes, .seed = seed}, session.progress());
+  }
+  if (a.method == "clusters") {
+    return compress_clusters(rays, {.max_bytes = max_bytes, .seed = seed}, session.progress());
+  }
+  throw UsageError(fmt::format("unknown method '{}'; expected adaptive or clusters", a.method));
+}
+
+void compress(const CompressArguments& a, Session& session) {
+  session.start();
+  const RaySet rays = session.timed("read", [&] { return read_inputs(a, session); });
+  const auto model = session.timed("compress", [&] { return make_model(a, rays, session); });
+  const std::uint64_t bytes = session.timed("write", [&] { return save_source_model(a.output, *model); });
+  Json json = session.json_head(parse_count(a.seed));
+  json["method"] = std::string(model->method());
+  json["rays"] = rays.rays.size();
+  json["bytes"] = bytes;
+  json["layers"] = model->layers();
+  json["leaves"] = model->leaves();
+  json[model->flux_unit() == FluxUnit::lumen ? "flux_lm" : "flux_w"] = model->flux();
+  session.print_json(json);
+  const double ratio = 28.0 * static_cast<double>(rays.rays.size()) / static_cast<double>(bytes);
+  session.say(fmt::format(
+      "{}: {} rays to {} bytes ({:.3g} times smaller), method {}, {} layer(s), {} leaves, {:g} {}; {:.3g} s",
+      a.output, rays.rays.size(), bytes, ratio, model->method(), model->layers(), model->leaves(),
+      model->flux(), symbol(model->flux_unit()), session.seconds("compress")));
+}
+
+}  // namespace
+
+void add_compress(CLI::App& app, Session& session, int&) {
+  CLI::App& command = *app.add_subcommand("compress", "Make a small source model of ray files");
+  auto arguments = std::make_shared<CompressArguments>();
+  CompressArguments& a = *arguments;
+  command.add_option("IN", a.inputs, "Ray files; several are superposed, their fluxes add")->required();
+  command.add_option("-o,--output", a.output, "The model file to write (.nfl)")->required();
+  command.add_option("--method", a.method, "adaptive, or clusters: the seed's anisotropic point lights")
+      ->capture_default_str();
+  command.add_option("--max-bytes", a.max_bytes, "Largest size of the file (64k, 1MB, 64KiB)");
+  command.add_option("--flux", a.flux, "Total flux, in the rays' unit, instead of what the files state");
+  command.add_option("--seed", a.seed, "Seed of the random choices")->capture_default_str();
+  session.add_json(command);
+  session.add_strict(command);
+  session.add_common(command);
+  command.callback([arguments, &session] { compress(*arguments, session); });
+}
+
+}  // namespace lucerna::cli

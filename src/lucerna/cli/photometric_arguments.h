@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "lucerna/photometry/photometric_io.h"
+
+namespace lucerna::cli {
+
+/// The options that say how IES and EULUMDAT files are meant: --ies-turn and --isym3.
+struct PhotometricArguments {
+  std::string ies_turn = "0", isym3 = "standard";
+
+  void add_read(CLI::App& command);
+  PhotometricReadOptions read_options(bool strict) const;
+  PhotometricWriteOptions write_options() const;
+};
+
+/// The photometric format that `--to` names or the ending says (.ies is ies-2019, .ldt); nothing if neither
+/// does.
+std::optional<PhotometricFormat> photometric_format_for(const std::string& path, const std::string& to);
+
+}  // namespace lucerna::cli

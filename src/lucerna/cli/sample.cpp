@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "lucerna/cli/arguments.h"
+#include "lucerna/cli/commands.h"
+#include "lucerna/core/error.h"
+#include "lucerna/core/version.h"
+#include "lucerna/rayset/ray_file.h"
+#include "lucerna/source/draw_rays.h"
+#include "lucerna/source/source_model.h"
+
+namespace lucerna::cli {
+
+namespace {
+
+struct SampleArguments {
+  std::string model, output, count, to, seed = "1", sequence = "random";
+};
+
+void sample(const SampleArguments& a, Session& session) {
+  session.start();
+  const std::uint64_t n = parse_count(a.count);
+  const std::string format = ray_format_for(a.output, a.to);
+  const Sequence sequence(sequence_kind(a.sequence), parse_count(a.seed));
+  const auto model = session.timed("read", [&] { return load_source_model(a.model); });
+  if (n == 0) throw InputError("-n 0: zero rays asked for, expected at least one");
+  RaySetHeader header;
+  header.flux_unit = model->flux_unit();
+  header.set_flux(model->flux());
+  header.texts.light_source = "sampled from " + std::filesystem::path(a.model).filename().string();
+  header.texts.file_creator = fmt::format("Lucerna {}", version());
+  header.creation_method = 0;
+  const auto warnings = session.timed("write", [&] {
+    return draw_rays(*model, sequence, n, *create_ray_file(a.output, format, header, n), session.progress());
+  });
+  for (const std::string& warning : warnings) session.note(fmt::format("{}: {}", a.output, warning));
+  session.say(fmt::format("{}: {} rays of {:g} {} as {}, {:.1f} M rays/s", a.output, n, model->flux(),
+                          symbol(model->flux_unit()), format,
+                          1e-6 * static_cast<double>(n) / session.seconds("write")));
+}
+
+}  // namespace
+
+void add_sample(CLI::App& app, Session& session, int&) {
+  CLI::App& command = *app.add_subcommand("sample", "Draw rays from a model");
+  auto arguments = std::make_shared<SampleArguments>();
+  SampleArguments& a = *arguments;
+  command.add_option("MODEL", a.model, "A model file (.nfl)")->required();
+  command.add_option("-o,--output", a.output, "The ray file to write")->required();
+  command.add_option("-n,--rays", a.count, "Number of rays")->required();
+  command.add_option("--to", a.to, "Format of the file (default: by its ending)");
+  command.add_option("--seed", a.seed, "Seed of the random numbers")->capture_default_str();
+  command.add_option("--sequence", a.sequence, "random or sobol")->capture_default_str();
+  session.add_common(command);
+  command.callback([arguments, &session] { sample(*arguments, session); });
+}
+
+}  // namespace lucerna::cli
