@@ -21,10 +21,10 @@ struct IlluminatedPlane {
   double cell_y_mm() const { return size_y_mm / static_cast<double>(ny); }
   /// Places of the cell centres in the plane: x of column ix, y of row iy.
   double x_mm(std::size_t ix) const {
-    return (static_cast<double>(ix) + 0.5) * cell_x_mm() - 0.5 * size_x_mm;
+    return (static_cast<double>(2 * ix + 1) - static_cast<double>(nx)) * (0.5 * cell_x_mm());
   }
   double y_mm(std::size_t iy) const {
-    return (static_cast<double>(iy) + 0.5) * cell_y_mm() - 0.5 * size_y_mm;
+    return (static_cast<double>(2 * iy + 1) - static_cast<double>(ny)) * (0.5 * cell_y_mm());
   }
 };
 

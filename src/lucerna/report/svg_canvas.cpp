@@ -61,6 +61,16 @@ void SvgCanvas::polyline(const std::vector<SvgPoint>& points, const SvgStyle& st
   body_ += fmt::format("\"{}/>\n", attributes(style));
 }
 
+void SvgCanvas::area(const std::vector<std::vector<SvgPoint>>& rings, const SvgStyle& style) {
+  body_ += "<path fill-rule=\"evenodd\" d=\"";
+  for (const auto& ring : rings) {
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      body_ += fmt::format("{}{:.2f},{:.2f}", i == 0 ? 'M' : ' ', ring[i].x, ring[i].y);
+    body_ += 'Z';
+  }
+  body_ += fmt::format("\"{}/>\n", attributes(style));
+}
+
 void SvgCanvas::circle(SvgPoint centre, double radius, const SvgStyle& style) {
   body_ += fmt::format("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.2f}\"{}/>\n", centre.x, centre.y, radius,
                        attributes(style));

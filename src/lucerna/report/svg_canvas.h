@@ -38,6 +38,8 @@ class SvgCanvas {
 
   void line(SvgPoint a, SvgPoint b, const SvgStyle& style);
   void polyline(const std::vector<SvgPoint>& points, const SvgStyle& style, bool closed = false);
+  /// The area inside an odd number of the closed rings: rings in rings are holes.
+  void area(const std::vector<std::vector<SvgPoint>>& rings, const SvgStyle& style);
   void circle(SvgPoint centre, double radius, const SvgStyle& style);
   void rectangle(SvgPoint corner, double width, double height, const SvgStyle& style);
   /// `text` is UTF-8; `y` of the point is the base line.

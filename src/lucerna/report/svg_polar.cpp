@@ -8,6 +8,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/photometry/beam.h"
+#include "lucerna/report/svg_axes.h"
 #include "lucerna/report/svg_canvas.h"
 
 namespace lucerna {
@@ -168,9 +169,7 @@ std::string polar_svg(const IntensityDistribution& d, const PolarOptions& option
     if (const std::string fault = grid_fault(*each); !fault.empty())
       throw InputError("polar diagram: " + fault);
   }
-  const bool per_klm = options.lamp_flux_lm && *options.lamp_flux_lm > 0.0 && d.unit == FluxUnit::lumen;
-  const double shown_per_cd = per_klm ? 1000.0 / *options.lamp_flux_lm : 1.0;
-  const std::string unit = per_klm ? "cd/klm" : d.unit == FluxUnit::lumen ? "cd" : "W/sr";
+  const auto [shown_per_cd, unit] = shown_intensity(d, options.lamp_flux_lm);
   double peak = peak_within(d, 0.0, 180.0);
   if (options.reference != nullptr) peak = std::max(peak, peak_within(*options.reference, 0.0, 180.0));
   const double step = nice_step(peak * shown_per_cd, 5) / shown_per_cd;
