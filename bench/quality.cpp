@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -161,6 +162,21 @@ void run(const Case& c, const ClusterOptions& model_options, const Options& opti
         to_string(model->data().surface.kind), s.rounds, s.cells_with_light, s.rays, model->flux(),
         *c.training.header.flux(), peak_gb());
     print_views(r);
+    for (const ViewKind kind : kViewKinds) {
+      double norm = 0.0, cells = 0.0;
+      const std::size_t rest = views.cell_count(kind) - 1;
+      const auto share = [&](const ViewCounts& counts, std::size_t i) {
+        return counts.weights(kind)[i] / counts.total_weight();
+      };
+      for (std::size_t i = 0; i <= rest; ++i) {
+        norm += share(truth, i) * share(truth, i);
+        if (i < rest) cells += std::pow(share(truth, i) - share(drawn, i), 2.0);
+      }
+      fmt::print(
+          "    {:<7} outside the window {:.4f} of the truth, {:.4f} of the model; error inside alone "
+          "{:.4f}\n",
+          to_string(kind), share(truth, rest), share(drawn, rest), std::sqrt(cells / norm));
+    }
   }
   if (!options.pictures.empty()) write_pictures(options.pictures, c.name, truth, drawn);
   if (!options.save.empty()) {
