@@ -376,6 +376,9 @@ SurfaceGuess guess_surface(const RayBlock& rays, double min_share) {
     surface.world_from_surface = frame_of(axes_about(normal), middle);
     guesses.push_back(guess_with(s, surface));
   }
+  // A sphere of any radius holds what a plane holds: the simpler one goes first.
+  const double enough = std::max(min_share, 1.0 - kSimplerBy);
+  if (guesses.back().share >= enough) return guesses.back();
   const auto sphere =
       consensus<Sphere>(s, 4, [](const std::vector<Vector3d>& points) { return fit_round(points, 3); });
   if (near_points(s, sphere).size() >= kFewest) {
@@ -383,7 +386,7 @@ SurfaceGuess guess_surface(const RayBlock& rays, double min_share) {
     surface.world_from_surface = frame_of(Matrix3d::Identity(), sphere.centre);
     guesses.push_back(guess_with(s, surface));
   }
-  if (guesses.back().share >= 1.0 - kSimplerBy) return guesses.back();
+  if (guesses.back().share >= enough) return guesses.back();
   const std::vector<Matrix3d> axes = candidate_axes(s, plane);
   guesses.push_back(best_of(s, as_z(axes), try_cylinder));
   guesses.push_back(best_of(s, axes, try_box));

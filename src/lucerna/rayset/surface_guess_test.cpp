@@ -62,6 +62,20 @@ TEST(SurfaceGuess, FindsEveryKindInAnyPlaceThroughStrayRays) {
   }
 }
 
+TEST(SurfaceGuess, APlaneIsNoHugeSphere) {
+  RayBlock rays = test::random_ray_set(20000, 11).rays;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Rng rng(3, i);
+    const Vec3 p{3.0 * rng.uniform(), 2.0 * rng.uniform(), 0.0};
+    rays.set(i, {kTilted.point(p), kTilted.direction({})});
+  }
+  for (const double min_share : {0.9, 0.999}) {
+    const SurfaceGuess guess = guess_surface(rays, min_share);
+    EXPECT_EQ(guess.surface.kind, SurfaceKind::plane) << describe(guess);
+    EXPECT_GT(guess.share, 0.999);
+  }
+}
+
 TEST(SurfaceGuess, PointsLinesAndVolumes) {
   RayBlock rays = test::random_ray_set(3000, 5).rays;
   EXPECT_EQ(guess_surface(rays).shape, StartShape::scattered);
