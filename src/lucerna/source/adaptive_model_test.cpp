@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/file.h"
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/draw_rays.h"
 #include "lucerna/source/emitter.h"
@@ -75,9 +74,9 @@ TEST(AdaptiveModel, SurvivesItsFile) {
 
 TEST(AdaptiveModel, FrozenFileOfVersion1Reads) {
   const std::string path = std::string(LUCERNA_SOURCE_DIR) + "/tests/data/adaptive_v1.nfl";
-  const auto model = AdaptiveModel::from_nfl(decode_nfl(read_file(path, 1 << 20), path), path);
+  const auto model = load_source_model(path);
   EXPECT_EQ(model->method(), "adaptive");
-  EXPECT_EQ(model->data().layers, small_data().layers);
+  EXPECT_EQ(dynamic_cast<const AdaptiveModel&>(*model).data().layers, small_data().layers);
 }
 
 TEST(AdaptiveModelFuzz, DamagedSectionsAreRefusedOrReadable) {
