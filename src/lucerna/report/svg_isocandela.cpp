@@ -33,15 +33,15 @@ void draw_bands(SvgCanvas& canvas, const SampledField& field, double peak) {
 /// What the bands or lines mean, from `at` downwards.
 void draw_scale(SvgCanvas& canvas, SvgPoint at, double peak, const ShownIntensity& unit, bool lines) {
   const SvgText number{.size = 12.0, .anchor = "end"};
-  canvas.text({at.x + 62.0, at.y - 10.0}, "of peak", {.size = 12.0, .anchor = "end", .fill = "#444"});
-  canvas.text({at.x + 112.0, at.y - 10.0}, unit.name, {.size = 12.0, .anchor = "end", .fill = "#444"});
+  canvas.text({at.x + 68.0, at.y - 10.0}, "of peak", {.size = 12.0, .anchor = "end", .fill = "#444"});
+  canvas.text({at.x + 118.0, at.y - 10.0}, unit.name, {.size = 12.0, .anchor = "end", .fill = "#444"});
   for (std::size_t i = 0; i < kBands + (lines ? 0 : 1); ++i) {
     const double y = at.y + 20.0 * static_cast<double>(i);
     canvas.rectangle({at.x, y}, 16.0, 16.0, {.stroke = "#777", .width = 0.6, .fill = band_color(i)});
     const double share = kPeakShares[std::min(i, kBands - 1)];
     const std::string sign = lines ? "" : i == kBands ? "< " : "≥ ";
-    canvas.text({at.x + 62.0, y + 12.5}, fmt::format("{}{:g} %", sign, 100.0 * share), number);
-    canvas.text({at.x + 112.0, y + 12.5}, label_number(share * peak * unit.per_cd), number);
+    canvas.text({at.x + 68.0, y + 12.5}, fmt::format("{}{:g} %", sign, 100.0 * share), number);
+    canvas.text({at.x + 118.0, y + 12.5}, label_number(share * peak * unit.per_cd), number);
   }
 }
 
@@ -168,7 +168,7 @@ std::string isocandela_svg(const IntensityDistribution& d, const DiagramOptions&
   canvas.text({kLeft, 76.0}, "V ↑ C0", {.size = 12.0, .fill = "#555"});
   canvas.text({kLeft + kSize, kTop + kSize + 36.0}, up ? "H → C90" : "H → C270",
               {.size = 12.0, .anchor = "end", .fill = "#555"});
-  draw_scale(canvas, {kLeft + kSize + 16.0, kTop + 16.0}, peak, unit, true);
+  draw_scale(canvas, {kLeft + kSize + 14.0, kTop + 16.0}, peak, unit, true);
   canvas.text({kLeft, kTop + kSize + 54.0},
               fmt::format("Largest intensity shown {} {}; heavy lines: 50 % (beam) and 10 % (field)",
                           label_number(peak * unit.per_cd), unit.name));
@@ -188,7 +188,7 @@ std::string sphere_svg(const IntensityDistribution& d, const DiagramOptions& opt
   constexpr double kRadius = 145.0;
   draw_hemisphere(canvas, d, {172.0, 232.0}, kRadius, false, peak.cd);
   draw_hemisphere(canvas, d, {502.0, 232.0}, kRadius, true, peak.cd);
-  draw_scale(canvas, {680.0, 130.0}, peak.cd, unit, false);
+  draw_scale(canvas, {672.0, 130.0}, peak.cd, unit, false);
   return canvas.str();
 }
 
