@@ -3,6 +3,9 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
 #include <numeric>
 #include <type_traits>
 #include <utility>
@@ -77,7 +80,10 @@ Eigen::MatrixXd interpolation(const KnotRow& row) {
 
 double greville(const KnotRow& row, int i) { return row.start_mm + (i - 1) * row.step_mm; }
 
-RevolutionShape refine(const RevolutionShape& s, int intervals, int) {
+using Height = std::function<double(double, double)>;
+
+/// The spline on `row` whose offset from the paraboloid agrees with `offset` at the Greville points.
+RevolutionShape interpolate(const RevolutionShape& s, int intervals, int, const Height& offset) {
   const KnotRow row{0.0, s.row().end_mm() / intervals, intervals};
   const int n = row.coefficients() - 1;  // the one before the axis is the one after it
   Eigen::MatrixXd at_points = Eigen::MatrixXd::Zero(n, n);
@@ -90,7 +96,7 @@ RevolutionShape refine(const RevolutionShape& s, int intervals, int) {
       const int c = p.first + k;
       at_points(i, c == 0 ? 1 : c - 1) += b[static_cast<std::size_t>(k)];
     }
-    values[i] = s.offset_at(r)[0];
+    values[i] = offset(r, 0.0);
   }
   const Eigen::VectorXd c = at_points.partialPivLu().solve(values);
   std::vector<double> coefficients{c[1]};
@@ -98,12 +104,12 @@ RevolutionShape refine(const RevolutionShape& s, int intervals, int) {
   return {s.focal_mm(), row, std::move(coefficients)};
 }
 
-BsplineShape refine(const BsplineShape& s, int intervals_x, int intervals_y) {
+BsplineShape interpolate(const BsplineShape& s, int intervals_x, int intervals_y, const Height& offset) {
   const KnotRow x{s.row_x().start_mm, (s.row_x().end_mm() - s.row_x().start_mm) / intervals_x, intervals_x};
   const KnotRow y{s.row_y().start_mm, (s.row_y().end_mm() - s.row_y().start_mm) / intervals_y, intervals_y};
   Eigen::MatrixXd values(y.coefficients(), x.coefficients());
   for (int j = 0; j < y.coefficients(); ++j) {
-    for (int i = 0; i < x.coefficients(); ++i) values(j, i) = s.offset(greville(x, i), greville(y, j)).s;
+    for (int i = 0; i < x.coefficients(); ++i) values(j, i) = offset(greville(x, i), greville(y, j));
   }
   const Eigen::MatrixXd c = interpolation(y) * values * interpolation(x).transpose();
   std::vector<double> coefficients;
@@ -173,8 +179,46 @@ DesignShape DesignShape::with(const Eigen::VectorXd& parameters) const {
 
 DesignShape DesignShape::refined(int intervals_x, int intervals_y) const {
   return std::visit(
-      [&](const auto& s) { return DesignShape(refine(s, intervals_x, intervals_y), aperture_, symmetry_); },
+      [&](const auto& s) {
+        const Height offset = [&](double x, double y) { return s.offset(x, y).s; };
+        const DesignShape fine(interpolate(s, intervals_x, intervals_y, offset), aperture_, symmetry_);
+        return fine.with(fine.parameters());  // tied coefficients equal to the last bit
+      },
       shape_);
+}
+
+DesignShape DesignShape::through(const std::function<double(double, double)>& height_mm) const {
+  return std::visit(
+      [&](const auto& s) {
+        const Height offset = [&](double x, double y) {
+          return height_mm(x, y) - 0.25 / s.focal_mm() * (x * x + y * y);
+        };
+        const DesignShape shape(interpolate(s, intervals_x(), intervals_y(), offset), aperture_, symmetry_);
+        return shape.with(shape.parameters());
+      },
+      shape_);
+}
+
+double DesignShape::height_mm() const {
+  double low = at(0.0, 0.0).z_mm, high = low;
+  const auto look = [&](double x, double y) {
+    if (!aperture_.contains(x, y)) return;
+    const double z = at(x, y).z_mm;
+    low = std::min(low, z);
+    high = std::max(high, z);
+  };
+  const double a = aperture_.half_x_mm(), b = aperture_.half_y_mm();
+  constexpr int kSteps = 50;
+  for (int j = -kSteps; j <= kSteps; ++j) {
+    for (int i = -kSteps; i <= kSteps; ++i) look(a * i / kSteps, b * j / kSteps);
+  }
+  if (aperture_.shape() == ApertureShape::circle) {
+    for (int i = 0; i < 360; ++i) {
+      const double c = (1.0 - 1e-12) * a;
+      look(c * std::cos(i * std::numbers::pi / 180.0), c * std::sin(i * std::numbers::pi / 180.0));
+    }
+  }
+  return high - low;
 }
 
 int DesignShape::intervals_x() const {
@@ -187,9 +231,11 @@ int DesignShape::intervals_y() const {
 }
 
 std::shared_ptr<const HeightSurface> DesignShape::surface() const {
-  return std::visit([](const auto& s) -> std::shared_ptr<const HeightSurface> {
-    return std::make_shared<SmoothSurface<std::decay_t<decltype(s)>>>(s);
-  }, shape_);
+  return std::visit(
+      [](const auto& s) -> std::shared_ptr<const HeightSurface> {
+        return std::make_shared<SmoothSurface<std::decay_t<decltype(s)>>>(s);
+      },
+      shape_);
 }
 
 SurfacePoint DesignShape::at(double x_mm, double y_mm) const {

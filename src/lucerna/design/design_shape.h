@@ -2,13 +2,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <variant>
 #include <vector>
 
-#include "lucerna/reflector/smooth_shape.h"
 #include "lucerna/reflector/aperture.h"
 #include "lucerna/reflector/reflector.h"
+#include "lucerna/reflector/smooth_shape.h"
 
 namespace lucerna {
 
@@ -42,6 +43,12 @@ class DesignShape {
   DesignShape with(const Eigen::VectorXd& parameters) const;
   /// Which parameter each coefficient of the family is.
   const std::vector<int>& parameter_of() const { return parameter_of_; }
+
+  /// The same family through other heights (mm over the mirror's frame), agreeing with them at the knots'
+  /// averages (Greville points, one step beyond the edges too).
+  DesignShape through(const std::function<double(double x, double y)>& height_mm) const;
+  /// Greatest less least height over the aperture, sampled on 101 x 101 points and the outline.
+  double height_mm() const;
 
   /// The same surface on other knots. Exact (to rounding) where the new knots contain the old ones, as when
   /// intervals are doubled; else the spline that agrees at the new knots' averages (Greville points).

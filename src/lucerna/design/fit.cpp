@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/design/limits.h"
 #include "lucerna/design/window.h"
 
 namespace lucerna {
@@ -17,6 +18,10 @@ constexpr double kRimShare = 0.02;
 
 /// A start is good when its error is at most this many times the noise: above it something is left to gain.
 constexpr double kGateFloors = 1.5;
+
+/// Longest change of a height in one step, over the mirror's radius: the model of a step is not good for
+/// more.
+constexpr double kLongestStep = 0.05;
 
 Eigen::VectorXd to_eigen(const std::vector<double>& v) {
   return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
@@ -70,7 +75,7 @@ void Fit::begin_stage(Progress& progress) {
   bins_ = rebinned(problem_.bins, s.widen, s.bins);
   target_ = problem_.target(bins_);
   now_ = evaluate_at(shape_);
-  equations_ = normal_equations(now_, target_, bins_, problem_.mode);
+  equations_ = equations_at(shape_, now_);
   ready_ = true;
 }
 
@@ -95,6 +100,8 @@ void Fit::pass_gate() {
   if (state_.starts == 0 || equations_.cost < state_.gate_cost) {
     state_.gate_cost = equations_.cost;
     state_.gate_parameters = state_.parameters;
+    state_.gate_intervals_x = x;
+    state_.gate_intervals_y = y;
   }
   const double floor = bin_error(now_, target_, bins_, problem_.mode).floor;
   ++state_.starts;
@@ -111,6 +118,23 @@ void Fit::pass_gate() {
   set_shape(shaken, stages_[0].intervals_x, stages_[0].intervals_y);
 }
 
+DesignShape Fit::best() const {
+  const bool trying_again = state_.starts > 0 && std::any_of(stages_.begin() + state_.stage, stages_.end(),
+                                                             [](const FitStage& s) { return s.gate; });
+  if (!trying_again) return shape_;
+  return family_.refined(state_.gate_intervals_x, state_.gate_intervals_y)
+      .with(to_eigen(state_.gate_parameters));
+}
+
+NormalEquations Fit::equations_at(const DesignShape& shape, const Evaluation& e) const {
+  NormalEquations equations = normal_equations(e, target_, bins_, problem_.mode);
+  if (problem_.max_height_mm > 0.0) add_height_limit(shape, problem_.max_height_mm, equations);
+  if (problem_.flux_weight > 0.0) {
+    add_flux_term(e, problem_.flux_weight, problem_.flux_reference, equations);
+  }
+  return equations;
+}
+
 double Fit::error() const { return std::sqrt(equations_.cost); }
 
 FitRecord Fit::step(Progress& progress) {
@@ -123,7 +147,12 @@ FitRecord Fit::step(Progress& progress) {
       state_.costs = {equations_.cost};
     }
   }
-  const Eigen::VectorXd move = damped_step(equations_, state_.lambda);
+  Eigen::VectorXd move = damped_step(equations_, state_.lambda);
+  const double longest = kLongestStep * shape_.aperture().outer_radius_mm();
+  while (!(move.cwiseAbs().maxCoeff() <= longest)) {
+    state_.lambda *= 4.0;
+    move = damped_step(equations_, state_.lambda);
+  }
   FitRecord record;
   record.stage = state_.stage;
   record.step = ++state_.step;
@@ -132,7 +161,7 @@ FitRecord Fit::step(Progress& progress) {
   Evaluation e = evaluate_at(trial);
   ++state_.evaluations;
   state_.total_rays += e.rays;
-  NormalEquations equations = normal_equations(e, target_, bins_, problem_.mode);
+  NormalEquations equations = equations_at(trial, e);
   record.accepted = equations.cost < equations_.cost;
   const double predicted = -(equations_.gradient.dot(move) * 2.0 +
                              move.dot(equations_.hessian.selfadjointView<Eigen::Lower>() * move));

@@ -20,6 +20,11 @@ struct FitProblem {
   TentBins bins;
   TargetMode mode = TargetMode::shape;
   bool direct_light = true;
+  /// In shape mode, where the scale is free, light beside the window would cost nothing: flux_weight * (1 -
+  /// share in the window / flux_reference)^2 is added to the cost. Weight 0 = not.
+  double flux_weight = 0.0, flux_reference = 1.0;
+  /// Limit on the height above the vertex plane anywhere on the mirror; 0 = none.
+  double max_height_mm = 0.0;
   int restarts = 4;
   /// Size of the shakes, over the mirror's outer radius.
   double shake = 0.015;
@@ -67,6 +72,7 @@ struct FitState {
   int starts = 0;
   double gate_cost = 0.0;
   std::vector<double> gate_parameters;
+  int gate_intervals_x = 1, gate_intervals_y = 1;
   /// What shaken starts begin from.
   std::vector<double> start_parameters;
 };
@@ -86,6 +92,8 @@ class Fit {
   FitRecord step(Progress& progress = no_progress());
 
   const DesignShape& shape() const { return shape_; }
+  /// The best so far: the shape, or, while another start is tried, the best that came to the gate.
+  DesignShape best() const;
   const FitState& state() const { return state_; }
   double error() const;
 
@@ -93,6 +101,7 @@ class Fit {
   void begin_stage(Progress& progress);
   void finish_stage();
   void pass_gate();
+  NormalEquations equations_at(const DesignShape& shape, const Evaluation& e) const;
   void set_shape(const std::vector<double>& parameters, int intervals_x, int intervals_y);
   const FitStage& stage() const { return stages_[static_cast<std::size_t>(state_.stage)]; }
   Evaluation evaluate_at(const DesignShape& shape);

@@ -9,8 +9,12 @@ std::vector<FitStage> ladder(const DesignShape& shape, const TentBins& bins, std
   const int nx = shape.intervals_x(), ny = shape.intervals_y(), k = bins.count();
   std::vector<FitStage> stages;
   const auto add = [&](int mx, int my, int count, double widen, int log_rays, double gain) {
-    const std::uint64_t n = std::uint64_t{1} << log_rays;
-    if (n <= rays) stages.push_back({mx, my, count, widen, n, 30, gain});
+    const std::uint64_t n = std::min(rays, std::uint64_t{1} << log_rays);
+    if (!stages.empty()) {
+      const FitStage& last = stages.back();
+      if (last.rays == n && last.bins == count && last.intervals_x == mx && last.intervals_y == my) return;
+    }
+    stages.push_back({mx, my, count, widen, n, 30, gain});
   };
   if (far) {
     const int few = shape.is_revolution() ? 4 : 2, gentle = std::min(nx, few), gentle_y = std::min(ny, few);

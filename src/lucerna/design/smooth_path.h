@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "lucerna/core/direction.h"
-#include "lucerna/reflector/smooth_shape.h"
 #include "lucerna/reflector/aperture.h"
+#include "lucerna/reflector/smooth_shape.h"
 
 namespace lucerna {
 

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "lucerna/core/error.h"
+#include "lucerna/design/design.h"
+
+namespace lucerna {
+
+namespace {
+
+constexpr const char* kMagic = "lucerna-design-checkpoint-1";
+/// More numbers than any design has; keeps a damaged count from asking for memory.
+constexpr std::size_t kMostNumbers = 1 << 20;
+
+[[noreturn]] void damaged(const char* what) {
+  throw InputError(fmt::format("checkpoint: {}; expected a whole one written by this version", what));
+}
+
+class Reader {
+ public:
+  explicit Reader(const std::string& text) : in_(text) {}
+
+  std::string word() {
+    std::string w;
+    if (!(in_ >> w)) damaged("it ends too early");
+    return w;
+  }
+  void expect(const char* name) {
+    if (word() != name) damaged("a field is missing");
+  }
+  template <class T>
+  T number(const char* name) {
+    expect(name);
+    return value<T>();
+  }
+  std::vector<double> numbers(const char* name) {
+    expect(name);
+    const auto n = value<std::size_t>();
+    if (n > kMostNumbers) damaged("a count is out of range");
+    std::vector<double> v;
+    for (std::size_t i = 0; i < n; ++i) v.push_back(value<double>());
+    return v;
+  }
+
+ private:
+  template <class T>
+  T value() {
+    const std::string w = word();
+    T t{};
+    const auto [end, error] = std::from_chars(w.data(), w.data() + w.size(), t);
+    if (error != std::errc() || end != w.data() + w.size()) damaged("a number cannot be read");
+    if constexpr (std::is_floating_point_v<T>) {
+      if (!std::isfinite(t)) damaged("a number is not finite");
+    }
+    return t;
+  }
+  std::istringstream in_;
+};
+
+void put(std::string& text, const char* name, const std::vector<double>& v) {
+  text += fmt::format("{} {}", name, v.size());
+  for (const double x : v) text += fmt::format(" {}", x);  // the shortest text of the same double
+  text += '\n';
+}
+
+}  // namespace
+
+std::string checkpoint_text(const FitState& s, const std::string& key) {
+  std::string text = fmt::format(
+      "{}\nkey {}\nintervals_x {}\nintervals_y {}\nstage {}\nstep {}\nlambda {}\nevaluations {}\n"
+      "total_rays {}\nstarts {}\ngate_cost {}\ngate_intervals_x {}\ngate_intervals_y {}\n",
+      kMagic, key, s.intervals_x, s.intervals_y, s.stage, s.step, s.lambda, s.evaluations, s.total_rays,
+      s.starts, s.gate_cost, s.gate_intervals_x, s.gate_intervals_y);
+  put(text, "parameters", s.parameters);
+  put(text, "costs", s.costs);
+  put(text, "gate_parameters", s.gate_parameters);
+  put(text, "start_parameters", s.start_parameters);
+  return text + "end\n";
+}
+
+FitState parse_checkpoint(const std::string& text, const std::string& key) {
+  Reader in(text);
+  if (in.word() != kMagic) damaged("it does not begin like one");
+  in.expect("key");
+  if (in.word() != key) {
+    throw InputError("checkpoint: belongs to another project, seed or ray count; start without --resume");
+  }
+  FitState s;
+  s.intervals_x = in.number<int>("intervals_x");
+  s.intervals_y = in.number<int>("intervals_y");
+  s.stage = in.number<int>("stage");
+  s.step = in.number<int>("step");
+  s.lambda = in.number<double>("lambda");
+  s.evaluations = in.number<int>("evaluations");
+  s.total_rays = in.number<std::uint64_t>("total_rays");
+  s.starts = in.number<int>("starts");
+  s.gate_cost = in.number<double>("gate_cost");
+  s.gate_intervals_x = in.number<int>("gate_intervals_x");
+  s.gate_intervals_y = in.number<int>("gate_intervals_y");
+  s.parameters = in.numbers("parameters");
+  s.costs = in.numbers("costs");
+  s.gate_parameters = in.numbers("gate_parameters");
+  s.start_parameters = in.numbers("start_parameters");
+  in.expect("end");
+  return s;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/design.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "lucerna/core/error.h"
+#include "lucerna/design/window.h"
+
+namespace lucerna {
+
+namespace {
+
+/// In shape mode a tenth of the light beside the window counts as an error of 4.5 %.
+constexpr double kFluxWeight = 0.2;
+/// Rays that measure how much light leaves the mirror to begin with.
+constexpr std::uint64_t kFluxRays = std::uint64_t{1} << 16;
+
+/// The problem as the fit sees it: in the mirror's frame, in shares of the sources' flux.
+FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& options, DesignRays& rays) {
+  FitProblem fit{&rays, problem.reflectance, {}, target_window(problem), problem.target.mode};
+  fit.seed = options.seed;
+  if (problem.target.mode == TargetMode::shape) {
+    rays.grow(kFluxRays);
+    EvaluationOptions plain;
+    plain.rays = kFluxRays;
+    plain.derivatives = false;
+    const Evaluation start = evaluate(problem.start, problem.reflectance, rays, fit.bins, plain);
+    fit.flux_weight = kFluxWeight;
+    fit.flux_reference = start.reflected + start.direct;
+  }
+  fit.max_height_mm = problem.limits.max_height_mm.value_or(0.0);
+  const double unit = problem.target.mode == TargetMode::absolute ? 1.0 / rays.flux() : 1.0;
+  fit.target = [&problem, unit](const TentBins& bins) {
+    const std::vector<double> flux = bins.flux_of([&](const Direction& d) {
+      return unit * intensity_in(problem.target.distribution, problem.world_from_mirror.direction(d));
+    });
+    return Eigen::VectorXd(
+        Eigen::Map<const Eigen::VectorXd>(flux.data(), static_cast<Eigen::Index>(flux.size())));
+  };
+  return fit;
+}
+
+/// FNV-1a: tells checkpoints of different problems apart.
+std::string problem_key(const DesignProblem& problem, const DesignOptions& options) {
+  toml::table table = problem.project.table;
+  if (auto* design = table["design"].as_table()) design->erase("time_s");
+  std::ostringstream text;
+  text << table << options.seed << ' ' << options.most_rays;
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  for (const char c : text.str()) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+  return fmt::format("{:016x}", hash);
+}
+
+/// Angular radius under which the mirror's vertex and rim see the source: what no mirror can sharpen.
+double source_blur_rad(const DesignRays& rays, const DesignShape& shape) {
+  Vec3 mean;
+  const std::size_t n = std::min<std::size_t>(rays.size() / kBlockRays, 16) * kBlockRays;
+  const auto at = [&](std::size_t i) {
+    const DesignRays::Block& b = rays.block(i / kBlockRays);
+    const std::size_t k = i % kBlockRays;
+    return Vec3{b.x_mm[k], b.y_mm[k], b.z_mm[k]};
+  };
+  for (std::size_t i = 0; i < n; ++i) mean += at(i) / static_cast<double>(n);
+  double square = 0.0;
+  for (std::size_t i = 0; i < n; ++i) square += dot(at(i) - mean, at(i) - mean) / static_cast<double>(n);
+  const double rim = shape.aperture().half_x_mm(), z = shape.at(rim, 0.0).z_mm - mean.z;
+  return std::atan2(std::sqrt(square), std::max(std::hypot(rim, z), std::abs(shape.at(0, 0).z_mm - mean.z)));
+}
+
+void add_remarks(const DesignProblem& problem, const DesignRays& rays, DesignResult& result) {
+  const double error = result.error.relative_rms, floor = result.error.floor;
+  if (error > 3.0 * floor && error > 0.02) {
+    result.remarks.push_back(
+        fmt::format("the target is not reached: {:.1f} % of it is left over, {:.1f} % would be noise; seen "
+                    "from the rim the "
+                    "source is {:.2f} deg in radius (rms), structure finer than that cannot be made",
+                    100.0 * error, 100.0 * floor, degrees(source_blur_rad(rays, result.shape))));
+  }
+  if (result.in_window < 0.95 * result.efficiency) {
+    result.remarks.push_back(
+        fmt::format("{:.1f} % of the light that leaves goes beside the target's window: {}",
+                    100.0 * (1.0 - result.in_window / result.efficiency),
+                    "direct light passes the mirror; a wider or deeper mirror would catch it"));
+  }
+  if (problem.limits.min_efficiency && result.efficiency < *problem.limits.min_efficiency) {
+    result.remarks.push_back(
+        fmt::format("min_efficiency {} is not reached: {:.3f}; the aperture and the "
+                    "reflectance {} set it",
+                    *problem.limits.min_efficiency, result.efficiency, problem.reflectance.at(1.0)));
+  }
+  if (problem.limits.max_height_mm) {
+    const double height = result.shape.height_mm();
+    if (height > *problem.limits.max_height_mm) {
+      result.remarks.push_back(fmt::format(
+          "max_height_mm {} is not held: {:.3f} mm; a smaller aperture or a longer focal length is "
+          "flatter",
+          *problem.limits.max_height_mm, height));
+    }
+  }
+}
+
+void judge(const DesignProblem& problem, const DesignOptions& options, const FitProblem& fit,
+           DesignResult& result, Progress& progress) {
+  DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(),
+                  options.seed + 0x9E3779B97F4A7C15ull);
+  rays.grow(options.judge_rays, progress);
+  EvaluationOptions plain;
+  plain.rays = options.judge_rays;
+  plain.derivatives = false;
+  const Eigen::VectorXd target = fit.target(fit.bins);
+  const Evaluation e = evaluate(result.shape, problem.reflectance, rays, fit.bins, plain);
+  result.error = bin_error(e, target, fit.bins, fit.mode);
+  plain.rays = std::min<std::uint64_t>(plain.rays, 1 << 18);
+  const Evaluation start = evaluate(problem.start, problem.reflectance, rays, fit.bins, plain);
+  result.start_error = bin_error(start, target, fit.bins, fit.mode);
+  result.efficiency = e.reflected + e.direct;
+  result.in_window = e.flux.sum();
+  result.absorbed = e.absorbed;
+  result.back = e.back;
+  result.lost = e.lost;
+  add_remarks(problem, rays, result);
+}
+
+}  // namespace
+
+DesignResult design(const DesignProblem& problem, const DesignOptions& options, Progress& progress,
+                    const DesignObserver& observer) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  const double time_s = options.time_s.value_or(problem.time_s);
+  DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
+  const FitProblem fit_data = fit_problem(problem, options, rays);
+  const std::vector<FitStage> stages = ladder(problem.start, fit_data.bins, options.most_rays, true);
+  const std::string key = problem_key(problem, options);
+  Fit fit = options.checkpoint.empty()
+                ? Fit(fit_data, stages, problem.start)
+                : Fit(fit_data, stages, problem.start, parse_checkpoint(options.checkpoint, key));
+  DesignResult result{problem.start};
+  while (!fit.done()) {
+    if (progress.stop_requested()) {
+      result.end = DesignEnd::interrupted;
+      break;
+    }
+    if (std::chrono::duration<double>(Clock::now() - begin).count() > time_s) {
+      result.end = DesignEnd::time;
+      break;
+    }
+    const FitRecord record = fit.step(progress);
+    result.history.push_back(record);
+    progress.update(
+        fmt::format("design: error {:.2f} %, noise {:.2f} %", 100.0 * record.error, 100.0 * record.floor),
+        static_cast<std::uint64_t>(record.evaluations), 0);
+    if (observer) observer(record, fit);
+  }
+  result.shape = fit.best();
+  result.checkpoint = checkpoint_text(fit.state(), key);
+  result.evaluations = fit.state().evaluations;
+  result.rays = fit.state().total_rays;
+  judge(problem, options, fit_data, result, progress);
+  return result;
+}
+
+std::string history_csv(const std::vector<FitRecord>& history) {
+  std::string csv = "evaluations,stage,step,rays,total_rays,relative_rms,floor,lambda,accepted,efficiency\n";
+  for (const FitRecord& r : history) {
+    csv += fmt::format("{},{},{},{},{},{:.6g},{:.6g},{:.3g},{},{:.6g}\n", r.evaluations, r.stage, r.step,
+                       r.rays, r.total_rays, r.error, r.floor, r.lambda, r.accepted ? 1 : 0, r.efficiency);
+  }
+  return csv;
+}
+
+}  // namespace lucerna

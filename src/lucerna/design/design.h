@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lucerna/design/design_problem.h"
+
+namespace lucerna {
+
+struct DesignOptions {
+  std::uint64_t seed = 1;
+  /// Wall time after which the design stops at the next step; nothing: the problem's own. It only stops:
+  /// every decision depends on counts.
+  std::optional<double> time_s;
+  /// Rays of an evaluation at the end of the ladder.
+  std::uint64_t most_rays = std::uint64_t{1} << 20;
+  /// Rays of the re-trace that judges the result, other than those it was fitted with.
+  std::uint64_t judge_rays = std::uint64_t{1} << 22;
+  /// State to go on from (`checkpoint_text`); empty: from the start.
+  std::string checkpoint;
+};
+
+/// Why a design ended.
+enum class DesignEnd { converged, time, interrupted };
+
+struct DesignResult {
+  DesignShape shape;
+  DesignEnd end = DesignEnd::converged;
+  std::vector<FitRecord> history;
+  /// State to resume from; a design that is taken up from it ends at the same bits as one never stopped.
+  std::string checkpoint;
+  /// Against the target in 48 x 48 tent bins (48 rings) over the target's 99 % window, re-traced with
+  /// independent rays.
+  BinError error, start_error;
+  /// Share of the sources' flux that leaves the luminaire, and of the target's window that it lands in.
+  double efficiency = 0.0, in_window = 0.0;
+  /// Where the rest went.
+  double absorbed = 0.0, back = 0.0, lost = 0.0;
+  int evaluations = 0;
+  std::uint64_t rays = 0;
+  /// What keeps the error from being smaller, in one sentence each.
+  std::vector<std::string> remarks;
+};
+
+/// Called after every step with the best so far; may write a checkpoint.
+using DesignObserver = std::function<void(const FitRecord&, const Fit&)>;
+
+/// Shapes the problem's mirror until its far field is the target's, as well as it can be: Levenberg-Marquardt
+/// with exact path derivatives on smooth bins, from coarse bins, knots and few rays to fine and many, with
+/// restarts where a start gets stuck (docs/algorithms/design.md). Progress phases "rays", "design" (in steps
+/// of unknown number). Stops early at `time_s` or when progress asks; the result is then the best so far,
+/// whole, with `end` saying so. Throws InputError on a checkpoint of another problem.
+DesignResult design(const DesignProblem& problem, const DesignOptions& options,
+                    Progress& progress = no_progress(), const DesignObserver& observer = {});
+
+/// The state of a fit as text: whole numbers and hexadecimal floats, so that it reads back to the same bits.
+/// `key` says what problem it belongs to.
+std::string checkpoint_text(const FitState& state, const std::string& key);
+/// Throws InputError if the text is no checkpoint, damaged, or of another key.
+FitState parse_checkpoint(const std::string& text, const std::string& key);
+
+/// The history as CSV.
+std::string history_csv(const std::vector<FitRecord>& history);
+
+}  // namespace lucerna

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/design_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <utility>
+
+#include "lucerna/core/error.h"
+#include "lucerna/design/window.h"
+#include "lucerna/photometry/photometric_io.h"
+#include "lucerna/trace/toml_reader.h"
+
+namespace lucerna {
+
+namespace {
+
+DesignTarget read_target(TomlReader reader, Project& project) {
+  DesignTarget target;
+  const auto file = reader.file("file");
+  if (!file) reader.fail("file", "is missing: an IES or EULUMDAT file with the light that is wanted");
+  const std::string mode = reader.text("mode").value_or("shape");
+  if (mode != "shape" && mode != "absolute") {
+    reader.fail("mode", fmt::format("found '{}', expected shape or absolute", mode));
+  }
+  reader.finish();
+  target.mode = mode == "shape" ? TargetMode::shape : TargetMode::absolute;
+  target.file = file->string();
+  target.distribution = read_photometric_file(*file).distribution;
+  project.inputs.push_back(*file);
+  const FluxUnit unit = project.scene.sources.front().rays->flux_unit();
+  if (target.mode == TargetMode::absolute && target.distribution.unit != unit) {
+    reader.fail("mode",
+                fmt::format("the target is in {}, the sources in {}; they can be compared by shape only",
+                            symbol(target.distribution.unit), symbol(unit)));
+  }
+  return target;
+}
+
+ShapeSymmetry read_symmetry(TomlReader& reader, bool revolution, const Frame& world_from_mirror) {
+  static const std::map<std::string, ShapeSymmetry, std::less<>> kNames{{"none", ShapeSymmetry::none},
+                                                                        {"c0-c180", ShapeSymmetry::mirror_y},
+                                                                        {"c90-c270", ShapeSymmetry::mirror_x},
+                                                                        {"both", ShapeSymmetry::both}};
+  const std::string name = reader.text("symmetry").value_or("none");
+  if (name == "rotational") {
+    if (!revolution) reader.fail("symmetry", "rotational needs family = \"revolution\"");
+    return ShapeSymmetry::none;
+  }
+  const auto found = kNames.find(name);
+  if (found == kNames.end()) {
+    reader.fail("symmetry",
+                fmt::format("found '{}', expected none, c0-c180, c90-c270, both or rotational", name));
+  }
+  ShapeSymmetry symmetry = found->second;
+  if (revolution || symmetry == ShapeSymmetry::none) return ShapeSymmetry::none;
+  const bool along_x = std::abs(world_from_mirror.ex().x) > 1.0 - 1e-9;
+  const bool along_y = std::abs(world_from_mirror.ex().y) > 1.0 - 1e-9;
+  if (!along_x && !along_y) {
+    reader.fail("symmetry", "needs a mirror whose x axis lies in C0-C180 or C90-C270 (turn_deg)");
+  }
+  if (along_y && symmetry == ShapeSymmetry::mirror_x) return ShapeSymmetry::mirror_y;
+  if (along_y && symmetry == ShapeSymmetry::mirror_y) return ShapeSymmetry::mirror_x;
+  return symmetry;
+}
+
+/// Limits that the fixed aperture alone decides are checked here and now.
+DesignLimits read_limits(std::optional<TomlReader> reader, const Aperture& aperture, bool revolution,
+                         const Frame& world_from_mirror) {
+  DesignLimits limits;
+  if (!reader) return limits;
+  limits.max_diameter_mm = reader->positive("max_diameter_mm");
+  limits.max_height_mm = reader->positive("max_height_mm");
+  limits.min_hole_diameter_mm = reader->positive("min_hole_diameter_mm");
+  limits.min_efficiency = reader->positive("min_efficiency");
+  limits.symmetry = read_symmetry(*reader, revolution, world_from_mirror);
+  reader->finish();
+  const double diameter = 2.0 * aperture.outer_radius_mm(), hole = 2.0 * aperture.hole_radius_mm();
+  if (limits.max_diameter_mm && diameter > *limits.max_diameter_mm) {
+    reader->fail("max_diameter_mm", fmt::format("{} mm contradicts the reflector's aperture, {} mm across",
+                                                *limits.max_diameter_mm, diameter));
+  }
+  if (limits.min_hole_diameter_mm && hole < *limits.min_hole_diameter_mm) {
+    reader->fail("min_hole_diameter_mm",
+                 fmt::format("{} mm contradicts the reflector's hole_diameter_mm, {} mm",
+                             *limits.min_hole_diameter_mm, hole));
+  }
+  if (limits.max_diameter_mm && limits.min_hole_diameter_mm &&
+      *limits.min_hole_diameter_mm >= *limits.max_diameter_mm) {
+    reader->fail("min_hole_diameter_mm", "contradicts max_diameter_mm: the hole would be the whole mirror");
+  }
+  if (limits.min_efficiency && *limits.min_efficiency > 1.0) {
+    reader->fail("min_efficiency", "found more than 1; it is a share");
+  }
+  return limits;
+}
+
+/// The paraboloid nearest to a profile: z - z(0) = r^2 / (4 f) in the least-squares sense.
+double nearest_focal(const Profile& profile, double radius) {
+  double r4 = 0.0, r2z = 0.0;
+  for (int i = 1; i <= 200; ++i) {
+    const double r = radius * i / 200.0;
+    r4 += r * r * r * r;
+    r2z += r * r * (profile.at(r).z_mm - profile.at(0.0).z_mm);
+  }
+  if (!(r2z > 0.0)) throw InputError("design: the reflector to begin with does not open along its +z");
+  return 0.25 * r4 / r2z;
+}
+
+DesignShape start_shape(const Reflector& reflector, const std::vector<int>& intervals, TomlReader& reader,
+                        ShapeSymmetry symmetry) {
+  if (const auto* s = dynamic_cast<const RevolutionSurface*>(reflector.surface.get())) {
+    const double radius = reflector.aperture.outer_radius_mm();
+    const int n = intervals.empty() ? 16 : intervals[0];
+    if (reflector.aperture.shape() != ApertureShape::circle) {
+      reader.fail("intervals", "family = \"revolution\" is designed over aperture = \"circle\" only");
+    }
+    const DesignShape plain =
+        DesignShape::revolution(nearest_focal(s->profile(), radius), reflector.aperture, n);
+    return plain.through([&](double x, double y) { return s->profile().at(std::hypot(x, y)).z_mm; });
+  }
+  const auto* s = dynamic_cast<const SmoothSurface<BsplineShape>*>(reflector.surface.get());
+  if (s == nullptr) reader.fail("intervals", "this reflector family cannot be designed");
+  const int nx = intervals.empty() ? 8 : intervals[0];
+  const int ny = intervals.empty() ? 8 : (intervals.size() > 1 ? intervals[1] : nx);
+  const BsplineShape& shape = s->shape();
+  const DesignShape plain = DesignShape::bspline(shape.focal_mm(), reflector.aperture, nx, ny, symmetry);
+  return plain.through([&](double x, double y) { return smooth_point(shape, x, y).z_mm; });
+}
+
+std::vector<int> read_intervals(TomlReader& reader) {
+  std::vector<int> out;
+  for (const double n : reader.number_or_numbers("intervals").value_or(std::vector<double>())) {
+    if (!(n >= 1.0 && n <= 60.0 && n == std::floor(n)) || out.size() == 2) {
+      reader.fail("intervals", fmt::format("found {}, expected one or two whole numbers from 1 to 60", n));
+    }
+    out.push_back(static_cast<int>(n));
+  }
+  return out;
+}
+
+}  // namespace
+
+DesignProblem design_problem(Project project, const std::filesystem::path& path) {
+  const toml::table tables = project.table;  // the readers below point into it
+  TomlReader root(tables, path.string(), "");
+  for (const char* known : {"source", "reflector", "detector", "body"}) root.has(known);
+  auto target_reader = root.table("target");
+  auto reader = root.table("design");
+  root.finish();
+  if (!target_reader) root.fail("target", "is missing: a design needs a [target]");
+  static const toml::table kNothing;
+  TomlReader design = reader ? *reader : TomlReader(kNothing, path.string(), "design");
+  if (project.scene.reflectors.size() != 1) {
+    root.fail("reflector", fmt::format("found {} reflectors, expected the one that is to be shaped",
+                                       project.scene.reflectors.size()));
+  }
+  const std::string optimizer = design.text("optimizer").value_or("auto");
+  if (optimizer != "auto" && optimizer != "least-squares") {
+    design.fail("optimizer", fmt::format("found '{}', expected auto or least-squares", optimizer));
+  }
+  const double time_s = design.positive("time_s").value_or(60.0);
+  const std::vector<int> intervals = read_intervals(design);
+  const PlacedReflector placed = project.scene.reflectors[0];
+  const bool revolution = dynamic_cast<const RevolutionSurface*>(placed.reflector.surface.get()) != nullptr;
+  const DesignLimits limits =
+      read_limits(design.table("limits"), placed.reflector.aperture, revolution, placed.world_from_reflector);
+  DesignTarget target = read_target(*target_reader, project);
+  DesignShape start = start_shape(placed.reflector, intervals, design, limits.symmetry);
+  design.finish();
+  return {std::move(project), std::move(target),           limits, std::move(start),
+          placed.reflectance, placed.world_from_reflector, time_s};
+}
+
+TentBins target_window(const DesignProblem& problem) {
+  const Frame mirror_from_world = problem.world_from_mirror.inverse();
+  const std::vector<DirectedFlux> light = directed_flux(problem.target.distribution);
+  const Direction axis = problem.world_from_mirror.direction(Direction());
+  const bool rings = problem.start.is_revolution();
+  const TentBins bins = rings ? ring_window(light, axis) : square_window(light, axis);
+  const Frame& a = bins.axes();
+  const Frame axes(mirror_from_world.vector(a.ex()), mirror_from_world.vector(a.ey()),
+                   mirror_from_world.vector(a.ez()), {});
+  return rings ? TentBins::rings(axes, bins.extent(), bins.count())
+               : TentBins::square(axes, bins.extent(), bins.count());
+}
+
+namespace {
+
+std::string placement(const DesignProblem& problem, const char* key) {
+  const auto* reflectors = problem.project.table["reflector"].as_array();
+  const auto* table = reflectors != nullptr ? reflectors->get(0)->as_table() : nullptr;
+  const auto* node = table != nullptr ? table->get(key) : nullptr;
+  if (node == nullptr) return "";
+  std::ostringstream out;
+  node->visit([&](const auto& n) { out << n; });
+  return fmt::format("{} = {}\n", key, out.str());
+}
+
+}  // namespace
+
+std::string reflector_toml(const DesignProblem& problem, const DesignShape& shape) {
+  const Aperture& aperture = shape.aperture();
+  std::string text = "[[reflector]]\n";
+  if (shape.is_revolution()) {
+    // The given points of a C2 spline with its last interval halved: not-a-knot makes the same curve of them.
+    const int n = shape.intervals_x();
+    const double radius = aperture.outer_radius_mm();
+    text += "family = \"revolution\"\nprofile_mm = [\n";
+    for (int i = 0; i <= n + 1; ++i) {
+      const double share = i < n ? i : (i == n ? n - 0.5 : n);
+      const double r = i == n + 1 ? radius : radius * share / n;
+      text += fmt::format("  [{}, {}],\n", r, shape.at(r, 0.0).z_mm);
+    }
+    text += "]\n";
+  } else {
+    const auto& s = std::get<BsplineShape>(shape.family());
+    text += fmt::format("family = \"bspline\"\nfocal_mm = {}\nintervals = [{}, {}]\ncoefficients_mm = [",
+                        s.focal_mm(), s.row_x().intervals, s.row_y().intervals);
+    for (std::size_t i = 0; i < s.coefficients().size(); ++i) {
+      text += fmt::format("{}{}", i == 0 ? "\n  " : (i % 4 == 0 ? ",\n  " : ", "), s.coefficients()[i] + 0.0);
+    }
+    text += "\n]\n";
+  }
+  if (aperture.shape() == ApertureShape::circle) {
+    text += fmt::format("aperture = \"circle\"\ndiameter_mm = {}\n", 2.0 * aperture.half_x_mm());
+  } else {
+    text += fmt::format("aperture = \"rectangle\"\nsize_mm = [{}, {}]\n", 2.0 * aperture.half_x_mm(),
+                        2.0 * aperture.half_y_mm());
+  }
+  text += fmt::format("hole_diameter_mm = {}\n", 2.0 * aperture.hole_radius_mm());
+  for (const char* key : {"position_mm", "axis", "turn_deg", "reflectance", "slope_error_mrad"}) {
+    text += placement(problem, key);
+  }
+  return text;
+}
+
+Project with_shape(const DesignProblem& problem, const DesignShape& shape) {
+  Project project = problem.project;
+  project.scene.reflectors[0].reflector = shape.reflector();
+  const toml::table tables = toml::parse(reflector_toml(problem, shape));
+  project.table.insert_or_assign("reflector", *tables["reflector"].as_array());
+  return project;
+}
+
+}  // namespace lucerna

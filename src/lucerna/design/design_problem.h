@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "lucerna/design/fit.h"
+#include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/trace/project.h"
+
+namespace lucerna {
+
+/// The light that is wanted: [target] of a project.
+struct DesignTarget {
+  IntensityDistribution distribution;
+  TargetMode mode = TargetMode::shape;
+  std::string file;
+};
+
+/// What a design must not do: [design.limits] of a project.
+struct DesignLimits {
+  std::optional<double> max_diameter_mm, max_height_mm, min_hole_diameter_mm, min_efficiency;
+  ShapeSymmetry symmetry = ShapeSymmetry::none;
+};
+
+/// What is to be designed, checked: read from a project by `design_problem`.
+struct DesignProblem {
+  Project project;
+  DesignTarget target;
+  DesignLimits limits;
+  /// The mirror to shape, where it begins: the project's only reflector.
+  DesignShape start;
+  Reflectance reflectance{1.0};
+  Frame world_from_mirror;
+  double time_s = 60.0;
+};
+
+/// Reads [target] and [design] of a project and its only [[reflector]] as a shape with free parameters: a
+/// paraboloid, a profile of revolution (fitted by the family's spline) or a B-spline. Throws InputError with
+/// file, line, key, found and expected; also for limits that contradict each other or the mirror, naming the
+/// pair.
+DesignProblem design_problem(Project project, const std::filesystem::path& path);
+
+/// The target turned into the comparison's bins over its own window.
+TentBins target_window(const DesignProblem& problem);
+
+/// The project with the mirror replaced: what `trace` takes.
+Project with_shape(const DesignProblem& problem, const DesignShape& shape);
+
+/// The [[reflector]] table of a shape, placed and coated as in the problem, as a TOML file of its own.
+std::string reflector_toml(const DesignProblem& problem, const DesignShape& shape);
+
+}  // namespace lucerna
