@@ -7,6 +7,7 @@
 #include "lucerna/cli/commands.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
+#include "lucerna/reflector/cad_export.h"
 #include "lucerna/report/trace_files.h"
 #include "lucerna/trace/trace.h"
 
@@ -82,6 +83,10 @@ std::vector<std::string> write_results(const DesignArguments& a, const DesignPro
   const fs::path folder = a.output;
   const Project project = with_shape(problem, result.shape);
   write_file(folder / "reflector.toml", reflector_toml(problem, result.shape));
+  const Reflector mirror = result.shape.reflector();
+  const Mesh mesh = cad_mesh(mirror);
+  write_file(folder / "reflector.stl", stl_bytes(mesh));
+  write_file(folder / "reflector.dxf", dxf_profile(cad_profile(mirror)));
   write_file(folder / "history.csv", joined_history(older, result.history));
   write_file(folder / "checkpoint", result.checkpoint);
   TraceOptions trace_options;
@@ -90,7 +95,8 @@ std::vector<std::string> write_results(const DesignArguments& a, const DesignPro
       session.timed("trace", [&] { return trace(project.scene, trace_options, no_progress()); });
   const TraceFigures figures = trace_figures(traced);
   json.update(trace_json(figures));
-  std::vector<std::string> names{"reflector.toml", "history.csv", "checkpoint"};
+  std::vector<std::string> names{"reflector.toml", "reflector.stl", "reflector.dxf", "history.csv",
+                                 "checkpoint"};
   for (std::string& name : write_trace_files(folder, project, figures, json))
     names.push_back(std::move(name));
   session.print_json(json);

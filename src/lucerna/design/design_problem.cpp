@@ -145,7 +145,8 @@ std::vector<int> read_intervals(TomlReader& reader) {
 DesignProblem design_problem(Project project, const std::filesystem::path& path) {
   const toml::table tables = project.table;  // the readers below point into it
   TomlReader root(tables, path.string(), "");
-  for (const char* known : {"source", "reflector", "detector", "body"}) root.has(known);
+  for (const char* known : {"source", "reflector", "detector"}) root.has(known);
+  if (root.has("body")) root.fail("body", "a design shapes one mirror alone; trace the result with bodies");
   auto target_reader = root.table("target");
   auto reader = root.table("design");
   root.finish();
