@@ -12,6 +12,8 @@
 #include "lucerna/report/html_page.h"
 #include "lucerna/report/report_zones.h"
 #include "lucerna/report/scene3d.h"
+#include "lucerna/report/svg_cartesian.h"
+#include "lucerna/report/svg_isocandela.h"
 #include "lucerna/report/svg_polar.h"
 #include "lucerna/trace/project.h"
 
@@ -293,6 +295,11 @@ std::string plots(const FarFieldTable& field, std::size_t index, bool thinned) {
   out += plot_figure(polar_svg(field.distribution, {.title = field.name}), field.name + "-polar",
                      "Polar diagram of " + field.name, attributes, plane_slider(field.distribution));
   out += map_figure(field, index);
+  const DiagramOptions title{.title = field.name};
+  out += plot_figure(cartesian_svg(field.distribution, title), field.name + "-cartesian",
+                     "Cartesian diagram of " + field.name, attributes);
+  out += plot_figure(isocandela_svg(field.distribution, title), field.name + "-isocandela",
+                     "Isocandela diagram of " + field.name, attributes);
   out += "</div>\n";
   if (thinned) {
     out += fmt::format(

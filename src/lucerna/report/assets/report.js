@@ -114,6 +114,41 @@ const lucerna = (() => {
     };
   };
 
+  // Plots with straight axes; `directions` turns a point's two values into lines of [label, C, gamma].
+  const onAxes = directions => (plot, field) => {
+    const svg = plot.querySelector('svg'), output = plot.querySelector('output.cursor');
+    const axes = [svg.dataset.x, svg.dataset.y].map(text => text.split(' ').slice(0, 4).map(Number));
+    const flux = (from, to) => field.gamma_deg.reduce((sum, g, k) => sum + (g >= from && g <= to ? Math.sin(g * Math.PI / 180) *
+      field.c_deg.reduce((s, _, i) => s + field.intensity[i * field.gamma_deg.length + k], 0) : 0), 0);
+    const up = flux(0, 89.99) < flux(90.01, 180);
+    let cursor = axes.map(([a, b]) => (a + b) / 2);
+    const show = () => {
+      const clamped = cursor.map((v, k) => Math.max(Math.min(...axes[k].slice(0, 2)), Math.min(Math.max(...axes[k].slice(0, 2)), v)));
+      const values = clamped.map((v, k) => axes[k][2] + (v - axes[k][0]) / (axes[k][1] - axes[k][0]) * (axes[k][3] - axes[k][2]));
+      const group = mark(svg), [xs, ys] = axes;
+      group.append(svgElement('line', { x1: clamped[0], x2: clamped[0], y1: ys[0], y2: ys[1] }));
+      const { text, lines, level } = directions(values, up);
+      if (level) group.append(svgElement('line', { x1: xs[0], x2: xs[1], y1: clamped[1], y2: clamped[1] }));
+      output.textContent = text + '  ' + lines.map(([name, c, gamma]) => name + figure(intensityAt(field, c, gamma))).join(' · ') + ' ' + field.unit;
+      cursor = clamped;
+    };
+    return {
+      at: point => { cursor = point; show(); },
+      step: (across, along) => { cursor = [cursor[0] + 5 * across, cursor[1] - 5 * along]; show(); },
+    };
+  };
+  const cartesian = onAxes(([angle], up) => {
+    const gamma = up ? 180 - Math.abs(angle) : Math.abs(angle), planes = angle < 0 ? [180, 270] : [0, 90];
+    return { text: `γ ${figure(gamma)}°`, lines: planes.map(c => [`C${c}: `, c, gamma]) };
+  });
+  // H and V of a goniometer about the beam's axis (svg_isocandela.h).
+  const isocandela = onAxes(([h, v], up) => {
+    const a = h * Math.PI / 180, b = v * Math.PI / 180, along = Math.cos(a) * Math.cos(b);
+    const c = Math.atan2(up ? Math.sin(a) : -Math.sin(a), Math.cos(a) * Math.sin(b)) * 180 / Math.PI;
+    const angle = Math.acos(Math.max(-1, Math.min(1, along))) * 180 / Math.PI;
+    return { text: `H ${figure(h)}°, V ${figure(v)}°`, level: true, lines: [['', c, up ? 180 - angle : angle]] };
+  });
+
   const save = (name, blob) => {
     const link = document.createElement('a');
     link.href = URL.createObjectURL(blob);
@@ -143,7 +178,7 @@ const lucerna = (() => {
     return new XMLSerializer().serializeToString(copy);
   };
 
-  const kinds = { polar };
+  const kinds = { polar, cartesian, isocandela };
   for (const plot of document.querySelectorAll('figure.plot')) {
     const field = fields[Number(plot.dataset.detector)], svg = plot.querySelector('svg');
     const make = kinds[svg.dataset.plot];
