@@ -79,6 +79,21 @@ test('the values under the cursor are those of the table', async () => {
   await page.context().close();
 });
 
+test('plots with straight axes read the table too', async () => {
+  const page = await open(browser, file);
+  const rows = readFileSync(join(folder, 'led', 'far.csv'), 'utf8').trim().split('\n').map(l => l.split(',').map(Number));
+  const value = (c, gamma) => Number(rows.find(r => r[0] === c && r[1] === gamma)[2].toPrecision(4));
+  for (const [name, pattern] of [['cartesian', /C0: ([\d.]+)/], ['isocandela', /([\d.]+) cd$/]]) {
+    const plot = page.locator(`figure[data-file="far-${name}"]`);
+    // One key to the right and one back: the middle of the plot is the axis of the beam.
+    await plot.locator('.stage').press('ArrowRight');
+    await plot.locator('.stage').press('ArrowLeft');
+    const text = await plot.locator('output.cursor').textContent();
+    assert.equal(Number(pattern.exec(text)[1]), value(0, 0), `${name}: ${text}`);
+  }
+  await page.context().close();
+});
+
 test('the far-field map shows the table, in any colours, to any angle', async () => {
   const page = await open(browser, file);
   const pixel = (x, y) => page.evaluate(([x, y]) => {
