@@ -113,10 +113,9 @@ void run_design(const DesignArguments& a, Session& session, int& exit_code) {
   for (const std::string& warning : problem.project.warnings) session.note(warning);
   for (const auto& input : problem.project.inputs) session.add_input(input);
   const std::string older = older_history(folder / "history.csv", a.resume);
-  std::vector<FitRecord> history;
-  const DesignObserver observer = [&](const FitRecord& record, const Fit& fit) {
-    history.push_back(record);
-    write_file(folder / "reflector.toml", reflector_toml(problem, fit.best()));
+  const DesignObserver observer = [&](const FitRecord&, const DesignShape& best, const std::string& state) {
+    write_file(folder / "reflector.toml", reflector_toml(problem, best));
+    write_file(checkpoint, state);
   };
   const DesignResult result =
       session.timed("design", [&] { return design(problem, options, session.progress(), observer); });

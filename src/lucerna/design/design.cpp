@@ -154,7 +154,7 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
     progress.update(
         fmt::format("design: error {:.2f} %, noise {:.2f} %", 100.0 * record.error, 100.0 * record.floor),
         static_cast<std::uint64_t>(record.evaluations), 0);
-    if (observer) observer(record, fit);
+    if (observer) observer(record, fit.best(), checkpoint_text(fit.state(), key));
   }
   result.shape = fit.best();
   result.checkpoint = checkpoint_text(fit.state(), key);

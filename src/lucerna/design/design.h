@@ -47,8 +47,9 @@ struct DesignResult {
   std::vector<std::string> remarks;
 };
 
-/// Called after every step with the best so far; may write a checkpoint.
-using DesignObserver = std::function<void(const FitRecord&, const Fit&)>;
+/// Called after every step with the best so far and the state to resume from.
+using DesignObserver =
+    std::function<void(const FitRecord&, const DesignShape& best, const std::string& checkpoint)>;
 
 /// Shapes the problem's mirror until its far field is the target's, as well as it can be: Levenberg-Marquardt
 /// with exact path derivatives on smooth bins, from coarse bins, knots and few rays to fine and many, with
