@@ -27,7 +27,9 @@ gallery: build
 	scripts/gallery.sh $(BUILD)/lucerna
 
 bench: build
-	$(BUILD)/lucerna bench
+	$(BUILD)/bench/bench_trace
+	$(BUILD)/bench/bench_read_write
+	$(BUILD)/bench/bench_quality led
 
 build: packages
 	cmake --preset release && cmake --build --preset release

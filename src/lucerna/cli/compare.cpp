@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "lucerna/cli/arguments.h"
 #include "lucerna/cli/commands.h"
 #include "lucerna/cli/describe.h"
@@ -10,6 +12,7 @@
 #include "lucerna/core/error.h"
 #include "lucerna/photometry/compare_distributions.h"
 #include "lucerna/rayset/ray_file.h"
+#include "lucerna/report/trace_folder.h"
 #include "lucerna/source/draw_rays.h"
 #include "lucerna/source/source_model.h"
 
@@ -49,15 +52,27 @@ Json views_json(const RaySetComparison& comparison) {
   return views;
 }
 
-void compare_photometry(const CompareArguments& a, Session& session) {
-  const auto read = [&](const std::string& path) {
+/// A light distribution to compare, with the standard errors of its values where they are known.
+FarFieldTable read_distribution(const std::string& path, const CompareArguments& a, Session& session) {
+  if (!std::filesystem::is_directory(path)) {
     session.add_input(path);
-    return read_photometric_file(path, a.photometric.read_options(session.strict)).distribution;
-  };
-  const IntensityDistribution reference = session.timed("read", [&] { return read(a.reference); });
-  const IntensityDistribution test = session.timed("read", [&] { return read(a.test); });
-  const DistributionComparison c =
-      session.timed("compare", [&] { return compare_distributions(reference, test); });
+    return {path, read_photometric_file(path, a.photometric.read_options(session.strict)).distribution, {}};
+  }
+  session.add_input(std::filesystem::path(path) / "result.json");
+  TraceFolder folder = read_trace_folder(path);
+  if (folder.far_fields.empty()) throw InputError(fmt::format("{}: the trace has no far field", path));
+  return std::move(folder.far_fields.front());
+}
+
+void compare_photometry(const CompareArguments& a, Session& session) {
+  const FarFieldTable reference =
+      session.timed("read", [&] { return read_distribution(a.reference, a, session); });
+  const FarFieldTable test = session.timed("read", [&] { return read_distribution(a.test, a, session); });
+  const DistributionComparison c = session.timed("compare", [&] {
+    return compare_distributions(
+        reference.distribution, test.distribution,
+        {.reference_error_cd = reference.standard_error, .test_error_cd = test.standard_error});
+  });
   Json json = session.json_head(std::nullopt);
   json["relative_rms"] = c.relative_rms;
   json["bergen_fit"] = c.bergen_fit;
@@ -66,6 +81,8 @@ void compare_photometry(const CompareArguments& a, Session& session) {
   json["peak_ratio"] = c.peak_ratio;
   json["wasserstein_deg"] = c.wasserstein_deg;
   json["overlap"] = c.overlap;
+  json["floor"] = c.noise_floor;
+  json["excess"] = c.excess;
   if (c.alignment) {
     json["alignment"] = {{"tilt_deg", c.alignment->tilt_deg},
                          {"tilt_toward_c_deg", c.alignment->tilt_toward_c_deg},
@@ -74,7 +91,8 @@ void compare_photometry(const CompareArguments& a, Session& session) {
   }
   session.print_json(json);
   session.say(fmt::format("{} against {}", a.test, a.reference));
-  session.say(fmt::format("  relative RMS        {:.4g} %", 100.0 * c.relative_rms));
+  session.say(fmt::format("  relative RMS        {:.4g} % (noise floor {:.4g} %, excess {:.4g} %)",
+                          100.0 * c.relative_rms, 100.0 * c.noise_floor, 100.0 * c.excess));
   session.say(fmt::format("  Bergen fit          {:.3f} (100 = equal; by solid angle), {:.3f} unweighted",
                           c.bergen_fit, c.bergen_fit_unweighted));
   session.say(fmt::format("  flux, peak          {:.5g}, {:.5g} times", c.flux_ratio, c.peak_ratio));
@@ -112,8 +130,11 @@ void compare_rays(const CompareArguments& a, Session& session) {
 
 void compare(const CompareArguments& a, Session& session) {
   session.start();
-  const bool photometric = is_photometric_file(a.reference);
-  if (photometric != is_photometric_file(a.test)) {
+  const auto is_distribution = [](const std::string& path) {
+    return std::filesystem::is_directory(path) || is_photometric_file(path);
+  };
+  const bool photometric = is_distribution(a.reference);
+  if (photometric != is_distribution(a.test)) {
     throw InputError(fmt::format("{}: a photometric file and a ray file or model cannot be compared",
                                  photometric ? a.reference : a.test));
   }
@@ -131,7 +152,9 @@ void add_compare(CLI::App& app, Session& session, int&) {
       *app.add_subcommand("compare", "Compare two ray sets or models, or two photometric files");
   auto arguments = std::make_shared<CompareArguments>();
   CompareArguments& a = *arguments;
-  command.add_option("A", a.reference, "Reference: a ray file, model, IES or EULUMDAT file")->required();
+  command
+      .add_option("A", a.reference, "Reference: a ray file, model, IES or EULUMDAT file, folder of a trace")
+      ->required();
   command.add_option("B", a.test, "Test: likewise")->required();
   command.add_option("--rays", a.rays, "Rays drawn from a model")->capture_default_str();
   command.add_option("--seed", a.seed, "Seed of those rays")->capture_default_str();

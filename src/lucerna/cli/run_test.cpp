@@ -187,6 +187,12 @@ TEST(ProgramCli, PhotometricFilesAreDescribedCheckedConvertedAndCompared) {
   const Json compared = Json::parse(run_lucerna(dir.path(), "compare out/far-field.ldt b.ies --json").out);
   EXPECT_LT(compared["relative_rms"].get<double>(), 1e-5);
   EXPECT_NEAR(compared["overlap"].get<double>(), 1.0, 1e-5);
+  // A traced folder brings its noise: two runs of one scene differ by no more than it.
+  ASSERT_EQ(run_lucerna(dir.path(), "trace p.toml -o two --rays 16384 --seed 2 --sequence random").exit_code,
+            0);
+  const Json noisy = Json::parse(run_lucerna(dir.path(), "compare out two --json").out);
+  EXPECT_GT(noisy["floor"].get<double>(), 0.01);
+  EXPECT_LT(noisy["relative_rms"].get<double>(), 3.0 * noisy["floor"].get<double>());
   EXPECT_EQ(run_lucerna(dir.path(), "check out/far-field.ldt out/far-field.ies b.ies").exit_code, 0);
   write_file(dir / "bad.ies", slurp(dir / "b.ies").substr(0, 900));
   const auto checked = run_lucerna(dir.path(), "check bad.ies b.ies --json");
