@@ -2,11 +2,13 @@
 #include "lucerna/trace/project.h"
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <sstream>
 
 #include "lucerna/core/error.h"
 #include "lucerna/rayset/ray_file.h"
+#include "lucerna/reflector/faceted_surface.h"
 #include "lucerna/reflector/smooth_shape.h"
 #include "lucerna/source/emitter.h"
 #include "lucerna/source/ray_set_source.h"
@@ -145,7 +147,7 @@ Aperture read_aperture(TomlReader& reader, std::optional<double> default_diamete
   reader.fail("aperture", fmt::format("found '{}', expected circle or rectangle", shape));
 }
 
-Reflector read_conic(TomlReader& reader, const std::string& preset) {
+Reflector read_conic(TomlReader& reader, const std::string& preset, bool trough) {
   static const std::map<std::string, ConicPreset, std::less<>> kPresets{
       {"parabola", ConicPreset::parabola},
       {"ellipse", ConicPreset::ellipse},
@@ -159,21 +161,36 @@ Reflector read_conic(TomlReader& reader, const std::string& preset) {
   if (found->second == ConicPreset::parabola && focal2) reader.fail("focal2_mm", "a parabola has one focus");
   if (found->second != ConicPreset::parabola && !focal2) reader.fail("focal2_mm", "is missing");
   const Aperture aperture = read_aperture(reader, std::nullopt);
-  return at_key(reader, "preset",
-                [&] { return conic_reflector(found->second, *focal, focal2.value_or(0.0), aperture); });
+  return at_key(reader, "preset", [&] {
+    const auto make = trough ? conic_trough : conic_reflector;
+    return make(found->second, *focal, focal2.value_or(0.0), aperture);
+  });
 }
 
-Reflector read_revolution(TomlReader& reader) {
+/// The families that a profile makes, turned about z or drawn along y.
+Reflector read_profile_family(TomlReader& reader, bool trough) {
   const auto preset = reader.text("preset");
   const auto profile = reader.pairs("profile_mm");
   if (preset && profile) reader.fail("profile_mm", "a reflector has either a preset or a profile");
-  if (preset) return read_conic(reader, *preset);
-  if (!profile) reader.fail("preset", "is missing: a reflector of revolution needs a preset or a profile_mm");
+  if (preset) return read_conic(reader, *preset, trough);
+  if (!profile) reader.fail("preset", "is missing: the reflector needs a preset or a profile_mm");
   if (profile->empty()) reader.fail("profile_mm", "found no points, expected at least two");
   std::vector<ProfileKnot> knots;
   for (const auto& [r, z] : *profile) knots.push_back({r, z});
   const Aperture aperture = read_aperture(reader, 2.0 * knots.back().r_mm);
-  return at_key(reader, "profile_mm", [&] { return profile_reflector(knots, aperture); });
+  return at_key(reader, "profile_mm",
+                [&] { return (trough ? profile_trough : profile_reflector)(knots, aperture); });
+}
+
+/// Facets on a base of revolution: flat, or pillows of a radius of curvature.
+Reflector read_faceted(TomlReader& reader) {
+  const auto pitch = reader.positive("pitch_mm");
+  if (!pitch) reader.fail("pitch_mm", "is missing: the side of a facet");
+  const double radius = reader.number("pillow_radius_mm", std::numeric_limits<double>::infinity());
+  Reflector base = read_profile_family(reader, false);
+  return at_key(reader, "pillow_radius_mm", [&] {
+    return Reflector{std::make_shared<FacetedSurface>(base.surface, *pitch, radius), base.aperture};
+  });
 }
 
 /// The free-form family: a bicubic B-spline of heights over a paraboloid (docs/algorithms/design.md).
@@ -196,19 +213,33 @@ Reflector read_bspline(TomlReader& reader) {
   return {std::make_shared<SmoothSurface<BsplineShape>>(BsplineShape(*focal, x, y, std::move(c))), aperture};
 }
 
+/// A number, or [[angle of incidence in degrees, value], ...].
 Reflectance read_reflectance(TomlReader& reader) {
-  return at_key(reader, "reflectance", [&] { return Reflectance(reader.number("reflectance", 1.0)); });
+  return at_key(reader, "reflectance", [&] {
+    if (!reader.has_array("reflectance")) return Reflectance(reader.number("reflectance", 1.0));
+    std::vector<Reflectance::Entry> table;
+    const auto pairs = reader.pairs("reflectance");
+    for (const auto& [angle, value] : *pairs) table.push_back({angle, value});
+    return Reflectance(std::move(table));
+  });
+}
+
+Reflector read_family(TomlReader& reader) {
+  const std::string family = reader.required_text("family");
+  if (family == "revolution") return read_profile_family(reader, false);
+  if (family == "trough") return read_profile_family(reader, true);
+  if (family == "faceted") return read_faceted(reader);
+  if (family == "bspline") return read_bspline(reader);
+  reader.fail("family", fmt::format("found '{}', expected revolution, trough, bspline or faceted", family));
 }
 
 PlacedReflector read_reflector(TomlReader reader) {
   PlacedReflector placed;
   placed.world_from_reflector = read_placement(reader);
-  const std::string family = reader.required_text("family");
-  if (family != "revolution" && family != "bspline") {
-    reader.fail("family", fmt::format("found '{}', expected revolution or bspline", family));
-  }
-  placed.reflector = family == "bspline" ? read_bspline(reader) : read_revolution(reader);
+  placed.reflector = read_family(reader);
   placed.reflectance = read_reflectance(reader);
+  placed.slope_error_mrad = reader.number("slope_error_mrad", 0.0);
+  if (!(placed.slope_error_mrad >= 0.0)) reader.fail("slope_error_mrad", "expected >= 0");
   reader.finish();
   return placed;
 }
@@ -298,7 +329,7 @@ axis = "+z"                   # where its +z points: +x -x +y -y +z -z or a vect
 turn_deg = 0.0                # then about that axis
 
 [[reflector]]                 # in its own frame: vertex at the origin, opening along +z; then placed
-family = "revolution"
+family = "revolution"         # revolution, trough (along y), faceted (pitch_mm, pillow_radius_mm), bspline
 preset = "parabola"           # parabola, ellipse, hyperbola; or profile_mm = [[r, z], ...], a spline
 focal_mm = 15.0               # from the vertex; ellipse and hyperbola have focal2_mm too
 aperture = "circle"           # circle: diameter_mm; rectangle: size_mm = [x, y]
@@ -307,7 +338,8 @@ hole_diameter_mm = 0.0
 position_mm = [0, 0, 15]      # here: the focus is at the source
 axis = "-z"                   # the mirror opens downward
 turn_deg = 0.0
-reflectance = 0.92
+reflectance = 0.92            # or over the angle of incidence: [[0, 0.92], [60, 0.90], [85, 0.95]]
+slope_error_mrad = 0.0        # Gaussian, standard deviation about each of two axes
 
 [[detector]]
 name = "far"                  # names the files

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/rayset/ray_file.h"
@@ -79,6 +81,22 @@ TEST(Project, FamiliesBuildTheirMirrors) {
       read(reflector("family = 'revolution'\nprofile_mm = [[0, 0], [20, 10], [40, 40]]\n"));
   EXPECT_NEAR(spline.scene.reflectors[0].reflector.surface->at(0.0, 40.0).z_mm, 40.0, 1e-9);
   EXPECT_EQ(spline.scene.reflectors[0].reflector.aperture.half_x_mm(), 40.0);
+}
+
+TEST(Project, TroughsFacetsAndTheirSurfacesAreRead) {
+  const std::string parabola = "preset = 'parabola'\nfocal_mm = 10\ndiameter_mm = 80\n";
+  const auto mirror = [&](const std::string& keys) {
+    return read(reflector(keys + parabola)).scene.reflectors[0];
+  };
+  const PlacedReflector trough = mirror("family = 'trough'\nslope_error_mrad = 2\n");
+  EXPECT_NEAR(trough.reflector.surface->at(20.0, 33.0).z_mm, 10.0, 1e-12);
+  EXPECT_EQ(trough.slope_error_mrad, 2.0);
+  const PlacedReflector facets =
+      mirror("family = 'faceted'\npitch_mm = 8\nreflectance = [[0, 0.8], [60, 0.6]]\n");
+  const SurfacePoint here = facets.reflector.surface->at(20.5, 0.5),
+                     there = facets.reflector.surface->at(21.0, 0.5);
+  EXPECT_EQ(here.dzdx, there.dzdx) << "a flat facet has one slope";
+  EXPECT_NEAR(facets.reflectance.at(std::cos(radians(30.0))), 0.7, 1e-12);
 }
 
 TEST(Project, BadMirrorsNameTheirKey) {

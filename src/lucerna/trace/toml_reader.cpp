@@ -78,6 +78,11 @@ const toml::node* TomlReader::find(std::string_view key) {
 
 bool TomlReader::has(std::string_view key) { return find(key) != nullptr; }
 
+bool TomlReader::has_array(std::string_view key) {
+  const toml::node* node = find(key);
+  return node != nullptr && node->is_array();
+}
+
 std::string TomlReader::full_key(std::string_view key) const {
   return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }

@@ -24,6 +24,8 @@ class TomlReader {
   TomlReader(const toml::table& table, std::string file, std::string path);
 
   bool has(std::string_view key);
+  /// True if the key is there and holds an array.
+  bool has_array(std::string_view key);
   std::optional<double> number(std::string_view key);
   double number(std::string_view key, double otherwise) { return number(key).value_or(otherwise); }
   /// A number that must be > 0 when it is there.
