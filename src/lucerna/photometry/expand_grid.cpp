@@ -144,6 +144,17 @@ std::vector<Plane> mirrored_planes(const ListedGrid& grid, ListedSymmetry symmet
   return planes;
 }
 
+/// A grid begins with C0: where no plane is stored there, it lies between its neighbours as everywhere.
+void add_plane_at_0(IntensityDistribution& d) {
+  const std::size_t last = d.c_deg.size() - 1, gammas = d.gamma_deg.size();
+  const double before = 360.0 - d.c_deg.back(), after = d.c_deg.front();
+  std::vector<double> row(gammas);
+  for (std::size_t g = 0; g < gammas; ++g)
+    row[g] = (after * d.at(last, g) + before * d.at(0, g)) / (before + after);
+  d.c_deg.insert(d.c_deg.begin(), 0.0);
+  d.cd.insert(d.cd.begin(), row.begin(), row.end());
+}
+
 /// All planes meet at a pole: the mean for all, so that nothing depends on the plane a ray is nearest to.
 double even_out_row(IntensityDistribution& d, std::size_t g) {
   const std::vector<double> weights = plane_weights(d.c_deg);
@@ -186,6 +197,7 @@ IntensityDistribution expanded(ListedGrid grid, ListedSymmetry symmetry, RepairL
                  plane.c_deg + 360.0, worst);
     }
   }
+  if (d.c_deg.front() > 0.0) add_plane_at_0(d);
   nadir_spread = d.gamma_deg.front() == 0.0 ? even_out_row(d, 0) : 0.0;
   const double zenith_spread = d.gamma_deg.back() == 180.0 ? even_out_row(d, gammas - 1) : 0.0;
   for (const auto& [name, spread] : {std::pair{"nadir", nadir_spread}, std::pair{"zenith", zenith_spread}}) {

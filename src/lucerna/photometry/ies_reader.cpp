@@ -348,6 +348,25 @@ IntensityDistribution read_intensities(const IesBody& body, double factor, int y
   return turn == IesTurn::minus_90 ? turned(d, -90.0) : d;
 }
 
+/// Keeps the factors and says what they are. They scale all intensities with the angle by which the lamp is
+/// tilted, which only an installation knows.
+void report_tilt(const IesBody& body, std::size_t line, PhotometricOrigin& origin, RepairLog& log) {
+  origin.tilt_factors = body.tilt_factors;
+  origin.tilt_geometry = body.tilt_geometry;
+  if (body.tilt_factors.empty()) {
+    log.note(line, "0 tilt factors");
+    return;
+  }
+  const auto [least, most] =
+      std::minmax_element(body.tilt_factors.begin(), body.tilt_factors.end(),
+                          [](const auto& a, const auto& b) { return a.second < b.second; });
+  log.note(line,
+           "{} tilt factors kept, not applied: {} to {} for lamp tilts of {} to {} deg (lamp geometry {}); "
+           "intensities hold for the luminaire as measured",
+           body.tilt_factors.size(), least->second, most->second, body.tilt_factors.front().first,
+           body.tilt_factors.back().first, body.tilt_geometry);
+}
+
 }  // namespace
 
 PhotometricFile read_ies(std::string_view bytes, std::string_view name,
@@ -379,8 +398,7 @@ PhotometricFile read_ies(std::string_view bytes, std::string_view name,
                tilt.substr(0, 60));
   }
   const IesBody body = parse_ies_body(lines, at + 1, included, log);
-  file.origin.tilt_factors = body.tilt_factors;
-  if (included) log.note(at + 2, "{} tilt factors kept, not applied", body.tilt_factors.size());
+  if (included) report_tilt(body, at + 2, file.origin, log);
   double factor = intensity_factor(body, year, file.origin, log);
   const std::optional<double> radiant = radiant_unit(keywords, log);
   if (radiant) factor *= *radiant;

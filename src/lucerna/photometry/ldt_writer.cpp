@@ -77,7 +77,10 @@ std::vector<std::size_t> stored_planes(const IntensityDistribution& d, Symmetry 
 Symmetry writable_symmetry(const IntensityDistribution& d, double tolerance) {
   const Symmetry symmetry = find_symmetry(d, tolerance);
   const std::size_t n = d.c_deg.size();
-  const bool fits = symmetry == Symmetry::both_planes ? n % 4 == 0 : n % 2 == 0;
+  bool fits = n % (symmetry == Symmetry::both_planes ? 4 : 2) == 0;
+  // Isym 3 begins at plane 3 Mc / 4 + 1, whatever its angle: it must be C270.
+  if (symmetry == Symmetry::plane_c90_c270)
+    fits = n % 4 == 0 && plane_index(d, 270.0) == static_cast<std::ptrdiff_t>(3 * n / 4);
   return symmetry == Symmetry::none || symmetry == Symmetry::rotational || fits ? symmetry : Symmetry::none;
 }
 

@@ -75,7 +75,11 @@ struct PhotometricOrigin {
   bool feet = false;
   std::optional<double> stated_flux_lm;  ///< lamp flux times LORL, or a keyword for luminaire lumens
   double nadir_spread = 0.0;             ///< (max - min) / mean of the nadir row before it was evened out
-  std::vector<std::pair<double, double>> tilt_factors;  ///< LM-63 TILT=INCLUDE: angle, factor; not applied
+  /// LM-63 TILT=INCLUDE: angle of the lamp's tilt in degrees and what all intensities are multiplied by
+  /// there. Not applied: they depend on the installation. See `tilt_factor`.
+  std::vector<std::pair<double, double>> tilt_factors{};
+  /// 1 vertical lamp, 2 horizontal lamp that stays level, 3 horizontal lamp that tilts; 0 without factors.
+  int tilt_geometry = 0;
 };
 
 /// A light distribution with what is said of it: what readers return and writers take.
@@ -90,6 +94,10 @@ struct PhotometricFile {
 /// Flux of the lamps that intensities may be quoted for (cd/klm), in lm: of the first lamp set with flux, or
 /// none for absolute photometry.
 std::optional<double> lamp_flux_lm(const LuminaireData& luminaire);
+
+/// What all intensities are to be multiplied by (`scale`) when the lamp is tilted by `tilt_deg` (>= 0):
+/// linear between the file's tilt factors, the first and last beyond them, 1 if the file has none.
+double tilt_factor(const PhotometricOrigin& origin, double tilt_deg);
 
 /// How IES's H angles stand to C (see design.md section 4): both are in use, and no file says which.
 enum class IesTurn {

@@ -177,4 +177,16 @@ std::vector<Fault> check_photometric_file(const std::filesystem::path& path,
   return faults;
 }
 
+double tilt_factor(const PhotometricOrigin& origin, double tilt_deg) {
+  const auto& factors = origin.tilt_factors;
+  if (factors.empty()) return 1.0;
+  if (!(tilt_deg > factors.front().first)) return factors.front().second;
+  for (std::size_t i = 1; i < factors.size(); ++i) {
+    const auto [from, before] = factors[i - 1];
+    const auto [to, after] = factors[i];
+    if (tilt_deg <= to && to > from) return before + (after - before) * (tilt_deg - from) / (to - from);
+  }
+  return factors.back().second;
+}
+
 }  // namespace lucerna

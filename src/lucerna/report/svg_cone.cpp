@@ -167,10 +167,11 @@ std::string cone_svg(const IntensityDistribution& d, const ConeOptions& options)
   const double squeeze = kHalf / (kHeight * reach);
   SvgCanvas canvas(790.0, 470.0);
   canvas.data("plot", "cone");
-  draw_title(canvas, options.diagram.title.empty() ? "Cone diagram" : options.diagram.title,
-             fmt::format("edges at {:g} % of the largest intensity within 80° of {}; planes square to it{}",
-                         100.0 * options.fraction, up ? "zenith" : "nadir",
-                         squeeze < 1.0 ? fmt::format(" (widths drawn x {:.2g})", squeeze) : std::string()));
+  draw_title(
+      canvas, options.diagram.title.empty() ? "Cone diagram" : options.diagram.title,
+      fmt::format("edges at {:g} % of the largest intensity within 80° of {}; planes square to it{}",
+                  100.0 * options.fraction, up ? "zenith" : "nadir",
+                  squeeze < 1.0 - 1e-9 ? fmt::format(" (widths drawn x {:.2g})", squeeze) : std::string()));
   ConePlot plot{{100.0, up ? 410.0 : 110.0},
                 kHeight / options.last_distance_m,
                 squeeze * kHeight / options.last_distance_m,

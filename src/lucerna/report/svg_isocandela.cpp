@@ -179,7 +179,7 @@ std::string sphere_svg(const IntensityDistribution& d, const DiagramOptions& opt
   check_drawable(d, "sphere map");
   const ShownIntensity unit = shown_intensity(d, options.lamp_flux_lm);
   const PeakIntensity peak = peak_intensity(d);
-  SvgCanvas canvas(800.0, 432.0);
+  SvgCanvas canvas(824.0, 432.0);
   canvas.data("plot", "sphere");
   draw_title(
       canvas, options.title.empty() ? "Intensity in every direction" : options.title,
@@ -188,7 +188,7 @@ std::string sphere_svg(const IntensityDistribution& d, const DiagramOptions& opt
   constexpr double kRadius = 145.0;
   draw_hemisphere(canvas, d, {172.0, 232.0}, kRadius, false, peak.cd);
   draw_hemisphere(canvas, d, {502.0, 232.0}, kRadius, true, peak.cd);
-  draw_scale(canvas, {672.0, 130.0}, peak.cd, unit, false);
+  draw_scale(canvas, {692.0, 130.0}, peak.cd, unit, false);
   return canvas.str();
 }
 

@@ -45,9 +45,9 @@ void draw_levels(SvgCanvas& canvas, const SampledField& field, const std::vector
     for (const auto& line : contour_lines(field, level))
       canvas.polyline(line, {.stroke = "#222", .width = 0.8});
   }
-  for (const double level : levels) {
-    for (const auto& line : contour_lines(field, level))
-      label_line(canvas, line, label_number(level), 0.5, 90.0);
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    for (const auto& line : contour_lines(field, levels[i]))
+      label_line(canvas, line, label_number(levels[i]), 0.4 + 0.1 * static_cast<double>(i % 3), 90.0);
   }
   canvas.text({scale.x, scale.y - 10.0}, "at least, " + unit, {.size = 12.0, .fill = "#444"});
   for (std::size_t i = 0; i < levels.size(); ++i) {
