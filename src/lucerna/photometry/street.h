@@ -52,6 +52,9 @@ struct BugRating {
   std::string text() const;
 };
 
+/// Limits of the BUG and G* tables are as commonly quoted from the two standards; their own text was not at
+/// hand to compare with.
+///
 /// Rates a luminaire; the distribution must be absolute (lm of the luminaire as installed). Limits: B by
 /// BL, BM, BH; U by UL, UH; G by FVH, BVH, FH, BH. Throws as `luminaire_zones`, and if the threshold is
 /// negative or no number. Thread safe.
