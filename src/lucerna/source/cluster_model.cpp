@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 
 #include "lucerna/core/error.h"
@@ -120,6 +121,9 @@ std::vector<MeshPiece> mesh_pieces(const ClusterData& data) {
 ClusterModel::ClusterModel(ClusterData data) : data_(std::move(data)), pieces_(mesh_pieces(data_)) {
   points_.resize(data_.clusters());
   for (std::size_t v = 0; v < points_.size(); ++v) points_[v] = data_.point_mm(v);
+  element_begin_.assign(data_.elements.size() + 1, 0);
+  for (const MeshPiece& piece : pieces_) ++element_begin_[piece.element + 1];
+  std::partial_sum(element_begin_.begin(), element_begin_.end(), element_begin_.begin());
   // One item per corner of a piece: the part of its density that is that corner's.
   std::vector<double> weights(3 * pieces_.size(), 0.0);
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
@@ -222,28 +226,49 @@ void ClusterModel::emit(const Sequence& sequence, std::uint64_t first, RayBlock&
 namespace {
 
 /// Barycentric coordinates of where the line from the origin along `arm` meets the triangle; nothing if it
-/// does not.
-std::optional<std::array<double, 3>> cast(const std::array<Vec3, 3>& corner, const Vec3& arm) {
+/// misses it by more than the share `slack` of its size.
+std::optional<std::array<double, 3>> cast(const std::array<Vec3, 3>& corner, const Vec3& arm, double slack) {
   const auto volume = [](const Vec3& a, const Vec3& b, const Vec3& c) { return dot(a, cross(b, c)); };
   const double whole = volume(corner[0], corner[1], corner[2]);
   std::array<double, 3> part{volume(arm, corner[1], corner[2]), volume(corner[0], arm, corner[2]),
                              volume(corner[0], corner[1], arm)};
   double sum = 0.0;
-  for (double& x : part) {
-    x = whole < 0.0 ? -x : x;
-    if (!(x >= 0.0)) return std::nullopt;
-    sum += x;
-  }
+  for (double& x : part) sum += x = whole < 0.0 ? -x : x;
   if (!(sum > 0.0)) return std::nullopt;
-  for (double& x : part) x /= sum;
+  for (double& x : part) {
+    x /= sum;
+    if (!(x >= -slack)) return std::nullopt;
+  }
   return part;
 }
+
+/// Elements are looked through before their pieces; a border that rounding moved is still theirs.
+constexpr double kBorderSlack = 1e-9;
 
 /// Starts are float32 and representatives rounded: this far off the surface is still on it, in shares of the
 /// arm.
 constexpr double kOnSurface = 1e-5;
 
 }  // namespace
+
+// The pieces of an element tile its cone: their corners are put back along lines from the same centre.
+template <typename See>
+void ClusterModel::pieces_along(const Vec3& arm, const See& see) const {
+  const auto from_centre = [&](std::array<Vec3, 3> corner) {
+    for (Vec3& c : corner) c = c - data_.surface.centre_mm;
+    return corner;
+  };
+  for (std::size_t e = 0; e < data_.elements.size(); ++e) {
+    const Triangle& v = data_.elements[e];
+    if (corners(v) != 3) continue;
+    if (!cast(from_centre({points_[v[0]], points_[v[1]], points_[v[2]]}), arm, kBorderSlack)) continue;
+    for (std::size_t i = element_begin_[e]; i < element_begin_[e + 1]; ++i) {
+      const std::array<Vec3, 3> corner = from_centre(pieces_[i].corner_mm);
+      const auto part = cast(corner, arm, 0.0);
+      if (part && !see(pieces_[i], corner, *part)) return;
+    }
+  }
+}
 
 double ClusterModel::pdf_area(const Vec3& point_mm) const {
   if (!data_.surface.has_area()) {
@@ -254,29 +279,26 @@ double ClusterModel::pdf_area(const Vec3& point_mm) const {
   const bool open = data_.surface.kind == MeshSurfaceKind::hull;
   if (!open && length(data_.surface.put_back(point_mm) - point_mm) > kOnSurface * length(arm)) return 0.0;
   double pdf = 0.0;
-  for (const MeshPiece& piece : pieces_) {
-    if (corners(data_.elements[piece.element]) != 3) continue;
-    std::array<Vec3, 3> corner;
-    for (std::size_t k = 0; k < 3; ++k) corner[k] = piece.corner_mm[k] - data_.surface.centre_mm;
-    const auto part = cast(corner, arm);
-    if (!part) continue;
-    Vec3 q;
-    double density = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      q += (*part)[k] * corner[k];
-      density += (*part)[k] * piece.density[k];
-    }
-    if (open && length(q - arm) > kOnSurface * length(arm)) continue;
-    double stretch = 1.0;  // flat area per surface area, along the line from the centre
-    if (data_.surface.kind > MeshSurfaceKind::plane && !open) {
-      const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-      const double far = length(arm), near = length(q);
-      const double surface_cosine = std::abs(dot(data_.surface.normal(point_mm), arm)) / far;
-      const double flat_cosine = std::abs(dot(normal, q)) / (length(normal) * near);
-      stretch = surface_cosine / (far * far) * (near * near) / flat_cosine;
-    }
-    pdf = std::max(pdf, density / total_ * stretch);  // on a border two pieces agree
-  }
+  pieces_along(
+      arm, [&](const MeshPiece& piece, const std::array<Vec3, 3>& corner, const std::array<double, 3>& part) {
+        Vec3 q;
+        double density = 0.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+          q += part[k] * corner[k];
+          density += part[k] * piece.density[k];
+        }
+        if (open && length(q - arm) > kOnSurface * length(arm)) return true;
+        double stretch = 1.0;  // flat area per surface area, along the line from the centre
+        if (data_.surface.kind > MeshSurfaceKind::plane && !open) {
+          const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
+          const double far = length(arm), near = length(q);
+          const double surface_cosine = std::abs(dot(data_.surface.normal(point_mm), arm)) / far;
+          const double flat_cosine = std::abs(dot(normal, q)) / (length(normal) * near);
+          stretch = surface_cosine / (far * far) * (near * near) / flat_cosine;
+        }
+        pdf = std::max(pdf, density / total_ * stretch);  // on a border two pieces agree
+        return true;
+      });
   return pdf;
 }
 
@@ -285,15 +307,11 @@ double ClusterModel::pdf_solid_angle(const Vec3& point_mm, const Direction& dire
   std::uint32_t v = 0;
   bool found = false;
   const Vec3 arm = point_mm - data_.surface.centre_mm;
-  for (const MeshPiece& piece : pieces_) {
-    if (corners(data_.elements[piece.element]) != 3) continue;
-    std::array<Vec3, 3> corner;
-    for (std::size_t k = 0; k < 3; ++k) corner[k] = piece.corner_mm[k] - data_.surface.centre_mm;
-    if (!cast(corner, arm)) continue;
+  pieces_along(arm, [&](const MeshPiece& piece, const auto&, const auto&) {
     v = nearest_cluster(piece.element, point_mm);
     found = true;
-    break;
-  }
+    return false;
+  });
   for (std::uint32_t w = 0; !found && w < points_.size(); ++w) {
     if (length(points_[w] - point_mm) < length(points_[v] - point_mm)) v = w;
   }

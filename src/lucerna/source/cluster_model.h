@@ -92,7 +92,7 @@ class ClusterModel final : public SourceModel {
   std::size_t layers() const override { return 1; }
   std::size_t leaves() const override { return data_.leaf.size(); }
   std::uint64_t training_rays() const override { return data_.training_rays; }
-  /// Looks at every piece: for tests and weights, not for inner loops.
+  /// Looks at every element and at the pieces of one: for tests and weights, not for inner loops.
   double pdf_area(const Vec3& point_mm) const override;
   double pdf_solid_angle(const Vec3& point_mm, const Direction& direction) const override;
   double pdf_etendue(const Ray& ray) const override;
@@ -109,10 +109,15 @@ class ClusterModel final : public SourceModel {
  private:
   std::uint32_t nearest_cluster(std::uint32_t element, const Vec3& point_mm) const;
   void build_directions();
+  /// Calls `see(piece, corners from the surface's centre, barycentric coordinates)` for the triangular pieces
+  /// that the line along `arm` from the surface's centre meets (several on their borders), until it is false.
+  template <typename See>
+  void pieces_along(const Vec3& arm, const See& see) const;
 
   ClusterData data_;
   std::vector<Vec3> points_;
-  std::vector<MeshPiece> pieces_;
+  std::vector<MeshPiece> pieces_;  // those of element e: element_begin_[e] .. element_begin_[e + 1] - 1
+  std::vector<std::size_t> element_begin_;
   double total_ = 0.0;  // sum of all pieces' relative flux
   std::vector<float> piece_probability_;
   std::vector<std::uint32_t> piece_alias_;
