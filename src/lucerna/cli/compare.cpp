@@ -10,8 +10,10 @@
 #include "lucerna/cli/describe.h"
 #include "lucerna/cli/photometric_arguments.h"
 #include "lucerna/core/error.h"
+#include "lucerna/core/file.h"
 #include "lucerna/photometry/compare_distributions.h"
 #include "lucerna/rayset/ray_file.h"
+#include "lucerna/report/svg_polar.h"
 #include "lucerna/report/trace_folder.h"
 #include "lucerna/source/draw_rays.h"
 #include "lucerna/source/source_model.h"
@@ -21,7 +23,7 @@ namespace lucerna::cli {
 namespace {
 
 struct CompareArguments {
-  std::string reference, test, rays = "4e6", seed = "1";
+  std::string reference, test, output, rays = "4e6", seed = "1";
   PhotometricArguments photometric;
 };
 
@@ -50,6 +52,16 @@ Json views_json(const RaySetComparison& comparison) {
                                            {"raw", to_json(d.raw)}};
   }
   return views;
+}
+
+/// result.json and, for light distributions, both in one polar diagram, into the folder asked for.
+void write_comparison(const CompareArguments& a, const Json& json, const std::string& polar,
+                      Session& session) {
+  if (a.output.empty()) return;
+  prepare_folder(a.output, session.force);
+  const std::filesystem::path folder = a.output;
+  if (!polar.empty()) write_file(folder / "polar.svg", polar);
+  write_file(folder / "result.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 /// A light distribution to compare, with the standard errors of its values where they are known.
@@ -89,6 +101,12 @@ void compare_photometry(const CompareArguments& a, Session& session) {
                          {"turn_deg", c.alignment->turn_deg},
                          {"relative_rms", c.alignment->relative_rms}};
   }
+  write_comparison(a, json,
+                   polar_svg(test.distribution,
+                             {.title = std::filesystem::path(a.test).filename().string(),
+                              .reference = &reference.distribution,
+                              .reference_name = std::filesystem::path(a.reference).filename().string()}),
+                   session);
   session.print_json(json);
   session.say(fmt::format("{} against {}", a.test, a.reference));
   session.say(fmt::format("  relative RMS        {:.4g} % (noise floor {:.4g} %, excess {:.4g} %)",
@@ -115,6 +133,7 @@ void compare_rays(const CompareArguments& a, Session& session) {
   Json json = session.json_head(parse_count(a.seed));
   json["rays"] = {reference.size(), test.size()};
   json["views"] = views_json(comparison);
+  write_comparison(a, json, "", session);
   session.print_json(json);
   session.say(fmt::format("{} ({} rays) against {} ({} rays); shares of the l2 norm, in per cent", a.test,
                           test.size(), a.reference, reference.size()));
@@ -158,6 +177,9 @@ void add_compare(CLI::App& app, Session& session, int&) {
   command.add_option("B", a.test, "Test: likewise")->required();
   command.add_option("--rays", a.rays, "Rays drawn from a model")->capture_default_str();
   command.add_option("--seed", a.seed, "Seed of those rays")->capture_default_str();
+  command.add_option("-o,--output", a.output,
+                     "Folder for result.json and, of light distributions, polar.svg");
+  command.add_flag("--force", session.force, "Write into a folder that is not empty");
   a.photometric.add_read(command);
   session.add_json(command);
   session.add_strict(command);

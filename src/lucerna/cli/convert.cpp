@@ -14,7 +14,7 @@ namespace lucerna::cli {
 namespace {
 
 struct ConvertArguments {
-  std::string input, output, from, to, rays, seed = "1", flux, move;
+  std::string input, output, from, to, rays, seed = "1", flux, move, length_unit = "mm", columns;
   std::vector<std::string> rotations;
   bool salvage = false;
   PhotometricArguments photometric;
@@ -29,6 +29,7 @@ RayConversion conversion_of(const ConvertArguments& a, bool strict) {
     conversion.flux = parse_number(a.flux);
     if (!(*conversion.flux > 0.0)) throw UsageError(fmt::format("--flux {} is not > 0", a.flux));
   }
+  conversion.length_unit = a.length_unit;
   // Turns in the order given, then the move.
   for (const std::string& rotation : a.rotations)
     conversion.new_from_old = parse_rotation(rotation) * conversion.new_from_old;
@@ -62,8 +63,11 @@ void convert_photometry(const ConvertArguments& a, Session& session) {
 void convert_rays(const ConvertArguments& a, Session& session) {
   const RayConversion conversion = conversion_of(a, session.strict);
   const std::string format = ray_format_for(a.output, a.to);
+  std::vector<std::string> columns;
+  if (!a.columns.empty()) columns = CLI::detail::split(a.columns, ',');
   const auto result = session.timed("convert", [&] {
-    return convert_ray_file(a.input, a.output, format, conversion, {.salvage = a.salvage, .format = a.from},
+    return convert_ray_file(a.input, a.output, format, conversion,
+                            {.salvage = a.salvage, .format = a.from, .text_columns = columns},
                             session.progress());
   });
   for (const std::string& warning : result.warnings) session.note(warning);
@@ -96,6 +100,10 @@ void add_convert(CLI::App& app, Session& session, int&) {
                      "Keep so many rays, spread over the file; their flux stays that of all");
   command.add_option("--seed", a.seed, "Seed of that choice")->capture_default_str();
   command.add_option("--flux", a.flux, "Total flux to state, in the rays' unit");
+  command.add_option("--length-unit", a.length_unit, "Unit of lengths in OUT, where its format has a choice")
+      ->capture_default_str();
+  command.add_option("--columns", a.columns,
+                     "Columns of a text file without a header: x,y,z,kx,ky,kz,flux,...");
   command.add_flag("--salvage", a.salvage, "Take what is whole of a damaged file");
   command.add_option("--rotate", a.rotations, "Turn about an axis through the origin: z:90; may be repeated")
       ->allow_extra_args(false);

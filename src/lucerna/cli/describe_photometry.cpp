@@ -3,6 +3,7 @@
 
 #include "lucerna/cli/describe.h"
 #include "lucerna/photometry/figures.h"
+#include "lucerna/photometry/street.h"
 
 namespace lucerna::cli {
 
@@ -24,6 +25,21 @@ Json planes_json(const BeamFigures& beam) {
                       {"field_angle_of_centre_deg", to_json(plane.field_of_centre)}});
   }
   return planes;
+}
+
+/// BUG rating and G* class, for luminous intensities only.
+void add_street_figures(Description& d, const PhotometricFile& file, const PhotometricReadOptions& options) {
+  if (file.distribution.unit != FluxUnit::lumen) return;
+  const double side = street_side_c_deg(file.origin, options.ies_turn);
+  const BugRating bug = bug_rating(file.distribution, {.street_side_c_deg = side});
+  const GlareClass glare = glare_class(file.distribution);
+  d.json["street"] = {{"street_side_c_deg", side},
+                      {"backlight", bug.backlight},
+                      {"uplight", bug.uplight},
+                      {"glare", bug.glare},
+                      {"glare_class", glare.number}};
+  d.lines.push_back(fmt::format("  as a street light   {} (TM-15, street side C{:g}), {} (EN 13201-2)",
+                                bug.text(), side, glare.text()));
 }
 
 }  // namespace
@@ -84,6 +100,7 @@ Description describe_photometry(const std::string& path, const PhotometricReadOp
                   "the peak); NEMA {}H x {}V",
                   code[0], code[1], code[2], code[3], code[4], figures.cut_off_deg, figures.nema_horizontal,
                   figures.nema_vertical));
+  add_street_figures(d, file, options);
   for (const std::string& note : notes) d.lines.push_back("  note: " + note);
   return d;
 }

@@ -51,7 +51,7 @@ RayConversionResult convert_ray_file(const std::filesystem::path& in, const std:
     factor = weight_factor(in, *subset, read_options, progress);
   }
   const std::uint64_t count = subset ? subset->wanted() : reader->ray_count();
-  const auto writer = create_ray_file(out, format, header, count);
+  const auto writer = create_ray_file(out, format, header, count, {.length_unit = conversion.length_unit});
   RayConversionResult result{0, header.flux(), header.flux_unit, {}};
   std::uint64_t first = 0;
   for_each_block(*reader, progress, "convert", [&](const RayBlock& block) {

@@ -21,6 +21,8 @@ struct RayConversion {
   std::optional<double> flux;
   /// Refuses a file that the reader warns about.
   bool strict = false;
+  /// Unit of lengths in the new file, as WriteOptions names them.
+  std::string length_unit = "mm";
   /// Turns and moves all rays.
   Frame new_from_old;
 };
