@@ -27,9 +27,6 @@ constexpr std::size_t kBlock = std::size_t{1} << 16;
 constexpr std::size_t kRimPoints = 64;
 /// Rounds of the fit of densities; each corrects what the last left to about a third.
 constexpr int kFitRounds = 20;
-/// The fit raises no density above this multiple of what was counted: a corner of slivers alone has no area
-/// of its own to send its energy from, and would flood its neighbours.
-constexpr double kMostFit = 2.0;
 
 void slide_to(const MeshSurface& surface, RayBlock& rays) {
   const BoundingSurface sphere{SurfaceKind::sphere, surface.world_from_surface, surface.radius_mm, {}};
@@ -321,7 +318,6 @@ std::vector<Transfer> transfers(const ClusterData& data) {
 /// counted, cluster by cluster. Multiplicative, so that they stay >= 0.
 void fit_densities(ClusterData& data, const std::vector<double>& energy, std::vector<double> density) {
   add_lone_points(data, energy, density);
-  const std::vector<double> counted = density;
   const std::vector<Transfer> transfer = transfers(data);
   for (int round = 0; round < kFitRounds; ++round) {
     std::vector<double> sent(data.clusters(), 0.0);
@@ -333,7 +329,7 @@ void fit_densities(ClusterData& data, const std::vector<double>& energy, std::ve
       }
     }
     for (std::size_t v = 0; v < data.clusters(); ++v) {
-      if (sent[v] > 0.0) density[v] = std::min(density[v] * energy[v] / sent[v], kMostFit * counted[v]);
+      if (sent[v] > 0.0) density[v] *= energy[v] / sent[v];
     }
   }
   const double most = *std::max_element(density.begin(), density.end());
