@@ -5,7 +5,9 @@
 add_library(lucerna_warnings INTERFACE)
 target_compile_options(lucerna_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Woverloaded-virtual
-  -Wcast-qual -Wundef -Wdouble-promotion -Wno-missing-field-initializers)
+  -Wcast-qual -Wundef -Wno-missing-field-initializers
+  # clang warns of every float that meets a double, also where a double is asked for.
+  $<$<CXX_COMPILER_ID:GNU>:-Wdouble-promotion>)
 
 # The same bits for every optimisation level and compiler: no contraction of a * b + c behind our back.
 add_library(lucerna_numerics INTERFACE)
