@@ -91,7 +91,11 @@ std::vector<double> parse_numbers(std::string_view word, std::size_t n) {
 
 RayRange parse_range(std::string_view word) {
   const std::size_t colon = word.find(':');
-  if (colon == std::string_view::npos) return {0, parse_count(word)};
+  if (colon == std::string_view::npos) {
+    const std::uint64_t count = parse_count(word);
+    if (count == 0) refuse(word, "a number of rays, at least one");
+    return {0, count};
+  }
   const RayRange range{parse_count(word.substr(0, colon)), parse_count(word.substr(colon + 1))};
   if (range.first >= range.last) refuse(word, "a range A:B with A < B");
   return range;
