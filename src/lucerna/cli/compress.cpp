@@ -18,6 +18,13 @@ struct CompressArguments {
   std::string output, method = "adaptive", max_bytes, flux, seed = "1";
 };
 
+std::optional<double> given_flux(const CompressArguments& a) {
+  if (a.flux.empty()) return std::nullopt;
+  const double flux = parse_number(a.flux);
+  if (!(flux > 0.0)) throw UsageError(fmt::format("--flux {} is not > 0", a.flux));
+  return flux;
+}
+
 /// All inputs as one set; a given flux replaces what one file states, or scales the sum of several.
 RaySet read_inputs(const CompressArguments& a, Session& session) {
   RaySet all;
@@ -35,46 +42,65 @@ RaySet read_inputs(const CompressArguments& a, Session& session) {
     if (session.strict) throw InputError(warning);
     session.note(warning);
   }
-  if (!a.flux.empty()) {
-    const double flux = parse_number(a.flux);
-    if (!(flux > 0.0)) throw UsageError(fmt::format("--flux {} is not > 0", a.flux));
-    all.header.set_flux(flux);
-  }
+  if (const auto flux = given_flux(a)) all.header.set_flux(*flux);
   require_flux(all.header, a.inputs.front());
   return all;
 }
 
-std::unique_ptr<SourceModel> make_model(const CompressArguments& a, const RaySet& rays, Session& session) {
+/// A model and the rays it was made from.
+struct Compressed {
+  std::unique_ptr<SourceModel> model;
+  std::uint64_t rays = 0;
+};
+
+/// One file, adaptively: block by block, so that it may be larger than memory.
+Compressed compress_stream(const CompressArguments& a, const AdaptiveOptions& options, Session& session) {
+  const auto reader = open_ray_file(a.inputs.front());
+  session.add_input(a.inputs.front());
+  Compressed made{compress_adaptive(*reader, options, session.progress()), reader->ray_count()};
+  for (const std::string& warning : reader->warnings()) {
+    if (session.strict) throw InputError(warning);
+    session.note(warning);
+  }
+  return made;
+}
+
+Compressed make_model(const CompressArguments& a, Session& session) {
+  if (a.method != "adaptive" && a.method != "clusters") {
+    throw UsageError(fmt::format("unknown method '{}'; expected adaptive or clusters", a.method));
+  }
   std::optional<std::uint64_t> max_bytes;
   if (!a.max_bytes.empty()) max_bytes = parse_size(a.max_bytes);
   const std::uint64_t seed = parse_count(a.seed);
+  if (a.method == "adaptive" && a.inputs.size() == 1) {
+    return compress_stream(a, {.max_bytes = max_bytes, .seed = seed, .flux = given_flux(a)}, session);
+  }
+  const RaySet rays = session.timed("read", [&] { return read_inputs(a, session); });
   if (a.method == "adaptive") {
-    return compress_adaptive(rays, {.max_bytes = max_bytes, .seed = seed}, session.progress());
+    return {compress_adaptive(rays, {.max_bytes = max_bytes, .seed = seed}, session.progress()),
+            rays.rays.size()};
   }
-  if (a.method == "clusters") {
-    return compress_clusters(rays, {.max_bytes = max_bytes, .seed = seed}, session.progress());
-  }
-  throw UsageError(fmt::format("unknown method '{}'; expected adaptive or clusters", a.method));
+  return {compress_clusters(rays, {.max_bytes = max_bytes, .seed = seed}, session.progress()),
+          rays.rays.size()};
 }
 
 void compress(const CompressArguments& a, Session& session) {
   session.start();
-  const RaySet rays = session.timed("read", [&] { return read_inputs(a, session); });
-  const auto model = session.timed("compress", [&] { return make_model(a, rays, session); });
+  const auto [model, rays] = session.timed("compress", [&] { return make_model(a, session); });
   const std::uint64_t bytes = session.timed("write", [&] { return save_source_model(a.output, *model); });
   Json json = session.json_head(parse_count(a.seed));
   json["method"] = std::string(model->method());
-  json["rays"] = rays.rays.size();
+  json["rays"] = rays;
   json["bytes"] = bytes;
   json["layers"] = model->layers();
   json["leaves"] = model->leaves();
   json[model->flux_unit() == FluxUnit::lumen ? "flux_lm" : "flux_w"] = model->flux();
   session.print_json(json);
-  const double ratio = 28.0 * static_cast<double>(rays.rays.size()) / static_cast<double>(bytes);
+  const double ratio = 28.0 * static_cast<double>(rays) / static_cast<double>(bytes);
   session.say(fmt::format(
       "{}: {} rays to {} bytes ({:.3g} times smaller), method {}, {} layer(s), {} leaves, {:g} {}; {:.3g} s",
-      a.output, rays.rays.size(), bytes, ratio, model->method(), model->layers(), model->leaves(),
-      model->flux(), symbol(model->flux_unit()), session.seconds("compress")));
+      a.output, rays, bytes, ratio, model->method(), model->layers(), model->leaves(), model->flux(),
+      symbol(model->flux_unit()), session.seconds("compress")));
 }
 
 }  // namespace
