@@ -4,6 +4,7 @@
 #include "lucerna/cli/describe.h"
 #include "lucerna/photometry/figures.h"
 #include "lucerna/photometry/street.h"
+#include "lucerna/report/trace_figures.h"
 
 namespace lucerna::cli {
 
@@ -14,18 +15,6 @@ std::string fault_text(const Fault& fault) {
 }
 
 std::string angle(const std::optional<double>& deg) { return deg ? fmt::format("{:.1f}", *deg) : "-"; }
-
-Json planes_json(const BeamFigures& beam) {
-  Json planes = Json::array();
-  for (const auto& plane : beam.planes) {
-    planes.push_back({{"c_deg", plane.c_deg},
-                      {"beam_angle_of_maximum_deg", to_json(plane.beam_of_maximum)},
-                      {"field_angle_of_maximum_deg", to_json(plane.field_of_maximum)},
-                      {"beam_angle_of_centre_deg", to_json(plane.beam_of_centre)},
-                      {"field_angle_of_centre_deg", to_json(plane.field_of_centre)}});
-  }
-  return planes;
-}
 
 /// BUG rating and G* class, for luminous intensities only.
 void add_street_figures(Description& d, const PhotometricFile& file, const PhotometricReadOptions& options) {
@@ -68,7 +57,7 @@ Description describe_photometry(const std::string& path, const PhotometricReadOp
       {"lamp_flux_lm", to_json(lamps)},
       {"light_output_ratio", lamps ? to_json(beam.flux / *lamps) : Json()},
       {"peak", {{"intensity", beam.peak.cd}, {"c_deg", beam.peak.c_deg}, {"gamma_deg", beam.peak.gamma_deg}}},
-      {"beam", planes_json(beam)},
+      {"beam", beam_planes_json(beam)},
       {"multiplier", origin.multiplier},
       {"ballast_factor", origin.ballast_factor},
       {"ies_turn_deg", options.ies_turn == IesTurn::none ? 0 : 90},

@@ -6,32 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lucerna/report/html_text.h"
+
 namespace lucerna {
 
 namespace {
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        if (static_cast<unsigned char>(c) >= 32 || c == '\t') out += c;
-    }
-  }
-  return out;
-}
 
 std::string attributes(const SvgStyle& style) {
   std::string out = fmt::format(R"( fill="{}")", style.fill.empty() ? "none" : style.fill);
@@ -88,7 +67,7 @@ void SvgCanvas::text(SvgPoint at, std::string_view text, const SvgText& style) {
       style.turn_deg == 0.0
           ? std::string()
           : fmt::format(" transform=\"rotate({:g} {:.2f} {:.2f})\"", style.turn_deg, at.x, at.y),
-      escaped(text));
+      html_escaped(text));
 }
 
 void SvgCanvas::begin_clip(SvgPoint corner, double width, double height) {
@@ -102,7 +81,7 @@ void SvgCanvas::begin_clip(SvgPoint corner, double width, double height) {
 void SvgCanvas::end_clip() { body_ += "</g>\n"; }
 
 void SvgCanvas::data(std::string_view name, std::string_view value) {
-  data_ += fmt::format(" data-{}=\"{}\"", name, escaped(value));
+  data_ += fmt::format(" data-{}=\"{}\"", name, html_escaped(value));
 }
 
 std::string SvgCanvas::str() const {

@@ -90,8 +90,6 @@ Json plane_json(const BeamFigures::Plane& plane) {
 }
 
 Json far_field_json(const FarFieldFigures& f) {
-  Json planes = Json::array();
-  for (const auto& plane : f.beam.planes) planes.push_back(plane_json(plane));
   return {
       {"name", f.field.name},
       {"kind", "far-field"},
@@ -107,7 +105,7 @@ Json far_field_json(const FarFieldFigures& f) {
         {"standard_error", number(f.centre_standard_error_cd)},
         {"gamma_deg", f.beam.axis_gamma_deg},
         {"cone_half_angle_deg", f.beam.centre_cone_deg}}},
-      {"planes", planes},
+      {"planes", beam_planes_json(f.beam)},
       {"noise", number(f.noise)}};
 }
 
@@ -121,6 +119,12 @@ std::string angle_text(const std::optional<double>& angle) {
 }
 
 }  // namespace
+
+Json beam_planes_json(const BeamFigures& beam) {
+  Json planes = Json::array();
+  for (const auto& plane : beam.planes) planes.push_back(plane_json(plane));
+  return planes;
+}
 
 TraceFigures trace_figures(const TraceResult& result) {
   TraceFigures figures{ledger(result), {}};

@@ -34,6 +34,9 @@ struct TraceFigures {
 /// Cost: a few passes over the bins.
 TraceFigures trace_figures(const TraceResult& result);
 
+/// Beam and field angles by both definitions, one object a pair of planes: what JSON results call the planes.
+nlohmann::ordered_json beam_planes_json(const BeamFigures& beam);
+
 /// `ledger` and `detectors` of design.md section 3. What is not known is null.
 nlohmann::ordered_json trace_json(const TraceFigures& figures);
 
