@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/design/limits.h"
 #include "lucerna/design/window.h"
 
 namespace lucerna {
@@ -32,7 +33,12 @@ FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& option
     fit.flux_weight = kFluxWeight;
     fit.flux_reference = start.reflected + start.direct;
   }
-  fit.max_height_mm = problem.limits.max_height_mm.value_or(0.0);
+  if (problem.limits.max_height_mm) {
+    const double most = *problem.limits.max_height_mm;
+    fit.limits = [most](const DesignShape& shape, std::uint64_t, NormalEquations* equations) {
+      return height_limit(shape, most, equations);
+    };
+  }
   const double unit = problem.target.mode == TargetMode::absolute ? 1.0 / rays.flux() : 1.0;
   fit.target = [&problem, unit](const TentBins& bins) {
     const std::vector<double> flux = bins.flux_of([&](const Direction& d) {

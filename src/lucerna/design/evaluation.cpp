@@ -73,15 +73,19 @@ class BlockTracer {
 
   void deposit(const Path<Shape>& path, double energy, TaskSums& sums, double* jacobian) const {
     TentBins::Deposit d;
-    bins_.deposit(path.direction, d);
+    bins_.deposit(path.origin, path.direction, d);
     if (d.n == 0) return;
     for (std::size_t k = 0; k < static_cast<std::size_t>(d.n); ++k) {
       sums.flux[static_cast<std::size_t>(d.bin[k])] += energy * d.weight[k];
     }
     if (jacobian == nullptr || path.hits == 0) return;
     std::array<HitAdjoint, kMostPathHits> by_u, by_v;
-    path_adjoint(path, path.hits - 1, bins_.gradient_u(path.direction), {}, by_u.data());
-    if (!bins_.is_rings()) path_adjoint(path, path.hits - 1, bins_.gradient_v(), {}, by_v.data());
+    const TentBins::Gradient in_u = bins_.gradient_u(path.origin, path.direction);
+    path_adjoint(path, path.hits - 1, in_u.direction, in_u.origin, by_u.data());
+    if (!bins_.is_rings()) {
+      const TentBins::Gradient in_v = bins_.gradient_v(path.origin, path.direction);
+      path_adjoint(path, path.hits - 1, in_v.direction, in_v.origin, by_v.data());
+    }
     const std::size_t n = shape_.coefficients().size();
     for (std::size_t i = 0; i < static_cast<std::size_t>(path.hits); ++i) {
       std::array<double, Shape::kSupport> u, v{};
@@ -108,7 +112,9 @@ class BlockTracer {
     std::array<HitAdjoint, kMostPathHits> by_place;
     path_adjoint(path, last, {}, rim.gradient, by_place.data());
     TentBins::Deposit missed;
-    if (last > 0 || options_.direct_light) bins_.deposit(hit.d, missed);
+    if (last > 0 || options_.direct_light) {
+      bins_.deposit({hit.x, hit.y, smooth_point(shape_, hit.x, hit.y).z_mm}, hit.d, missed);
+    }
     const std::size_t n = shape_.coefficients().size();
     const double density = energy / options_.rim_mm;
     const std::array<double, Shape::kSupport> none{};

@@ -36,6 +36,12 @@ struct Case {
   TentBins bins;
 };
 
+/// 400 mm above the mirror and not square to its axis.
+Frame tilted_plane() {
+  return {Vec3{1, 0, 0}, Vec3{0, -std::cos(0.3), std::sin(0.3)}, Vec3{0, -std::sin(0.3), -std::cos(0.3)},
+          Vec3{10, 20, 400}};
+}
+
 std::vector<Case> cases() {
   const Frame up;  // mirror frames open along +z, where the light goes
   const auto wild = [](const DesignShape& s, double mm, std::uint64_t seed) {
@@ -52,6 +58,12 @@ std::vector<Case> cases() {
        TentBins::square(up, 0.5, 32)},
       {"bspline, symmetric", wild(DesignShape::bspline(15, square, 5, 6, ShapeSymmetry::both), 0.5, 6),
        TentBins::square(up, 0.4, 48)},
+      {"bspline, on a plane", wild(DesignShape::bspline(15, square, 4, 4), 0.6, 7),
+       TentBins::plane(tilted_plane(), 150.0, 100.0, 32)},
+      {"revolution, on a plane", wild(DesignShape::revolution(15, round, 8), 0.5, 8),
+       TentBins::plane(tilted_plane(), 150.0, 100.0, 32)},
+      {"bspline, glare zone", wild(DesignShape::bspline(4, square, 4, 4), 0.6, 9),
+       TentBins::zone(up, 0.15, 16, 12)},
   };
 }
 

@@ -128,7 +128,7 @@ DesignShape Fit::best() const {
 
 NormalEquations Fit::equations_at(const DesignShape& shape, const Evaluation& e) const {
   NormalEquations equations = normal_equations(e, target_, bins_, problem_.mode);
-  if (problem_.max_height_mm > 0.0) add_height_limit(shape, problem_.max_height_mm, equations);
+  if (problem_.limits) equations.cost += problem_.limits(shape, stage().rays, &equations);
   if (problem_.flux_weight > 0.0) {
     add_flux_term(e, problem_.flux_weight, problem_.flux_reference, equations);
   }

@@ -23,8 +23,9 @@ struct FitProblem {
   /// In shape mode, where the scale is free, light beside the window would cost nothing: flux_weight * (1 -
   /// share in the window / flux_reference)^2 is added to the cost. Weight 0 = not.
   double flux_weight = 0.0, flux_reference = 1.0;
-  /// Limit on the height above the vertex plane anywhere on the mirror; 0 = none.
-  double max_height_mm = 0.0;
+  /// What the limits cost at a shape, to be added to the squared error: 0 where all are held. Adds gradient
+  /// and Hessian to `equations` unless null. Limits on light trace the first `rays` rays. Empty: no limits.
+  std::function<double(const DesignShape&, std::uint64_t rays, NormalEquations* equations)> limits;
   int restarts = 4;
   /// Size of the shakes, over the mirror's outer radius.
   double shake = 0.015;

@@ -11,12 +11,12 @@ namespace lucerna {
 
 namespace {
 
-/// 1 / Omega per bin; 0 where a bin has no solid angle.
+/// 1 / measure per bin; 0 where a bin has none.
 Eigen::VectorXd weights(const TentBins& bins) {
   Eigen::VectorXd w(static_cast<Eigen::Index>(bins.size()));
   for (Eigen::Index i = 0; i < w.size(); ++i) {
-    const double omega = bins.solid_angle_sr()[static_cast<std::size_t>(i)];
-    w[i] = omega > 0.0 ? 1.0 / omega : 0.0;
+    const double measure = bins.measure()[static_cast<std::size_t>(i)];
+    w[i] = measure > 0.0 ? 1.0 / measure : 0.0;
   }
   return w;
 }

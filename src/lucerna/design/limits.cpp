@@ -60,18 +60,21 @@ void add_height_row(const DesignShape& design, const Place& p, double sign, Eige
 
 }  // namespace
 
-void add_height_limit(const DesignShape& shape, double max_height_mm, NormalEquations& equations) {
+double height_limit(const DesignShape& shape, double max_height_mm, NormalEquations* equations) {
+  double cost = 0.0;
   const double vertex = shape.at(0.0, 0.0).z_mm, limit = max_height_mm - kMargin_mm;
   for (const Place& p : places(shape)) {
     const double excess = (shape.at(p.x, p.y).z_mm - vertex - limit) / kMargin_mm;
     if (excess <= 0.0) continue;
-    Eigen::VectorXd row = Eigen::VectorXd::Zero(equations.gradient.size());
+    cost += excess * excess;
+    if (equations == nullptr) continue;
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(equations->gradient.size());
     add_height_row(shape, p, 1.0 / kMargin_mm, row);
     add_height_row(shape, {0.0, 0.0}, -1.0 / kMargin_mm, row);
-    equations.cost += excess * excess;
-    equations.gradient += excess * row;
-    equations.hessian.selfadjointView<Eigen::Lower>().rankUpdate(row);
+    equations->gradient += excess * row;
+    equations->hessian.selfadjointView<Eigen::Lower>().rankUpdate(row);
   }
+  return cost;
 }
 
 void add_flux_term(const Evaluation& e, double weight, double reference, NormalEquations& equations) {

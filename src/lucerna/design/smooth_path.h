@@ -32,8 +32,8 @@ struct Path {
   PathEnd end = PathEnd::direct;
   int hits = 0;
   std::array<Hit, kMostPathHits> hit;
-  /// The direction in which the ray leaves.
-  Vec3 direction;
+  /// Where the ray leaves from, the last hit or its start, and along what.
+  Vec3 origin, direction;
 };
 
 /// Traces rays through one mirror z = r^2 / (4 f) + s(x, y) over an aperture, all in the mirror's frame.
@@ -59,6 +59,7 @@ class SmoothTracer {
       const Found found = first_hit(o, d, on_surface, slope);
       if (found.what == What::nothing) {
         path.end = path.hits == 0 ? PathEnd::direct : PathEnd::reflected;
+        path.origin = o;
         path.direction = d;
         return;
       }

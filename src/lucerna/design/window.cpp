@@ -86,6 +86,9 @@ TentBins rebinned(const TentBins& bins, double factor, int count) {
   if (bins.is_rings()) {
     return TentBins::rings(bins.axes(), std::min(std::numbers::pi, factor * bins.extent()), count);
   }
+  if (bins.is_plane()) {
+    return TentBins::plane(bins.axes(), bins.half_x_mm(), bins.half_y_mm(), count, factor * bins.extent());
+  }
   return TentBins::square(bins.axes(), std::min(1.0, factor * bins.extent()), count);
 }
 

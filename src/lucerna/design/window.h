@@ -34,7 +34,8 @@ TentBins ring_window(std::span<const DirectedFlux> light, const Direction& axis,
 /// An intensity distribution as light in small cells of half a degree.
 std::vector<DirectedFlux> directed_flux(const IntensityDistribution& distribution);
 
-/// The same window, wider by `factor` (as far as the half sphere, or the sphere for rings), in other bins.
+/// The same window, wider by `factor` (as far as the half sphere, or the sphere for rings; a plane has no
+/// end), in other bins.
 TentBins rebinned(const TentBins& bins, double factor, int count);
 
 }  // namespace lucerna
