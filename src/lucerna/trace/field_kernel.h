@@ -2,7 +2,7 @@
 #pragma once
 
 // The first hit of rays with a HeightField, kLanes rays at a time (docs/algorithms/height-field-tracing.md).
-// Included by the kernel_*.cpp files only, see simd.h.
+// Included by the kernel_*.cpp files and by what runs on a GPU, see simd.h.
 
 #include "lucerna/trace/kernel.h"
 #include "lucerna/trace/simd.h"
@@ -12,7 +12,7 @@ namespace {
 
 inline constexpr float kFar = 1e18f;
 
-inline Float reciprocal_of(Float d) {
+LUCERNA_HD inline Float reciprocal_of(Float d) {
   const Float tiny = 1e-20f;
   return Float(1.0f) / select(abs(d) < tiny, tiny, d);
 }
@@ -22,7 +22,7 @@ struct Roots {
   Float low, high;
   Mask exist;
 };
-inline Roots roots(Float a, Float b, Float c) {
+LUCERNA_HD inline Roots roots(Float a, Float b, Float c) {
   const Float disc = fma(b, b, Float(-4.0f) * a * c);
   const Float root = sqrt(max(disc, 0.0f));
   Float w = Float(-0.5f) * select(b < Float(0.0f), b - root, b + root);
@@ -31,41 +31,48 @@ inline Roots roots(Float a, Float b, Float c) {
   return {min(r, s), max(r, s), Float(0.0f) <= disc};
 }
 
+/// kLanes rays in a mirror's frame, and where they meet it (LocalRays, LocalHits).
+struct LaneRays {
+  Float x, y, z, dx, dy, dz;
+  Mask on_mirror;
+};
+struct LaneHits {
+  Float t, gx, gy;
+  Int state;
+};
+
 /// kLanes rays on their way through one field.
 class Packet {
  public:
-  Packet(const FieldView& field, const LocalRays& rays, size_t first) : f_(field) {
-    ox_ = load(rays.x + first);
-    oy_ = load(rays.y + first);
-    oz_ = load(rays.z + first);
-    dx_ = load(rays.dx + first);
-    dy_ = load(rays.dy + first);
-    dz_ = load(rays.dz + first);
-    on_mirror_ = load(rays.on_mirror + first) == Int(1);
-  }
+  LUCERNA_HD Packet(const FieldView& field, const LaneRays& rays)
+      : f_(field),
+        ox_(rays.x),
+        oy_(rays.y),
+        oz_(rays.z),
+        dx_(rays.dx),
+        dy_(rays.dy),
+        dz_(rays.dz),
+        on_mirror_(rays.on_mirror) {}
 
-  void run(uint32_t lanes, LocalHits& hits, size_t first) {
+  LUCERNA_HD LaneHits run(Mask lanes) {
     hit_state_ = Int(kMiss);
     hit_t_ = kFar;
     hit_gx_ = hit_gy_ = 0.0f;
-    prepare(mask_of(lanes));
+    prepare(lanes);
     while (any(node_ | leaf_)) {
       while (any(node_)) node_step();
       while (any(leaf_)) leaf_step();
     }
-    store(hits.t + first, hit_t_);
-    store(hits.gx + first, hit_gx_);
-    store(hits.gy + first, hit_gy_);
-    store(hits.state + first, hit_state_);
+    return {hit_t_, hit_gx_, hit_gy_, hit_state_};
   }
 
  private:
   /// Height of the ray over the quadric at distance t.
-  Float over(Float t) const { return fma(fma(u2_, t, u1_), t, u0_); }
-  Float middle() const { return 0.5f * (f_.low + f_.high); }
-  Float half() const { return 0.5f * (f_.high - f_.low); }
+  LUCERNA_HD Float over(Float t) const { return fma(fma(u2_, t, u1_), t, u0_); }
+  LUCERNA_HD Float middle() const { return 0.5f * (f_.low + f_.high); }
+  LUCERNA_HD Float half() const { return 0.5f * (f_.high - f_.low); }
 
-  void prepare(Mask lanes) {
+  LUCERNA_HD void prepare(Mask lanes) {
     idx_ = reciprocal_of(dx_);
     idy_ = reciprocal_of(dy_);
     const Float ax = (Float(f_.x0) - ox_) * idx_, bx = (Float(f_.x1) - ox_) * idx_;
@@ -96,7 +103,7 @@ class Packet {
   }
 
   /// Lanes of `m` begin their interval, or the next one if it is empty.
-  void start(Mask m) {
+  LUCERNA_HD void start(Mask m) {
     const Mask empty = m & ~(begin_ < end_);
     begin_ = select(empty, next_begin_, begin_);
     end_ = select(empty, next_end_, end_);
@@ -131,18 +138,18 @@ class Packet {
   }
 
   /// Does the ray leave the band on the other side at the end of its interval?
-  void set_end(Mask m) {
+  LUCERNA_HD void set_end(Mask m) {
     const Mask beyond = side_ * (over(end_) - middle()) < Float(0.0f) - half() - 0.5f * f_.slack;
     crosses_ = (crosses_ & ~m) | (beyond & m);
   }
 
-  void cell_at(Float t, Int& ix, Int& iy) const {
+  LUCERNA_HD void cell_at(Float t, Int& ix, Int& iy) const {
     const int32_t last = f_.blocks * 8 - 1;
     ix = min(max(truncate((fma(t, dx_, ox_) - f_.x0) * (1.0f / f_.step_x)), Int(0)), Int(last));
     iy = min(max(truncate((fma(t, dy_, oy_) - f_.y0) * (1.0f / f_.step_y)), Int(0)), Int(last));
   }
 
-  void node_step() {
+  LUCERNA_HD void node_step() {
     const Int last_square = Int(f_.blocks - 1);
     const Int nx = shift_right(min(max(bx_, Int(0)), last_square), level_);
     const Int ny = shift_right(min(max(by_, Int(0)), last_square), level_);
@@ -192,7 +199,7 @@ class Packet {
   }
 
   /// On to the square behind this one, a level up where that has another parent.
-  void skip_node(Mask skip, Int nx, Int ny, Float tx, Float ty, Float te) {
+  LUCERNA_HD void skip_node(Mask skip, Int nx, Int ny, Float tx, Float ty, Float te) {
     t_ = select(skip, te, t_);
     Int cx, cy;
     cell_at(te, cx, cy);
@@ -217,7 +224,7 @@ class Packet {
   }
 
   /// Lanes of `m` whose interval is over, or that left the grid, go to their next interval or stop.
-  void finish_if_out(Mask m, Float t) {
+  LUCERNA_HD void finish_if_out(Mask m, Float t) {
     const Mask outside =
         (bx_ < Int(0)) | (by_ < Int(0)) | (Int(f_.blocks - 1) < bx_) | (Int(f_.blocks - 1) < by_);
     const Mask over = m & (outside | (end_ <= t));
@@ -228,7 +235,7 @@ class Packet {
     start(over);
   }
 
-  void leaf_step() {
+  LUCERNA_HD void leaf_step() {
     const Mask right = Float(0.0f) < dx_, north = Float(0.0f) < dy_;
     const Int gx = ix_ + select(right, Int(1), Int(0)), gy = iy_ + select(north, Int(1), Int(0));
     const Float tx = (fma(to_float(gx), f_.step_x, f_.x0) - ox_) * idx_;
@@ -266,7 +273,7 @@ class Packet {
 
   /// Height over the quadric where the ray crosses a grid line: a cubic between two vertices, the same for
   /// both cells.
-  Float border_height(Float t, Mask by_x, Int gx, Int gy) const {
+  LUCERNA_HD Float border_height(Float t, Mask by_x, Int gx, Int gy) const {
     const Int per_row = Int(f_.blocks * 8 + 1);
     // Lanes that are done keep places off the grid and must read within it all the same.
     const Int last = Int(f_.blocks * 8 - 1), zero = Int(0), one = Int(1);
@@ -293,7 +300,7 @@ class Packet {
   struct Cell {
     Float z00, z10, z01, z11, p00, p10, p01, p11, q00, q10, q01, q11;
   };
-  Cell cell(Int ix, Int iy) const {
+  LUCERNA_HD Cell cell(Int ix, Int iy) const {
     const Int row = Int((f_.blocks * 8 + 1) * 3);
     const Int a = iy * row + ix * Int(3), b = a + row;
     const float* const z = f_.vertices;
@@ -313,12 +320,12 @@ class Packet {
     k.q11 = q * gather(z + 5, b);
     return k;
   }
-  static void bend(Float u, Float a, Float b, Float& value, Float& slope) {
+  LUCERNA_HD static void bend(Float u, Float a, Float b, Float& value, Float& slope) {
     const Float w = Float(1.0f) - u;
     value = u * w * (w * a - u * b);
     slope = w * (Float(1.0f) - 3.0f * u) * a - u * (Float(2.0f) - 3.0f * u) * b;
   }
-  Piece piece(const Cell& k, Float t, Int ix, Int iy) const {
+  LUCERNA_HD Piece piece(const Cell& k, Float t, Int ix, Int iy) const {
     const Float u = (fma(t, dx_, ox_) - f_.x0) * (1.0f / f_.step_x) - to_float(ix);
     const Float v = (fma(t, dy_, oy_) - f_.y0) * (1.0f / f_.step_y) - to_float(iy);
     const Float um = Float(1.0f) - u, vm = Float(1.0f) - v;
@@ -332,11 +339,11 @@ class Packet {
             (vm * (south + ds) + v * (north + dn) - w + e) * (1.0f / f_.step_x),
             (um * (west + dw) + u * (east + de) - s + n) * (1.0f / f_.step_y)};
   }
-  Piece surface(Float t, Int ix, Int iy) const { return piece(cell(ix, iy), t, ix, iy); }
+  LUCERNA_HD Piece surface(Float t, Int ix, Int iy) const { return piece(cell(ix, iy), t, ix, iy); }
 
   /// Lanes of `m` cross the surface between t_ and `segment`: finds where, by Newton's method in that
   /// bracket.
-  void hit(Mask m, Float segment) {
+  LUCERNA_HD void hit(Mask m, Float segment) {
     const Cell k =
         cell(min(max(ix_, Int(0)), Int(f_.blocks * 8 - 1)), min(max(iy_, Int(0)), Int(f_.blocks * 8 - 1)));
     Float t = 0.5f * (t_ + segment);
@@ -376,58 +383,91 @@ class Packet {
   Int hit_state_;
 };
 
+inline LaneRays load_rays(const LocalRays& rays, size_t i) {
+  return {load(rays.x + i),
+          load(rays.y + i),
+          load(rays.z + i),
+          load(rays.dx + i),
+          load(rays.dy + i),
+          load(rays.dz + i),
+          load(rays.on_mirror + i) == Int(1)};
+}
+
 inline void intersect(const FieldView& field, const LocalRays& rays, size_t n, LocalHits& hits) {
   for (size_t i = 0; i < n; i += static_cast<size_t>(kLanes)) {
     const size_t left = n - i;
     const uint32_t lanes = left >= static_cast<size_t>(kLanes) ? (1u << kLanes) - 1u : (1u << left) - 1u;
-    Packet(field, rays, i).run(lanes, hits, i);
+    const LaneHits hit = Packet(field, load_rays(rays, i)).run(mask_of(lanes));
+    store(hits.t + i, hit.t);
+    store(hits.gx + i, hit.gx);
+    store(hits.gy + i, hit.gy);
+    store(hits.state + i, hit.state);
   }
+}
+
+/// Start and direction in another frame; `on_mirror` stays.
+LUCERNA_HD inline LaneRays in_frame(const FrameView& k, const LaneRays& r) {
+  return {k.m[0] * r.x + k.m[1] * r.y + k.m[2] * r.z + k.v[0],
+          k.m[3] * r.x + k.m[4] * r.y + k.m[5] * r.z + k.v[1],
+          k.m[6] * r.x + k.m[7] * r.y + k.m[8] * r.z + k.v[2],
+          k.m[0] * r.dx + k.m[1] * r.dy + k.m[2] * r.dz,
+          k.m[3] * r.dx + k.m[4] * r.dy + k.m[5] * r.dz,
+          k.m[6] * r.dx + k.m[7] * r.dy + k.m[8] * r.dz,
+          r.on_mirror};
 }
 
 inline void to_local(const FrameView& k, const WorldRays& in, size_t n, int32_t index, LocalRays& out) {
   for (size_t i = 0; i < n; i += static_cast<size_t>(kLanes)) {
-    const Float x = load(in.x + i), y = load(in.y + i), z = load(in.z + i);
-    const Float dx = load(in.dx + i), dy = load(in.dy + i), dz = load(in.dz + i);
-    store(out.x + i, k.m[0] * x + k.m[1] * y + k.m[2] * z + k.v[0]);
-    store(out.y + i, k.m[3] * x + k.m[4] * y + k.m[5] * z + k.v[1]);
-    store(out.z + i, k.m[6] * x + k.m[7] * y + k.m[8] * z + k.v[2]);
-    store(out.dx + i, k.m[0] * dx + k.m[1] * dy + k.m[2] * dz);
-    store(out.dy + i, k.m[3] * dx + k.m[4] * dy + k.m[5] * dz);
-    store(out.dz + i, k.m[6] * dx + k.m[7] * dy + k.m[8] * dz);
-    store(out.on_mirror + i, select(load(in.mirror + i) == Int(index), Int(1), Int(0)));
+    const LaneRays r = in_frame(k, {load(in.x + i), load(in.y + i), load(in.z + i), load(in.dx + i),
+                                    load(in.dy + i), load(in.dz + i), load(in.mirror + i) == Int(index)});
+    store(out.x + i, r.x);
+    store(out.y + i, r.y);
+    store(out.z + i, r.z);
+    store(out.dx + i, r.dx);
+    store(out.dy + i, r.dy);
+    store(out.dz + i, r.dz);
+    store(out.on_mirror + i, select(r.on_mirror, Int(1), Int(0)));
   }
+}
+
+/// Rays reflected where they hit, in the mirror's frame still; also the cosine of incidence.
+LUCERNA_HD inline LaneRays reflected(const LaneRays& ray, const LaneHits& hit, Float& cosine) {
+  const Float across = ray.dz - hit.gx * ray.dx - hit.gy * ray.dy;   // d . n times the length of n
+  const Float n2 = Float(1.0f) + hit.gx * hit.gx + hit.gy * hit.gy;  // n = (-gx, -gy, 1)
+  const Float twice = 2.0f * across / n2;
+  const Float rx = fma(twice, hit.gx, ray.dx), ry = fma(twice, hit.gy, ray.dy), rz = ray.dz - twice;
+  const Float unit = Float(1.0f) / sqrt(rx * rx + ry * ry + rz * rz);
+  cosine = abs(across) / sqrt(n2);
+  return {fma(hit.t, ray.dx, ray.x),
+          fma(hit.t, ray.dy, ray.y),
+          fma(hit.t, ray.dz, ray.z),
+          rx * unit,
+          ry * unit,
+          rz * unit,
+          ray.on_mirror};
 }
 
 inline void reflect_rays(const FrameView& k, const LocalRays& rays, const LocalHits& hits, size_t n,
                          WorldRays& out, float* cosine) {
   for (size_t i = 0; i < n; i += static_cast<size_t>(kLanes)) {
-    const Mask m = load(hits.state + i) == Int(kFront);
-    const Float t = load(hits.t + i), gx = load(hits.gx + i), gy = load(hits.gy + i);
-    const Float dx = load(rays.dx + i), dy = load(rays.dy + i), dz = load(rays.dz + i);
-    const Float x = fma(t, dx, load(rays.x + i)), y = fma(t, dy, load(rays.y + i)),
-                z = fma(t, dz, load(rays.z + i));
-    const Float across = dz - gx * dx - gy * dy;  // d . n times the length of n = (-gx, -gy, 1)
-    const Float n2 = Float(1.0f) + gx * gx + gy * gy;
-    const Float twice = 2.0f * across / n2;
-    Float rx = fma(twice, gx, dx), ry = fma(twice, gy, dy), rz = dz - twice;
-    const Float unit = Float(1.0f) / sqrt(rx * rx + ry * ry + rz * rz);
-    rx = rx * unit;
-    ry = ry * unit;
-    rz = rz * unit;
-    store(cosine + i, abs(across) / sqrt(n2));
-    store(out.x + i, select(m, k.m[0] * x + k.m[1] * y + k.m[2] * z + k.v[0], load(out.x + i)));
-    store(out.y + i, select(m, k.m[3] * x + k.m[4] * y + k.m[5] * z + k.v[1], load(out.y + i)));
-    store(out.z + i, select(m, k.m[6] * x + k.m[7] * y + k.m[8] * z + k.v[2], load(out.z + i)));
-    store(out.dx + i, select(m, k.m[0] * rx + k.m[1] * ry + k.m[2] * rz, load(out.dx + i)));
-    store(out.dy + i, select(m, k.m[3] * rx + k.m[4] * ry + k.m[5] * rz, load(out.dy + i)));
-    store(out.dz + i, select(m, k.m[6] * rx + k.m[7] * ry + k.m[8] * rz, load(out.dz + i)));
+    const LaneHits hit{load(hits.t + i), load(hits.gx + i), load(hits.gy + i), load(hits.state + i)};
+    const Mask m = hit.state == Int(kFront);
+    Float c;
+    const LaneRays r = in_frame(k, reflected(load_rays(rays, i), hit, c));
+    store(cosine + i, c);
+    store(out.x + i, select(m, r.x, load(out.x + i)));
+    store(out.y + i, select(m, r.y, load(out.y + i)));
+    store(out.z + i, select(m, r.z, load(out.z + i)));
+    store(out.dx + i, select(m, r.dx, load(out.dx + i)));
+    store(out.dy + i, select(m, r.dy, load(out.dy + i)));
+    store(out.dz + i, select(m, r.dz, load(out.dz + i)));
   }
 }
 
 /// atan2(y, x) as a share of a turn, [0, 1): a polynomial of degree 15 in the smaller over the larger, error
 /// 6e-9 of a turn before rounding (coefficients: least squares at Chebyshev nodes, reweighted to a level
 /// error).
-inline Float turn_of(Float y, Float x) {
+LUCERNA_HD inline Float turn_of(Float y, Float x) {
   const Float ax = abs(x), ay = abs(y);
   const Float big = max(max(ax, ay), 1e-30f), q = min(ax, ay) / big, s = q * q;
   Float p = fma(s, -6.45253366e-04f, 3.47940825e-03f);
@@ -443,15 +483,20 @@ inline Float turn_of(Float y, Float x) {
   return select(y < Float(0.0f), Float(1.0f) - p, p);
 }
 
+/// Type C cells of directions, as FarFieldGrid::cell has them.
+LUCERNA_HD inline Int far_field_cell(Float dx, Float dy, Float dz, int32_t c_count, int32_t gamma_count) {
+  const Float around = turn_of(dy, dx), from_nadir = turn_of(sqrt(dx * dx + dy * dy), Float(0.0f) - dz);
+  const Int c = truncate(fma(around, Float(static_cast<float>(c_count)), 0.5f));
+  const Int g = truncate(fma(from_nadir, Float(2.0f * static_cast<float>(gamma_count - 1)), 0.5f));
+  const Int inside = select(c < Int(c_count), c, Int(0));
+  return max(inside, Int(0)) * Int(gamma_count) + max(min(g, Int(gamma_count - 1)), Int(0));
+}
+
 inline void far_field_cells(const WorldRays& rays, size_t n, int32_t c_count, int32_t gamma_count,
                             int32_t* cell) {
   for (size_t i = 0; i < n; i += static_cast<size_t>(kLanes)) {
-    const Float dx = load(rays.dx + i), dy = load(rays.dy + i), dz = load(rays.dz + i);
-    const Float around = turn_of(dy, dx), from_nadir = turn_of(sqrt(dx * dx + dy * dy), Float(0.0f) - dz);
-    const Int c = truncate(fma(around, Float(static_cast<float>(c_count)), 0.5f));
-    const Int g = truncate(fma(from_nadir, Float(2.0f * static_cast<float>(gamma_count - 1)), 0.5f));
-    const Int inside = select(c < Int(c_count), c, Int(0));
-    store(cell + i, max(inside, Int(0)) * Int(gamma_count) + max(min(g, Int(gamma_count - 1)), Int(0)));
+    store(cell + i,
+          far_field_cell(load(rays.dx + i), load(rays.dy + i), load(rays.dz + i), c_count, gamma_count));
   }
 }
 

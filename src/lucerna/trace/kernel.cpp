@@ -29,6 +29,7 @@ const Kernels& best_kernels() {
 
 const Kernels& kernels_named(const char* isa) {
   const std::string_view name = isa;
+  if (name == "scalar") return scalar_kernels();
   if (name == "portable") return portable_kernels();
 #if defined(LUCERNA_X86_KERNELS)
   if (name == "avx2" && has_avx2()) return avx2_kernels();

@@ -80,6 +80,8 @@ struct Kernels {
 };
 
 const Kernels& portable_kernels();
+/// One ray at a time: what a GPU compiles, for the tests.
+const Kernels& scalar_kernels();
 #if defined(LUCERNA_X86_KERNELS)
 const Kernels& avx2_kernels();
 const Kernels& avx512_kernels();
@@ -87,7 +89,8 @@ const Kernels& avx512_kernels();
 
 /// The best that this processor can run.
 const Kernels& best_kernels();
-/// "portable", "avx2" or "avx512"; throws UsageError if unknown, or if this processor or build has it not.
+/// "scalar", "portable", "avx2" or "avx512"; throws UsageError if unknown, or if this processor or build has
+/// it not.
 const Kernels& kernels_named(const char* isa);
 
 }  // namespace lucerna

@@ -24,7 +24,7 @@ Direction random_direction(Rng& rng) {
 
 std::vector<const Kernels*> available_kernels() {
   std::vector<const Kernels*> all;
-  for (const char* isa : {"portable", "avx2", "avx512"}) {
+  for (const char* isa : {"scalar", "portable", "avx2", "avx512"}) {
     try {
       all.push_back(&kernels_named(isa));
     } catch (const UsageError&) {
@@ -183,6 +183,66 @@ TEST(Kernels, FarFieldCellsAreThoseOfTheGrid) {
       }
     }
     EXPECT_LE(wrong, 5) << kernels->isa << ": directions on a border, to rounding";
+  }
+}
+
+/// Rays from everywhere, in a mirror's frame.
+void fill_rays(Rng& rng, LocalRays& in) {
+  for (std::size_t i = 0; i < kBatch; ++i) {
+    const Direction d = random_direction(rng);
+    in.x[i] = static_cast<float>(100.0 * rng.uniform() - 50.0);
+    in.y[i] = static_cast<float>(100.0 * rng.uniform() - 50.0);
+    in.z[i] = static_cast<float>(80.0 * rng.uniform() - 20.0);
+    in.dx[i] = static_cast<float>(d.x());
+    in.dy[i] = static_cast<float>(d.y());
+    in.dz[i] = static_cast<float>(d.z());
+    in.on_mirror[i] = 0;
+  }
+}
+
+/// Hits and reflected rays of one kernel.
+struct Reflected {
+  LocalHits hits;
+  WorldRays rays;
+  alignas(64) float cosine[kBatch];
+};
+void reflect_all(const Kernels& kernels, const FieldView& field, const LocalRays& in, Reflected& out) {
+  const FrameView same{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+  kernels.intersect(field, in, kBatch, out.hits);
+  kernels.reflect(same, in, out.hits, kBatch, out.rays, out.cosine);
+}
+
+// "scalar" is what a GPU compiles; so this is as near as a machine without one comes to its rays.
+TEST(Kernels, ScalarAgreesRayByRayWithEveryInstructionSet) {
+  auto in = std::make_unique<LocalRays>();
+  auto one = std::make_unique<Reflected>(), many = std::make_unique<Reflected>();
+  for (const Kernels* kernels : available_kernels()) {
+    std::size_t rays = 0, hits = 0, differ = 0;
+    for (const Reflector& mirror : mirrors()) {
+      const HeightField field(mirror, 256);
+      Rng rng(19, 0);
+      for (int batch = 0; batch < 40; ++batch, rays += kBatch) {
+        fill_rays(rng, *in);
+        reflect_all(scalar_kernels(), view_of(field), *in, *one);
+        reflect_all(*kernels, view_of(field), *in, *many);
+        for (std::size_t i = 0; i < kBatch; ++i) {
+          if (one->hits.state[i] == kMiss && many->hits.state[i] == kMiss) continue;
+          ++hits;
+          bool same =
+              one->hits.state[i] == many->hits.state[i] && std::abs(one->hits.t[i] - many->hits.t[i]) < 1e-4F;
+          if (same && one->hits.state[i] == kFront) {
+            same = std::abs(one->rays.dx[i] - many->rays.dx[i]) < 1e-5F &&
+                   std::abs(one->rays.dy[i] - many->rays.dy[i]) < 1e-5F &&
+                   std::abs(one->rays.dz[i] - many->rays.dz[i]) < 1e-5F;
+          }
+          differ += same ? 0 : 1;
+        }
+      }
+    }
+    EXPECT_GT(hits, 40000u);
+    // Rays that graze: their distance is the less certain the flatter they are.
+    EXPECT_LE(static_cast<double>(differ), 1e-4 * static_cast<double>(rays)) << kernels->isa;
+    RecordProperty(kernels->isa, std::to_string(differ) + " of " + std::to_string(rays));
   }
 }
 

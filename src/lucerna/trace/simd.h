@@ -8,14 +8,22 @@
 
 #include <stdint.h>
 
-#if defined(__AVX512F__) || defined(__AVX2__)
+#include "lucerna/core/host_device.h"
+
+#if defined(LUCERNA_ONE_LANE) || defined(__CUDACC__)
+#include "lucerna/trace/one_lane.h"
+#elif defined(__AVX512F__) || defined(__AVX2__)
 #include <immintrin.h>
 #endif
 
 namespace lucerna {
 namespace {
 
-#if defined(__AVX512F__)
+#if defined(LUCERNA_ONE_LANE) || defined(__CUDACC__)
+
+// one_lane.h has them.
+
+#elif defined(__AVX512F__)
 
 inline constexpr int kLanes = 16;
 struct Mask {
@@ -292,7 +300,7 @@ inline Int float_bits(Float a) {
 
 #endif
 
-inline bool any(Mask a) { return bits(a) != 0; }
+LUCERNA_HD inline bool any(Mask a) { return bits(a) != 0; }
 
 }  // namespace
 }  // namespace lucerna

@@ -29,7 +29,7 @@ struct TraceOptions {
   EngineKind engine = EngineKind::fast;
   /// Cells a side of the height fields of the fast engine: a power of two, 8 to 8192.
   int cells = 1024;
-  /// Instruction set of the fast engine: "portable", "avx2", "avx512"; empty = the best that the processor
+  /// Instruction set of the fast engine: "scalar", "portable", "avx2", "avx512"; empty = the best that the processor
   /// has.
   std::string isa;
 };

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#define LUCERNA_ONE_LANE
+#include "lucerna/trace/field_kernel.h"
+
+namespace lucerna {
+
+const Kernels& scalar_kernels() {
+  static constexpr Kernels kernels{"scalar", to_local, intersect, reflect_rays, far_field_cells};
+  return kernels;
+}
+
+}  // namespace lucerna
