@@ -49,7 +49,9 @@ void run_trace(const TraceArguments& a, Session& session) {
   json["sequence"] = std::string(to_string(result.sequence));
   json["rays"] = {{"first", result.first_ray}, {"last", result.last_ray}};
   json.update(trace_json(figures));
-  const auto names = write_trace_files(a.output, project, figures, json);
+  std::vector<std::string> warnings;
+  const auto names = write_trace_files(a.output, project, figures, result.out_rays, json, &warnings);
+  for (const std::string& warning : warnings) session.note(warning);
   session.print_json(json);
   const double seconds = session.seconds("trace");
   session.say(fmt::format(

@@ -27,18 +27,20 @@ struct Format {
   std::unique_ptr<RayReader> (*open)(InputFile, const ReadOptions&);
   std::unique_ptr<RayWriter> (*create)(const std::filesystem::path&, const RaySetHeader&,
                                        const WriteOptions&);
+  std::string_view ending;
 };
 
 constexpr std::array kFormats{
-    Format{"tm25", looks_like_tm25, open_tm25, create_tm25},
-    Format{"zemax-binary", looks_like_zemax_binary, open_zemax_binary, create_zemax_binary},
+    Format{"tm25", looks_like_tm25, open_tm25, create_tm25, ".tm25ray"},
+    Format{"zemax-binary", looks_like_zemax_binary, open_zemax_binary, create_zemax_binary, ".sdf"},
     Format{"lighttools-binary", looks_like_lighttools_binary, open_lighttools_binary,
-           create_lighttools_binary},
-    Format{"speos", looks_like_speos, open_speos, create_speos},
-    Format{"asap", looks_like_asap, open_asap, create_asap},
-    Format{"lighttools-ascii", looks_like_lighttools_ascii, open_lighttools_ascii, create_lighttools_ascii},
-    Format{"zemax-text", looks_like_zemax_text, open_zemax_text, create_zemax_text},
-    Format{"text", looks_like_text_rays, open_text_rays, create_text_rays}};
+           create_lighttools_binary, ".ray"},
+    Format{"speos", looks_like_speos, open_speos, create_speos, ".ray"},
+    Format{"asap", looks_like_asap, open_asap, create_asap, ".dis"},
+    Format{"lighttools-ascii", looks_like_lighttools_ascii, open_lighttools_ascii, create_lighttools_ascii,
+           ".ray"},
+    Format{"zemax-text", looks_like_zemax_text, open_zemax_text, create_zemax_text, ".dat"},
+    Format{"text", looks_like_text_rays, open_text_rays, create_text_rays, ".txt"}};
 
 constexpr auto kNames = [] {
   std::array<std::string_view, kFormats.size()> names;
@@ -70,6 +72,8 @@ std::optional<std::string> detect(const InputFile& file) {
 }  // namespace
 
 std::span<const std::string_view> ray_formats() { return kNames; }
+
+std::string_view ray_file_ending(std::string_view format) { return format_named(format).ending; }
 
 std::optional<std::string> detect_ray_format(const std::filesystem::path& path) {
   return detect(InputFile(path));

@@ -18,6 +18,9 @@ namespace lucerna {
 /// The names of all formats, as `--to` takes them.
 std::span<const std::string_view> ray_formats();
 
+/// The usual ending of a format's files, with its dot. UsageError if it is no format.
+std::string_view ray_file_ending(std::string_view format);
+
 /// The format that the file's content says, never its name; absent if it is no ray file. InputError if it
 /// cannot be read, is empty, or its content fits several formats (the text names them and the option that
 /// decides).

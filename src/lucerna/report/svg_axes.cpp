@@ -77,7 +77,7 @@ void draw_title(SvgCanvas& canvas, const std::string& title, const std::string& 
   canvas.text({0.5 * canvas.width(), 48.0}, below, {.size = 12.5, .anchor = "middle", .fill = "#444"});
 }
 
-std::string viridis(double share) {
+std::array<int, 3> viridis_rgb(double share) {
   static constexpr std::array<std::array<int, 3>, 9> kAnchors{{{0x44, 0x01, 0x54},
                                                                {0x47, 0x2d, 0x7b},
                                                                {0x3b, 0x52, 0x8b},
@@ -93,7 +93,12 @@ std::string viridis(double share) {
   std::array<int, 3> c{};
   for (std::size_t k = 0; k < 3; ++k)
     c[k] = static_cast<int>(std::lround((1.0 - t) * kAnchors[i][k] + t * kAnchors[i + 1][k]));
-  return fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]);
+  return c;
+}
+
+std::string viridis(double share) {
+  const auto [r, g, b] = viridis_rgb(share);
+  return fmt::format("#{:02x}{:02x}{:02x}", r, g, b);
 }
 
 double range_holding(const IntensityDistribution& d, double axis_gamma_deg, double share,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,6 +54,8 @@ void draw_title(SvgCanvas& canvas, const std::string& title, const std::string& 
 /// The colour of a share of [0, 1]: viridis, dark to light (van der Walt and Smith 2015), which also reads in
 /// grey. As #rrggbb.
 std::string viridis(double share);
+/// The same as red, green, blue of 0 to 255.
+std::array<int, 3> viridis_rgb(double share);
 
 /// Shares of the peak that bands of false colour and isocandela lines are drawn at, descending.
 inline constexpr double kPeakShares[] = {0.9, 0.7, 0.5, 0.3, 0.2, 0.1, 0.05, 0.02, 0.01};

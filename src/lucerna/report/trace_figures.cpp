@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
+
+#include "lucerna/rayset/ray_file.h"
 
 namespace lucerna {
 
@@ -48,6 +51,30 @@ FarFieldFigures far_field_figures(FarField field, const Estimate& flux) {
     f.noise = relative_noise(f.intensity, intensity_bins(c, gamma));
   }
   f.field = std::move(field);
+  return f;
+}
+
+PlaneFigures plane_figures(PlaneImage image, std::optional<LuminanceDetector> view) {
+  PlaneFigures f;
+  double sum = 0.0, noise = 0.0, signal = 0.0;
+  std::size_t best = 0;
+  f.least = image.value.front();
+  for (std::size_t i = 0; i < image.value.size(); ++i) {
+    sum += image.value[i];
+    noise += image.standard_error[i] * image.standard_error[i];
+    signal += image.value[i] * image.value[i];
+    f.least = std::min(f.least, image.value[i]);
+    if (image.value[i] > image.value[best]) best = i;
+  }
+  f.mean.mean = sum / static_cast<double>(image.value.size());
+  f.mean.standard_error =
+      f.mean.mean * (image.flux.mean > 0.0 ? image.flux.standard_error / image.flux.mean : 0.0);
+  f.peak = {image.value[best], image.standard_error[best]};
+  f.peak_x_mm = image.grid.cell_x_mm(best);
+  f.peak_y_mm = image.grid.cell_y_mm(best);
+  f.noise = signal > 0.0 ? std::sqrt(noise / signal) : std::nan("");
+  f.image = std::move(image);
+  f.view = std::move(view);
   return f;
 }
 
@@ -109,6 +136,52 @@ Json far_field_json(const FarFieldFigures& f) {
       {"noise", number(f.noise)}};
 }
 
+Json estimate_json(const Estimate& e) {
+  return {{"value", e.mean}, {"standard_error", number(e.standard_error)}};
+}
+
+Json vector_json(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+Json plane_json(const PlaneFigures& f) {
+  const PlaneGrid& grid = f.image.grid;
+  const Frame& frame = grid.world_from_plane;
+  Json peak = estimate_json(f.peak);
+  peak["x_mm"] = f.peak_x_mm;
+  peak["y_mm"] = f.peak_y_mm;
+  Json json{{"name", f.image.name},
+            {"kind", f.view ? "luminance" : "plane"},
+            {"unit", plane_unit(f)},
+            {"position_mm", vector_json(frame.origin_mm())},
+            {"normal", vector_json(frame.ez())},
+            {"up", vector_json(frame.ey())},
+            {"size_mm", {grid.size_x_mm, grid.size_y_mm}},
+            {"cells", {grid.nx, grid.ny}}};
+  if (f.view && f.view->distance_mm > 0.0) {
+    json["from_mm"] = vector_json(frame.point({0, 0, f.view->distance_mm}));
+    json["pupil_radius_mm"] = f.view->pupil_radius_mm;
+  } else if (f.view) {
+    json["half_angle_deg"] = f.view->half_angle_deg;
+  }
+  json["flux"] = f.image.flux.mean;
+  json["flux_standard_error"] = number(f.image.flux.standard_error);
+  json["mean"] = estimate_json(f.mean);
+  json["least"] = f.least;
+  json["peak"] = peak;
+  json["noise"] = number(f.noise);
+  return json;
+}
+
+Json rays_json(const RayFigures& f, FluxUnit unit) {
+  return {{"name", f.detector.name},
+          {"kind", "rays"},
+          {"unit", std::string(symbol(unit))},
+          {"format", f.detector.format},
+          {"file", ray_file_name(f.detector)},
+          {"rays", f.rays},
+          {"flux", f.flux.mean},
+          {"flux_standard_error", number(f.flux.standard_error)}};
+}
+
 std::string with_error(const Estimate& e) {
   return std::isfinite(e.standard_error) ? fmt::format("{:.5g} +- {:.2g}", e.mean, e.standard_error)
                                          : fmt::format("{:.5g}", e.mean);
@@ -118,7 +191,25 @@ std::string angle_text(const std::optional<double>& angle) {
   return angle ? fmt::format("{:.1f}", *angle) : std::string("-");
 }
 
+std::string plane_line(const PlaneFigures& f, std::string_view flux_unit) {
+  const std::string noise =
+      std::isfinite(f.noise) ? fmt::format("; noise {:.2g} %", 100.0 * f.noise) : std::string();
+  return fmt::format("  {}: mean {} {}, peak {} at x {:g}, y {:g} mm, least {:.4g}; flux {} {}{}",
+                     f.image.name, with_error(f.mean), plane_unit(f), with_error(f.peak), f.peak_x_mm,
+                     f.peak_y_mm, f.least, with_error(f.image.flux), flux_unit, noise);
+}
+
 }  // namespace
+
+std::string plane_unit(const PlaneFigures& f) {
+  const bool lumen = f.image.unit == FluxUnit::lumen;
+  if (f.view) return lumen ? "cd/m2" : "W/(m2 sr)";
+  return lumen ? "lx" : "W/m2";
+}
+
+std::string ray_file_name(const RayDetector& detector) {
+  return detector.name + std::string(ray_file_ending(detector.format));
+}
 
 Json beam_planes_json(const BeamFigures& beam) {
   Json planes = Json::array();
@@ -127,7 +218,7 @@ Json beam_planes_json(const BeamFigures& beam) {
 }
 
 TraceFigures trace_figures(const TraceResult& result) {
-  TraceFigures figures{ledger(result), {}};
+  TraceFigures figures{ledger(result), {}, {}, {}, {}};
   const Ledger& l = figures.ledger;
   // Everything that leaves is in the far field, in every direction. The two shares come from the same rays,
   // so their errors may add up in full.
@@ -136,6 +227,11 @@ TraceFigures trace_figures(const TraceResult& result) {
   for (std::size_t i = 0; i < result.far_fields.size(); ++i) {
     figures.far_fields.push_back(far_field_figures(far_field(result, i), out));
   }
+  for (std::size_t i = 0; i < result.planes.size(); ++i)
+    figures.planes.push_back(plane_figures(illuminance(result, i), std::nullopt));
+  for (std::size_t i = 0; i < result.luminances.size(); ++i)
+    figures.luminances.push_back(plane_figures(luminance(result, i), result.luminances[i]));
+  for (const RayDetector& d : result.ray_detectors) figures.rays.push_back({d, result.out_rays.size(), out});
   return figures;
 }
 
@@ -144,6 +240,10 @@ Json trace_json(const TraceFigures& figures) {
   out["ledger"] = ledger_json(figures.ledger);
   out["detectors"] = Json::array();
   for (const auto& f : figures.far_fields) out["detectors"].push_back(far_field_json(f));
+  for (const auto* images : {&figures.planes, &figures.luminances}) {
+    for (const auto& f : *images) out["detectors"].push_back(plane_json(f));
+  }
+  for (const auto& f : figures.rays) out["detectors"].push_back(rays_json(f, figures.ledger.unit));
   return out;
 }
 
@@ -180,6 +280,12 @@ std::vector<std::string> trace_summary(const TraceFigures& figures) {
       lines.push_back(fmt::format("  {}: noise {:.2g} % of the distribution (relative RMS)", f.field.name,
                                   100.0 * f.noise));
     }
+  }
+  for (const auto* images : {&figures.planes, &figures.luminances}) {
+    for (const auto& f : *images) lines.push_back(plane_line(f, unit));
+  }
+  for (const auto& f : figures.rays) {
+    lines.push_back(fmt::format("  {}: {} rays, {} {}", f.detector.name, f.rays, with_error(f.flux), unit));
   }
   return lines;
 }

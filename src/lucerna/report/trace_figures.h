@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,10 +26,35 @@ struct FarFieldFigures {
   double noise = 0.0;
 };
 
+/// What is quoted of a plane (illuminance) or luminance image.
+struct PlaneFigures {
+  PlaneImage image;
+  /// What makes it a luminance image; absent for a plane.
+  std::optional<LuminanceDetector> view;
+  /// Over all cells; the error of the mean is that of the counted flux.
+  Estimate mean;
+  double least = 0.0;
+  /// The brightest cell, its own error and its middle in the grid's frame.
+  Estimate peak;
+  double peak_x_mm = 0.0, peak_y_mm = 0.0;
+  /// Relative noise of the whole image: root of the sum of squared standard errors over that of the squared
+  /// values; NaN where it is not known.
+  double noise = 0.0;
+};
+
+/// Rays that left, to be written as a file.
+struct RayFigures {
+  RayDetector detector;
+  std::uint64_t rays = 0;
+  Estimate flux;
+};
+
 /// All figures of a trace, worked out once for text, JSON and files.
 struct TraceFigures {
   Ledger ledger;
   std::vector<FarFieldFigures> far_fields;
+  std::vector<PlaneFigures> planes, luminances;
+  std::vector<RayFigures> rays;
 };
 
 /// Cost: a few passes over the bins.
@@ -36,6 +62,12 @@ TraceFigures trace_figures(const TraceResult& result);
 
 /// Beam and field angles by both definitions, one object a pair of planes: what JSON results call the planes.
 nlohmann::ordered_json beam_planes_json(const BeamFigures& beam);
+
+/// "lx", "cd/m2", "W/m2" or "W/(m2 sr)".
+std::string plane_unit(const PlaneFigures& figures);
+
+/// The name of a ray detector's file: its own with the ending of its format.
+std::string ray_file_name(const RayDetector& detector);
 
 /// `ledger` and `detectors` of design.md section 3. What is not known is null.
 nlohmann::ordered_json trace_json(const TraceFigures& figures);

@@ -3,11 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lucerna/core/file.h"
+#include "lucerna/core/png.h"
 #include "lucerna/core/version.h"
 #include "lucerna/photometry/photometric_file.h"
+#include "lucerna/rayset/ray_file.h"
+#include "lucerna/report/svg_axes.h"
 #include "lucerna/report/svg_polar.h"
 
 namespace lucerna {
@@ -55,9 +60,71 @@ std::string far_field_csv(const FarFieldFigures& figures) {
   return csv;
 }
 
+std::string plane_csv(const PlaneFigures& figures) {
+  const PlaneImage& image = figures.image;
+  const bool lumen = image.unit == FluxUnit::lumen;
+  const std::string figure = figures.view ? (lumen ? "luminance_cd_per_m2" : "radiance_w_per_m2_sr")
+                                          : (lumen ? "illuminance_lx" : "irradiance_w_per_m2");
+  std::string csv =
+      fmt::format("x_mm,y_mm,{0},standard_error_{1}\n", figure, figure.substr(figure.find('_') + 1));
+  for (std::size_t i = 0; i < image.value.size(); ++i) {
+    csv += fmt::format("{:.9g},{:.9g},{:.9g},", image.grid.cell_x_mm(i), image.grid.cell_y_mm(i),
+                       image.value[i]);
+    if (std::isfinite(image.standard_error[i])) csv += fmt::format("{:.4g}", image.standard_error[i]);
+    csv += '\n';
+  }
+  return csv;
+}
+
+PlanePicture plane_picture(const PlaneImage& image) {
+  const std::size_t nx = image.grid.nx, ny = image.grid.ny;
+  const std::size_t side = std::clamp<std::size_t>((511 + std::max(nx, ny)) / std::max(nx, ny), 1, 64);
+  const double most = *std::max_element(image.value.begin(), image.value.end());
+  PlanePicture p{nx * side, ny * side, {}};
+  p.rgb.reserve(3 * p.width * p.height);
+  for (std::size_t row = 0; row < p.height; ++row) {
+    for (std::size_t column = 0; column < p.width; ++column) {
+      const double value = image.value[(ny - 1 - row / side) * nx + column / side];
+      for (const int c : viridis_rgb(most > 0.0 ? value / most : 0.0))
+        p.rgb.push_back(static_cast<std::uint8_t>(c));
+    }
+  }
+  return p;
+}
+
+namespace {
+
+/// Writes the rays that left in the format of every ray detector. Weights become fluxes, as TM-25 has them.
+std::vector<std::string> write_rays(const std::filesystem::path& folder, const TraceFigures& figures,
+                                    const RayBlock& rays, std::vector<std::string>* warnings) {
+  std::vector<std::string> names;
+  if (figures.rays.empty()) return names;
+  RaySet set;
+  set.header.flux_unit = figures.ledger.unit;
+  set.header.set_flux(figures.rays.front().flux.mean);
+  set.header.creation_method = 0;
+  set.rays = rays;
+  double sum = 0.0;
+  for (const float w : rays.weight) sum += static_cast<double>(w);
+  for (float& w : set.rays.weight)
+    w = static_cast<float>(static_cast<double>(w) / sum * figures.rays.front().flux.mean);
+  for (const RayFigures& f : figures.rays) {
+    // Other formats have no place for it, and would warn of it.
+    set.header.texts.file_creator = f.detector.format == "tm25" ? fmt::format("lucerna {}", version()) : "";
+    names.push_back(ray_file_name(f.detector));
+    for (std::string& w : write_ray_set(folder / names.back(), set, f.detector.format)) {
+      if (warnings != nullptr) warnings->push_back(names.back() + ": " + std::move(w));
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
 std::vector<std::string> write_trace_files(const std::filesystem::path& folder, const Project& project,
-                                           const TraceFigures& figures,
-                                           const nlohmann::ordered_json& result) {
+                                           const TraceFigures& figures, const RayBlock& rays,
+                                           const nlohmann::ordered_json& result,
+                                           std::vector<std::string>* warnings) {
   std::vector<std::string> names;
   const auto write = [&](const std::string& name, const std::string& text) {
     write_file(folder / name, text);
@@ -70,6 +137,15 @@ std::vector<std::string> write_trace_files(const std::filesystem::path& folder, 
     write(f.field.name + ".csv", far_field_csv(f));
     write(f.field.name + ".svg", polar_svg(f.intensity.distribution, {.title = f.field.name}));
   }
+  for (const auto* images : {&figures.planes, &figures.luminances}) {
+    for (const PlaneFigures& f : *images) {
+      write(f.image.name + ".csv", plane_csv(f));
+      const PlanePicture picture = plane_picture(f.image);
+      write_png(folder / (f.image.name + ".png"), picture.width, picture.height, picture.rgb);
+      names.push_back(f.image.name + ".png");
+    }
+  }
+  for (std::string& name : write_rays(folder, figures, rays, warnings)) names.push_back(std::move(name));
   write("project.toml", project_text(project));
   // Last: a folder with a result.json is complete.
   write("result.json", result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -27,28 +28,24 @@ std::string_view take_until(std::string_view& text, char end) {
   return part;
 }
 
-/// Reads the lines of a far-field table one by one.
+/// Reads the lines of a table one by one: two coordinates, a value and its standard error.
 class TableReader {
  public:
   TableReader(std::string_view text, const std::string& file) : rest_(text), file_(file) {}
 
-  FluxUnit header() {
-    const std::string_view line = next_line();
-    if (line == "c_deg,gamma_deg,intensity_cd,standard_error_cd") return FluxUnit::lumen;
-    if (line == "c_deg,gamma_deg,intensity_w_per_sr,standard_error_w_per_sr") return FluxUnit::watt;
-    fail("found '{}', expected the header of a far-field table", line.substr(0, 80));
-  }
+  /// The header line, for the caller to judge.
+  std::string_view header() { return next_line(); }
 
   struct Row {
-    double c_deg, gamma_deg, intensity, standard_error;
+    double a, b, value, standard_error;
   };
   bool next(Row& row) {
     if (rest_.empty()) return false;
     std::string_view line = next_line();
-    row.c_deg = number(take_until(line, ','));
-    row.gamma_deg = number(take_until(line, ','));
-    row.intensity = number(take_until(line, ','));
-    row.standard_error = line.empty() ? std::nan("") : number(line);
+    row.a = number(take_until(line, ','));
+    row.b = number(take_until(line, ','));
+    row.value = not_negative(take_until(line, ','));
+    row.standard_error = line.empty() ? std::nan("") : not_negative(line);
     return true;
   }
 
@@ -68,9 +65,14 @@ class TableReader {
   double number(std::string_view word) const {
     double value = 0.0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value) || value < 0.0) {
-      fail("found '{}', expected a number, 0 or more", word.substr(0, 40));
+    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) {
+      fail("found '{}', expected a finite number", word.substr(0, 40));
     }
+    return value;
+  }
+  double not_negative(std::string_view word) const {
+    const double value = number(word);
+    if (value < 0.0) fail("found '{}', expected a number, 0 or more", word.substr(0, 40));
     return value;
   }
 
@@ -103,28 +105,82 @@ std::string detector_name(const Json& detector, const std::string& file) {
   return name.get<std::string>();
 }
 
+/// What a plane's table may begin with.
+struct PlaneHeader {
+  std::string_view line;
+  bool luminance;
+  FluxUnit unit;
+  std::string_view value_unit;
+};
+constexpr std::array kPlaneHeaders{
+    PlaneHeader{"x_mm,y_mm,illuminance_lx,standard_error_lx", false, FluxUnit::lumen, "lx"},
+    PlaneHeader{"x_mm,y_mm,luminance_cd_per_m2,standard_error_cd_per_m2", true, FluxUnit::lumen, "cd/m2"},
+    PlaneHeader{"x_mm,y_mm,irradiance_w_per_m2,standard_error_w_per_m2", false, FluxUnit::watt, "W/m2"},
+    PlaneHeader{"x_mm,y_mm,radiance_w_per_m2_sr,standard_error_w_per_m2_sr", true, FluxUnit::watt,
+                "W/(m2 sr)"}};
+
 }  // namespace
 
 FarFieldTable far_field_table(std::string_view csv, const std::string& file) {
   TableReader reader(csv, file);
   FarFieldTable table;
   IntensityDistribution& d = table.distribution;
-  d.unit = reader.header();
+  const std::string_view header = reader.header();
+  if (header == "c_deg,gamma_deg,intensity_w_per_sr,standard_error_w_per_sr") {
+    d.unit = FluxUnit::watt;
+  } else if (header != "c_deg,gamma_deg,intensity_cd,standard_error_cd") {
+    reader.fail("found '{}', expected the header of a far-field table", header.substr(0, 80));
+  }
   bool error_known = true;
   TableReader::Row row;
   while (reader.next(row)) {
-    if (d.c_deg.empty() || row.c_deg != d.c_deg.back()) d.c_deg.push_back(row.c_deg);
-    if (d.c_deg.size() == 1) d.gamma_deg.push_back(row.gamma_deg);
+    if (d.c_deg.empty() || row.a != d.c_deg.back()) d.c_deg.push_back(row.a);
+    if (d.c_deg.size() == 1) d.gamma_deg.push_back(row.b);
     const std::size_t g = d.cd.size() - (d.c_deg.size() - 1) * d.gamma_deg.size();
-    if (g >= d.gamma_deg.size() || row.gamma_deg != d.gamma_deg[g]) {
-      reader.fail("found gamma {:g}, expected the gammas of the first plane in every plane", row.gamma_deg);
+    if (g >= d.gamma_deg.size() || row.b != d.gamma_deg[g]) {
+      reader.fail("found gamma {:g}, expected the gammas of the first plane in every plane", row.b);
     }
-    d.cd.push_back(row.intensity);
+    d.cd.push_back(row.value);
     table.standard_error.push_back(row.standard_error);
     error_known = error_known && std::isfinite(row.standard_error);
   }
   if (!error_known) table.standard_error.clear();
   if (const std::string fault = grid_fault(d); !fault.empty()) throw_input_error(file, "", "{}", fault);
+  return table;
+}
+
+PlaneTable plane_table(std::string_view csv, const std::string& file) {
+  TableReader reader(csv, file);
+  PlaneTable table;
+  const std::string_view header = reader.header();
+  bool known = false;
+  for (const PlaneHeader& h : kPlaneHeaders) {
+    if (header != h.line) continue;
+    known = true;
+    table.luminance = h.luminance;
+    table.unit = h.unit;
+    table.value_unit = h.value_unit;
+  }
+  if (!known) reader.fail("found '{}', expected the header of a plane's table", header.substr(0, 80));
+  bool error_known = true;
+  TableReader::Row row;
+  while (reader.next(row)) {
+    if (table.y_mm.empty() || row.b != table.y_mm.back()) {
+      if (!table.y_mm.empty() && row.b < table.y_mm.back()) reader.fail("found y {:g}, expected more", row.b);
+      if (table.value.size() != table.y_mm.size() * table.x_mm.size()) reader.fail("the row before is short");
+      table.y_mm.push_back(row.b);
+    }
+    if (table.y_mm.size() == 1) table.x_mm.push_back(row.a);
+    const std::size_t x = table.value.size() - (table.y_mm.size() - 1) * table.x_mm.size();
+    if (x >= table.x_mm.size() || row.a != table.x_mm[x])
+      reader.fail("found x {:g}, expected the x of the first row in every row", row.a);
+    table.value.push_back(row.value);
+    table.standard_error.push_back(row.standard_error);
+    error_known = error_known && std::isfinite(row.standard_error);
+  }
+  if (table.value.empty()) reader.fail("found no cell, expected at least one");
+  if (table.value.size() != table.y_mm.size() * table.x_mm.size()) reader.fail("the last row is short");
+  if (!error_known) table.standard_error.clear();
   return table;
 }
 
@@ -136,10 +192,18 @@ TraceFolder read_trace_folder(const std::filesystem::path& folder) {
   const std::string result_file = (folder / "result.json").string();
   for (const Json& detector : read.result["detectors"]) {
     const std::string name = detector_name(detector, result_file);
-    if (detector.value("kind", "") != "far-field") continue;
+    const Json kind = detector.value("kind", Json());
     const std::filesystem::path csv = folder / (name + ".csv");
-    read.far_fields.push_back(far_field_table(read_file(csv, kMostTableBytes), csv.string()));
-    read.far_fields.back().name = name;
+    if (kind == "far-field") {
+      read.far_fields.push_back(far_field_table(read_file(csv, kMostTableBytes), csv.string()));
+      read.far_fields.back().name = name;
+    } else if (kind == "plane" || kind == "luminance") {
+      read.planes.push_back(plane_table(read_file(csv, kMostTableBytes), csv.string()));
+      read.planes.back().name = name;
+    } else if (kind != "rays") {
+      throw_input_error(result_file, fmt::format("detector '{}'", name),
+                        "found the kind {}, expected far-field, plane, luminance or rays", kind.dump());
+    }
   }
   return read;
 }

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/report/trace_files.h"
@@ -47,6 +49,49 @@ TEST(TraceFolder, BrokenTablesNameTheirLine) {
   EXPECT_NE(fault(head), "no exception");
 }
 
+TEST(TraceFolder, PlaneTablesAreTheInverseOfTheirWriter) {
+  PlaneFigures figures;
+  figures.image.grid = {Frame(), 30.0, 20.0, 3, 2};
+  for (std::size_t i = 0; i < 6; ++i) {
+    figures.image.value.push_back(0.1 * static_cast<double>(i * i));
+    figures.image.standard_error.push_back(0.01 * static_cast<double>(i));
+  }
+  for (const bool seen : {false, true}) {
+    if (seen) figures.view = LuminanceDetector();
+    for (const FluxUnit unit : {FluxUnit::lumen, FluxUnit::watt}) {
+      figures.image.unit = unit;
+      const PlaneTable t = plane_table(plane_csv(figures), "p.csv");
+      EXPECT_EQ(t.luminance, seen);
+      EXPECT_EQ(t.unit, unit);
+      EXPECT_EQ(t.value_unit, plane_unit(figures));
+      EXPECT_EQ(t.x_mm, (std::vector<double>{-10, 0, 10}));
+      EXPECT_EQ(t.y_mm, (std::vector<double>{-5, 5}));
+      ASSERT_EQ(t.value.size(), 6u);
+      for (std::size_t i = 0; i < 6; ++i) {
+        EXPECT_NEAR(t.value[i], figures.image.value[i], 1e-8);
+        EXPECT_NEAR(t.standard_error[i], figures.image.standard_error[i], 1e-8);
+      }
+    }
+  }
+  figures.image.standard_error.assign(6, std::nan(""));
+  EXPECT_TRUE(plane_table(plane_csv(figures), "p.csv").standard_error.empty());
+}
+
+TEST(TraceFolder, BrokenPlaneTablesNameTheirLine) {
+  const std::string head = "x_mm,y_mm,illuminance_lx,standard_error_lx\n";
+  const auto wrong = [](const std::string& csv) {
+    return test::message_of<InputError>([&] { plane_table(csv, "p.csv"); });
+  };
+  EXPECT_NE(wrong("x_mm,y_mm,lux\n").find("p.csv: line 1: found 'x_mm,y_mm,lux'"), std::string::npos);
+  EXPECT_NE(wrong(head).find("no cell"), std::string::npos);
+  EXPECT_NE(wrong(head + "0,0,1,\n1,0,-1,\n").find("line 3"), std::string::npos);
+  EXPECT_NE(wrong(head + "0,0,1,\n1,0,1,\n0,1,1,\n").find("short"), std::string::npos);
+  EXPECT_NE(wrong(head + "0,0,1,\n1,0,1,\n0,1,1,\n0,2,1,\n").find("line 5: the row before"),
+            std::string::npos);
+  EXPECT_NE(wrong(head + "0,0,1,\n1,0,1,\n0,1,1,\n2,1,1,\n").find("line 5: found x 2"), std::string::npos);
+  EXPECT_NE(wrong(head + "0,0,1,\n1,0,1,\n0,-1,1,\n1,-1,1,\n").find("line 4"), std::string::npos);
+}
+
 TEST(TraceFolder, SaysWhatIsNoTrace) {
   const test::TempDir dir;
   const auto message = [&] { return test::message_of<InputError>([&] { read_trace_folder(dir.path()); }); };
@@ -61,6 +106,9 @@ TEST(TraceFolder, SaysWhatIsNoTrace) {
   write_file(dir / "result.json",
              R"({"ledger": {}, "detectors": [{"name": "../x", "kind": "far-field"}], "schema_version": 1})");
   EXPECT_NE(message().find("../x"), std::string::npos);
+  write_file(dir / "result.json",
+             R"({"ledger": {}, "detectors": [{"name": "x", "kind": "eye"}], "schema_version": 1})");
+  EXPECT_NE(message().find("found the kind \"eye\""), std::string::npos);
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/trace/plane_detector.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "lucerna/core/error.h"
+#include "lucerna/rayset/ray_file.h"
 
 namespace lucerna {
 
@@ -33,24 +35,81 @@ void check(const LuminanceDetector& detector) {
     throw InputError(fmt::format("detector '{}': half_angle_deg = {}, expected above 0 and below 90",
                                  detector.name, detector.half_angle_deg));
   }
+  if (!(detector.distance_mm >= 0.0 && std::isfinite(detector.distance_mm) &&
+        detector.pupil_radius_mm > 0.0 && std::isfinite(detector.pupil_radius_mm))) {
+    throw InputError(fmt::format("detector '{}': a pupil of radius {} mm at {} mm, expected finite numbers",
+                                 detector.name, detector.pupil_radius_mm, detector.distance_mm));
+  }
+}
+
+void check(const RayDetector& detector) {
+  const auto formats = ray_formats();
+  if (std::find(formats.begin(), formats.end(), detector.format) != formats.end()) return;
+  throw InputError(fmt::format("detector '{}': unknown ray format '{}', expected one of {}", detector.name,
+                               detector.format, fmt::join(formats, " ")));
+}
+
+Frame facing_frame(const Direction& normal, const Vec3& up, const Vec3& position_mm) {
+  const auto across = [&](const Vec3& v) { return v - dot(v, normal.vec()) * normal.vec(); };
+  Vec3 y = across(up);
+  if (length(y) < 1e-6 * length(up)) y = across({0.0, 1.0, 0.0});
+  if (length(y) < 1e-6) y = across({1.0, 0.0, 0.0});
+  const Vec3 ey = Direction::from(y).vec();
+  return {cross(ey, normal.vec()), ey, normal.vec(), position_mm};
+}
+
+namespace {
+
+double afar_etendue_mm2sr(const LuminanceDetector& d) {
+  const double sine = std::sin(radians(d.half_angle_deg));
+  return d.grid.cell_mm2() * std::numbers::pi * sine * sine;
+}
+
+}  // namespace
+
+double etendue_mm2sr(const LuminanceDetector& d, std::size_t cell) {
+  if (d.distance_mm == 0.0) return afar_etendue_mm2sr(d);
+  const double w = d.grid.size_x_mm / static_cast<double>(d.grid.nx),
+               h = d.grid.size_y_mm / static_cast<double>(d.grid.ny);
+  const double x = d.grid.cell_x_mm(cell), y = d.grid.cell_y_mm(cell);
+  const double gauss = 0.5 / std::sqrt(3.0), ring = d.pupil_radius_mm / std::sqrt(2.0);
+  const double pupil[4][2] = {{ring, 0.0}, {-ring, 0.0}, {0.0, ring}, {0.0, -ring}};
+  const double square[4][2] = {{-gauss, -gauss}, {gauss, -gauss}, {-gauss, gauss}, {gauss, gauss}};
+  double sum = 0.0;
+  for (const auto& p : pupil) {
+    for (const auto& q : square) {
+      const double dx = x + q[0] * w - p[0], dy = y + q[1] * h - p[1];
+      const double r2 = dx * dx + dy * dy + d.distance_mm * d.distance_mm;
+      sum += d.distance_mm * d.distance_mm / (r2 * r2);
+    }
+  }
+  return sum / 16.0 * d.grid.cell_mm2() * std::numbers::pi * d.pupil_radius_mm * d.pupil_radius_mm;
 }
 
 PlaneBins::PlaneBins(const PlaneDetector& detector)
-    : grid_(detector.grid),
-      plane_from_world_(detector.grid.world_from_plane.inverse()),
-      least_cosine_(-2.0) {}
+    : grid_(detector.grid), plane_from_world_(detector.grid.world_from_plane.inverse()), kind_(Kind::plane) {}
 
 PlaneBins::PlaneBins(const LuminanceDetector& detector)
     : grid_(detector.grid),
       plane_from_world_(detector.grid.world_from_plane.inverse()),
-      least_cosine_(std::cos(radians(detector.half_angle_deg))) {}
+      kind_(detector.distance_mm > 0.0 ? Kind::pupil : Kind::cone),
+      least_cosine_(std::cos(radians(detector.half_angle_deg))),
+      distance_mm_(detector.distance_mm),
+      pupil_radius_mm_(detector.pupil_radius_mm) {}
+
+bool PlaneBins::counts(const Ray& r, double t) const {
+  if (kind_ == Kind::plane) return r.direction.z() < 0.0 && t >= 0.0;
+  if (kind_ == Kind::cone) return r.direction.z() >= least_cosine_;
+  if (!(r.direction.z() > 0.0)) return false;
+  const double at_pupil = t + distance_mm_ / r.direction.z();
+  const Vec3 p = r.at(at_pupil);
+  return at_pupil >= 0.0 && p.x * p.x + p.y * p.y <= pupil_radius_mm_ * pupil_radius_mm_;
+}
 
 std::optional<std::size_t> PlaneBins::cell(const Ray& ray) const {
   const Ray r = plane_from_world_.ray(ray);
   const double t = -r.origin_mm.z / r.direction.z();
-  const bool falls_on =
-      least_cosine_ < -1.0 ? r.direction.z() < 0.0 && t >= 0.0 : r.direction.z() >= least_cosine_;
-  if (!falls_on) return std::nullopt;
+  if (!counts(r, t)) return std::nullopt;
   const Vec3 p = r.at(t);
   const double u = (p.x / grid_.size_x_mm + 0.5) * static_cast<double>(grid_.nx);
   const double v = (p.y / grid_.size_y_mm + 0.5) * static_cast<double>(grid_.ny);

@@ -16,6 +16,13 @@ struct PlaneGrid {
   std::size_t nx = 100, ny = 100;
 
   std::size_t size() const { return nx * ny; }
+  /// Middle of a cell in the plane's frame.
+  double cell_x_mm(std::size_t cell) const {
+    return (static_cast<double>(cell % nx) + 0.5) * size_x_mm / static_cast<double>(nx) - 0.5 * size_x_mm;
+  }
+  double cell_y_mm(std::size_t cell) const {
+    return (static_cast<double>(cell / nx) + 0.5) * size_y_mm / static_cast<double>(ny) - 0.5 * size_y_mm;
+  }
   double cell_mm2() const {
     return size_x_mm / static_cast<double>(nx) * size_y_mm / static_cast<double>(ny);
   }
@@ -30,19 +37,33 @@ struct PlaneDetector {
   friend bool operator==(const PlaneDetector&, const PlaneDetector&) = default;
 };
 
-/// The luminaire as it looks from afar: luminance by place on a plane across the direction of view. The
-/// frame's +z points from the luminaire to the observer; light within `half_angle_deg` of it counts, where
-/// its line crosses the plane, so a narrow cone is sharper and noisier.
+/// The luminaire as it looks: luminance by place on a plane across the direction of view. The frame's +z
+/// points from the luminaire to the observer. From afar (`distance_mm` = 0) light within `half_angle_deg` of
+/// it counts; an observer at `distance_mm` in front of the plane's middle sees what passes a pupil about that
+/// point, parallel to the plane. Either way a ray counts where its line crosses the plane, so a narrow cone
+/// or pupil is sharper and noisier.
 struct LuminanceDetector {
   std::string name = "luminance";
   PlaneGrid grid;
   double half_angle_deg = 2.0;
+  double distance_mm = 0.0;
+  double pupil_radius_mm = 1.0;
   friend bool operator==(const LuminanceDetector&, const LuminanceDetector&) = default;
 };
 
-/// Throw InputError on a size that is not above 0, no cells or more than 16 M, an angle outside (0, 90).
+/// A frame for a grid that faces along `normal`: its y axis is `up` as it is seen from there, so that x runs
+/// to the right for who looks at the lit side. `up` parallel to `normal`: +y takes its place.
+Frame facing_frame(const Direction& normal, const Vec3& up, const Vec3& position_mm);
+
+/// Throw InputError on a size that is not above 0, no cells or more than 16 M, an angle outside (0, 90), a
+/// pupil or distance that is not above 0, a name that is no file name.
 void check(const PlaneDetector& detector);
 void check(const LuminanceDetector& detector);
+
+/// What light of luminance 1 carries into a cell, mm^2 sr. From afar: cell area times pi sin^2 of the cone;
+/// else the integral of D^2 / r^4 over cell and pupil (parallel at distance D), by rules that are exact to
+/// the third order of both sizes over D.
+double etendue_mm2sr(const LuminanceDetector& detector, std::size_t cell);
 
 /// Finds the cells of either.
 class PlaneBins {
@@ -55,10 +76,26 @@ class PlaneBins {
   std::optional<std::size_t> cell(const Ray& ray) const;
 
  private:
+  /// Does a ray in the plane's frame count? It crosses the plane at distance t.
+  bool counts(const Ray& r, double t) const;
+
   PlaneGrid grid_;
   Frame plane_from_world_;
-  /// Least direction cosine to +z that counts; below -1 = a plane that counts what falls on it.
-  double least_cosine_;
+  /// Plane: what falls on its lit side. Cone: within least_cosine_ of +z. Pupil: through a disk at
+  /// distance_mm_.
+  enum class Kind { plane, cone, pupil } kind_;
+  double least_cosine_ = 0.0, distance_mm_ = 0.0, pupil_radius_mm_ = 0.0;
 };
+
+/// All rays that leave, as a file: a traced luminaire as a new source.
+struct RayDetector {
+  std::string name = "rays";
+  /// One of `ray_formats()`.
+  std::string format = "tm25";
+  friend bool operator==(const RayDetector&, const RayDetector&) = default;
+};
+
+/// Throws InputError on an unknown format.
+void check(const RayDetector& detector);
 
 }  // namespace lucerna

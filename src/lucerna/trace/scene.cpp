@@ -50,6 +50,10 @@ void check(const Scene& scene) {
     check(d);
     add_name(d.name);
   }
+  for (const RayDetector& d : scene.ray_detectors) {
+    check(d);
+    add_name(d.name);
+  }
 }
 
 }  // namespace lucerna

@@ -43,8 +43,8 @@ struct Scene {
   std::vector<FarFieldDetector> far_fields;
   std::vector<PlaneDetector> planes;
   std::vector<LuminanceDetector> luminances;
-  /// Keep all rays that leave, as TraceResult::out_rays.
-  bool keep_rays = false;
+  /// With any of these all rays that leave are kept, as TraceResult::out_rays: 28 bytes a ray.
+  std::vector<RayDetector> ray_detectors;
   std::vector<Body> bodies;
 };
 

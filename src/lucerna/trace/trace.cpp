@@ -2,6 +2,7 @@
 #include "lucerna/trace/trace.h"
 
 #include <algorithm>
+#include <array>
 #include <mutex>
 #include <utility>
 
@@ -17,6 +18,35 @@ namespace {
 /// Blocks of one replicate that a thread takes at a time: 32 k rays, so that clearing and adding bins is
 /// cheap beside them.
 constexpr std::uint64_t kTaskBlocks = 64;
+/// A task is a row of blocks of one replicate; rows are aligned to ray 0, so that the cut does not depend on
+/// the range.
+constexpr std::uint64_t kRowRays = kTaskBlocks * kReplicates * kBlockRays;
+
+/// The rays that left in one task, with what puts them into the order of their numbers.
+struct KeptRays {
+  RayBlock rays;
+  std::vector<OutRun> runs;
+};
+
+/// Joins the rays of all tasks of `trace`: every row of tasks holds its blocks by replicate.
+void order_rays(const std::vector<KeptRays>& tasks, TraceResult& result) {
+  std::size_t total = 0;
+  for (const KeptRays& task : tasks) total += task.rays.size();
+  result.out_rays.reserve(total);
+  std::uint64_t block = result.first_ray / kRowRays * kTaskBlocks * kReplicates;
+  for (std::size_t row = 0; row < tasks.size(); row += kReplicates) {
+    std::array<std::size_t, kReplicates> next{}, at{};
+    for (std::uint64_t k = 0; k < kTaskBlocks * kReplicates; ++k, ++block) {
+      const std::size_t r = k % kReplicates;
+      const KeptRays& task = tasks[row + r];
+      for (; next[r] < task.runs.size() && task.runs[next[r]].block == block; ++next[r]) {
+        const OutRun& run = task.runs[next[r]];
+        for (std::uint32_t i = 0; i < run.rays; ++i) result.out_rays.append(task.rays, at[r]++);
+        result.out_runs.push_back(run);
+      }
+    }
+  }
+}
 
 }  // namespace
 
@@ -46,6 +76,8 @@ TraceResult trace(const Scene& scene, const TraceOptions& options, Progress& pro
   for (const Body& b : scene.bodies) result.body_names.push_back(b.name);
   result.planes = scene.planes;
   result.luminances = scene.luminances;
+  result.ray_detectors = scene.ray_detectors;
+  const bool keep_rays = !scene.ray_detectors.empty();
 
   const auto engine = options.engine == EngineKind::reference
                           ? make_reference_engine(scene, numbering, options)
@@ -54,30 +86,36 @@ TraceResult trace(const Scene& scene, const TraceOptions& options, Progress& pro
   result.replicates.assign(kReplicates, engine->empty_tally());
   std::mutex mutex;
   std::uint64_t done = 0;
-  // A task is a row of blocks of one replicate; rows are aligned to ray 0, so that the cut does not depend on
-  // the range.
-  const std::uint64_t row = kTaskBlocks * kReplicates * kBlockRays;
-  const std::uint64_t first_row = result.first_ray / row, rows = (result.last_ray - 1) / row + 1 - first_row;
-  std::vector<RayBlock> out_rays(scene.keep_rays ? rows * kReplicates : 0);
+  const std::uint64_t first_row = result.first_ray / kRowRays;
+  const std::uint64_t rows = (result.last_ray - 1) / kRowRays + 1 - first_row;
+  std::vector<KeptRays> kept(keep_rays ? rows * kReplicates : 0);
   parallel_blocks(rows * kReplicates, 1, [&](std::size_t task, std::size_t) {
     const std::uint64_t replicate = task % kReplicates;
-    const std::uint64_t row_begin = (first_row + task / kReplicates) * row;
+    const std::uint64_t row_begin = (first_row + task / kReplicates) * kRowRays;
     Tally tally = engine->empty_tally();
     TraceScratch scratch;
+    std::vector<OutRun> out_runs;
     for (std::uint64_t k = 0; k < kTaskBlocks; ++k) {
       const std::uint64_t begin = row_begin + (k * kReplicates + replicate) * kBlockRays;
       const std::uint64_t from = std::max(begin, result.first_ray);
       const std::uint64_t to = std::min(begin + kBlockRays, result.last_ray);
       if (from >= to) continue;
-      for (const SourceRun& run : numbering.runs(from, to)) engine->trace_run(run, scratch, tally);
+      for (const SourceRun& run : numbering.runs(from, to)) {
+        const std::size_t before = scratch.out_rays.size();
+        engine->trace_run(run, scratch, tally);
+        const auto left = static_cast<std::uint32_t>(scratch.out_rays.size() - before);
+        if (left > 0) {
+          out_runs.push_back({begin / kBlockRays, static_cast<std::uint32_t>(run.source), left});
+        }
+      }
     }
     const std::lock_guard lock(mutex);
-    if (scene.keep_rays) out_rays[task] = std::move(scratch.out_rays);
+    if (keep_rays) kept[task] = {std::move(scratch.out_rays), std::move(out_runs)};
     result.replicates[replicate] += tally;
     done += tally.rays;
     progress.step("trace", done, result.last_ray - result.first_ray);
   });
-  for (const RayBlock& block : out_rays) result.out_rays.append(block);
+  order_rays(kept, result);
   return result;
 }
 

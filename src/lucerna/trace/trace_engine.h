@@ -23,7 +23,7 @@ struct TraceScratch {
 /// rays through it. Shared by all threads, never changed.
 class TraceEngine {
  public:
-  explicit TraceEngine(const Scene& scene) : bodies_(scene.bodies), keep_rays_(scene.keep_rays) {
+  explicit TraceEngine(const Scene& scene) : bodies_(scene.bodies), keep_rays_(!scene.ray_detectors.empty()) {
     body_count_ = scene.bodies.size();
     for (const FarFieldDetector& d : scene.far_fields) far_fields_.emplace_back(d);
     for (const PlaneDetector& d : scene.planes) planes_.emplace_back(d);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "lucerna/core/error.h"
 
@@ -99,19 +101,26 @@ FarField far_field(const TraceResult& result, std::size_t index) {
 
 namespace {
 
+constexpr double kSquareMillimetresPerSquareMetre = 1e6;
+
+/// `per_flux(cell)` turns flux into the figure.
+template <class PerFlux>
 PlaneImage image(const TraceResult& result, std::size_t bins, const std::string& name, const PlaneGrid& grid,
-                 double per_flux) {
-  PlaneImage i{name, grid, result.unit, std::vector<double>(grid.size()), std::vector<double>(grid.size())};
+                 const PerFlux& per_flux) {
+  PlaneImage i{name, grid, result.unit, std::vector<double>(grid.size()), std::vector<double>(grid.size()),
+               {}};
   const Normaliser normal(result);
   for (std::size_t k = 0; k < grid.size(); ++k) {
     const Estimate e = normal.estimate([&](const Tally& t) { return t.bins[bins][k]; });
-    i.value[k] = e.mean * per_flux;
-    i.standard_error[k] = e.standard_error * per_flux;
+    const double factor = kSquareMillimetresPerSquareMetre * per_flux(k);
+    i.value[k] = e.mean * factor;
+    i.standard_error[k] = e.standard_error * factor;
   }
+  i.flux = normal.estimate([&](const Tally& t) {
+    return std::accumulate(t.bins[bins].begin(), t.bins[bins].end(), std::int64_t{0});
+  });
   return i;
 }
-
-constexpr double kSquareMillimetresPerSquareMetre = 1e6;
 
 }  // namespace
 
@@ -119,16 +128,54 @@ PlaneImage illuminance(const TraceResult& result, std::size_t index) {
   LUCERNA_CHECK(index < result.planes.size(), "index = {}", index);
   const PlaneDetector& d = result.planes[index];
   return image(result, result.far_fields.size() + index, d.name, d.grid,
-               kSquareMillimetresPerSquareMetre / d.grid.cell_mm2());
+               [&](std::size_t) { return 1.0 / d.grid.cell_mm2(); });
 }
 
 PlaneImage luminance(const TraceResult& result, std::size_t index) {
   LUCERNA_CHECK(index < result.luminances.size(), "index = {}", index);
   const LuminanceDetector& d = result.luminances[index];
-  const double sine = std::sin(radians(d.half_angle_deg));
   return image(result, result.far_fields.size() + result.planes.size() + index, d.name, d.grid,
-               kSquareMillimetresPerSquareMetre / (d.grid.cell_mm2() * std::numbers::pi * sine * sine));
+               [&](std::size_t cell) { return 1.0 / etendue_mm2sr(d, cell); });
 }
+
+namespace {
+
+/// The kept rays of two ranges, the first of which ends where the other begins, in the order of one run.
+void join_rays(const TraceResult& first, const TraceResult& second, TraceResult& sum) {
+  sum.out_rays = RayBlock();
+  sum.out_runs.clear();
+  sum.out_rays.reserve(first.out_rays.size() + second.out_rays.size());
+  std::size_t next[2] = {0, 0}, at[2] = {0, 0};
+  const TraceResult* parts[2] = {&first, &second};
+  const auto key = [&](std::size_t part) {
+    const OutRun& run = parts[part]->out_runs[next[part]];
+    return std::pair(run.block, run.source);
+  };
+  while (next[0] < first.out_runs.size() || next[1] < second.out_runs.size()) {
+    const bool has_first = next[0] < first.out_runs.size(), has_second = next[1] < second.out_runs.size();
+    const std::size_t part = has_first && (!has_second || key(0) <= key(1)) ? 0 : 1;
+    const OutRun run = parts[part]->out_runs[next[part]++];
+    for (std::uint32_t i = 0; i < run.rays; ++i) sum.out_rays.append(parts[part]->out_rays, at[part]++);
+    const bool same_run = !sum.out_runs.empty() && sum.out_runs.back().block == run.block &&
+                          sum.out_runs.back().source == run.source;
+    if (same_run) {
+      sum.out_runs.back().rays += run.rays;
+    } else {
+      sum.out_runs.push_back(run);
+    }
+  }
+}
+
+/// What is wrong with the ranges of two traces; nothing if they meet end to end.
+std::string range_fault(const TraceResult& a, const TraceResult& b) {
+  const TraceResult &low = a.first_ray <= b.first_ray ? a : b, &high = &low == &a ? b : a;
+  if (low.last_ray == high.first_ray) return "";
+  if (low.last_ray < high.first_ray)
+    return fmt::format("rays {}:{} are missing", low.last_ray, high.first_ray);
+  return fmt::format("rays {}:{} are in both", high.first_ray, std::min(low.last_ray, high.last_ray));
+}
+
+}  // namespace
 
 TraceResult merge(const TraceResult& a, const TraceResult& b) {
   const auto need = [](bool same, const char* what) {
@@ -143,19 +190,16 @@ TraceResult merge(const TraceResult& a, const TraceResult& b) {
   need(a.flux == b.flux && a.unit == b.unit, "the sources' flux");
   need(a.body_names == b.body_names, "bodies");
   need(a.far_fields == b.far_fields && a.planes == b.planes && a.luminances == b.luminances &&
-           a.replicates.size() == b.replicates.size(),
+           a.ray_detectors == b.ray_detectors && a.replicates.size() == b.replicates.size(),
        "detectors");
-  if (a.last_ray != b.first_ray && b.last_ray != a.first_ray) {
-    throw InputError(fmt::format("the traces cannot be added: rays {}:{} and {}:{} do not meet end to end",
-                                 a.first_ray, a.last_ray, b.first_ray, b.last_ray));
-  }
-  if (!a.out_rays.empty() || !b.out_rays.empty()) {
-    throw InputError("traces that keep their rays cannot be added; convert can join the ray files");
-  }
+  if (const std::string fault = range_fault(a, b); !fault.empty())
+    throw InputError("the traces cannot be added: " + fault);
+  const bool a_first = a.first_ray < b.first_ray;
   TraceResult sum = a;
   sum.first_ray = std::min(a.first_ray, b.first_ray);
   sum.last_ray = std::max(a.last_ray, b.last_ray);
   for (std::size_t r = 0; r < sum.replicates.size(); ++r) sum.replicates[r] += b.replicates[r];
+  if (!sum.ray_detectors.empty()) join_rays(a_first ? a : b, a_first ? b : a, sum);
   return sum;
 }
 

@@ -16,6 +16,14 @@
 
 namespace lucerna {
 
+/// The rays of one source in one block of 512 numbers that left; runs ascend by (block, source), so that the
+/// kept rays of two ranges join to the order of one run, also where the cut is within a block.
+struct OutRun {
+  std::uint64_t block = 0;
+  std::uint32_t source = 0, rays = 0;
+  friend bool operator==(const OutRun&, const OutRun&) = default;
+};
+
 /// What a trace leaves: raw sums by replicate, before any normalisation, so that ranges of rays can be added.
 struct TraceResult {
   /// The rays traced, [first_ray, last_ray).
@@ -31,13 +39,15 @@ struct TraceResult {
   std::vector<FarFieldDetector> far_fields;
   std::vector<PlaneDetector> planes;
   std::vector<LuminanceDetector> luminances;
+  std::vector<RayDetector> ray_detectors;
   /// Causes of absorption after the mirrors'.
   std::vector<std::string> body_names;
   /// kReplicates tallies.
   std::vector<Tally> replicates;
-  /// If the scene keeps them: where rays left and where to, the same for any number of threads. Together they
+  /// If the scene has ray detectors: where rays left and where to, in the order of `out_runs`. Together they
   /// carry ledger().out_direct + out_reflected; weights are in mean rays.
   RayBlock out_rays;
+  std::vector<OutRun> out_runs;
 };
 
 /// Where the light went. Every figure in the unit of the sources' flux. A standard error is NaN where it is
@@ -82,17 +92,18 @@ struct PlaneImage {
   std::vector<double> value;
   /// NaN where not known, as in Ledger.
   std::vector<double> standard_error;
+  /// Flux that was counted, all cells, and its error.
+  Estimate flux;
 };
 
 /// Illuminance on TraceResult::planes[index].
 PlaneImage illuminance(const TraceResult& result, std::size_t index);
-/// Luminance in TraceResult::luminances[index]: flux over cell area and projected solid angle pi sin^2 of the
-/// cone.
+/// Luminance in TraceResult::luminances[index]: flux over `etendue_mm2sr` of the cell.
 PlaneImage luminance(const TraceResult& result, std::size_t index);
 
 /// Adds two traces of the same scene over different rays: the result is, to the bit, that of one run over
 /// both, whatever the order. Throws InputError if they differ in seed, sequence, bounces, instruction set,
-/// flux or detectors, or if their rays do not meet end to end.
+/// flux or detectors, or if their rays do not meet end to end (it says which rays are missing or double).
 TraceResult merge(const TraceResult& a, const TraceResult& b);
 
 }  // namespace lucerna

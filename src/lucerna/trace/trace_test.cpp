@@ -285,7 +285,7 @@ TEST(TraceStatistical, IlluminanceAndLuminanceOfADisk) {
 
 TEST(Trace, KeptRaysCarryWhatLeft) {
   Scene scene = downlight(emitter({.kind = EmitterKind::cylinder}));
-  scene.keep_rays = true;
+  scene.ray_detectors = {{}};
   const auto run = [&](int threads) {
     const ThreadLimit limit(threads);
     return trace(scene, {.last_ray = 50000});

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+#include "lucerna/core/error.h"
+#include "lucerna/trace/project.h"
+#include "lucerna/trace/toml_reader.h"
+
+/// The tables of a project file, each read by a file of its own; what `read_project` is made of. All throw
+/// InputErrors with file, line and key.
+namespace lucerna::project_parts {
+
+/// Runs `make`; an InputError from the library's own checks (a radius out of range) gets the key's place in
+/// the file.
+template <class Make>
+auto at_key(const TomlReader& reader, std::string_view key, Make&& make) {
+  try {
+    return make();
+  } catch (const InputError& e) {
+    reader.fail(key, e.what());
+  } catch (const UsageError& e) {
+    reader.fail(key, e.what());
+  }
+}
+
+/// `position_mm`, `axis`, `turn_deg`.
+Frame read_placement(TomlReader& reader);
+
+/// One [[source]]; its file and warnings are added to `project`.
+PlacedSource read_source(TomlReader reader, Project& project, Progress& progress);
+
+/// One [[reflector]], added to the scene.
+void read_reflector(TomlReader reader, Project& project);
+
+/// One [[detector]], added to the scene.
+void read_detector(TomlReader reader, Scene& scene);
+
+}  // namespace lucerna::project_parts

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "lucerna/reflector/faceted_surface.h"
+#include "lucerna/reflector/smooth_shape.h"
+#include "lucerna/trace/project_parts.h"
+
+namespace lucerna::project_parts {
+
+namespace {
+
+Aperture read_aperture(TomlReader& reader, std::optional<double> default_diameter_mm) {
+  const std::string shape = reader.text("aperture").value_or("circle");
+  const auto diameter = reader.positive("diameter_mm");
+  const auto size = reader.numbers("size_mm", 2);
+  const double hole = reader.number("hole_diameter_mm", 0.0);
+  if (shape == "circle") {
+    if (size) reader.fail("size_mm", "belongs to a rectangular aperture; a circle has diameter_mm");
+    if (!diameter && !default_diameter_mm) reader.fail("diameter_mm", "is missing");
+    return at_key(reader, "aperture",
+                  [&] { return Aperture::circle(diameter ? *diameter : *default_diameter_mm, hole); });
+  }
+  if (shape == "rectangle") {
+    if (diameter) reader.fail("diameter_mm", "belongs to a circular aperture; a rectangle has size_mm");
+    if (!size) reader.fail("size_mm", "is missing");
+    return at_key(reader, "aperture", [&] { return Aperture::rectangle((*size)[0], (*size)[1], hole); });
+  }
+  reader.fail("aperture", fmt::format("found '{}', expected circle or rectangle", shape));
+}
+
+Reflector read_conic(TomlReader& reader, const std::string& preset, bool trough) {
+  static const std::map<std::string, ConicPreset, std::less<>> kPresets{
+      {"parabola", ConicPreset::parabola},
+      {"ellipse", ConicPreset::ellipse},
+      {"hyperbola", ConicPreset::hyperbola}};
+  const auto found = kPresets.find(preset);
+  if (found == kPresets.end()) {
+    reader.fail("preset", fmt::format("found '{}', expected parabola, ellipse or hyperbola", preset));
+  }
+  const auto focal = reader.positive("focal_mm"), focal2 = reader.positive("focal2_mm");
+  if (!focal) reader.fail("focal_mm", "is missing");
+  if (found->second == ConicPreset::parabola && focal2) reader.fail("focal2_mm", "a parabola has one focus");
+  if (found->second != ConicPreset::parabola && !focal2) reader.fail("focal2_mm", "is missing");
+  const Aperture aperture = read_aperture(reader, std::nullopt);
+  return at_key(reader, "preset", [&] {
+    const auto make = trough ? conic_trough : conic_reflector;
+    return make(found->second, *focal, focal2.value_or(0.0), aperture);
+  });
+}
+
+/// The families that a profile makes, turned about z or drawn along y.
+Reflector read_profile_family(TomlReader& reader, bool trough) {
+  const auto preset = reader.text("preset");
+  const auto profile = reader.pairs("profile_mm");
+  if (preset && profile) reader.fail("profile_mm", "a reflector has either a preset or a profile");
+  if (preset) return read_conic(reader, *preset, trough);
+  if (!profile) reader.fail("preset", "is missing: the reflector needs a preset or a profile_mm");
+  if (profile->empty()) reader.fail("profile_mm", "found no points, expected at least two");
+  std::vector<ProfileKnot> knots;
+  for (const auto& [r, z] : *profile) knots.push_back({r, z});
+  const Aperture aperture = read_aperture(reader, 2.0 * knots.back().r_mm);
+  return at_key(reader, "profile_mm",
+                [&] { return (trough ? profile_trough : profile_reflector)(knots, aperture); });
+}
+
+/// Facets on a base of revolution: flat, or pillows of a radius of curvature.
+Reflector read_faceted(TomlReader& reader) {
+  const auto pitch = reader.positive("pitch_mm");
+  if (!pitch) reader.fail("pitch_mm", "is missing: the side of a facet");
+  const double radius = reader.number("pillow_radius_mm", std::numeric_limits<double>::infinity());
+  Reflector base = read_profile_family(reader, false);
+  return at_key(reader, "pillow_radius_mm", [&] {
+    return Reflector{std::make_shared<FacetedSurface>(base.surface, *pitch, radius), base.aperture};
+  });
+}
+
+/// The free-form family: a bicubic B-spline of heights over a paraboloid (docs/algorithms/design.md).
+Reflector read_bspline(TomlReader& reader) {
+  const auto focal = reader.positive("focal_mm");
+  if (!focal) reader.fail("focal_mm", "is missing: the paraboloid that the spline stands on");
+  const auto intervals = reader.numbers("intervals", 2).value_or(std::vector<double>{4.0, 4.0});
+  for (const double n : intervals) {
+    if (!(n >= 1.0 && n <= 1000.0 && n == std::floor(n))) {
+      reader.fail("intervals", fmt::format("found {}, expected whole numbers from 1 to 1000", n));
+    }
+  }
+  const Aperture aperture = read_aperture(reader, std::nullopt);
+  const double a = aperture.half_x_mm(), b = aperture.half_y_mm();
+  const KnotRow x{-a, 2.0 * a / intervals[0], static_cast<int>(intervals[0])};
+  const KnotRow y{-b, 2.0 * b / intervals[1], static_cast<int>(intervals[1])};
+  const auto n = static_cast<std::size_t>(x.coefficients()) * static_cast<std::size_t>(y.coefficients());
+  std::vector<double> c(n, 0.0);
+  if (reader.has("coefficients_mm")) c = *reader.numbers("coefficients_mm", n);
+  return {std::make_shared<SmoothSurface<BsplineShape>>(BsplineShape(*focal, x, y, std::move(c))), aperture};
+}
+
+/// A number, or [[angle of incidence in degrees, value], ...].
+Reflectance read_reflectance(TomlReader& reader) {
+  return at_key(reader, "reflectance", [&] {
+    if (!reader.has_array("reflectance")) return Reflectance(reader.number("reflectance", 1.0));
+    std::vector<Reflectance::Entry> table;
+    const auto pairs = reader.pairs("reflectance");
+    for (const auto& [angle, value] : *pairs) table.push_back({angle, value});
+    return Reflectance(std::move(table));
+  });
+}
+
+Reflector read_family(TomlReader& reader) {
+  const std::string family = reader.required_text("family");
+  if (family == "revolution") return read_profile_family(reader, false);
+  if (family == "trough") return read_profile_family(reader, true);
+  if (family == "faceted") return read_faceted(reader);
+  if (family == "bspline") return read_bspline(reader);
+  reader.fail("family", fmt::format("found '{}', expected revolution, trough, bspline or faceted", family));
+}
+
+}  // namespace
+
+void read_reflector(TomlReader reader, Project& project) {
+  PlacedReflector placed;
+  placed.world_from_reflector = read_placement(reader);
+  placed.reflector = read_family(reader);
+  placed.reflectance = read_reflectance(reader);
+  placed.slope_error_mrad = reader.number("slope_error_mrad", 0.0);
+  if (!(placed.slope_error_mrad >= 0.0)) reader.fail("slope_error_mrad", "expected >= 0");
+  reader.finish();
+  project.scene.reflectors.push_back(std::move(placed));
+}
+
+}  // namespace lucerna::project_parts
