@@ -39,14 +39,7 @@ FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& option
       return height_limit(shape, most, equations);
     };
   }
-  const double unit = problem.target.mode == TargetMode::absolute ? 1.0 / rays.flux() : 1.0;
-  fit.target = [&problem, unit](const TentBins& bins) {
-    const std::vector<double> flux = bins.flux_of([&](const Direction& d) {
-      return unit * intensity_in(problem.target.distribution, problem.world_from_mirror.direction(d));
-    });
-    return Eigen::VectorXd(
-        Eigen::Map<const Eigen::VectorXd>(flux.data(), static_cast<Eigen::Index>(flux.size())));
-  };
+  fit.target = target_flux(problem.target, problem.world_from_mirror, rays.flux());
   return fit;
 }
 

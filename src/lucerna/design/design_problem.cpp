@@ -8,35 +8,11 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
-#include "lucerna/design/window.h"
-#include "lucerna/photometry/photometric_io.h"
 #include "lucerna/trace/toml_reader.h"
 
 namespace lucerna {
 
 namespace {
-
-DesignTarget read_target(TomlReader reader, Project& project) {
-  DesignTarget target;
-  const auto file = reader.file("file");
-  if (!file) reader.fail("file", "is missing: an IES or EULUMDAT file with the light that is wanted");
-  const std::string mode = reader.text("mode").value_or("shape");
-  if (mode != "shape" && mode != "absolute") {
-    reader.fail("mode", fmt::format("found '{}', expected shape or absolute", mode));
-  }
-  reader.finish();
-  target.mode = mode == "shape" ? TargetMode::shape : TargetMode::absolute;
-  target.file = file->string();
-  target.distribution = read_photometric_file(*file).distribution;
-  project.inputs.push_back(*file);
-  const FluxUnit unit = project.scene.sources.front().rays->flux_unit();
-  if (target.mode == TargetMode::absolute && target.distribution.unit != unit) {
-    reader.fail("mode",
-                fmt::format("the target is in {}, the sources in {}; they can be compared by shape only",
-                            symbol(target.distribution.unit), symbol(unit)));
-  }
-  return target;
-}
 
 ShapeSymmetry read_symmetry(TomlReader& reader, bool revolution, const Frame& world_from_mirror) {
   static const std::map<std::string, ShapeSymmetry, std::less<>> kNames{{"none", ShapeSymmetry::none},
@@ -167,7 +143,8 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   const bool revolution = dynamic_cast<const RevolutionSurface*>(placed.reflector.surface.get()) != nullptr;
   const DesignLimits limits =
       read_limits(design.table("limits"), placed.reflector.aperture, revolution, placed.world_from_reflector);
-  DesignTarget target = read_target(*target_reader, project);
+  DesignTarget target = read_target(*target_reader, project.scene.sources.front().rays->flux_unit(),
+                                    placed.world_from_reflector.origin_mm(), project.inputs);
   DesignShape start = start_shape(placed.reflector, intervals, design, limits.symmetry);
   design.finish();
   return {std::move(project), std::move(target),           limits, std::move(start),
@@ -175,16 +152,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
 }
 
 TentBins target_window(const DesignProblem& problem) {
-  const Frame mirror_from_world = problem.world_from_mirror.inverse();
-  const std::vector<DirectedFlux> light = directed_flux(problem.target.distribution);
-  const Direction axis = problem.world_from_mirror.direction(Direction());
-  const bool rings = problem.start.is_revolution();
-  const TentBins bins = rings ? ring_window(light, axis) : square_window(light, axis);
-  const Frame& a = bins.axes();
-  const Frame axes(mirror_from_world.vector(a.ex()), mirror_from_world.vector(a.ey()),
-                   mirror_from_world.vector(a.ez()), {});
-  return rings ? TentBins::rings(axes, bins.extent(), bins.count())
-               : TentBins::square(axes, bins.extent(), bins.count());
+  return target_bins(problem.target, problem.world_from_mirror, problem.start.is_revolution());
 }
 
 namespace {

@@ -6,17 +6,10 @@
 #include <string>
 
 #include "lucerna/design/fit.h"
-#include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/design/target.h"
 #include "lucerna/trace/project.h"
 
 namespace lucerna {
-
-/// The light that is wanted: [target] of a project.
-struct DesignTarget {
-  IntensityDistribution distribution;
-  TargetMode mode = TargetMode::shape;
-  std::string file;
-};
 
 /// What a design must not do: [design.limits] of a project.
 struct DesignLimits {
@@ -42,7 +35,7 @@ struct DesignProblem {
 /// pair.
 DesignProblem design_problem(Project project, const std::filesystem::path& path);
 
-/// The target turned into the comparison's bins over its own window.
+/// The bins in which the problem's result is judged.
 TentBins target_window(const DesignProblem& problem);
 
 /// The project with the mirror replaced: what `trace` takes.

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/target.h"
+
+#include <cmath>
+
+#include "lucerna/core/error.h"
+#include "lucerna/design/window.h"
+#include "lucerna/photometry/photometric_io.h"
+
+namespace lucerna {
+
+namespace {
+
+constexpr double kMm2PerM2 = 1e6;
+
+/// Intensity of a point at `from_mm` that lights the plane as the target wants it: E r^2 / cos.
+IntensityDistribution seen_from(const PlaneTarget& plane, const Vec3& from_mm, FluxUnit unit) {
+  IntensityDistribution out = uniform_distribution(2.5, 1.0, unit);
+  const Frame plane_from_world = plane.world_from_plane.inverse();
+  const Vec3 from = plane_from_world.point(from_mm);
+  for (std::size_t c = 0; c < out.c_deg.size(); ++c) {
+    for (std::size_t g = 0; g < out.gamma_deg.size(); ++g) {
+      const Vec3 d = plane_from_world.vector(
+          direction_from_type_c({radians(out.c_deg[c]), radians(out.gamma_deg[g])}).vec());
+      if (d.z >= 0.0 || from.z <= 0.0) continue;
+      const double t = -from.z / d.z;
+      const double lx = plane.at(from.x + t * d.x, from.y + t * d.y);
+      out.at(c, g) = lx * t * t / kMm2PerM2 / -d.z;
+    }
+  }
+  return out;
+}
+
+TargetMode read_mode(TomlReader& reader) {
+  const std::string mode = reader.text("mode").value_or("shape");
+  if (mode != "shape" && mode != "absolute") {
+    reader.fail("mode", fmt::format("found '{}', expected shape or absolute", mode));
+  }
+  return mode == "shape" ? TargetMode::shape : TargetMode::absolute;
+}
+
+IlluminanceMap read_map(TomlReader& reader, const std::filesystem::path& file, TargetMode mode) {
+  const std::string ending = file.extension().string();
+  const auto white = reader.positive("white_lx");
+  if (ending == ".csv" || ending == ".txt") {
+    if (white) reader.fail("white_lx", "belongs to a PNG picture; a CSV holds the illuminances themselves");
+    return read_illuminance_csv(file);
+  }
+  if (ending != ".png") {
+    reader.fail("file", fmt::format("found '{}', expected a .csv or .png with the illuminance", ending));
+  }
+  if (mode == TargetMode::absolute && !white) {
+    reader.fail("white_lx", "is missing: mode = \"absolute\" needs the illuminance of the picture's white");
+  }
+  IlluminanceMap map = read_illuminance_png(file);
+  for (double& v : map.value) v *= white.value_or(1.0);
+  return map;
+}
+
+PlaneTarget read_plane(TomlReader& reader, const std::filesystem::path& file, TargetMode mode,
+                       const Vec3& luminaire_mm) {
+  PlaneTarget plane;
+  const auto position = reader.vector("position_mm");
+  if (!position) reader.fail("position_mm", "is missing: the centre of the plane's rectangle");
+  const auto normal = reader.axis("normal");
+  if (!normal) reader.fail("normal", "is missing: where the lit side looks to, as \"+z\" for a floor");
+  const auto size = reader.numbers("size_mm", 2);
+  if (!size) reader.fail("size_mm", "is missing: the rectangle's sides along x and y");
+  if (!((*size)[0] > 0.0 && (*size)[1] > 0.0)) {
+    reader.fail("size_mm", fmt::format("found [{}, {}], expected both above 0", (*size)[0], (*size)[1]));
+  }
+  plane.world_from_plane = Frame::from_axis(*normal, radians(reader.number("turn_deg", 0.0)), *position);
+  plane.size_x_mm = (*size)[0];
+  plane.size_y_mm = (*size)[1];
+  if (plane.world_from_plane.inverse().point(luminaire_mm).z <= 0.0) {
+    reader.fail("normal", "looks away from the mirror; expected the side that is lit");
+  }
+  plane.map = read_map(reader, file, mode);
+  return plane;
+}
+
+}  // namespace
+
+double PlaneTarget::flux() const {
+  double sum = 0.0;
+  for (const double lx : map.value) sum += lx;
+  return sum / static_cast<double>(map.value.size()) * size_x_mm * size_y_mm / kMm2PerM2;
+}
+
+DesignTarget read_target(TomlReader reader, FluxUnit unit, const Vec3& luminaire_mm,
+                         std::vector<std::filesystem::path>& inputs) {
+  DesignTarget target;
+  const std::string kind = reader.text("kind").value_or("far-field");
+  if (kind != "far-field" && kind != "plane") {
+    reader.fail("kind", fmt::format("found '{}', expected far-field or plane", kind));
+  }
+  const auto file = reader.file("file");
+  if (!file) {
+    reader.fail("file", kind == "plane"
+                            ? "is missing: a CSV or PNG file with the illuminance that is wanted"
+                            : "is missing: an IES or EULUMDAT file with the light that is wanted");
+  }
+  target.mode = read_mode(reader);
+  target.file = file->string();
+  if (kind == "plane") {
+    target.plane = read_plane(reader, *file, target.mode, luminaire_mm);
+    target.distribution = seen_from(*target.plane, luminaire_mm, unit);
+  }
+  reader.finish();
+  if (kind == "far-field") target.distribution = read_photometric_file(*file).distribution;
+  inputs.push_back(*file);
+  if (target.mode == TargetMode::absolute && target.distribution.unit != unit) {
+    reader.fail("mode",
+                fmt::format("the target is in {}, the sources in {}; they can be compared by shape only",
+                            symbol(target.distribution.unit), symbol(unit)));
+  }
+  return target;
+}
+
+TentBins target_bins(const DesignTarget& target, const Frame& world_from_mirror, bool rings) {
+  const Frame mirror_from_world = world_from_mirror.inverse();
+  if (target.plane) {
+    const PlaneTarget& p = *target.plane;
+    return TentBins::plane(mirror_from_world * p.world_from_plane, 0.5 * p.size_x_mm, 0.5 * p.size_y_mm,
+                           WindowOptions().count);
+  }
+  const std::vector<DirectedFlux> light = directed_flux(target.distribution);
+  const Direction axis = world_from_mirror.direction(Direction());
+  const TentBins bins = rings ? ring_window(light, axis) : square_window(light, axis);
+  const Frame& a = bins.axes();
+  const Frame axes(mirror_from_world.vector(a.ex()), mirror_from_world.vector(a.ey()),
+                   mirror_from_world.vector(a.ez()), {});
+  return rings ? TentBins::rings(axes, bins.extent(), bins.count())
+               : TentBins::square(axes, bins.extent(), bins.count());
+}
+
+std::function<Eigen::VectorXd(const TentBins&)> target_flux(const DesignTarget& target,
+                                                            const Frame& world_from_mirror,
+                                                            double source_flux) {
+  const double unit = target.mode == TargetMode::absolute ? 1.0 / source_flux : 1.0;
+  return [&target, world_from_mirror, unit](const TentBins& bins) {
+    const std::vector<double> flux =
+        bins.is_plane()
+            ? bins.flux_on([&](double x, double y) { return unit / kMm2PerM2 * target.plane->at(x, y); })
+            : bins.flux_of([&](const Direction& d) {
+                return unit * intensity_in(target.distribution, world_from_mirror.direction(d));
+              });
+    return Eigen::VectorXd(
+        Eigen::Map<const Eigen::VectorXd>(flux.data(), static_cast<Eigen::Index>(flux.size())));
+  };
+}
+
+}  // namespace lucerna
