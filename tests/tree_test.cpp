@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/paths.h"
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -31,7 +33,7 @@ const Layers kMayInclude{
 
 std::vector<fs::path> source_files() {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(fs::path(LUCERNA_SOURCE_DIR) / "src/lucerna")) {
+  for (const auto& entry : fs::recursive_directory_iterator(lucerna::test::source_dir() / "src/lucerna")) {
     const std::string ending = entry.path().extension().string();
     if (ending == ".h" || ending == ".cpp" || ending == ".cu") files.push_back(entry.path());
   }
@@ -46,7 +48,8 @@ std::vector<std::string> lines_of(const fs::path& file) {
 }
 
 /// The folders that `lines` include and `folder` may not.
-std::vector<std::string> forbidden_includes(const std::string& folder, const std::vector<std::string>& lines) {
+std::vector<std::string> forbidden_includes(const std::string& folder,
+                                            const std::vector<std::string>& lines) {
   static const std::regex include(R"re(^\s*#\s*include\s+"lucerna/([a-z]+)/.*)re");
   std::vector<std::string> bad;
   for (const std::string& line : lines) {

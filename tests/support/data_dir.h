@@ -5,8 +5,10 @@
 
 #include <filesystem>
 
+#include "tests/support/paths.h"
+
 /// First line of every test labelled `data`: names the file, and skips visibly where the folder is missing.
 /// `file` is relative to LUCERNA_DATA_DIR ("rayfiles/farfield.TM25ray").
-#define LUCERNA_DATA_FILE(variable, file)                                                            \
-  const std::filesystem::path variable = std::filesystem::path(LUCERNA_DATA_DIR) / (file);           \
+#define LUCERNA_DATA_FILE(variable, file)                                    \
+  const std::filesystem::path variable = lucerna::test::data_dir() / (file); \
   if (!std::filesystem::exists(variable)) GTEST_SKIP() << "no " << variable << " (set LUCERNA_DATA_DIR)"

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string>
 
+#include "tests/support/paths.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna::test {
@@ -28,8 +29,9 @@ inline std::string slurp(const std::filesystem::path& path) {
 /// Runs the program as a shell would, with `folder` as its working folder.
 inline ProgramResult run_lucerna(const std::filesystem::path& folder, const std::string& arguments) {
   const TempDir dir;
-  const std::string command = "cd '" + folder.string() + "' && '" LUCERNA_PROGRAM "' " + arguments + " >'" +
-                              (dir / "out").string() + "' 2>'" + (dir / "err").string() + "' </dev/null";
+  const std::string command = "cd '" + folder.string() + "' && '" + program().string() + "' " + arguments +
+                              " >'" + (dir / "out").string() + "' 2>'" + (dir / "err").string() +
+                              "' </dev/null";
   const int status = std::system(command.c_str());
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return {code, slurp(dir / "out"), slurp(dir / "err")};

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lucerna/core/file.h"
+#include "tests/support/data_dir.h"
 #include "tests/support/run_program.h"
 
 namespace lucerna {
@@ -286,9 +287,7 @@ TEST(ProgramCli, UsageErrorsExitWithTwo) {
 }
 
 TEST(ProgramData, MeasuredLedHasItsFluxFocusAndBackwardShare) {
-  const std::filesystem::path file = std::filesystem::path(LUCERNA_DATA_DIR) /
-                                     "rayfiles/rayfile_LERTDUW_S2WP_green_100k_20161013_IES_TM25.TM25RAY";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
+  LUCERNA_DATA_FILE(file, "rayfiles/rayfile_LERTDUW_S2WP_green_100k_20161013_IES_TM25.TM25RAY");
   const TempDir dir;
   const auto run = run_lucerna(dir.path(), "info --json '" + file.string() + "'");
   ASSERT_EQ(run.exit_code, 0) << run.err;

@@ -7,6 +7,7 @@
 #include "lucerna/core/file.h"
 #include "lucerna/core/random.h"
 #include "lucerna/photometry/photometric_io.h"
+#include "tests/support/paths.h"
 
 namespace lucerna {
 namespace {
@@ -25,7 +26,7 @@ TEST(PhotometricReaderFuzz, DamagedFilesAreReadOrRefused) {
   constexpr std::string_view kBytes = "0123456789.,-+eE \n\r\t[]=9\xff";
   std::size_t files = 0;
   for (const auto& entry :
-       std::filesystem::directory_iterator(std::string(LUCERNA_SOURCE_DIR) + "/tests/data/photometry")) {
+       std::filesystem::directory_iterator(test::source_dir() / "tests/data/photometry")) {
     const std::string original = read_file(entry.path(), 1 << 20);
     expect_read_or_refused(original);
     for (std::uint64_t variant = 0; variant < 150; ++variant) {

@@ -13,13 +13,14 @@
 #include "lucerna/photometry/beam.h"
 #include "lucerna/photometry/flux.h"
 #include "lucerna/photometry/symmetry.h"
+#include "tests/support/paths.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {
 namespace {
 
 std::filesystem::path own(const std::string& name) {
-  return std::filesystem::path(LUCERNA_SOURCE_DIR) / "tests/data/photometry" / ("own_" + name);
+  return test::source_dir() / "tests/data/photometry" / ("own_" + name);
 }
 
 /// What a file must read as: intensity at C, gamma and the repair (or note) that says so; empty = none at

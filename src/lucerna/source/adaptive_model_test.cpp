@@ -10,6 +10,7 @@
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/draw_rays.h"
 #include "lucerna/source/emitter.h"
+#include "tests/support/paths.h"
 #include "tests/support/statistics.h"
 
 namespace lucerna {
@@ -73,7 +74,7 @@ TEST(AdaptiveModel, SurvivesItsFile) {
 }
 
 TEST(AdaptiveModel, FrozenFileOfVersion1Reads) {
-  const std::string path = std::string(LUCERNA_SOURCE_DIR) + "/tests/data/adaptive_v1.nfl";
+  const std::filesystem::path path = test::source_dir() / "tests/data/adaptive_v1.nfl";
   const auto model = load_source_model(path);
   EXPECT_EQ(model->method(), "adaptive");
   EXPECT_EQ(dynamic_cast<const AdaptiveModel&>(*model).data().layers, small_data().layers);
