@@ -18,6 +18,7 @@
 #include "lucerna/core/png.h"
 #include "lucerna/rayset/compare.h"
 #include "lucerna/rayset/ray_file.h"
+#include "lucerna/rayset/view_picture.h"
 #include "lucerna/source/cluster_compress.h"
 #include "lucerna/source/draw_rays.h"
 #include "lucerna/source/emitter.h"
@@ -33,7 +34,10 @@ struct Options {
   std::vector<double> prices{ClusterOptions{}.cluster_price};
   std::vector<std::uint64_t> sizes;
   std::vector<std::size_t> removal_rays{ClusterOptions{}.removal_rays};
-  std::size_t rays_per_leaf = ClusterOptions{}.min_rays_per_leaf;
+  std::vector<std::uint64_t> targets;
+  std::vector<std::size_t> clusters, leaves{ClusterOptions{}.max_leaves},
+      least{ClusterOptions{}.least_clusters};
+  std::vector<int> level_steps{ClusterOptions{}.level_step};
   std::string pictures, save;
   int threads = 0;
 };
@@ -92,48 +96,21 @@ void print_views(const RaySetComparison& r) {
   }
 }
 
-/// Grey picture of one near-plane window; `scale` is the white level.
-void write_picture(const std::filesystem::path& path, const std::vector<double>& cells, double scale,
-                   bool signed_values) {
-  constexpr std::size_t kCells = 32, kZoom = 8;
-  std::vector<std::uint8_t> pixels(kCells * kZoom * kCells * kZoom * 3);
-  for (std::size_t row = 0; row < kCells * kZoom; ++row) {
-    for (std::size_t column = 0; column < kCells * kZoom; ++column) {
-      // First coordinate to the right, second up.
-      const double x = cells[(column / kZoom) * kCells + (kCells - 1 - row / kZoom)] / scale;
-      const auto level = [](double v) {
-        return static_cast<std::uint8_t>(std::clamp(255.0 * v, 0.0, 255.0));
-      };
-      std::uint8_t* p = &pixels[3 * (row * kCells * kZoom + column)];
-      p[0] = signed_values ? level(1.0 + std::min(0.0, x)) : level(x);
-      p[1] = signed_values ? level(1.0 - std::abs(x)) : level(x);
-      p[2] = signed_values ? level(1.0 - std::max(0.0, x)) : level(x);
-    }
-  }
-  write_png(path, kCells * kZoom, kCells * kZoom, pixels);
-}
-
-void write_pictures(const std::string& folder, const std::string& name, const ViewCounts& truth,
-                    const ViewCounts& drawn) {
+/// The near plane of both, as shares of the flux a cell.
+void write_picture(const std::string& folder, const std::string& name, const ViewCounts& truth,
+                   const ViewCounts& drawn) {
   std::filesystem::create_directories(folder);
-  const std::size_t n = truth.weights(ViewKind::near).size() - 1;
-  std::vector<double> p(n), q(n), difference(n);
-  double most = 0.0, widest = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    p[i] = truth.weights(ViewKind::near)[i] / truth.total_weight();
-    q[i] = drawn.weights(ViewKind::near)[i] / drawn.total_weight();
-    difference[i] = q[i] - p[i];
-    most = std::max(most, p[i]);
-    widest = std::max(widest, std::abs(difference[i]));
-  }
-  const std::filesystem::path base = std::filesystem::path(folder);
-  write_picture(base / (name + "-near-original.png"), p, most, false);
-  write_picture(base / (name + "-near-sampled.png"), q, most, false);
-  write_picture(base / (name + "-near-difference.png"), difference, widest, true);
-  fmt::print(
-      "    pictures: white = {:.3e} of the flux a cell; difference full colour = {:.3e} (red more, blue "
-      "less)\n",
-      most, widest);
+  const auto shares = [](const ViewCounts& counts) {
+    std::vector<double> cells = counts.weights(ViewKind::near);
+    for (double& x : cells) x /= counts.total_weight();
+    return cells;
+  };
+  const ViewWindow& window = truth.views().window(ViewKind::near);
+  const ComparisonPicture p =
+      comparison_picture(window.cells[0], window.cells[1], shares(truth), shares(drawn), 8);
+  write_png(std::filesystem::path(folder) / (name + "-near.png"), p.width, p.height, p.rgb);
+  fmt::print("    picture: white = {:.3e} of the flux a cell; difference full colour = {:.3e}\n", p.white,
+             p.difference);
 }
 
 void run(const Case& c, const ClusterOptions& model_options, const Options& options, const Views& views,
@@ -152,7 +129,7 @@ void run(const Case& c, const ClusterOptions& model_options, const Options& opti
       "{:<18} {:>8.3g} {:>7} {:>6} {:>6} {:>8} {:>8} {:>6.2f} {:>5.2g} | {:<33} | {:>6.2f} {:>6.2f} {:>6.2f} "
       "{:>5.1f}\n",
       c.name, s.penalty_nats, s.octree_leaves, s.clusters, s.triangles, s.cells, s.bytes,
-      8.0 * static_cast<double>(s.bytes) / static_cast<double>(s.cells), model_options.cluster_price, excess,
+      8.0 * static_cast<double>(s.bytes) / static_cast<double>(s.cells), s.cluster_price, excess,
       s.seconds_octree, s.seconds_removal, s.seconds_final,
       static_cast<double>(options.draw) / drawn_s / 1e6);
   if (detail) {
@@ -178,7 +155,7 @@ void run(const Case& c, const ClusterOptions& model_options, const Options& opti
           to_string(kind), share(truth, rest), share(drawn, rest), std::sqrt(cells / norm));
     }
   }
-  if (!options.pictures.empty()) write_pictures(options.pictures, c.name, truth, drawn);
+  if (!options.pictures.empty()) write_picture(options.pictures, c.name, truth, drawn);
   if (!options.save.empty()) {
     std::filesystem::create_directories(options.save);
     save_source_model(std::filesystem::path(options.save) / (c.name + ".nfl"), *model);
@@ -186,37 +163,46 @@ void run(const Case& c, const ClusterOptions& model_options, const Options& opti
   std::fflush(stdout);
 }
 
+/// One setting for each combination of what is swept.
+std::vector<ClusterOptions> settings_of(const Options& o) {
+  std::vector<ClusterOptions> list(1);
+  const auto sweep = [&](const auto& values, const auto& set) {
+    if (values.empty()) return;
+    std::vector<ClusterOptions> next;
+    for (const ClusterOptions& setting : list) {
+      for (const auto& value : values) {
+        next.push_back(setting);
+        set(next.back(), value);
+      }
+    }
+    list = std::move(next);
+  };
+  sweep(o.leaves, [](ClusterOptions& c, std::size_t x) { c.max_leaves = x; });
+  sweep(o.removal_rays, [](ClusterOptions& c, std::size_t x) { c.removal_rays = x; });
+  sweep(o.least, [](ClusterOptions& c, std::size_t x) { c.least_clusters = x; });
+  sweep(o.level_steps, [](ClusterOptions& c, int x) { c.level_step = x; });
+  sweep(o.prices, [](ClusterOptions& c, double x) { c.cluster_price = x; });
+  sweep(o.penalties, [](ClusterOptions& c, double x) { c.penalty_nats = x; });
+  sweep(o.clusters, [](ClusterOptions& c, std::size_t x) { c.max_clusters = x; });
+  sweep(o.sizes, [](ClusterOptions& c, std::uint64_t x) { c.max_bytes = x; });
+  sweep(o.targets, [](ClusterOptions& c, std::uint64_t x) { c.target_bytes = x; });
+  return list;
+}
+
 void run_all(const Case& c, const Options& options) {
   const Views views(c.truth);
   ViewCounts truth(views), training(views);
   truth.add(c.truth);
   training.add(c.training.rays);
-  if (!options.save.empty() || options.penalties.size() + options.sizes.size() <= 1) {
+  if (settings_of(options).size() == 1) {
     fmt::print(
         "{}: the training rays themselves against the truth (calibration: excess 0 within its error)\n",
         c.name);
     print_views(compare_view_counts(truth, training));
   }
-  const bool detail = options.penalties.size() + options.sizes.size() <= 1;
-  for (const double price : options.prices) {
-    for (const std::size_t removal : options.removal_rays) {
-      ClusterOptions model;
-      model.cluster_price = price;
-      model.removal_rays = removal;
-      model.min_rays_per_leaf = options.rays_per_leaf;
-      if (options.penalties.empty() && options.sizes.empty())
-        run(c, model, options, views, truth, training, detail);
-      for (const double penalty : options.penalties) {
-        model.penalty_nats = penalty;
-        run(c, model, options, views, truth, training, detail);
-      }
-      for (const std::uint64_t size : options.sizes) {
-        model.penalty_nats = ClusterOptions{}.penalty_nats;
-        model.max_bytes = size;
-        run(c, model, options, views, truth, training, detail);
-      }
-    }
-  }
+  const std::vector<ClusterOptions> settings = settings_of(options);
+  for (const ClusterOptions& setting : settings)
+    run(c, setting, options, views, truth, training, settings.size() == 1);
 }
 
 }  // namespace
@@ -235,7 +221,14 @@ int main(int argc, char** argv) {
       ->delimiter(',');
   app.add_option("--removal-rays", options.removal_rays, "rays that decide removals, several for a sweep")
       ->delimiter(',');
-  app.add_option("--rays-per-leaf", options.rays_per_leaf, "least rays in an octree leaf");
+  app.add_option("--target", options.targets, "sizes to use up, for a rate-distortion table")->delimiter(',');
+  app.add_option("--clusters", options.clusters, "most clusters, several for a sweep")->delimiter(',');
+  app.add_option("--leaves", options.leaves, "most leaves of the octree, several for a sweep")
+      ->delimiter(',');
+  app.add_option("--least-clusters", options.least, "clusters that always stay, several for a sweep")
+      ->delimiter(',');
+  app.add_option("--level-step", options.level_steps, "steps of stored weights, several for a sweep")
+      ->delimiter(',');
   app.add_option("--pictures", options.pictures, "folder for near-plane pictures (PNG)");
   app.add_option("--save", options.save, "folder for the models");
   app.add_option("--threads", options.threads, "worker threads");

@@ -150,7 +150,7 @@ std::vector<std::uint32_t> to_grid(const std::vector<Vec3>& points, PreparedRays
 
 }  // namespace
 
-PreparedRays prepare_rays(const RayBlock& rays, std::size_t max_rays_per_leaf) {
+PreparedRays prepare_rays(const RayBlock& rays, std::size_t min_rays_per_leaf, std::size_t max_leaves) {
   PreparedRays p;
   if (rays.empty()) throw InputError("no rays to compress");
   const FoundSurface found = find_mesh_surface(rays);
@@ -161,7 +161,7 @@ PreparedRays prepare_rays(const RayBlock& rays, std::size_t max_rays_per_leaf) {
     slide_to(p.surface, *moved);
   }
   const RayBlock& used = moved ? *moved : rays;
-  PositionOctree octree = build_position_octree(used, max_rays_per_leaf);
+  PositionOctree octree = build_position_octree(used, min_rays_per_leaf, max_leaves);
   p.rays = in_order(used, octree.order);
   p.leaf_begin = std::move(octree.begin);
   p.code.resize(p.rays.size());
@@ -386,7 +386,20 @@ AssignedRays assign_rays(const PreparedRays& p, std::vector<std::uint32_t> kept)
   }
 }
 
-void set_directions(const AssignedRays& assigned, double penalty_nats, ClusterData& data) {
+namespace {
+
+/// The level nearest to a weight of at most 1 among those a multiple of `step` below the top; what shines
+/// keeps a level > 0.
+std::uint8_t stepped_level(double relative, int step) {
+  const int below = 255 - weight_level(relative);
+  if (below == 255) return 0;
+  const int most = 254 / step * step;
+  return static_cast<std::uint8_t>(255 - std::min(most, (below + step / 2) / step * step));
+}
+
+}  // namespace
+
+void set_directions(const AssignedRays& assigned, double penalty_nats, int level_step, ClusterData& data) {
   const std::size_t n = data.clusters();
   const auto trees = parallel_map_blocks<std::vector<ClusterLeaf>>(n, 1, [&](std::size_t v, std::size_t) {
     const auto samples =
@@ -396,7 +409,8 @@ void set_directions(const AssignedRays& assigned, double penalty_nats, ClusterDa
     for (const DirectionLeaf& leaf : leaves) most = std::max(most, leaf.weight);
     std::vector<ClusterLeaf> stored;
     for (const DirectionLeaf& leaf : leaves) {
-      stored.push_back({leaf.code, static_cast<std::uint8_t>(leaf.depth), weight_level(leaf.weight / most)});
+      stored.push_back(
+          {leaf.code, static_cast<std::uint8_t>(leaf.depth), stepped_level(leaf.weight / most, level_step)});
     }
     return stored;
   });

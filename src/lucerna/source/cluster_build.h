@@ -28,7 +28,7 @@ struct PreparedRays {
 /// Finds the surface, slides rays to it where they must, and makes the first clusters: one per octree leaf,
 /// leaves with the same point on the grid counted once, and in a plane 64 points of the rim so that the mesh
 /// reaches it.
-PreparedRays prepare_rays(const RayBlock& rays, std::size_t max_rays_per_leaf);
+PreparedRays prepare_rays(const RayBlock& rays, std::size_t min_rays_per_leaf, std::size_t max_leaves);
 
 /// All rays, given to the kept clusters.
 struct AssignedRays {
@@ -44,7 +44,7 @@ struct AssignedRays {
 /// its rays.
 AssignedRays assign_rays(const PreparedRays& prepared, std::vector<std::uint32_t> kept);
 
-/// Sets the directional distributions, and stores them as levels.
-void set_directions(const AssignedRays& assigned, double penalty_nats, ClusterData& data);
+/// Sets the directional distributions, and stores them as levels, multiples of `level_step` below the top.
+void set_directions(const AssignedRays& assigned, double penalty_nats, int level_step, ClusterData& data);
 
 }  // namespace lucerna

@@ -15,15 +15,12 @@ namespace lucerna {
 
 namespace {
 
-/// The seed's figure: 20,000 to 30,000 leaves suffice for 10 M rays, which a 10,000th of the rays per leaf
-/// gives.
-constexpr std::size_t kRaysPerLeafShare = 10'000;
 constexpr std::uint64_t kLeastBytes = 2000;
-/// A cluster's point, density and two triangles, in bytes; they get at most this share of the file.
-constexpr double kClusterBytes = 15.0, kClusterShare = 0.3;
-/// The final penalty may be this much above that of the removal before clusters are removed again.
-constexpr double kPenaltyRatio = 2.5;
-constexpr double kLargestPenalty = 1e9;
+/// A search for a size ends with at least this share of it used, or when it has tried so many penalties.
+constexpr double kUsedShare = 0.95;
+constexpr int kMostTries = 14;
+/// Below, every ray has a triangle of directions of its own; above, there is no split.
+constexpr double kLeastPenalty = 0.02, kLargestPenalty = 1e9;
 
 class Clock {
  public:
@@ -53,6 +50,13 @@ std::vector<ClusterRay> removal_rays(const PreparedRays& p, std::size_t count, s
   return chosen;
 }
 
+/// Clusters left by a removal at some penalty, and the rays that decide the next.
+struct Removal {
+  double penalty = 0.0;
+  std::vector<std::uint32_t> kept;
+  std::vector<ClusterRay> rays;
+};
+
 class Compressor {
  public:
   Compressor(const PreparedRays& prepared, const ClusterOptions& options, const ClusterData& totals,
@@ -61,57 +65,99 @@ class Compressor {
         options_(options),
         totals_(totals),
         progress_(progress),
-        statistics_(statistics),
-        rays_(removal_rays(prepared, options.removal_rays, options.seed)),
-        kept_(prepared.place.size()) {
-    std::iota(kept_.begin(), kept_.end(), 0u);
+        statistics_(statistics) {
+    base_.kept.resize(prepared.place.size());
+    std::iota(base_.kept.begin(), base_.kept.end(), 0u);
+    base_.rays = removal_rays(prepared, options.removal_rays, options.seed);
   }
 
   ClusterData run() {
-    Clock clock;
-    for (double penalty = options_.penalty_nats; penalty < kLargestPenalty; penalty *= 1.6) {
-      remove(penalty);
-      statistics_.seconds_removal += clock.lap();
-      const double fixed = kClusterBytes * static_cast<double>(kept_.size());
-      const bool removable = prepared_.surface.has_area() && kept_.size() > 32;
-      if (removable && options_.max_bytes && fixed > kClusterShare * static_cast<double>(*options_.max_bytes))
-        continue;
-      const bool fits = finish(penalty, removable ? kPenaltyRatio * penalty : kLargestPenalty);
-      statistics_.seconds_final += clock.lap();
-      if (fits) return std::move(data_);
-    }
-    throw InputError(fmt::format("these rays do not fit in {} bytes", *options_.max_bytes));
+    const std::optional<std::uint64_t> limit =
+        options_.max_bytes ? options_.max_bytes : options_.target_bytes;
+    Made first = make(options_.penalty_nats);
+    const bool done = !limit || (options_.max_bytes && first.bytes <= *limit);
+    Made best = done ? std::move(first) : search(std::move(first), *limit);
+    if (limit && best.bytes > *limit)
+      throw InputError(fmt::format("these rays do not fit in {} bytes", *limit));
+    statistics_.penalty_nats = best.penalty;
+    statistics_.cluster_price = best.price;
+    statistics_.bytes = best.bytes;
+    return std::move(best.data);
   }
 
  private:
-  void remove(double penalty) {
-    if (!prepared_.surface.has_area()) return;
-    const RemovalOptions options{penalty, options_.cluster_price};
-    RemovalResult result =
-        remove_clusters(prepared_.surface, prepared_.point_mm, rays_, std::move(kept_), options, progress_);
-    kept_ = std::move(result.kept);
-    statistics_.rounds += result.rounds;
+  struct Made {
+    double penalty = 0.0, price = 0.0;
+    std::uint64_t bytes = 0;
+    ClusterData data;
+    Removal removal;
+  };
+
+  /// The model at a penalty, from the removal at the largest penalty below that is known to leave too much.
+  Made make(double penalty) {
+    Clock clock;
+    Made made{penalty, options_.cluster_price, 0, {}, base_};
+    remove(made);
+    statistics_.seconds_removal += clock.lap();
+    progress_.step("compress: distributions", 0, 0);
+    const AssignedRays assigned = assign_rays(prepared_, made.removal.kept);
+    made.data = assigned.data;
+    made.data.flux = totals_.flux;
+    made.data.flux_unit = totals_.flux_unit;
+    made.data.training_rays = totals_.training_rays;
+    set_directions(assigned, penalty, options_.level_step, made.data);
+    made.bytes = encode_nfl(encode_clusters(made.data)).size();
+    statistics_.seconds_final += clock.lap();
+    return made;
   }
 
-  /// Distributions from all rays, coarser ones while the file is too large.
-  bool finish(double penalty, double largest) {
-    progress_.step("compress: distributions", 0, 0);
-    const AssignedRays assigned = assign_rays(prepared_, kept_);
-    data_ = assigned.data;
-    data_.flux = totals_.flux;
-    data_.flux_unit = totals_.flux_unit;
-    data_.training_rays = totals_.training_rays;
-    for (double fine = penalty; fine <= largest;) {
-      progress_.step("compress: distributions", 0, 0);
-      set_directions(assigned, fine, data_);
-      statistics_.penalty_nats = fine;
-      statistics_.bytes = encode_nfl(encode_clusters(data_)).size();
-      if (!options_.max_bytes || statistics_.bytes <= *options_.max_bytes) return true;
-      // Sizes fall a little slower than the penalty rises.
-      const double over = static_cast<double>(statistics_.bytes) / static_cast<double>(*options_.max_bytes);
-      fine *= std::clamp(over, 1.03, 3.0);
+  void remove(Made& made) {
+    if (!prepared_.surface.has_area()) return;
+    Removal& r = made.removal;
+    for (;; made.price *= 1.6) {
+      RemovalResult result = remove_clusters(prepared_.surface, prepared_.point_mm, r.rays, std::move(r.kept),
+                                             {made.penalty, made.price, options_.least_clusters}, progress_);
+      r.kept = std::move(result.kept);
+      statistics_.rounds += result.rounds;
+      if (!options_.max_clusters || r.kept.size() <= *options_.max_clusters) break;
+      if (made.price * made.penalty > kLargestPenalty) break;
     }
-    return false;
+    r.penalty = made.penalty;
+  }
+
+  /// Sizes fall with the penalty, nearly as a power of it between two tries: regula falsi in the logarithms,
+  /// kept off the ends of the bracket.
+  Made search(Made made, std::uint64_t limit) {
+    double low = 0.0, low_bytes = 0.0, high = 0.0,
+           high_bytes = 0.0;  // penalties of too large and of good files
+    std::optional<Made> best;
+    for (int tries = 1;; ++tries) {
+      const double bytes = static_cast<double>(made.bytes), penalty = made.penalty;
+      const double over = bytes / static_cast<double>(limit);
+      if (made.bytes > limit) {
+        low = penalty;
+        low_bytes = bytes;
+        base_ = std::move(made.removal);
+        if (!best) best = std::move(made);
+      } else {
+        high = penalty;
+        high_bytes = bytes;
+        best = std::move(made);
+        if (over >= kUsedShare) break;
+      }
+      if (low >= kLargestPenalty || (high > 0.0 && high <= kLeastPenalty)) break;
+      if (high > 0.0 && (tries >= kMostTries || high < 1.005 * low)) break;
+      const double factor = std::pow(over, 0.8);
+      double next = penalty * (over > 1.0 ? std::clamp(factor, tries < kMostTries ? 1.15 : 10.0, 10.0)
+                                          : std::clamp(factor, 0.1, 0.87));
+      if (low > 0.0 && high > 0.0) {
+        const double goal = std::log(0.975 * static_cast<double>(limit));
+        const double t = (std::log(low_bytes) - goal) / std::max(1e-9, std::log(low_bytes / high_bytes));
+        next = low * std::pow(high / low, std::clamp(t, 0.15, 0.85));
+      }
+      made = make(std::clamp(next, kLeastPenalty, kLargestPenalty));
+    }
+    return std::move(*best);
   }
 
   const PreparedRays& prepared_;
@@ -119,10 +165,30 @@ class Compressor {
   const ClusterData& totals_;
   Progress& progress_;
   ClusterStatistics& statistics_;
-  std::vector<ClusterRay> rays_;
-  std::vector<std::uint32_t> kept_;
-  ClusterData data_;
+  Removal base_;
 };
+
+void check(const ClusterOptions& options) {
+  if (options.max_bytes && options.target_bytes)
+    throw UsageError("a largest size or a size to use up, not both");
+  for (const auto& bytes : {options.max_bytes, options.target_bytes}) {
+    if (bytes && *bytes < kLeastBytes) {
+      throw UsageError(
+          fmt::format("a model of at most {} bytes; at least {} are needed", *bytes, kLeastBytes));
+    }
+  }
+  if (!(options.penalty_nats >= kLeastPenalty) || !(options.cluster_price >= 0.0)) {
+    throw UsageError(fmt::format("a penalty of {} nats and a price of {}; at least {} and 0 are expected",
+                                 options.penalty_nats, options.cluster_price, kLeastPenalty));
+  }
+  if (options.max_clusters && *options.max_clusters < options.least_clusters) {
+    throw UsageError(fmt::format("at most {} clusters; at least {} are kept", *options.max_clusters,
+                                 options.least_clusters));
+  }
+  if (options.level_step < 1 || options.level_step > 16) {
+    throw UsageError(fmt::format("a step of {} levels; 1 to 16 are expected", options.level_step));
+  }
+}
 
 }  // namespace
 
@@ -137,17 +203,10 @@ std::unique_ptr<ClusterModel> compress_clusters(const RaySet& set, const Cluster
   if (!(totals.flux > 0.0) || !std::isfinite(totals.flux)) {
     throw InputError("the rays have no stated flux > 0; give one");
   }
-  if (options.max_bytes && *options.max_bytes < kLeastBytes) {
-    throw UsageError(
-        fmt::format("a model of at most {} bytes; at least {} are needed", *options.max_bytes, kLeastBytes));
-  }
-  if (!(options.penalty_nats > 0.0) || !(options.cluster_price >= 0.0)) {
-    throw UsageError("penalties and prices of a compression are > 0");
-  }
+  check(options);
   Clock clock;
   progress.step("compress: octree", 0, 0);
-  const std::size_t per_leaf = std::max(options.min_rays_per_leaf, set.rays.size() / kRaysPerLeafShare);
-  const PreparedRays prepared = prepare_rays(set.rays, per_leaf);
+  const PreparedRays prepared = prepare_rays(set.rays, options.min_rays_per_leaf, options.max_leaves);
   totals.training_rays = prepared.rays.size();
   s.rays = prepared.rays.size();
   s.octree_leaves = prepared.leaf_begin.size() - 1;

@@ -12,6 +12,7 @@
 #include "lucerna/rayset/compare.h"
 #include "lucerna/source/draw_rays.h"
 #include "lucerna/source/emitter.h"
+#include "lucerna/source/warp.h"
 
 namespace lucerna {
 namespace {
@@ -60,44 +61,134 @@ TEST(CompressClusters, FluxIsExactWhateverTheWeights) {
   EXPECT_EQ(compress_clusters(rays, options)->flux(), 12.5);
 }
 
-// A model of rays on their own surface shows them nearly as they are where directions change slowly over a
-// cluster.
-TEST(CompressClustersStatistical, SurfacesGiveBackTheirRays) {
-  struct Case {
-    EmitterKind kind;
-    std::optional<BoundingSurface> surface;
-    MeshSurfaceKind found;
-  };
-  const std::vector<Case> cases{
-      {EmitterKind::disk, BoundingSurface::plane(0.0), MeshSurfaceKind::plane},
-      {EmitterKind::cosine, {}, MeshSurfaceKind::sphere},
-      {EmitterKind::cylinder, {}, MeshSurfaceKind::cylinder},
-      {EmitterKind::rectangle, BoundingSurface::box({2, 2, 2}), MeshSurfaceKind::hull}};
-  for (const Case& c : cases) {
-    const RaySet rays = emitter_rays(c.kind, 100'000, 3, c.surface);
-    const auto model = compress_clusters(rays);
-    EXPECT_EQ(model->data().surface.kind, c.found);
-    const RayBlock truth = emitter_rays(c.kind, 100'000, 4, c.surface).rays, out = drawn(*model, 100'000);
-    const RaySetComparison r = compare_ray_sets(truth, out, &rays.rays);
-    EXPECT_LT(r.near.excess, 0.12 + 4.0 * r.near.standard_error) << to_string(c.found);
-    // Every start is on the surface.
-    for (std::size_t i = 0; i < out.size(); i += 97) {
-      EXPECT_LT(length(model->data().surface.put_back(out.origin_mm(i)) - out.origin_mm(i)), 1e-5);
+/// Lambertian rays from the eight faces of |x| + |y| + |z| = 3, |x + y + z| = 3 the brightest: every start is
+/// exactly coplanar with thousands of others.
+RaySet octahedron_rays(std::size_t n, std::uint64_t seed) {
+  RaySet set;
+  set.header.set_flux(10.0);
+  set.rays.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    Rng rng(seed, i);
+    double a = rng.uniform(), b = rng.uniform();
+    if (a + b > 1.0) {
+      a = 1.0 - a;
+      b = 1.0 - b;
     }
+    const auto sign = [&] { return rng.uniform() < 0.35 ? -1.0 : 1.0; };
+    const Vec3 normal{sign(), sign(), sign()};
+    const Vec3 p{3.0 * a * normal.x, 3.0 * b * normal.y, 3.0 * (1.0 - a - b) * normal.z};
+    const double u = rng.uniform(), v = rng.uniform();
+    const Frame face = Frame::from_z(Direction::from(normal), p);
+    set.rays.set(i, {p, Direction::from(face.vector(warp::cosine_hemisphere(u, v)))});
+    set.rays.weight[i] = 1.0f;
   }
+  return set;
 }
 
-TEST(CompressClusters, MaxBytesIsKept) {
-  const RaySet rays = emitter_rays(EmitterKind::filament, 200'000, 7);
-  for (const std::uint64_t size : {4'000ull, 20'000ull, 60'000ull}) {
-    ClusterOptions options;
-    options.max_bytes = size;
-    ClusterStatistics s;
-    const auto model = compress_clusters(rays, options, no_progress(), &s);
-    EXPECT_LE(s.bytes, size);
-    EXPECT_EQ(encode_nfl(model->to_nfl()).size(), s.bytes);
-    EXPECT_GT(s.bytes, size / 3) << "room is used";
+struct SurfaceCase {
+  std::string_view name;
+  std::optional<EmitterKind> kind;  // none: the octahedron
+  std::optional<BoundingSurface> surface;
+  MeshSurfaceKind found;
+
+  RaySet rays(std::size_t n, std::uint64_t seed) const {
+    return kind ? emitter_rays(*kind, n, seed, surface) : octahedron_rays(n, seed);
   }
+  friend void PrintTo(const SurfaceCase& c, std::ostream* out) { *out << c.name; }
+};
+
+class CompressClustersStatistical : public testing::TestWithParam<SurfaceCase> {};
+
+// A model of rays on their own surface shows them nearly as they are on a near plane. Rays moved by a tenth
+// of that view are further off than that.
+TEST_P(CompressClustersStatistical, SurfacesGiveBackTheirRays) {
+  constexpr std::size_t kRays = 60'000;
+  const RaySet rays = GetParam().rays(kRays, 3);
+  const auto model = compress_clusters(rays);
+  const MeshSurface& surface = model->data().surface;
+  EXPECT_EQ(surface.kind, GetParam().found) << to_string(surface.kind);
+  const RayBlock truth = GetParam().rays(kRays, 4).rays, out = drawn(*model, kRays);
+  const RaySetComparison r = compare_ray_sets(truth, out, &rays.rays);
+  const auto bound = [](const ViewDifference& near) { return 0.13 + 4.0 * near.standard_error; };
+  EXPECT_LT(r.near.excess, bound(r.near));
+  for (std::size_t i = 0; i < out.size(); i += 97) {
+    EXPECT_LT(length(surface.put_back(out.origin_mm(i)) - out.origin_mm(i)), 1e-5)
+        << "starts off the surface";
+  }
+  RayBlock moved = out;
+  const Views views(truth);
+  const ViewWindow& window = views.window(ViewKind::near);
+  const auto step = static_cast<float>(0.1 * (window.high[0] - window.low[0]));
+  for (float& x : moved.x_mm) x += step;
+  const RaySetComparison wrong = compare_ray_sets(truth, moved, &rays.rays);
+  EXPECT_GT(wrong.near.excess, bound(wrong.near));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Surfaces, CompressClustersStatistical,
+    testing::Values(
+        SurfaceCase{"plane", EmitterKind::disk, BoundingSurface::plane(0.0), MeshSurfaceKind::plane},
+        SurfaceCase{"sphere", EmitterKind::cosine, {}, MeshSurfaceKind::sphere},
+        SurfaceCase{"cylinder", EmitterKind::cylinder, {}, MeshSurfaceKind::cylinder},
+        SurfaceCase{"box", EmitterKind::filament, BoundingSurface::box({12, 4, 4}), MeshSurfaceKind::box},
+        SurfaceCase{"half_a_box", EmitterKind::rectangle, BoundingSurface::box({2, 2, 2}),
+                    MeshSurfaceKind::hull},
+        SurfaceCase{"octahedron", {}, {}, MeshSurfaceKind::hull}),
+    [](const auto& p) { return std::string(p.param.name); });
+
+TEST(CompressClusters, ALargestSizeIsKeptAndItsRoomUsed) {
+  const RaySet rays = emitter_rays(EmitterKind::filament, 60'000, 7);
+  const auto run = [&](std::optional<std::uint64_t> largest, ClusterStatistics& s) {
+    ClusterOptions options;
+    options.max_bytes = largest;
+    return encode_nfl(compress_clusters(rays, options, no_progress(), &s)->to_nfl());
+  };
+  ClusterStatistics plain, s;
+  const std::string file = run({}, plain);
+  EXPECT_EQ(file.size(), plain.bytes);
+  EXPECT_EQ(file, run(plain.bytes, s)) << "a ceiling that is not reached changes nothing";
+  EXPECT_EQ(run(4'000, s).size(), s.bytes);
+  EXPECT_LE(s.bytes, 4'000u);
+  EXPECT_GT(s.bytes, 3'400u) << "room is used";
+  EXPECT_GT(s.penalty_nats, plain.penalty_nats);
+}
+
+TEST(CompressClusters, ASizeToUseUpRefinesToo) {
+  const RaySet rays = emitter_rays(EmitterKind::led, 30'000, 7);
+  ClusterStatistics plain, coarse, fine;
+  ClusterOptions options;
+  const auto model = compress_clusters(rays, options, no_progress(), &plain);
+  options.target_bytes = plain.bytes * 3 / 4;
+  compress_clusters(rays, options, no_progress(), &coarse);
+  options.target_bytes = 6 * plain.bytes;
+  const auto large = compress_clusters(rays, options, no_progress(), &fine);
+  EXPECT_LE(coarse.bytes, plain.bytes * 3 / 4);
+  EXPECT_GT(coarse.bytes, plain.bytes * 3 / 5);
+  EXPECT_LE(fine.bytes, 6 * plain.bytes);
+  EXPECT_GT(fine.bytes, 5 * plain.bytes);
+  EXPECT_LT(fine.penalty_nats, plain.penalty_nats);
+  EXPECT_GT(fine.clusters, plain.clusters);
+  // More than there is to tell: every ray a triangle of its own, and no error.
+  options.target_bytes = 1'000'000'000;
+  compress_clusters(emitter_rays(EmitterKind::led, 3'000, 7), options, no_progress(), &fine);
+  EXPECT_LT(fine.bytes, 300'000u);
+  options.max_bytes = 5000;
+  EXPECT_THROW(compress_clusters(rays, options), UsageError);
+}
+
+TEST(CompressClusters, AMostNumberOfClustersIsKept) {
+  const RaySet rays = emitter_rays(EmitterKind::phong500, 60'000, 7);
+  ClusterStatistics plain, few;
+  ClusterOptions options;
+  compress_clusters(rays, options, no_progress(), &plain);
+  options.max_clusters = 100;
+  const auto model = compress_clusters(rays, options, no_progress(), &few);
+  EXPECT_GT(plain.clusters, 200u);
+  EXPECT_LE(model->triangles(), 200u);
+  EXPECT_GE(few.clusters, options.least_clusters);
+  EXPECT_GT(few.cluster_price, plain.cluster_price);
+  options.max_clusters = options.least_clusters - 1;
+  EXPECT_THROW(compress_clusters(rays, options), UsageError);
 }
 
 /// Rays of an isotropic source, all from points that `start` gives.

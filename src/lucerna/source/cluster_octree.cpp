@@ -57,27 +57,45 @@ struct Keyed {
   std::uint32_t ray;
 };
 
+/// A cube that was split: its rays, and the leaves that this made out of one, less one.
+struct Split {
+  std::size_t rays, more;
+};
+
 void split(const std::vector<Keyed>& keyed, std::size_t first, std::size_t last, int level,
-           std::size_t max_rays, std::vector<std::uint32_t>& begin) {
+           std::size_t max_rays, std::vector<std::uint32_t>& begin, std::vector<Split>& splits) {
   if (last - first <= max_rays || level == kLevels) {
     begin.push_back(static_cast<std::uint32_t>(first));
     return;
   }
   const int shift = 3 * (kLevels - 1 - level);
-  while (first < last) {
-    const std::uint64_t cell = keyed[first].key >> shift;
-    const auto end = std::partition_point(keyed.begin() + static_cast<std::ptrdiff_t>(first),
+  std::size_t children = 0;
+  for (std::size_t from = first; from < last; ++children) {
+    const std::uint64_t cell = keyed[from].key >> shift;
+    const auto end = std::partition_point(keyed.begin() + static_cast<std::ptrdiff_t>(from),
                                           keyed.begin() + static_cast<std::ptrdiff_t>(last),
                                           [&](const Keyed& k) { return k.key >> shift == cell; });
     const auto next = static_cast<std::size_t>(end - keyed.begin());
-    split(keyed, first, next, level + 1, max_rays, begin);
-    first = next;
+    split(keyed, from, next, level + 1, max_rays, begin, splits);
+    from = next;
   }
+  splits.push_back({last - first, children - 1});
+}
+
+/// The least number of rays that a leaf may be filled with so that there are at most `max_leaves`.
+std::size_t least_fill(std::vector<Split> splits, std::size_t max_leaves) {
+  std::sort(splits.begin(), splits.end(), [](const Split& a, const Split& b) { return a.rays > b.rays; });
+  std::size_t leaves = 1;
+  for (const Split& s : splits) {
+    leaves += s.more;
+    if (leaves > max_leaves) return s.rays;
+  }
+  return 0;
 }
 
 }  // namespace
 
-PositionOctree build_position_octree(const RayBlock& rays, std::size_t max_rays) {
+PositionOctree build_position_octree(const RayBlock& rays, std::size_t min_rays, std::size_t max_leaves) {
   if (rays.size() >= std::numeric_limits<std::uint32_t>::max()) {
     throw InputError(fmt::format("{} rays; at most {} can be clustered", rays.size(), 0xfffffffeu));
   }
@@ -103,7 +121,15 @@ PositionOctree build_position_octree(const RayBlock& rays, std::size_t max_rays)
   });
 
   PositionOctree tree;
-  split(keyed, 0, keyed.size(), 0, std::max<std::size_t>(1, max_rays), tree.begin);
+  std::vector<Split> splits;
+  const std::size_t most = std::max<std::size_t>(1, max_leaves);
+  // Fuller leaves than the mean leaf there must be.
+  const std::size_t fewest = std::max({std::size_t{1}, min_rays, keyed.size() / most});
+  split(keyed, 0, keyed.size(), 0, fewest, tree.begin, splits);
+  if (const std::size_t fill = least_fill(splits, most); fill > fewest) {
+    tree.begin.clear();
+    split(keyed, 0, keyed.size(), 0, fill, tree.begin, splits);
+  }
   tree.begin.push_back(static_cast<std::uint32_t>(keyed.size()));
   tree.order.resize(keyed.size());
   for (std::size_t i = 0; i < keyed.size(); ++i) tree.order[i] = keyed[i].ray;

@@ -26,7 +26,7 @@ RayBlock cloud(std::size_t n) {
 
 TEST(PositionOctree, HoldsEveryRayWithFluxOnceInSmallLeaves) {
   const RayBlock rays = cloud(20'000);
-  const PositionOctree tree = build_position_octree(rays, 50);
+  const PositionOctree tree = build_position_octree(rays, 50, 1'000'000);
   std::vector<std::uint32_t> seen = tree.order;
   std::sort(seen.begin(), seen.end());
   EXPECT_EQ(std::unique(seen.begin(), seen.end()), seen.end());
@@ -43,24 +43,40 @@ TEST(PositionOctree, HoldsEveryRayWithFluxOnceInSmallLeaves) {
 TEST(PositionOctree, RaysAtOnePlaceAreOneLeaf) {
   RayBlock rays = cloud(1000);
   for (std::size_t i = 0; i < rays.size(); ++i) rays.set(i, {{1, 2, 3}, Direction()});
-  EXPECT_EQ(build_position_octree(rays, 10).leaf_count(), 1u);
+  EXPECT_EQ(build_position_octree(rays, 10, 1'000'000).leaf_count(), 1u);
 }
 
 TEST(PositionOctree, SameForAnyNumberOfThreads) {
   const RayBlock rays = cloud(200'000);
   const auto run = [&](int threads) {
     const ThreadLimit limit(threads);
-    return build_position_octree(rays, 100);
+    return build_position_octree(rays, 100, 1'000'000);
   };
   const PositionOctree one = run(1), two = run(2);
   EXPECT_EQ(one.order, two.order);
   EXPECT_EQ(one.begin, two.begin);
 }
 
+TEST(PositionOctree, AMostNumberOfLeavesIsKeptAndUsed) {
+  RayBlock rays;
+  rays.resize(20'000);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Rng rng(5, i);
+    const double x = rng.uniform(), y = rng.uniform();
+    rays.set(i, {{x * x, y, 0.0}, Direction()});
+    rays.weight[i] = 1.0f;
+  }
+  for (const std::size_t most : {1u, 7u, 200u, 1000u}) {
+    const PositionOctree tree = build_position_octree(rays, 1, most);
+    EXPECT_LE(tree.leaf_count(), most);
+    EXPECT_GE(tree.leaf_count() + 3, most / 2) << "room is used";
+  }
+}
+
 TEST(PositionOctree, NoFluxIsAnError) {
   RayBlock rays = cloud(10);
   for (float& w : rays.weight) w = 0.0f;
-  EXPECT_THROW(build_position_octree(rays, 10), InputError);
+  EXPECT_THROW(build_position_octree(rays, 10, 1'000'000), InputError);
 }
 
 }  // namespace

@@ -21,9 +21,6 @@ namespace {
 constexpr std::size_t kBlock = std::size_t{1} << 16;
 /// Expected rays from which an empty triangle is an opening.
 constexpr double kHoleRays = 12.0;
-/// Clusters that always stay: fewer leave more than 60 degrees of a closed surface without a point, and the
-/// mesh falls apart into helpers' triangles.
-constexpr std::size_t kLeastClusters = 32;
 
 /// Points joined by the edges of triangles that are no holes; `rim` where some triangle round a point is
 /// missing.
@@ -232,7 +229,7 @@ std::vector<bool> marked(const Round& round, std::vector<Cost> costs, const Remo
   std::vector<bool> gone(round.mesh.points, false), stays(round.mesh.points, false);
   std::size_t left = round.mesh.points;
   for (const Cost& c : costs) {
-    if (stays[c.cluster] || left <= kLeastClusters) continue;
+    if (stays[c.cluster] || left <= options.least_clusters) continue;
     gone[c.cluster] = true;
     --left;
     for (std::uint32_t i = round.near.begin[c.cluster]; i < round.near.begin[c.cluster + 1]; ++i) {
@@ -321,7 +318,7 @@ RemovalResult remove_clusters(const MeshSurface& surface, const std::vector<Vec3
   for (std::uint32_t i = 0; i < kept.size(); ++i) start[kept[i]] = i;
   for (;; ++result.rounds) {
     progress.step("compress: remove clusters", result.rounds, 0);
-    if (kept.size() <= kLeastClusters) break;
+    if (kept.size() <= options.least_clusters) break;
     std::vector<Vec3> left;
     for (const std::uint32_t v : kept) left.push_back(points[v]);
     const Round round = measure(surface, left, rays, start);
@@ -342,7 +339,7 @@ RemovalResult remove_clusters(const MeshSurface& surface, const std::vector<Vec3
     if (done) break;
   }
   // Back to numbers of all points: where the rays ended up.
-  if (result.rounds > 0 || kept.size() > kLeastClusters) {
+  if (result.rounds > 0 || kept.size() > options.least_clusters) {
     for (ClusterRay& ray : rays)
       ray.cluster = kept[std::min<std::size_t>(start[ray.cluster], kept.size() - 1)];
   }

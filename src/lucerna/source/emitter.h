@@ -13,22 +13,19 @@ namespace lucerna {
 
 /// Analytic sources, exactly known: to make ray sets, to trace without a file, and to measure models against.
 ///
-/// | kind      | where rays start | how they leave |
-/// |-----------|------------------|----------------|
-/// | point     | the origin | isotropic |
-/// | disk      | radius, in z = 0 | Lambertian to +z |
-/// | rectangle | size, in z = 0 | Lambertian to +z |
-/// | cylinder  | radius, length, mantle about z (no ends) | Lambertian outward |
-/// | sphere    | radius | Lambertian outward |
-/// | filament  | wire of radius 0.06 mm coiled 12 times about x, coil radius and length; windings do not
-/// shade each other; a |           | share of `ghost_share` leaves from the coil's inverted image, as a
-/// concentric bulb reflects it | Lambertian | | led       | four 1 mm dies 0.1 mm apart in z = 0, of relative
-/// luminance 1, 0.95, 1.05, 1; 1 % of the flux from the package |           | disk of radius 2.5 mm |
-/// Lambertian to +z | | phong500  | uniform on the sphere | Phong lobe, exponent 500, about the outward
-/// normal | | phong25   | sphere | exponent 25, times a pattern over the direction's angle to z: six bands of
-/// equal solid angle, alternately |           | 1 and 0.25, which makes three bright bands | | radial    |
-/// sphere with a positional pattern | along the outward normal (no étendue) | | cosine    | sphere with the
-/// same pattern | Lambertian outward |
+/// - point: the origin; isotropic.
+/// - disk (radius), rectangle (size): in z = 0; Lambertian to +z.
+/// - cylinder (radius, length; mantle about z, no ends), sphere (radius): Lambertian outward.
+/// - filament: wire of radius 0.06 mm coiled 12 times about x, coil radius and length; Lambertian, windings
+///   do not shade each other. A share of `ghost_share` leaves from the coil's inverted image, as a concentric
+///   bulb reflects it.
+/// - led: four 1 mm dies 0.1 mm apart in z = 0, of relative luminance 1, 0.95, 1.05, 1; 1 % of the flux from
+///   the package, a disk of radius 2.5 mm. Lambertian to +z.
+/// - phong500: uniform on the sphere; Phong lobe of exponent 500 about the outward normal.
+/// - phong25: uniform on the sphere; exponent 25, times a pattern over the direction's angle to z: six bands
+///   of equal solid angle, alternately 1 and 0.25, which makes three bright bands.
+/// - radial: on the sphere, with a positional pattern; along the outward normal (no étendue).
+/// - cosine: on the sphere, with the same pattern; Lambertian outward.
 ///
 /// The positional pattern is a checker of 16 sectors of azimuth by 8 bands of equal area, alternately 1 and
 /// 0.25. The last four are the synthetic sets of Mas et al. (docs/algorithms/clusters.md); their patterns are
