@@ -1,68 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/rayset/compare.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
 
-#include "lucerna/cli/arguments.h"
 #include "lucerna/cli/commands.h"
-#include "lucerna/cli/describe.h"
-#include "lucerna/cli/photometric_arguments.h"
+#include "lucerna/cli/compare_parts.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/photometry/compare_distributions.h"
-#include "lucerna/rayset/ray_file.h"
 #include "lucerna/report/svg_polar.h"
 #include "lucerna/report/trace_folder.h"
-#include "lucerna/source/draw_rays.h"
-#include "lucerna/source/source_model.h"
 
 namespace lucerna::cli {
 
-namespace {
-
-struct CompareArguments {
-  std::string reference, test, output, rays = "4e6", seed = "1";
-  PhotometricArguments photometric;
-};
-
-/// The rays of a file, or as many as asked for from a model.
-RayBlock rays_of(const std::string& path, const CompareArguments& a, std::uint64_t stream, Session& session) {
-  session.add_input(path);
-  if (!is_source_model(path)) {
-    std::vector<std::string> warnings;
-    RaySet set = read_ray_set(path, {}, session.progress(), &warnings);
-    for (const std::string& warning : warnings) session.note(warning);
-    return std::move(set.rays);
-  }
-  const auto model = load_source_model(path);
-  const Sequence sequence(SequenceKind::random, parse_count(a.seed) + stream);
-  return draw_rays(*model, sequence, static_cast<std::size_t>(parse_count(a.rays)));
-}
-
-Json views_json(const RaySetComparison& comparison) {
-  Json views;
-  for (const ViewKind kind : kViewKinds) {
-    const ViewDifference& d = comparison[kind];
-    views[std::string(to_string(kind))] = {{"error", to_json(d.error)},
-                                           {"floor", to_json(d.floor)},
-                                           {"excess", to_json(d.excess)},
-                                           {"standard_error", to_json(d.standard_error)},
-                                           {"raw", to_json(d.raw)}};
-  }
-  return views;
-}
-
-/// result.json and, for light distributions, both in one polar diagram, into the folder asked for.
-void write_comparison(const CompareArguments& a, const Json& json, const std::string& polar,
-                      Session& session) {
+void write_comparison(const CompareArguments& a, const Json& json, Session& session) {
+  session.print_json(json);
   if (a.output.empty()) return;
-  prepare_folder(a.output, session.force);
-  const std::filesystem::path folder = a.output;
-  if (!polar.empty()) write_file(folder / "polar.svg", polar);
-  write_file(folder / "result.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_file(std::filesystem::path(a.output) / "result.json",
+             json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
+
+namespace {
 
 /// A light distribution to compare, with the standard errors of its values where they are known.
 FarFieldTable read_distribution(const std::string& path, const CompareArguments& a, Session& session) {
@@ -101,13 +59,14 @@ void compare_photometry(const CompareArguments& a, Session& session) {
                          {"turn_deg", c.alignment->turn_deg},
                          {"relative_rms", c.alignment->relative_rms}};
   }
-  write_comparison(a, json,
-                   polar_svg(test.distribution,
-                             {.title = std::filesystem::path(a.test).filename().string(),
-                              .reference = &reference.distribution,
-                              .reference_name = std::filesystem::path(a.reference).filename().string()}),
-                   session);
-  session.print_json(json);
+  if (!a.output.empty()) {
+    write_file(std::filesystem::path(a.output) / "polar.svg",
+               polar_svg(test.distribution,
+                         {.title = std::filesystem::path(a.test).filename().string(),
+                          .reference = &reference.distribution,
+                          .reference_name = std::filesystem::path(a.reference).filename().string()}));
+  }
+  write_comparison(a, json, session);
   session.say(fmt::format("{} against {}", a.test, a.reference));
   session.say(fmt::format("  relative RMS        {:.4g} % (noise floor {:.4g} %, excess {:.4g} %)",
                           100.0 * c.relative_rms, 100.0 * c.noise_floor, 100.0 * c.excess));
@@ -125,28 +84,6 @@ void compare_photometry(const CompareArguments& a, Session& session) {
   }
 }
 
-void compare_rays(const CompareArguments& a, Session& session) {
-  const RayBlock reference = session.timed("read", [&] { return rays_of(a.reference, a, 0, session); });
-  const RayBlock test = session.timed("read", [&] { return rays_of(a.test, a, 1, session); });
-  const RaySetComparison comparison =
-      session.timed("compare", [&] { return compare_ray_sets(reference, test); });
-  Json json = session.json_head(parse_count(a.seed));
-  json["rays"] = {reference.size(), test.size()};
-  json["views"] = views_json(comparison);
-  write_comparison(a, json, "", session);
-  session.print_json(json);
-  session.say(fmt::format("{} ({} rays) against {} ({} rays); shares of the l2 norm, in per cent", a.test,
-                          test.size(), a.reference, reference.size()));
-  session.say(
-      fmt::format("  {:<8}{:>10}{:>10}{:>10}{:>10}{:>10}", "view", "error", "floor", "excess", "+-", "raw"));
-  for (const ViewKind kind : kViewKinds) {
-    const ViewDifference& d = comparison[kind];
-    session.say(fmt::format("  {:<8}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}", to_string(kind),
-                            100.0 * d.error, 100.0 * d.floor, 100.0 * d.excess, 100.0 * d.standard_error,
-                            100.0 * d.raw));
-  }
-}
-
 void compare(const CompareArguments& a, Session& session) {
   session.start();
   const auto is_distribution = [](const std::string& path) {
@@ -157,6 +94,7 @@ void compare(const CompareArguments& a, Session& session) {
     throw InputError(fmt::format("{}: a photometric file and a ray file or model cannot be compared",
                                  photometric ? a.reference : a.test));
   }
+  if (!a.output.empty()) prepare_folder(a.output, session.force);
   if (photometric) {
     compare_photometry(a, session);
   } else {
@@ -177,8 +115,10 @@ void add_compare(CLI::App& app, Session& session, int&) {
   command.add_option("B", a.test, "Test: likewise")->required();
   command.add_option("--rays", a.rays, "Rays drawn from a model")->capture_default_str();
   command.add_option("--seed", a.seed, "Seed of those rays")->capture_default_str();
-  command.add_option("-o,--output", a.output,
-                     "Folder for result.json and, of light distributions, polar.svg");
+  command.add_option(
+      "-o,--output", a.output,
+      "Folder for result.json and pictures (luminance images; of light distributions polar.svg)");
+  command.add_option("--cells-um", a.cells_um, "Cell sizes on the focus plane, um")->capture_default_str();
   command.add_flag("--force", session.force, "Write into a folder that is not empty");
   a.photometric.add_read(command);
   session.add_json(command);

@@ -163,9 +163,8 @@ std::array<std::array<std::vector<Point>, 2>, 2> phase_space(const RayBlock& ray
 }  // namespace
 
 EtendueCurve etendue_curve(const RayBlock& rays) {
-  EtendueCurve curve;
   const RaySummary summary = summarize(rays);
-  if (!summary.virtual_focus) return curve;
+  if (!summary.virtual_focus) return {};
   auto points = phase_space(rays, summary);
   std::vector<Node> leaves;
   for (auto& [train, test] : points) {
@@ -175,13 +174,12 @@ EtendueCurve etendue_curve(const RayBlock& rays) {
   std::ranges::sort(leaves, std::greater<>{}, [](const Node& leaf) { return leaf.trained / leaf.volume(); });
   double total = 0.0;
   for (const Node& leaf : leaves) total += leaf.tested;
-  if (!(total > 0.0)) return curve;
-  curve.points_.push_back({0.0, 0.0});
+  if (!(total > 0.0)) return {};
+  std::vector<EtendueCurve::Point> curve{{0.0, 0.0}};
   for (const Node& leaf : leaves) {
-    curve.points_.push_back(
-        {curve.points_.back().flux + leaf.tested / total, curve.points_.back().etendue + leaf.volume()});
+    curve.push_back({curve.back().flux + leaf.tested / total, curve.back().etendue + leaf.volume()});
   }
-  return curve;
+  return EtendueCurve(std::move(curve));
 }
 
 double EtendueCurve::at(double share) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "lucerna/rayset/ray_block.h"
@@ -12,6 +13,14 @@ namespace lucerna {
 /// Muschaweck, doi 10.1117/12.615874): regions of phase space in the order of falling luminance.
 class EtendueCurve {
  public:
+  /// So much étendue holds that share of the flux.
+  struct Point {
+    double flux, etendue;
+  };
+  EtendueCurve() = default;
+  /// Both ascending, the first 0, 0.
+  explicit EtendueCurve(std::vector<Point> points) : points_(std::move(points)) {}
+
   /// Étendue in mm^2 sr that holds the brightest `share` of the flux, 0 <= share <= 1; interpolated.
   double at(double share) const;
 
@@ -19,10 +28,6 @@ class EtendueCurve {
   bool degenerate() const { return points_.size() < 2; }
 
  private:
-  friend EtendueCurve etendue_curve(const RayBlock& rays);
-  struct Point {
-    double flux, etendue;
-  };
   std::vector<Point> points_;
 };
 
