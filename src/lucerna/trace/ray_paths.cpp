@@ -37,10 +37,28 @@ std::optional<WorldHit> nearest_hit(const std::vector<PlacedTracer>& mirrors, co
   return best;
 }
 
-RayPath path_of(const std::vector<PlacedTracer>& mirrors, Ray ray, std::size_t source, int max_bounces) {
+/// What rays can meet.
+struct Obstacles {
+  std::vector<PlacedTracer> mirrors;
+  const std::vector<Body>& bodies;
+  BodyTracer body_tracer;
+};
+
+RayPath path_of(const Obstacles& obstacles, Ray ray, std::size_t source, int max_bounces) {
   RayPath path{source, {ray.origin_mm}, ray.direction, PathEnd::bounce_limit};
   for (int bounce = 0; bounce <= max_bounces; ++bounce) {
-    const auto hit = nearest_hit(mirrors, ray);
+    const auto hit = nearest_hit(obstacles.mirrors, ray);
+    const double reach = hit ? hit->t_mm : std::numeric_limits<double>::infinity();
+    if (const auto body = obstacles.body_tracer.first_hit(ray, reach, bounce > 0)) {
+      path.points_mm.push_back(ray.at(body->t_mm));
+      if (!(obstacles.bodies[body->body].reflectance.at(-dot(ray.direction, body->normal)) > 0.0)) {
+        path.end = PathEnd::body;
+        return path;
+      }
+      ray = {ray.at(body->t_mm), Direction::from(reflect(ray.direction, body->normal))};
+      path.last_direction = ray.direction;
+      continue;
+    }
     if (!hit) {
       path.end = PathEnd::out;
       return path;
@@ -62,10 +80,10 @@ std::vector<RayPath> ray_paths(const Scene& scene, std::uint64_t count, const Pa
   check(scene);
   if (options.max_bounces < 1)
     throw UsageError(fmt::format("{} bounces: expected at least 1", options.max_bounces));
-  std::vector<PlacedTracer> mirrors;
+  Obstacles obstacles{{}, scene.bodies, BodyTracer(scene.bodies)};
   for (const PlacedReflector& r : scene.reflectors) {
     // A coarse hierarchy finds the same hits; it is cheaper than a fine one for so few rays.
-    mirrors.push_back(
+    obstacles.mirrors.push_back(
         {ReferenceTracer(r.reflector, 5), r.world_from_reflector, r.world_from_reflector.inverse()});
   }
   const RayNumbering numbering(scene.sources, options.seed);
@@ -80,7 +98,7 @@ std::vector<RayPath> ray_paths(const Scene& scene, std::uint64_t count, const Pa
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const Ray ray = source.world_from_source.ray(rays.ray(i));
         if (!is_finite(ray.origin_mm) || !is_finite(ray.direction)) continue;
-        paths.push_back(path_of(mirrors, ray, run.source, options.max_bounces));
+        paths.push_back(path_of(obstacles, ray, run.source, options.max_bounces));
       }
     }
     at = to;

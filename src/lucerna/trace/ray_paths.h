@@ -10,12 +10,12 @@
 namespace lucerna {
 
 /// How a ray's way through a scene ended.
-enum class PathEnd { out, mirror_back, bounce_limit };
+enum class PathEnd { out, mirror_back, body, bounce_limit };
 
 /// The way of one ray in the luminaire frame.
 struct RayPath {
   std::size_t source = 0;
-  /// Where it starts, then every point where it meets a mirror.
+  /// Where it starts, then every point where it meets a mirror or a body.
   std::vector<Vec3> points_mm;
   /// Direction after the last point; what leaves goes on along it.
   Direction last_direction;
@@ -31,8 +31,9 @@ struct PathOptions {
 };
 
 /// The ways of up to `count` rays of the run that `trace` makes of the same seed, sequence and first ray: for
-/// pictures. Rays with a coordinate that is not finite are left out. By the reference tracer, one thread; the
-/// hierarchies cost more than some hundred rays. Throws InputError on a bad scene (`check`).
+/// pictures. Bodies that reflect at all pass a ray on whole; slope errors are left out. Rays with a
+/// coordinate that is not finite are left out. By the reference tracer, one thread; the hierarchies cost more
+/// than some hundred rays. Throws InputError on a bad scene (`check`).
 std::vector<RayPath> ray_paths(const Scene& scene, std::uint64_t count, const PathOptions& options = {});
 
 }  // namespace lucerna

@@ -39,6 +39,32 @@ TEST(RayPaths, LightOfTheFocusLeavesAlongTheAxis) {
   EXPECT_GT(reflected, 300u);
 }
 
+TEST(RayPaths, BodiesStopOrReflect) {
+  Scene scene = collimator();
+  Body shield;
+  shield.name = "shield";
+  // A square below everything: all that leaves downwards meets it.
+  auto mesh = std::make_shared<Mesh>();
+  mesh->vertices_mm = {{-500, -500, -40}, {500, -500, -40}, {500, 500, -40}, {-500, 500, -40}};
+  mesh->triangles = {{0, 1, 2}, {0, 2, 3}};
+  shield.mesh = mesh;
+  scene.bodies.push_back(shield);
+  for (const RayPath& path : ray_paths(scene, 300)) {
+    if (path.end == PathEnd::body) {
+      EXPECT_NEAR(path.points_mm.back().z, -40.0, 1e-3);
+    } else {
+      EXPECT_GT(path.last_direction.z(), -0.2);  // beside the square
+    }
+  }
+  scene.bodies[0].reflectance = Reflectance(0.5);
+  std::size_t up = 0;
+  for (const RayPath& path : ray_paths(scene, 300)) {
+    EXPECT_NE(path.end, PathEnd::body);
+    if (path.points_mm.size() > 2) ++up;
+  }
+  EXPECT_GT(up, 100u);
+}
+
 TEST(RayPaths, AreTheRaysOfTheTrace) {
   // Shares of the same rays: with reflectance 1 the tracer's ledger counts them.
   const Scene scene = collimator(-20.0);
