@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One headless Chromium for the tests of a file, and pages that note what they ask for and complain of.
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, rmSync, existsSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -57,3 +57,6 @@ export const canvasPixels = page => page.evaluate(() => {
   }
   return { drawn, share: drawn / (data.length / 4), colours: colours.size, sum };
 });
+
+// The rows of a CSV file as numbers, without its header.
+export const readCsv = file => readFileSync(file, 'utf8').trim().split('\n').slice(1).map(line => line.split(',').map(Number));

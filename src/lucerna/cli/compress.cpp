@@ -3,6 +3,7 @@
 
 #include "lucerna/cli/arguments.h"
 #include "lucerna/cli/commands.h"
+#include "lucerna/cli/model_report.h"
 #include "lucerna/core/error.h"
 #include "lucerna/rayset/ray_file.h"
 #include "lucerna/rayset/superpose.h"
@@ -15,7 +16,7 @@ namespace {
 
 struct CompressArguments {
   std::vector<std::string> inputs;
-  std::string output, method = "adaptive", max_bytes, flux, seed = "1";
+  std::string output, method = "adaptive", max_bytes, flux, seed = "1", report;
 };
 
 std::optional<double> given_flux(const CompressArguments& a) {
@@ -86,7 +87,8 @@ Compressed make_model(const CompressArguments& a, Session& session) {
 
 void compress(const CompressArguments& a, Session& session) {
   session.start();
-  const auto [model, rays] = session.timed("compress", [&] { return make_model(a, session); });
+  const auto made = session.timed("compress", [&] { return make_model(a, session); });
+  const auto& [model, rays] = made;
   const std::uint64_t bytes = session.timed("write", [&] { return save_source_model(a.output, *model); });
   Json json = session.json_head(parse_count(a.seed));
   json["method"] = std::string(model->method());
@@ -101,6 +103,7 @@ void compress(const CompressArguments& a, Session& session) {
       "{}: {} rays to {} bytes ({:.3g} times smaller), method {}, {} layer(s), {} leaves, {:g} {}; {:.3g} s",
       a.output, rays, bytes, ratio, model->method(), model->layers(), model->leaves(), model->flux(),
       symbol(model->flux_unit()), session.seconds("compress")));
+  if (!a.report.empty()) write_model_report(*model, a.output, a.inputs, std::move(json), a.report, session);
 }
 
 }  // namespace
@@ -116,6 +119,7 @@ void add_compress(CLI::App& app, Session& session, int&) {
   command.add_option("--max-bytes", a.max_bytes, "Largest size of the file (64k, 1MB, 64KiB)");
   command.add_option("--flux", a.flux, "Total flux, in the rays' unit, instead of what the files state");
   command.add_option("--seed", a.seed, "Seed of the random choices")->capture_default_str();
+  command.add_option("--report", a.report, "Also write the report as one HTML file");
   session.add_json(command);
   session.add_strict(command);
   session.add_common(command);

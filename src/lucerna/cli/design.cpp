@@ -8,6 +8,7 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/reflector/cad_export.h"
+#include "lucerna/report/report_design.h"
 #include "lucerna/report/trace_files.h"
 #include "lucerna/trace/trace.h"
 
@@ -18,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct DesignArguments {
-  std::string project, output, time, seed = "1", rays;
+  std::string project, output, time, seed = "1", rays, report;
   bool resume = false;
 };
 
@@ -136,6 +137,10 @@ void run_design(const DesignArguments& a, Session& session, int& exit_code) {
       100.0 * result.efficiency, 100.0 * result.in_window, 100.0 * result.absorbed, 100.0 * result.back));
   for (const std::string& remark : result.remarks) session.say("  " + remark);
   session.say(fmt::format("  written: {}", fmt::join(names, " ")));
+  if (!a.report.empty()) {
+    write_design_report(folder, a.report);
+    session.say(fmt::format("  report: {}", a.report));
+  }
   if (result.end == DesignEnd::interrupted) exit_code = 3;
 }
 
@@ -150,6 +155,7 @@ void add_design(CLI::App& app, Session& session, int& exit_code) {
   command.add_option("--time", a.time, "Seconds after which to stop with the best so far");
   command.add_option("--rays", a.rays, "Rays of the finest evaluations (default 2^20)");
   command.add_option("--seed", a.seed, "Seed of the random numbers")->capture_default_str();
+  command.add_option("--report", a.report, "Also write the report as one HTML file");
   command.add_flag("--resume", a.resume, "Go on from the folder's checkpoint");
   command.add_flag("--force", session.force, "Write into a folder that is not empty");
   session.add_json(command);

@@ -4,22 +4,56 @@
 #include <filesystem>
 
 #include "lucerna/cli/commands.h"
+#include "lucerna/cli/describe.h"
+#include "lucerna/cli/model_report.h"
+#include "lucerna/core/error.h"
+#include "lucerna/report/report_design.h"
 #include "lucerna/report/report_trace.h"
 
 namespace lucerna::cli {
 
+namespace {
+
+struct ReportArguments {
+  std::string input, output;
+  std::vector<std::string> rays;
+};
+
+void model_report(const ReportArguments& a, Session& session) {
+  const auto model = session.timed("read", [&] { return load_source_model(a.input); });
+  session.add_input(a.input);
+  for (const std::string& path : a.rays) session.add_input(path);
+  Json json = session.json_head(std::nullopt);
+  json.update(describe_model(a.input).json);
+  write_model_report(*model, a.input, a.rays, std::move(json), a.output, session);
+}
+
+void report(const ReportArguments& a, Session& session) {
+  session.start();
+  if (is_source_model(a.input)) return model_report(a, session);
+  if (!a.rays.empty()) throw UsageError(fmt::format("--rays goes with a model, and {} is none", a.input));
+  if (is_design_folder(a.input)) {
+    write_design_report(a.input, a.output);
+  } else {
+    write_trace_report(a.input, a.output);
+  }
+  session.say(fmt::format("{} written, {:.2f} MB: opens in any browser, asks nothing of any network",
+                          a.output, 1e-6 * static_cast<double>(std::filesystem::file_size(a.output))));
+}
+
+}  // namespace
+
 void add_report(CLI::App& app, Session& session, int&) {
-  CLI::App& command = *app.add_subcommand("report", "Write the report of a trace as one HTML file");
-  auto folder = std::make_shared<std::string>(), output = std::make_shared<std::string>();
-  command.add_option("DIR", *folder, "Folder that lucerna trace has written")->required();
-  command.add_option("-o,--output", *output, "The HTML file")->required();
+  CLI::App& command = *app.add_subcommand(
+      "report", "Write the report of a trace, a design or a source model as one HTML file");
+  auto arguments = std::make_shared<ReportArguments>();
+  ReportArguments& a = *arguments;
+  command.add_option("DIR", a.input, "Folder that lucerna trace or design has written, or a model (.nfl)")
+      ->required();
+  command.add_option("-o,--output", a.output, "The HTML file")->required();
+  command.add_option("--rays", a.rays, "Ray files that a model is to be compared with");
   session.add_common(command);
-  command.callback([folder, output, &session] {
-    session.start();
-    write_trace_report(*folder, *output);
-    session.say(fmt::format("{} written, {:.2f} MB: opens in any browser, asks nothing of any network",
-                            *output, 1e-6 * static_cast<double>(std::filesystem::file_size(*output))));
-  });
+  command.callback([arguments, &session] { report(*arguments, session); });
 }
 
 }  // namespace lucerna::cli

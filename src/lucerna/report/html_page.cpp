@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "lucerna/core/version.h"
@@ -42,6 +43,25 @@ void HtmlPage::data(const std::string& id, const nlohmann::ordered_json& data) {
   data_ += data_element(id, data);
 }
 
+std::size_t HtmlPage::append(const std::string& id, nlohmann::ordered_json entry) {
+  auto found = std::ranges::find(lists_, id, &std::pair<std::string, nlohmann::ordered_json>::first);
+  if (found == lists_.end()) found = lists_.insert(found, {id, nlohmann::ordered_json::array()});
+  const auto same = std::ranges::find(found->second, entry);
+  const auto index = static_cast<std::size_t>(same - found->second.begin());
+  if (same == found->second.end()) found->second.push_back(std::move(entry));
+  return index;
+}
+
+std::size_t HtmlPage::count(const std::string& id) const {
+  const auto found = std::ranges::find(lists_, id, &std::pair<std::string, nlohmann::ordered_json>::first);
+  return found == lists_.end() ? 0 : found->second.size();
+}
+
+void HtmlPage::script(std::string_view text) {
+  const auto same = [&](std::string_view other) { return other.data() == text.data(); };
+  if (std::ranges::none_of(scripts_, same)) scripts_.push_back(text);
+}
+
 std::string HtmlPage::str() const {
   std::string out = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -61,13 +81,23 @@ std::string HtmlPage::str() const {
       "is complete: it asks nothing of any network.</footer>\n",
       html_escaped(kind_), html_escaped(title_), contents_, body_, version());
   out += data_;
-  out += fmt::format("<script>\n{}</script>\n", assets::report_js);
-  out += fmt::format("<script>\n{}</script>\n", assets::far_field_map_js);
-  if (scene3d_) {
-    out +=
-        fmt::format("<script>\n{}</script>\n<script>\n{}</script>\n", assets::three_js, assets::scene3d_js);
-  }
+  for (const auto& [id, list] : lists_) out += data_element(id, list);
+  for (const std::string_view text : {assets::report_js, assets::plots_js})
+    out += fmt::format("<script>\n{}</script>\n", text);
+  for (const std::string_view text : scripts_) out += fmt::format("<script>\n{}</script>\n", text);
   return out + "</body>\n</html>\n";
+}
+
+std::string save_buttons(const std::string& file, const std::vector<std::string>& kinds) {
+  std::string out = "<span class=\"save\">";
+  for (const std::string& kind : kinds) {
+    std::string label = kind;
+    for (char& c : label) c = static_cast<char>(c - 'a' + 'A');
+    out +=
+        fmt::format("<button type=\"button\" data-save=\"{0}\" aria-label=\"Save {1} as {2}\">{2}</button>",
+                    kind, html_escaped(file), label);
+  }
+  return out + "</span>";
 }
 
 std::string plot_figure(std::string_view svg, const std::string& file, const std::string& caption,
@@ -77,12 +107,9 @@ std::string plot_figure(std::string_view svg, const std::string& file, const std
       "<figure class=\"plot\" data-file=\"{0}\" {1}>\n<div class=\"stage\" tabindex=\"0\" role=\"group\" "
       "aria-label=\"{2}: move the cursor with the arrow keys\">{3}</div>\n"
       "<output class=\"cursor\" aria-live=\"polite\">Point at the plot to read values.</output>\n{4}"
-      "<figcaption>{2}<span class=\"save\"><button type=\"button\" data-save=\"svg\" aria-label=\"Save {0} "
-      "as "
-      "SVG\">SVG</button><button type=\"button\" data-save=\"csv\" aria-label=\"Save {0} as "
-      "CSV\">CSV</button></span>"
-      "</figcaption>\n</figure>\n",
-      name, attributes, text, inline_svg(svg, id_prefix(file), caption), controls);
+      "<figcaption>{2}{5}</figcaption>\n</figure>\n",
+      name, attributes, text, inline_svg(svg, id_prefix(file), caption), controls,
+      save_buttons(file, {"svg", "csv"}));
 }
 
 }  // namespace lucerna

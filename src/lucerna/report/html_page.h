@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "lucerna/report/html_text.h"
@@ -22,15 +23,25 @@ class HtmlPage {
   /// Data for the scripts (html_text.h: data_element).
   void data(const std::string& id, const nlohmann::ordered_json& data);
 
-  /// The 3D view's scripts are in the file only if this was called.
-  void use_scene3d() { scene3d_ = true; }
+  /// Appends to a list that the scripts find under `id`, unless it is there; returns the entry's index.
+  std::size_t append(const std::string& id, nlohmann::ordered_json entry);
+
+  /// Entries of a list so far.
+  std::size_t count(const std::string& id) const;
+
+  /// A further script (html_assets.h), after those that every page has; each once, in the order of the calls.
+  void script(std::string_view text);
 
   std::string str() const;
 
  private:
   std::string kind_, title_, contents_, body_, data_;
-  bool scene3d_ = false;
+  std::vector<std::pair<std::string, nlohmann::ordered_json>> lists_;
+  std::vector<std::string_view> scripts_;
 };
+
+/// Buttons that save what the figure `file` shows: "svg", "png", "csv". The scripts listen to them.
+std::string save_buttons(const std::string& file, const std::vector<std::string>& kinds);
 
 /// A plot with its caption, a line for the value under the cursor and buttons to save it. `file` names the
 /// saved files; `attributes` go to the figure (data-detector="0": what the script needs to know), `controls`

@@ -94,10 +94,16 @@ std::string figure_text(double value, double standard_error) {
 }
 
 std::string base64_floats(std::span<const double> values) {
+  std::vector<std::uint32_t> words;
+  words.reserve(values.size());
+  for (const double value : values) words.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+  return base64_counts(words);
+}
+
+std::string base64_counts(std::span<const std::uint32_t> values) {
   std::string bytes;
   bytes.reserve(4 * values.size());
-  for (const double value : values) {
-    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
+  for (const std::uint32_t bits : values) {
     for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(bits >> shift & 255u);
   }
   return base64(bytes);
@@ -124,16 +130,19 @@ std::string html_table(const HtmlTable& table) {
       "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{0}\">\n<table>"
       "<caption class=\"quiet\">{0}</caption>\n<thead><tr>",
       label);
+  const auto side = [&](std::size_t column) {
+    const auto figure = [&](const auto& row) { return column < row.size() && is_figure(row[column]); };
+    return column > 0 && std::ranges::all_of(table.rows, figure) ? " class=\"n\"" : "";
+  };
   for (std::size_t i = 0; i < table.head.size(); ++i) {
-    out += fmt::format("<th scope=\"col\"{}>{}</th>", i == 0 ? "" : " class=\"n\"", table.head[i]);
+    out += fmt::format("<th scope=\"col\"{}>{}</th>", side(i), table.head[i]);
   }
   out += "</tr></thead>\n<tbody>\n";
   for (const auto& row : table.rows) {
     out += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const char* side = is_figure(row[i]) ? " class=\"n\"" : "";
       out += i == 0 ? fmt::format("<th scope=\"row\">{}</th>", row[i])
-                    : fmt::format("<td{}>{}</td>", side, row[i]);
+                    : fmt::format("<td{}>{}</td>", side(i), row[i]);
     }
     out += "</tr>\n";
   }

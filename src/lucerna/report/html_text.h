@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -23,6 +24,9 @@ std::string figure_text(double value, double standard_error);
 /// Numbers as little-endian float32 in base 64: what the page's scripts read without a parser.
 std::string base64_floats(std::span<const double> values);
 
+/// Counts as little-endian 32-bit words in base 64.
+std::string base64_counts(std::span<const std::uint32_t> values);
+
 /// An SVG document as a part of a page: its ids get `prefix`, so that pictures do not share them, and it gets
 /// role "img" with `label`. Throws InputError if `svg` does not begin as an SVG document.
 std::string inline_svg(std::string_view svg, const std::string& prefix, std::string_view label);
@@ -31,7 +35,7 @@ std::string inline_svg(std::string_view svg, const std::string& prefix, std::str
 std::string data_element(const std::string& id, const nlohmann::ordered_json& data);
 
 /// A table in a box that scrolls by itself where the page is narrow. `head` and `rows` are HTML already; the
-/// first cell of a row is its header, and cells that begin with a digit, sign or dash are set right.
+/// first cell of a row is its header; columns whose cells all begin with a digit, sign or dash are set right.
 struct HtmlTable {
   std::string label;  ///< plain text; what the table shows
   std::vector<std::string> head;

@@ -19,7 +19,7 @@ struct TraceReportOptions {
 /// The report of a trace as one self-contained HTML file (html_page.h): figures with their errors, energy
 /// balance, diagrams, zonal flux, 3D view, provenance. A figure that result.json holds stands in an element
 /// whose `data-key` is its JSON pointer; the values of the far fields are in the page as float32, thinned to
-/// at most 40 k directions each (the page says so). Throws InputError where result.json lacks a figure.
+/// at most 27 k directions each (the page says so). Throws InputError where result.json lacks a figure.
 std::string trace_report_html(const TraceFolder& folder, const TraceReportOptions& options = {});
 
 /// Reads the project in the folder for `trace_report_html` and writes the report to `output`. Where the

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <regex>
 #include <set>
 
@@ -14,6 +13,7 @@
 #include "lucerna/report/trace_files.h"
 #include "lucerna/trace/project.h"
 #include "lucerna/trace/trace.h"
+#include "tests/support/html_check.h"
 #include "tests/support/random_rays.h"
 #include "tests/support/temp_dir.h"
 
@@ -56,41 +56,6 @@ void make_trace(const test::TempDir& dir, const std::string& project_toml = kPro
   write_trace_files(dir.path(), project, figures, {}, json);
 }
 
-/// The first way in which `html` is not well-formed: every element closed in order, attributes quoted, ids
-/// unique; empty if none. Enough of a parser for what we write.
-std::string html_fault(const std::string& html) {
-  static const std::set<std::string> kVoid{"meta", "input", "br", "!DOCTYPE"};
-  static const std::regex kTag(R"re(^<(/?)([!a-zA-Z0-9]+)((?:\s+[-:a-zA-Z0-9]+(?:="[^"<>]*")?)*)\s*(/?)>)re");
-  static const std::regex kId(R"re(\sid="([^"]*)")re");
-  std::vector<std::string> open;
-  std::set<std::string> ids;
-  for (std::size_t at = html.find('<'); at != std::string::npos; at = html.find('<', at)) {
-    const std::size_t end = html.find('>', at);
-    if (end == std::string::npos) return "unclosed tag";
-    const std::string tag = html.substr(at, end + 1 - at);
-    std::smatch m;
-    if (!std::regex_search(tag, m, kTag)) return "not a tag: " + tag.substr(0, 200);
-    at = end + 1;
-    const std::string name = m[2], attributes = m[3];
-    std::smatch id;
-    if (std::regex_search(attributes, id, kId) && !ids.insert(id[1]).second)
-      return "second id " + id[1].str();
-    if (kVoid.contains(name) || m[4].length() > 0) continue;
-    if (m[1].length() == 0) {
-      open.push_back(name);
-      if (name == "script" || name == "style") {
-        at = html.find("</" + name + ">", at);
-        if (at == std::string::npos) return "unclosed " + name;
-      }
-    } else if (open.empty() || open.back() != name) {
-      return "closes " + name + " inside " + (open.empty() ? "nothing" : open.back());
-    } else {
-      open.pop_back();
-    }
-  }
-  return open.empty() ? "" : "unclosed " + open.back();
-}
-
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST(ReportTrace, IsOneWellFormedFileThatAsksNothingOfAnyNetwork) {
@@ -98,7 +63,7 @@ TEST(ReportTrace, IsOneWellFormedFileThatAsksNothingOfAnyNetwork) {
   make_trace(dir);
   write_trace_report(dir.path(), dir / "report.html");
   const std::string html = read_file(dir / "report.html", 1 << 24);
-  EXPECT_EQ(html_fault(html), "");
+  EXPECT_EQ(test::html_fault(html), "");
   EXPECT_LT(html.size(), 1'500'000u);
   EXPECT_TRUE(has(html, "default-src 'none'"));
   // Names that are no requests: XML namespaces.
@@ -110,11 +75,11 @@ TEST(ReportTrace, IsOneWellFormedFileThatAsksNothingOfAnyNetwork) {
 }
 
 TEST(ReportTrace, CheckSeesBrokenHtml) {
-  EXPECT_EQ(html_fault("<p><b>x</b></p>"), "");
-  EXPECT_NE(html_fault("<p><b>x</p></b>"), "");
-  EXPECT_NE(html_fault("<p>"), "");
-  EXPECT_NE(html_fault("<p a=b></p>"), "");
-  EXPECT_NE(html_fault("<p id=\"a\"></p><p id=\"a\"></p>"), "");
+  EXPECT_EQ(test::html_fault("<p><b>x</b></p>"), "");
+  EXPECT_NE(test::html_fault("<p><b>x</p></b>"), "");
+  EXPECT_NE(test::html_fault("<p>"), "");
+  EXPECT_NE(test::html_fault("<p a=b></p>"), "");
+  EXPECT_NE(test::html_fault("<p id=\"a\"></p><p id=\"a\"></p>"), "");
 }
 
 TEST(ReportTrace, EveryKeyedFigureIsTheOneOfTheJson) {
@@ -122,21 +87,7 @@ TEST(ReportTrace, EveryKeyedFigureIsTheOneOfTheJson) {
   make_trace(dir);
   const TraceFolder folder = read_trace_folder(dir.path());
   const std::string html = trace_report_html(folder);
-  static const std::regex kKeyed("<span data-key=\"([^\"]*)\">([-0-9.e+]*)");
-  std::set<std::string> seen;
-  for (std::sregex_iterator it(html.begin(), html.end(), kKeyed), end; it != end; ++it) {
-    const std::string key = (*it)[1], shown = (*it)[2];
-    seen.insert(key);
-    const auto& value = folder.result.at(nlohmann::ordered_json::json_pointer(key));
-    if (shown.empty()) {
-      EXPECT_TRUE(value.is_null()) << key;
-      continue;
-    }
-    const std::size_t point = shown.find('.');
-    const double digit =
-        point == std::string::npos ? 1.0 : std::pow(10.0, -static_cast<double>(shown.size() - point - 1));
-    EXPECT_NEAR(std::stod(shown), value.get<double>(), 0.5001 * digit) << key;
-  }
+  const std::set<std::string> seen = test::check_keyed_figures(html, folder.result);
   for (const char* key :
        {"/ledger/emitted", "/ledger/out_reflected", "/ledger/absorbed/mirror", "/detectors/0/flux",
         "/detectors/0/peak/intensity", "/detectors/0/planes/0/beam_angle_of_maximum_deg", "/seed"}) {
@@ -162,7 +113,7 @@ TEST(ReportTrace, SaysWhyThereIsNoView) {
   EXPECT_TRUE(has(html, "gone.tm25ray"));
   EXPECT_FALSE(has(html, "three.js authors"));
   EXPECT_LT(html.size(), 500'000u);
-  EXPECT_EQ(html_fault(html), "");
+  EXPECT_EQ(test::html_fault(html), "");
 }
 
 TEST(ReportTrace, MissingFiguresNameTheirKey) {

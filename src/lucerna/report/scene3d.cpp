@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <vector>
 
@@ -17,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kRings = 32, kSpokes = 96;
+constexpr std::uint32_t kRings = 32, kSpokes = 96;
 
 void append(std::vector<double>& out, const Vec3& v) { out.insert(out.end(), {v.x, v.y, v.z}); }
 
@@ -99,6 +101,51 @@ Json mirror_json(const PlacedReflector& placed, std::size_t index, Extent& exten
           {"curvature_per_mm", base64_floats(curvature)}};
 }
 
+/// The mesh with all vertices of a cell of a grid joined, `cells` to the longest side of its box; triangles
+/// that collapse are gone.
+Mesh joined(const Mesh& mesh, double cells) {
+  Extent box;
+  for (const Vec3& v : mesh.vertices_mm) box.add(v);
+  const Vec3 size = box.high - box.low;
+  const double step = std::max({size.x, size.y, size.z, 1e-9}) / cells;
+  std::map<std::array<long, 3>, std::uint32_t> seen;
+  Mesh out;
+  std::vector<std::uint32_t> to(mesh.vertices_mm.size());
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const Vec3 p = (mesh.vertices_mm[i] - box.low) / step;
+    const auto [at, fresh] = seen.try_emplace({std::lround(p.x), std::lround(p.y), std::lround(p.z)},
+                                              static_cast<std::uint32_t>(out.vertices_mm.size()));
+    if (fresh) out.vertices_mm.push_back(mesh.vertices_mm[i]);
+    to[i] = at->second;
+  }
+  for (const auto& t : mesh.triangles) {
+    const std::array<std::uint32_t, 3> n{to[t[0]], to[t[1]], to[t[2]]};
+    if (n[0] != n[1] && n[1] != n[2] && n[2] != n[0]) out.triangles.push_back(n);
+  }
+  return out;
+}
+
+Json body_json(const Body& body, Extent& extent) {
+  const Mesh* mesh = body.mesh.get();
+  Mesh coarse;
+  for (double cells = 256.0; mesh->triangles.size() > kMostBodyTriangles; cells *= 0.7) {
+    coarse = joined(*body.mesh, cells);
+    mesh = &coarse;
+  }
+  std::vector<double> position;
+  std::vector<std::uint32_t> index;
+  for (const Vec3& v : mesh->vertices_mm) {
+    const Vec3 world = body.world_from_body.point(v);
+    extent.add(world);
+    append(position, world);
+  }
+  for (const auto& t : mesh->triangles) index.insert(index.end(), t.begin(), t.end());
+  return {{"name", body.name},
+          {"position", base64_floats(position)},
+          {"index", base64_counts(index)},
+          {"thinned", mesh == &coarse}};
+}
+
 /// The starts of the run's first rays.
 std::vector<double> source_points(const Scene& scene, const Scene3dOptions& options, Extent& extent) {
   // Without mirrors a path is its start alone.
@@ -136,6 +183,8 @@ Json scene3d_json(const Scene& scene, const Scene3dOptions& options) {
   for (std::size_t i = 0; i < scene.reflectors.size(); ++i) {
     mirrors.push_back(mirror_json(scene.reflectors[i], i, extent));
   }
+  Json bodies = Json::array();
+  for (const Body& body : scene.bodies) bodies.push_back(body_json(body, extent));
   const std::vector<double> starts = source_points(scene, options, extent);
   const Vec3 centre = extent.centre();
   const double radius = extent.radius();
@@ -145,6 +194,7 @@ Json scene3d_json(const Scene& scene, const Scene3dOptions& options) {
   return {{"centre_mm", {centre.x, centre.y, centre.z}},
           {"radius_mm", radius},
           {"mirrors", mirrors},
+          {"bodies", bodies},
           {"source", {{"position", base64_floats(starts)}}},
           {"rays", rays_json(paths, 1.2 * radius)}};
 }

@@ -9,27 +9,12 @@
 #include <vector>
 
 #include "lucerna/source/emitter.h"
+#include "tests/support/html_check.h"
 
 namespace lucerna {
 namespace {
 
-std::vector<float> floats(const std::string& base64) {
-  static const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes;
-  unsigned word = 0;
-  int bits = 0;
-  for (const char c : base64) {
-    if (c == '=') break;
-    word = word << 6 | static_cast<unsigned>(digits.find(c));
-    bits += 6;
-    if (bits >= 8) bytes += static_cast<char>(word >> (bits -= 8) & 255u);
-  }
-  std::vector<float> out(bytes.size() / 4);
-  std::memcpy(out.data(), bytes.data(), 4 * out.size());
-  return out;
-}
-
-std::vector<float> floats(const nlohmann::ordered_json& value) { return floats(value.get<std::string>()); }
+std::vector<float> floats(const nlohmann::ordered_json& value) { return test::unpacked<float>(value); }
 
 Scene scene_with(const Reflector& mirror) {
   Scene scene;
@@ -48,9 +33,9 @@ TEST(Scene3d, MeshLiesOnTheMirrorWithItsSlopeAndCurvature) {
   const auto& mirror = json["mirrors"][0];
   const auto position = floats(mirror["position"]), slope = floats(mirror["slope_deg"]),
              curvature = floats(mirror["curvature_per_mm"]);
-  const std::size_t n = mirror["rings"].get<std::size_t>() * mirror["spokes"].get<std::size_t>();
+  const std::size_t n = slope.size();
   ASSERT_EQ(position.size(), 3 * n);
-  ASSERT_EQ(slope.size(), n);
+  ASSERT_EQ(n, mirror["rings"].get<std::size_t>() * mirror["spokes"].get<std::size_t>());
   for (std::size_t i = 0; i < n; ++i) {
     const double r = std::hypot(position[3 * i], position[3 * i + 1]);
     EXPECT_GE(r, 5.0 - 1e-4);
@@ -76,6 +61,45 @@ TEST(Scene3d, RectanglesKeepTheirCorners) {
       ++corners;
   }
   EXPECT_EQ(corners, 4);
+}
+
+TEST(Scene3d, BodiesAreTheirTrianglesAndFineOnesAreJoined) {
+  Scene scene = scene_with(conic_reflector(ConicPreset::parabola, 20.0, 0.0, Aperture::circle(80.0)));
+  // A sheet of n x n squares at z = -30.
+  const auto sheet = [](std::uint32_t n) {
+    Mesh mesh;
+    for (std::uint32_t y = 0; y <= n; ++y) {
+      for (std::uint32_t x = 0; x <= n; ++x) mesh.vertices_mm.push_back({10.0 * x / n, 10.0 * y / n, -30.0});
+    }
+    for (std::uint32_t y = 0; y < n; ++y) {
+      for (std::uint32_t x = 0; x < n; ++x) {
+        const std::uint32_t a = y * (n + 1) + x;
+        mesh.triangles.push_back({a, a + 1, a + n + 1});
+        mesh.triangles.push_back({a + 1, a + n + 2, a + n + 1});
+      }
+    }
+    return std::make_shared<const Mesh>(mesh);
+  };
+  Body coarse{.name = "housing", .mesh = sheet(4)}, fine{.name = "shield", .mesh = sheet(300)};
+  scene.bodies = {coarse, fine};
+  const auto bodies = scene3d_json(scene)["bodies"];
+  ASSERT_EQ(bodies.size(), 2u);
+  EXPECT_EQ(bodies[0]["name"], "housing");
+  EXPECT_EQ(test::unpacked<std::uint32_t>(bodies[0]["index"]).size(), 3 * 32u);
+  EXPECT_FALSE(bodies[0]["thinned"].get<bool>());
+  const auto index = test::unpacked<std::uint32_t>(bodies[1]["index"]);
+  EXPECT_TRUE(bodies[1]["thinned"].get<bool>());
+  EXPECT_LE(index.size(), 3 * kMostBodyTriangles);
+  // Still the whole sheet: the triangles' areas sum to it.
+  const auto p = floats(bodies[1]["position"]);
+  double area = 0.0;
+  for (std::size_t i = 0; i < index.size(); i += 3) {
+    const auto at = [&](std::size_t k) {
+      return Vec3{p[3 * index[i + k]], p[3 * index[i + k] + 1], p[3 * index[i + k] + 2]};
+    };
+    area += 0.5 * length(cross(at(1) - at(0), at(2) - at(0)));
+  }
+  EXPECT_NEAR(area, 100.0, 2.0);
 }
 
 TEST(Scene3d, RaysStartAtTheSourceAndCountTheirBounces) {

@@ -177,6 +177,14 @@ std::string cone_svg(const IntensityDistribution& d, const ConeOptions& options)
                 squeeze * kHeight / options.last_distance_m,
                 kHalf,
                 up ? -1.0 : 1.0};
+  // For the page's script: place of the apex and of the last plane, its distance; edges of both pairs of
+  // planes (degrees); illuminances on the axis and largest at 1 m.
+  canvas.data("cone", fmt::format("{:g} {:g} {:g}", plot.apex.y, plot.apex.y + plot.sign * kHeight,
+                                  options.last_distance_m));
+  if (across.any && along.any)
+    canvas.data("edges",
+                fmt::format("{:.4f} {:.4f} {:.4f} {:.4f}", across.from, across.to, along.from, along.to));
+  canvas.data("lux", fmt::format("{:.6g} {:.6g}", beam.at(0.0, 0.0), strongest_on_plane(beam)));
   draw_cone(canvas, plot, across, options.last_distance_m, "C180 ← → C0", std::string(kCurveColors[0]));
   plot.apex.x = 290.0;
   draw_cone(canvas, plot, along, options.last_distance_m, "C270 ← → C90", std::string(kCurveColors[1]));

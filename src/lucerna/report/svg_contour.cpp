@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "lucerna/core/error.h"
 
@@ -138,19 +139,66 @@ std::vector<std::vector<SvgPoint>> contour_rings(const SampledField& field, doub
   return Crossings(padded, level).lines();
 }
 
-void label_line(SvgCanvas& canvas, const std::vector<SvgPoint>& line, const std::string& text, double along,
-                double least_length) {
-  double whole = 0.0;
-  for (std::size_t i = 1; i < line.size(); ++i) whole += distance(line[i - 1], line[i]);
-  if (whole < least_length) return;
-  double gone = 0.0;
-  std::size_t i = 1;
-  while (i + 1 < line.size() && gone + distance(line[i - 1], line[i]) < along * whole)
-    gone += distance(line[i - 1], line[i]), ++i;
+std::vector<SvgPoint> thinned(const std::vector<SvgPoint>& line, double tolerance) {
+  if (line.size() < 3) return line;
+  std::vector<bool> kept(line.size(), false);
+  kept.front() = kept.back() = true;
+  std::vector<std::pair<std::size_t, std::size_t>> open{{0, line.size() - 1}};
+  while (!open.empty()) {
+    const auto [a, b] = open.back();
+    open.pop_back();
+    const SvgPoint p = line[a], q = line[b];
+    const double length = distance(p, q);
+    std::size_t farthest = a;
+    double most = tolerance;
+    for (std::size_t i = a + 1; i < b; ++i) {
+      const double off =
+          length > 0.0 ? std::abs((q.x - p.x) * (line[i].y - p.y) - (q.y - p.y) * (line[i].x - p.x)) / length
+                       : distance(p, line[i]);
+      if (off > most) most = off, farthest = i;
+    }
+    if (farthest == a) continue;
+    kept[farthest] = true;
+    open.push_back({a, farthest});
+    open.push_back({farthest, b});
+  }
+  std::vector<SvgPoint> out;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (kept[i]) out.push_back(line[i]);
+  }
+  return out;
+}
+
+std::vector<std::vector<SvgPoint>> thinned(std::vector<std::vector<SvgPoint>> rings, double tolerance) {
+  for (auto& ring : rings) ring = thinned(ring, tolerance);
+  return rings;
+}
+
+void LineLabels::write(SvgCanvas& canvas, const std::vector<SvgPoint>& line, const std::string& text,
+                       double along, double least_length) {
+  constexpr double kHeight = 13.0, kGap = 3.0;
+  std::vector<double> gone{0.0};
+  for (std::size_t i = 1; i < line.size(); ++i) gone.push_back(gone.back() + distance(line[i - 1], line[i]));
+  if (gone.back() < least_length) return;
   const double width = 6.2 * static_cast<double>(text.size()) + 4.0;
-  canvas.rectangle({line[i].x - 0.5 * width, line[i].y - 7.0}, width, 13.0,
-                   {.fill = "#fff", .opacity = 0.85});
-  canvas.text({line[i].x, line[i].y + 3.5}, text, {.size = 10.5, .anchor = "middle"});
+  const auto free = [&](SvgPoint p) {
+    return std::ranges::none_of(taken_, [&](const Box& b) {
+      return std::abs(b.centre.x - p.x) < 0.5 * (b.width + width) + kGap &&
+             std::abs(b.centre.y - p.y) < 0.5 * (b.height + kHeight) + kGap;
+    });
+  };
+  // 0, +1, -1, +2, ... twentieths from the place wanted.
+  for (int k = 0; k < 20; ++k) {
+    const double share = along + 0.05 * (k % 2 == 1 ? k / 2 + 1 : -(k / 2));
+    if (share < 0.0 || share > 1.0) continue;
+    const auto at = std::ranges::lower_bound(gone, share * gone.back());
+    const SvgPoint p = line[std::min(line.size() - 1, static_cast<std::size_t>(at - gone.begin()))];
+    if (!free(p)) continue;
+    taken_.push_back({p, width, kHeight});
+    canvas.rectangle({p.x - 0.5 * width, p.y - 7.0}, width, kHeight, {.fill = "#fff", .opacity = 0.85});
+    canvas.text({p.x, p.y + 3.5}, text, {.size = 10.5, .anchor = "middle"});
+    return;
+  }
 }
 
 }  // namespace lucerna

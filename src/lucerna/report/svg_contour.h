@@ -24,9 +24,28 @@ std::vector<std::vector<SvgPoint>> contour_lines(const SampledField& field, doub
 /// what reaches it.
 std::vector<std::vector<SvgPoint>> contour_rings(const SampledField& field, double level);
 
-/// Writes `text` on the line, on a white ground, at the share `along` of its length; nothing if the line is
-/// shorter than `least_length`.
-void label_line(SvgCanvas& canvas, const std::vector<SvgPoint>& line, const std::string& text,
-                double along = 0.5, double least_length = 60.0);
+/// The line with as few of its points as keep it within `tolerance` of itself (D. Douglas and T. Peucker,
+/// Cartographica 10(2), 1973). O(points log points) as a rule.
+std::vector<SvgPoint> thinned(const std::vector<SvgPoint>& line, double tolerance = 0.1);
+
+/// The same for every ring of an area.
+std::vector<std::vector<SvgPoint>> thinned(std::vector<std::vector<SvgPoint>> rings, double tolerance = 0.1);
+
+/// Numbers on the lines of one drawing that do not touch each other.
+class LineLabels {
+ public:
+  /// Writes `text` on the line, on a white ground, at the share `along` of its length or as near to it as no
+  /// other label is in the way; nothing if there is no such place, or if the line is shorter than
+  /// `least_length`.
+  void write(SvgCanvas& canvas, const std::vector<SvgPoint>& line, const std::string& text,
+             double along = 0.5, double least_length = 60.0);
+
+ private:
+  struct Box {
+    SvgPoint centre;
+    double width, height;
+  };
+  std::vector<Box> taken_;
+};
 
 }  // namespace lucerna

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <regex>
 #include <set>
 
 namespace lucerna {
@@ -80,6 +82,31 @@ TEST(SvgContour, SaddlesUseEveryCrossingOnce) {
 
 TEST(SvgContour, SizesMustAgree) {
   EXPECT_THROW(contour_lines({.x = {0, 1}, .y = {0, 1}, .value = {1}}, 0.5), std::logic_error);
+}
+
+TEST(SvgContour, LabelsNeverTouch) {
+  SvgCanvas canvas(400.0, 200.0);
+  LineLabels labels;
+  for (int i = 0; i < 8; ++i) {
+    std::vector<SvgPoint> line;
+    for (int k = 0; k <= 100; ++k) line.push_back({3.0 * k, 50.0 + 4.0 * i});
+    labels.write(canvas, line, "50 %");
+  }
+  const std::string svg = canvas.str();
+  static const std::regex kBox(R"re(<rect x="([-.0-9]+)" y="([-.0-9]+)" width="([.0-9]+)" height="13.00")re");
+  std::vector<std::array<double, 3>> boxes;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), kBox), end; it != end; ++it)
+    boxes.push_back({std::stod((*it)[1]), std::stod((*it)[2]), std::stod((*it)[3])});
+  EXPECT_GE(boxes.size(), 6u) << "there is room beside each other";
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      EXPECT_TRUE(std::abs(boxes[i][0] - boxes[j][0]) > boxes[i][2] ||
+                  std::abs(boxes[i][1] - boxes[j][1]) > 13.0);
+    }
+  }
+  const std::size_t before = canvas.str().size();
+  labels.write(canvas, {{0.0, 0.0}, {30.0, 0.0}}, "short");
+  EXPECT_EQ(canvas.str().size(), before);
 }
 
 }  // namespace

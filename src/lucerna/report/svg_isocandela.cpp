@@ -27,7 +27,7 @@ std::string band_color(std::size_t band) {
 void draw_bands(SvgCanvas& canvas, const SampledField& field, double peak) {
   if (!(peak > 0.0)) return;
   for (std::size_t i = kBands; i-- > 0;)
-    canvas.area(contour_rings(field, kPeakShares[i] * peak), {.fill = band_color(i)});
+    canvas.area(thinned(contour_rings(field, kPeakShares[i] * peak)), {.fill = band_color(i)});
 }
 
 /// What the bands or lines mean, from `at` downwards.
@@ -155,15 +155,17 @@ std::string isocandela_svg(const IntensityDistribution& d, const DiagramOptions&
   draw_grid(canvas, h, marks, "°", v, marks, "°");
   for (std::size_t i = 0; peak > 0.0 && i < kBands; ++i) {
     const bool quoted = kPeakShares[i] == 0.5 || kPeakShares[i] == 0.1;
-    for (const auto& line : contour_lines(field, kPeakShares[i] * peak)) {
+    for (const auto& whole : contour_lines(field, kPeakShares[i] * peak)) {
+      const std::vector<SvgPoint> line = thinned(whole);
       canvas.polyline(line, {.stroke = band_color(i), .width = 4.2});
       canvas.polyline(line, {.stroke = "#222", .width = quoted ? 2.0 : 0.8});
     }
   }
+  LineLabels labels;
   for (std::size_t i = 0; peak > 0.0 && i < kBands; ++i) {
     for (const auto& line : contour_lines(field, kPeakShares[i] * peak))
-      label_line(canvas, line, fmt::format("{:g} %", 100.0 * kPeakShares[i]),
-                 0.42 + 0.08 * static_cast<double>(i % 3));
+      labels.write(canvas, line, fmt::format("{:g} %", 100.0 * kPeakShares[i]),
+                   0.42 + 0.08 * static_cast<double>(i % 3));
   }
   canvas.text({kLeft, 76.0}, "V ↑ C0", {.size = 12.0, .fill = "#555"});
   canvas.text({kLeft + kSize, kTop + kSize + 36.0}, up ? "H → C90" : "H → C270",
@@ -186,6 +188,8 @@ std::string sphere_svg(const IntensityDistribution& d, const DiagramOptions& opt
       fmt::format("equal areas are equal solid angles, seen from above – peak {} {} at C {:g}°, γ {:g}°",
                   label_number(peak.cd * unit.per_cd), unit.name, peak.c_deg, peak.gamma_deg));
   constexpr double kRadius = 145.0;
+  // For the page's script: centres of the lower and the upper disc, and their radius.
+  canvas.data("discs", fmt::format("172 232 502 232 {:g}", kRadius));
   draw_hemisphere(canvas, d, {172.0, 232.0}, kRadius, false, peak.cd);
   draw_hemisphere(canvas, d, {502.0, 232.0}, kRadius, true, peak.cd);
   draw_scale(canvas, {692.0, 130.0}, peak.cd, unit, false);

@@ -40,14 +40,15 @@ void draw_levels(SvgCanvas& canvas, const SampledField& field, const std::vector
     return viridis(1.0 - 0.75 * static_cast<double>(i) / static_cast<double>(kLevels - 1));
   };
   for (std::size_t i = levels.size(); i-- > 0;)
-    canvas.area(contour_rings(field, levels[i]), {.fill = color(i)});
+    canvas.area(thinned(contour_rings(field, levels[i])), {.fill = color(i)});
   for (const double level : levels) {
     for (const auto& line : contour_lines(field, level))
-      canvas.polyline(line, {.stroke = "#222", .width = 0.8});
+      canvas.polyline(thinned(line), {.stroke = "#222", .width = 0.8});
   }
+  LineLabels labels;
   for (std::size_t i = 0; i < levels.size(); ++i) {
     for (const auto& line : contour_lines(field, levels[i]))
-      label_line(canvas, line, label_number(levels[i]), 0.4 + 0.1 * static_cast<double>(i % 3), 90.0);
+      labels.write(canvas, line, label_number(levels[i]), 0.4 + 0.1 * static_cast<double>(i % 3), 90.0);
   }
   canvas.text({scale.x, scale.y - 10.0}, "at least, " + unit, {.size = 12.0, .fill = "#444"});
   for (std::size_t i = 0; i < levels.size(); ++i) {

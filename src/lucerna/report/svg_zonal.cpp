@@ -2,6 +2,7 @@
 #include "lucerna/report/svg_zonal.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -28,6 +29,7 @@ std::string zonal_svg(const IntensityDistribution& d, const DiagramOptions& opti
   canvas.data("plot", "zonal");
   canvas.data("x", x.data());
   canvas.data("y", y.data());
+  canvas.data("zones", fmt::format("{:.6g}", fmt::join(flux, " ")));
   const double down = zonal_flux(d, 0.0, 90.0);
   const auto percent = [&](double part) { return all > 0.0 ? 100.0 * part / all : 0.0; };
   draw_title(canvas, options.title.empty() ? "Zonal flux" : options.title,

@@ -137,11 +137,14 @@ class TreeLookup {
   /// As tree_density.
   double density(const std::array<double, 4>& c) const;
 
- private:
+  /// In preorder, as TreeNode: `value` is a cut's place, or a leaf's (right == 0) density.
   struct Node {
-    double value = 0.0;  // the cut's place; a leaf's density
+    double value = 0.0;
     std::uint32_t right = 0, axis = 0;
   };
+  std::span<const Node> nodes() const { return nodes_; }
+
+ private:
   TreeBox box_;
   std::vector<Node> nodes_;
 };

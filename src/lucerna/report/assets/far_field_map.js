@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The far field in false colours with lines of equal intensity, drawn in the page: gamma outward from the middle, C
-// around it (C0 to the right, C90 up). Distances are true along the radii (azimuthal equidistant projection).
+// around it (C0 to the right, C90 up). Distances are true along the radii (azimuthal equidistant projection). Where the
+// figure has a target, the target and the difference (result - target) can be shown too.
 'use strict';
 for (const figure of document.querySelectorAll('figure.map')) {
   const field = lucerna.fields[Number(figure.dataset.detector)];
   const canvas = figure.querySelector('canvas'), context = canvas.getContext('2d');
   const output = figure.querySelector('output.cursor'), stage = figure.querySelector('.stage');
-  const [reach, colours, log] = ['.reach', '.colours', '.log'].map(name => figure.querySelector(name));
+  const [reach, colours, log, shown] = ['.reach', '.colours', '.log', '.shown'].map(name => figure.querySelector(name));
+  const target = figure.dataset.target ? lucerna.fields[Number(figure.dataset.target)] : null;
   const size = canvas.width, middle = size / 2, radius = middle - 42;
   const peak = field.intensity.reduce((a, b) => Math.max(a, b), 0);
   const shares = [0.01, 0.03, 0.1, 0.3, 0.5, 0.7, 0.9];
@@ -22,14 +24,19 @@ for (const figure of document.querySelectorAll('figure.map')) {
   const choices = [5, 10, 20, 30, 45, 60, 90, 180], first = choices.find(r => r >= edge) || 180;
   for (const r of choices) reach.append(new Option(`${r}°`, r, r === first, r === first));
 
-  const tone = cd => {
+  // What is shown in a direction; of a difference the colours go to the largest one on the grid, both ways.
+  const difference = () => Boolean(target) && shown.value === 'difference';
+  const most = target ? field.gamma_deg.reduce((largest, g, k) => field.c_deg.reduce((m, c, i) =>
+    Math.max(m, Math.abs(field.intensity[i * field.gamma_deg.length + k] - lucerna.intensityAt(target, c, g))), largest), 0) : 0;
+  const toneOf = (signed, decades) => cd => {
+    if (signed) return most > 0 ? 0.5 + 0.5 * cd / most : 0.5;
     const share = peak > 0 ? cd / peak : 0;
-    return log.checked ? 1 + Math.log10(Math.max(share, 1e-3)) / 3 : share;
+    return decades ? 1 + Math.log10(Math.max(share, 1e-3)) / 3 : share;
   };
-  const at = (x, y) => {
-    const dx = x - middle, dy = middle - y, r = Math.hypot(dx, dy) / radius * Number(reach.value);
+  const at = (x, y, out = Number(reach.value)) => {
+    const dx = x - middle, dy = middle - y, r = Math.sqrt(dx * dx + dy * dy) / radius * out;
     const c = Math.atan2(dy, dx) * 180 / Math.PI;
-    return r <= Number(reach.value) ? [c < 0 ? c + 360 : c, around(r)] : null;
+    return r <= out ? [c < 0 ? c + 360 : c, around(r)] : null;
   };
   const labels = () => {
     const style = getComputedStyle(document.documentElement), text = style.getPropertyValue('--text');
@@ -54,19 +61,24 @@ for (const figure of document.querySelectorAll('figure.map')) {
   };
   const draw = () => {
     const image = context.createImageData(size, size), levels = new Int8Array(size * size).fill(-1);
-    const tones = new Float32Array(size * size);
+    const tones = new Float32Array(size * size), name = difference() ? 'blueorange' : colours.value;
+    const table = lucerna.rampTable(name), signed = difference(), tone = toneOf(signed, log.checked), out = Number(reach.value);
+    const drawn = shown?.value === 'target' ? target : field, steps = shares.map(s => s * peak);
     for (let y = 0; y < size; ++y) {
       for (let x = 0; x < size; ++x) {
-        const where = at(x + 0.5, y + 0.5);
+        const where = at(x + 0.5, y + 0.5, out);
         if (!where) continue;
-        const cd = lucerna.intensityAt(field, ...where), i = y * size + x;
-        levels[i] = shares.filter(s => cd >= s * peak).length;
+        const i = y * size + x, found = lucerna.intensityAt(drawn, where[0], where[1]);
+        const cd = signed ? found - lucerna.intensityAt(target, where[0], where[1]) : found;
+        let level = 0;
+        while (level < steps.length && cd >= steps[level]) ++level;
+        levels[i] = level;
         tones[i] = tone(cd);
-        const [r, g, b] = lucerna.rampAt(colours.value, tones[i]);
-        image.data.set([r, g, b, 255], 4 * i);
+        const k = 3 * Math.round(255 * Math.max(0, Math.min(1, tones[i])));
+        image.data.set([table[k], table[k + 1], table[k + 2], 255], 4 * i);
       }
     }
-    for (let i = 0; i < size * (size - 1) - 1; ++i) {
+    for (let i = 0; !signed && i < size * (size - 1) - 1; ++i) {
       if (levels[i] < 0 || (levels[i] === levels[i + 1] && levels[i] === levels[i + size])) continue;
       if (levels[i + 1] < 0 || levels[i + size] < 0) continue;
       image.data.set(tones[i] > 0.55 ? [0, 0, 0, 255] : [255, 255, 255, 255], 4 * i);
@@ -74,20 +86,21 @@ for (const figure of document.querySelectorAll('figure.map')) {
     context.clearRect(0, 0, size, size);
     context.putImageData(image, 0, 0);
     labels();
-    figure.querySelector('.ramp').style.background = lucerna.rampCss(colours.value);
-    const ends = log.checked ? [0.001, 0.01, 0.1, 1] : [0, 0.25, 0.5, 0.75, 1];
+    figure.querySelector('.ramp').style.background = lucerna.rampCss(name);
+    const ends = log.checked && !difference() ? [0.001, 0.01, 0.1, 1] : [0, 0.25, 0.5, 0.75, 1];
     figure.querySelector('.ends').replaceChildren(...ends.map(share => {
-      const span = document.createElement('span');
-      span.textContent = lucerna.figure(share * peak, 3) + (share === 1 ? ' ' + field.unit : '');
+      const span = document.createElement('span'), value = difference() ? (2 * share - 1) * most : share * peak;
+      span.textContent = lucerna.figure(value, 3) + (share === 1 ? ' ' + field.unit : '');
       return span;
     }));
     canvas.dataset.drawn = 'yes';
   };
   const read = (c, gamma) => {
-    const cd = lucerna.intensityAt(field, c, gamma);
+    const cd = lucerna.intensityAt(field, c, gamma), place = `C ${lucerna.figure(c, 4)}°, γ ${lucerna.figure(gamma, 4)}°: `;
     const se = field.standardError.length ? lucerna.intensityAt(field, c, gamma, field.standardError) : NaN;
-    output.textContent = `C ${lucerna.figure(c, 4)}°, γ ${lucerna.figure(gamma, 4)}°: ${lucerna.figure(cd)}` +
-      `${se > 0 ? ' ± ' + lucerna.figure(se, 2) : ''} ${field.unit}, ${lucerna.figure(100 * cd / peak, 3)} % of the maximum`;
+    const share = target ? `target ${lucerna.figure(lucerna.intensityAt(target, c, gamma))} ${field.unit}`
+      : `${lucerna.figure(100 * cd / peak, 3)} % of the maximum`;
+    output.textContent = `${place}${lucerna.figure(cd)}${se > 0 ? ' ± ' + lucerna.figure(se, 2) : ''} ${field.unit}, ${share}`;
   };
   let cursor = [0, around(0)];
   canvas.addEventListener('pointermove', event => {
@@ -102,11 +115,8 @@ for (const figure of document.querySelectorAll('figure.map')) {
     cursor = [(Math.round(cursor[0]) + step[0] + 360) % 360, Math.max(0, Math.min(180, Math.round(cursor[1]) + step[1]))];
     read(...cursor);
   });
-  for (const control of [reach, colours, log]) control.addEventListener('input', draw);
+  for (const control of [reach, colours, log, shown]) control?.addEventListener('input', draw);
   document.addEventListener('lucerna-theme', draw);
-  figure.querySelector('[data-save="png"]').addEventListener('click', () =>
-    canvas.toBlob(blob => lucerna.save(figure.dataset.file + '.png', blob)));
-  figure.querySelector('[data-save="csv"]').addEventListener('click', () =>
-    lucerna.save(figure.dataset.file + '.csv', new Blob([lucerna.csvOf(field)], { type: 'text/csv' })));
+  lucerna.savesCanvas(figure, canvas, () => lucerna.csvOf(field));
   draw();
 }

@@ -33,19 +33,22 @@
   };
   const section = new THREE.Plane(new THREE.Vector3(0, 1, 0), 0);
 
-  // Mirrors: a ring-and-spoke mesh each.
-  const meshes = scene.mirrors.map(m => {
-    const geometry = new THREE.BufferGeometry(), index = [];
-    geometry.setAttribute('position', new THREE.BufferAttribute(lucerna.floats(m.position), 3));
-    geometry.setAttribute('normal', new THREE.BufferAttribute(lucerna.floats(m.normal), 3));
-    for (let r = 0; r + 1 < m.rings; ++r) {
-      for (let s = 0; s < m.spokes; ++s) {
-        const a = r * m.spokes + s, b = r * m.spokes + (s + 1) % m.spokes;
-        index.push(a, a + m.spokes, b, b, a + m.spokes, b + m.spokes);
+  const triangles = ({ position, index, rings, spokes }) => {
+    const geometry = new THREE.BufferGeometry(), corners = [];
+    geometry.setAttribute('position', new THREE.BufferAttribute(lucerna.floats(position), 3));
+    for (let r = 0; r + 1 < rings; ++r) {
+      for (let s = 0; s < spokes; ++s) {
+        const a = r * spokes + s, b = r * spokes + (s + 1) % spokes;
+        corners.push(a, a + spokes, b, b, a + spokes, b + spokes);
       }
     }
-    geometry.setIndex(index);
-    geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(3 * m.rings * m.spokes).fill(1), 3));
+    geometry.setIndex(new THREE.BufferAttribute(index ? lucerna.counts(index) : Uint32Array.from(corners), 1));
+    return geometry;
+  };
+  const meshes = scene.mirrors.map(m => {
+    const geometry = triangles(m), vertices = geometry.getAttribute('position').count;
+    geometry.setAttribute('normal', new THREE.BufferAttribute(lucerna.floats(m.normal), 3));
+    geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(3 * vertices).fill(1), 3));
     const material = new THREE.MeshPhongMaterial({
       vertexColors: true, side: THREE.DoubleSide, shininess: 55, specular: 0x555555, clippingPlanes: [],
     });
@@ -54,8 +57,21 @@
     return mesh;
   });
   const mirrors = new THREE.Group();
-  mirrors.add(...meshes);
+  if (meshes.length) mirrors.add(...meshes);
   if (meshes.length) layer('mirrors', 'Mirrors', mirrors);
+
+  const solids = scene.bodies.map(b => {
+    const mesh = new THREE.Mesh(triangles(b), new THREE.MeshPhongMaterial({
+      color: 0x8a7f73, side: THREE.DoubleSide, flatShading: true, specular: 0x222222, clippingPlanes: [],
+    }));
+    mesh.userData = { name: b.name };
+    return mesh;
+  });
+  const bodies = new THREE.Group();
+  if (solids.length) bodies.add(...solids);
+  if (solids.length) {
+    layer('bodies', scene.bodies.some(b => b.thinned) ? 'Bodies (fine meshes drawn coarser)' : 'Bodies', bodies, '#8a7f73');
+  }
 
   const points = new THREE.BufferGeometry();
   points.setAttribute('position', new THREE.BufferAttribute(lucerna.floats(scene.source.position), 3));
@@ -148,8 +164,8 @@
   const stage = element('div', {}, canvas, output);
   const side = element('aside', {}, show);
   side.setAttribute('aria-label', '3D view settings');
-  if (meshes.length) {
-    side.append(element('fieldset', {}, element('legend', { textContent: 'Mirrors' }),
+  if (meshes.length || solids.length) {
+    side.append(element('fieldset', {}, element('legend', { textContent: 'Mirrors and bodies' }),
       element('label', {}, 'Colour by ', colouring), ramp, ends,
       element('label', {}, 'Section ', cut), element('label', {}, 'Section at ', depth)));
   }
@@ -182,7 +198,7 @@
     const on = cut.value !== 'none', at = centre.clone().addScaledVector(new THREE.Vector3(1, 1, 1), radius * depth.value / 100);
     depth.disabled = !on;
     if (on) section.setFromNormalAndCoplanarPoint(new THREE.Vector3(+(cut.value === 'x'), +(cut.value === 'y'), +(cut.value === 'z')), at);
-    for (const m of meshes) m.material.clippingPlanes = on ? [section] : [];
+    for (const m of [...meshes, ...solids]) m.material.clippingPlanes = on ? [section] : [];
   };
 
   const draw = () => {
@@ -227,12 +243,12 @@
     const r = canvas.getBoundingClientRect();
     spot.set((event.clientX - r.left) / r.width * 2 - 1, 1 - (event.clientY - r.top) / r.height * 2);
     rays.setFromCamera(spot, camera);
-    const hit = mirrors.visible && rays.intersectObjects(meshes)
+    const hit = rays.intersectObjects([...mirrors.visible ? meshes : [], ...bodies.visible ? solids : []])
       .find(h => !h.object.material.clippingPlanes.some(p => p.distanceToPoint(h.point) < 0));
     if (!hit) { output.textContent = hint; return; }
     const { slope, curvature, name } = hit.object.userData, i = hit.face.a, p = hit.point;
-    output.textContent = `${name} at (${[p.x, p.y, p.z].map(v => v.toFixed(2)).join(', ')}) mm: slope ` +
-      `${lucerna.figure(slope[i], 3)}°, mean curvature ${lucerna.figure(curvature[i], 3)} 1/mm`;
+    output.textContent = `${name} at (${[p.x, p.y, p.z].map(v => v.toFixed(2)).join(', ')}) mm` +
+      (slope ? `: slope ${lucerna.figure(slope[i], 3)}°, mean curvature ${lucerna.figure(curvature[i], 3)} 1/mm` : '');
   };
   canvas.addEventListener('pointerdown', event => {
     canvas.setPointerCapture(event.pointerId);
