@@ -35,5 +35,24 @@ TEST(ReportCli, FolderWithoutATraceIsBadInput) {
   EXPECT_FALSE(std::filesystem::exists(dir / "r.html"));
 }
 
+TEST(ReportCli, ModelsWithAndWithoutTheirRays) {
+  const test::TempDir dir;
+  ASSERT_EQ(run_lucerna(dir.path(), "make-source disk -n 2e4 -o d.tm25ray").exit_code, 0);
+  const auto run = run_lucerna(dir.path(), "compress d.tm25ray -o d.nfl --report now.html");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(slurp(dir / "now.html").find("/views/far/excess"), std::string::npos);
+  const auto later = run_lucerna(dir.path(), "report d.nfl -o later.html");
+  ASSERT_EQ(later.exit_code, 0) << later.err;
+  EXPECT_EQ(slurp(dir / "later.html").find("/views/far/excess"), std::string::npos);
+  EXPECT_EQ(run_lucerna(dir.path(), "report d.nfl -o r.html --rays gone.tm25ray").exit_code, 1);
+}
+
+TEST(ReportCli, RaysGoWithAModelOnly) {
+  const test::TempDir dir;
+  const auto run = run_lucerna(dir.path(), "report . -o r.html --rays x.tm25ray");
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.err.find("--rays goes with a model"), std::string::npos) << run.err;
+}
+
 }  // namespace
 }  // namespace lucerna

@@ -112,9 +112,10 @@ void draw_hemisphere(SvgCanvas& canvas, const IntensityDistribution& d, SvgPoint
   for (const double angle : {30.0, 60.0}) {
     const double r = radius * std::numbers::sqrt2 * std::sin(radians(0.5 * angle));
     canvas.circle(centre, r, thin);
+    // "white", not "#fff": a page on a dark screen changes the latter over (report.css).
     canvas.rectangle({centre.x + 1.0, centre.y - r - 13.0}, 29.0, 13.0, {.fill = "#000", .opacity = 0.45});
     canvas.text({centre.x + 3.0, centre.y - r - 3.0}, fmt::format("{:g}°", up ? 180.0 - angle : angle),
-                {.size = 10.5, .fill = "#fff"});
+                {.size = 10.5, .fill = "white"});
   }
   canvas.line({centre.x - radius, centre.y}, {centre.x + radius, centre.y}, thin);
   canvas.line({centre.x, centre.y - radius}, {centre.x, centre.y + radius}, thin);

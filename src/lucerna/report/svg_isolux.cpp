@@ -74,7 +74,7 @@ std::string isolux_svg(const PlaneIlluminance& e, FluxUnit flux_unit, const std:
   for (std::size_t i = 0; i < plane.ny; ++i) field.y.push_back(y.at(plane.y_mm(i) / 1000.0));
   field.value = e.lx;
 
-  SvgCanvas canvas(640.0, kTop + std::max(height, 220.0) + 116.0);
+  SvgCanvas canvas(640.0, kTop + std::max(height, 220.0) + 132.0);
   canvas.data("plot", "isolux");
   canvas.data("x", x.data());
   canvas.data("y", y.data());
@@ -90,10 +90,8 @@ std::string isolux_svg(const PlaneIlluminance& e, FluxUnit flux_unit, const std:
   canvas.text({kLeft, text_y + 19.0},
               fmt::format("Largest {} {} at x {}, y {} m", label_number(e.max_lx), unit,
                           label_number(e.max_x_mm / 1000.0), label_number(e.max_y_mm / 1000.0)));
-  canvas.text(
-      {kLeft, text_y + 38.0},
-      fmt::format("Diameter (x by y) at 50 %: {} · at 10 %: {}", size_text(e.half), size_text(e.tenth)),
-      {.size = 12.0});
+  canvas.text({kLeft, text_y + 38.0}, "Diameter (x by y) at 50 %: " + size_text(e.half));
+  canvas.text({kLeft, text_y + 57.0}, "and at 10 %: " + size_text(e.tenth));
   return canvas.str();
 }
 
