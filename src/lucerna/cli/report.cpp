@@ -32,6 +32,10 @@ void report(const ReportArguments& a, Session& session) {
   session.start();
   if (is_source_model(a.input)) return model_report(a, session);
   if (!a.rays.empty()) throw UsageError(fmt::format("--rays goes with a model, and {} is none", a.input));
+  if (std::filesystem::exists(a.input) && !std::filesystem::is_directory(a.input)) {
+    throw InputError(
+        fmt::format("{}: is neither a source model (.nfl) nor the folder of a trace or design", a.input));
+  }
   if (is_design_folder(a.input)) {
     write_design_report(a.input, a.output);
   } else {

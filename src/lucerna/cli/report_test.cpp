@@ -47,6 +47,14 @@ TEST(ReportCli, ModelsWithAndWithoutTheirRays) {
   EXPECT_EQ(run_lucerna(dir.path(), "report d.nfl -o r.html --rays gone.tm25ray").exit_code, 1);
 }
 
+TEST(ReportCli, OtherFilesAreBadInput) {
+  const test::TempDir dir;
+  write_file(dir / "x.nfl", "junk");
+  const auto run = run_lucerna(dir.path(), "report x.nfl -o r.html");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.err.find("x.nfl: is neither a source model"), std::string::npos) << run.err;
+}
+
 TEST(ReportCli, RaysGoWithAModelOnly) {
   const test::TempDir dir;
   const auto run = run_lucerna(dir.path(), "report . -o r.html --rays x.tm25ray");

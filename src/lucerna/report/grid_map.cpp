@@ -13,7 +13,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr double kLeft = 74.0, kTop = 64.0, kRight = 92.0;
+constexpr double kLeft = 74.0, kTop = 64.0, kRight = 112.0;
 
 std::pair<double, double> range_of(const GridMap& map) {
   if (map.range) return *map.range;

@@ -260,6 +260,8 @@ lucerna.model = (() => {
     canvas.dataset.drawn = Number(canvas.dataset.drawn || 0) + 1;
   };
   const say = () => {
+    const named = `${view.azimuth} ${view.height}`, from = part('.from');
+    from.value = [...from.options].some(o => o.value === named) ? named : '';
     const where = `from azimuth ${lucerna.plain(view.azimuth)}°, ${lucerna.plain(view.height)}° above the xy plane`;
     if (!cursor) { output.textContent = `Seen ${where}. Drag to turn, wheel or + − to zoom, arrows to turn.`; return; }
     const { n, half, value } = drawn, [x, y] = cursor, i = Math.min(n - 1, Math.floor(y * n)) * n + Math.min(n - 1, Math.floor(x * n));
@@ -280,7 +282,7 @@ lucerna.model = (() => {
   };
   const sliders = [part('.azimuth'), part('.height')];
   const turn = (across, up) => {
-    view.azimuth = ((Math.round(view.azimuth + across) % 360) + 540) % 360 - 180;
+    view.azimuth = 180 - (((180 - Math.round(view.azimuth + across)) % 360) + 360) % 360;
     view.height = Math.max(-90, Math.min(90, Math.round(view.height + up)));
     sliders[0].value = view.azimuth;
     sliders[1].value = view.height;
@@ -291,6 +293,7 @@ lucerna.model = (() => {
   sliders[1].addEventListener('input', () => { view.height = Number(sliders[1].value); draw(); });
   for (const name of ['.colours', '.log', '.own', '.borders']) part(name).addEventListener('input', paint);
   part('.from').addEventListener('input', event => {
+    if (!event.target.value) return;
     const [azimuth, height] = event.target.value.split(' ').map(Number);
     Object.assign(view, { azimuth, height });
     turn(0, 0);
