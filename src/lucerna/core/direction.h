@@ -54,8 +54,8 @@ inline double angle_between(const Direction& a, const Direction& b) {
   return 2.0 * std::atan2(length(a.vec() - b.vec()), length(a.vec() + b.vec()));
 }
 
-constexpr double radians(double degrees) { return degrees * (std::numbers::pi / 180.0); }
-constexpr double degrees(double radians) { return radians * (180.0 / std::numbers::pi); }
+LUCERNA_HD constexpr double radians(double degrees) { return degrees * (std::numbers::pi / 180.0); }
+LUCERNA_HD constexpr double degrees(double radians) { return radians * (180.0 / std::numbers::pi); }
 
 /// CIE Type C angles of a direction in the luminaire frame of `design.md` section 4: nadir (gamma 0) = -z,
 /// C 0 = +x, C 90 = +y. `c_rad` in [0, 2 pi), 0 on the axis; `gamma_rad` in [0, pi].

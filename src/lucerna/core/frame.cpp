@@ -31,19 +31,4 @@ Frame Frame::from_axis(const Direction& axis, double turn_rad, const Vec3& posit
   return {turned.ex_, turned.ey_, turned.ez_, position_mm};
 }
 
-Frame Frame::from_z(const Direction& z, const Vec3& origin_mm) {
-  const double sign = std::copysign(1.0, z.z());
-  const double a = -1.0 / (sign + z.z());
-  const double b = z.x() * z.y() * a;
-  return {{1.0 + sign * z.x() * z.x() * a, sign * b, -sign * z.x()},
-          {b, sign + z.y() * z.y() * a, -z.y()},
-          z.vec(),
-          origin_mm};
-}
-
-Frame Frame::inverse() const {
-  const Frame transposed{{ex_.x, ey_.x, ez_.x}, {ex_.y, ey_.y, ez_.y}, {ex_.z, ey_.z, ez_.z}, {}};
-  return {transposed.ex_, transposed.ey_, transposed.ez_, -transposed.vector(origin_mm_)};
-}
-
 }  // namespace lucerna

@@ -8,14 +8,15 @@
 namespace lucerna {
 
 /// A right-handed orthonormal frame placed in an outer ("world") frame: a rotation, then a translation.
-/// Named like a fraction where it is used: `world_from_lamp.point(p_lamp)`; `world_from_lamp * lamp_from_chip`.
+/// Named like a fraction where it is used: `world_from_lamp.point(p_lamp)`; `world_from_lamp *
+/// lamp_from_chip`.
 class Frame {
  public:
   /// The identity.
   constexpr Frame() = default;
 
   /// Columns `ex`, `ey`, `ez` are the images of the inner axes; they must be orthonormal and right-handed.
-  constexpr Frame(const Vec3& ex, const Vec3& ey, const Vec3& ez, const Vec3& origin_mm)
+  LUCERNA_HD constexpr Frame(const Vec3& ex, const Vec3& ey, const Vec3& ez, const Vec3& origin_mm)
       : ex_(ex), ey_(ey), ez_(ez), origin_mm_(origin_mm) {}
 
   /// The placement of the project file: the inner +z goes to `axis` by the shortest turn (for -z a half turn
@@ -26,20 +27,31 @@ class Frame {
   static Frame rotation(const Direction& axis, double angle_rad);
 
   /// Any frame whose +z is `z`, without discontinuity but at z = -e_z (Duff et al. 2017, JCGT 6(1)).
-  static Frame from_z(const Direction& z, const Vec3& origin_mm = {});
+  LUCERNA_HD static Frame from_z(const Direction& z, const Vec3& origin_mm = {}) {
+    const double sign = std::copysign(1.0, z.z());
+    const double a = -1.0 / (sign + z.z());
+    const double b = z.x() * z.y() * a;
+    return {{1.0 + sign * z.x() * z.x() * a, sign * b, -sign * z.x()},
+            {b, sign + z.y() * z.y() * a, -z.y()},
+            z.vec(),
+            origin_mm};
+  }
 
-  Vec3 vector(const Vec3& v) const { return v.x * ex_ + v.y * ey_ + v.z * ez_; }
-  Vec3 point(const Vec3& p_mm) const { return vector(p_mm) + origin_mm_; }
-  Direction direction(const Direction& d) const { return Direction::from_unit(vector(d)); }
-  Ray ray(const Ray& r) const { return {point(r.origin_mm), direction(r.direction)}; }
+  LUCERNA_HD Vec3 vector(const Vec3& v) const { return v.x * ex_ + v.y * ey_ + v.z * ez_; }
+  LUCERNA_HD Vec3 point(const Vec3& p_mm) const { return vector(p_mm) + origin_mm_; }
+  LUCERNA_HD Direction direction(const Direction& d) const { return Direction::from_unit(vector(d)); }
+  LUCERNA_HD Ray ray(const Ray& r) const { return {point(r.origin_mm), direction(r.direction)}; }
 
   /// The way back.
-  Frame inverse() const;
+  LUCERNA_HD Frame inverse() const {
+    const Frame transposed{{ex_.x, ey_.x, ez_.x}, {ex_.y, ey_.y, ez_.y}, {ex_.z, ey_.z, ez_.z}, {}};
+    return {transposed.ex_, transposed.ey_, transposed.ez_, -transposed.vector(origin_mm_)};
+  }
 
-  const Vec3& ex() const { return ex_; }
-  const Vec3& ey() const { return ey_; }
-  const Vec3& ez() const { return ez_; }
-  const Vec3& origin_mm() const { return origin_mm_; }
+  LUCERNA_HD const Vec3& ex() const { return ex_; }
+  LUCERNA_HD const Vec3& ey() const { return ey_; }
+  LUCERNA_HD const Vec3& ez() const { return ez_; }
+  LUCERNA_HD const Vec3& origin_mm() const { return origin_mm_; }
 
   friend Frame operator*(const Frame& a, const Frame& b) {
     return {a.vector(b.ex_), a.vector(b.ey_), a.vector(b.ez_), a.point(b.origin_mm_)};

@@ -22,12 +22,12 @@ std::string_view to_string(SequenceKind kind);
 /// 2^k). Every coordinate is in [0, 1). Thread safe, no state.
 class Sequence {
  public:
-  Sequence(SequenceKind kind, std::uint64_t seed) : kind_(kind), seed_(seed) {}
+  LUCERNA_HD Sequence(SequenceKind kind, std::uint64_t seed) : kind_(kind), seed_(seed) {}
 
   /// The i-th point of dimension D <= kSobolDimensions. Coordinates 0.. are the best spread over: spend them on what
   /// matters most.
   template <std::size_t D>
-  std::array<double, D> point(std::uint64_t i) const {
+  LUCERNA_HD std::array<double, D> point(std::uint64_t i) const {
     static_assert(D <= kSobolDimensions);
     std::array<double, D> u;
     if (kind_ == SequenceKind::random) {

@@ -67,6 +67,10 @@ constexpr std::array<SobolMatrix, kSobolDimensions> sobol_matrices_reversed() {
 }
 
 inline constexpr std::array<SobolMatrix, kSobolDimensions> kSobolReversed = sobol_matrices_reversed();
+#if defined(__CUDACC__)
+/// The same where threads of a GPU read it; they step through its columns together.
+static __constant__ std::array<SobolMatrix, kSobolDimensions> kSobolOnDevice = sobol_matrices_reversed();
+#endif
 
 LUCERNA_HD constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
@@ -105,7 +109,11 @@ LUCERNA_HD constexpr std::uint64_t mix_bits(std::uint64_t x) {
 /// A. B. Owen, "Randomly permuted (t,m,s)-nets", 1995; B. Burley, "Practical hash-based Owen scrambling", JCGT 9(4), 2020.
 LUCERNA_HD inline std::uint32_t owen_sobol_bits(std::uint64_t index, std::uint32_t dimension, std::uint64_t seed) {
   std::uint32_t x = 0;
+#if defined(__CUDA_ARCH__)
+  const detail::SobolMatrix& matrix = detail::kSobolOnDevice[dimension];
+#else
   const detail::SobolMatrix& matrix = detail::kSobolReversed[dimension];
+#endif
   std::uint32_t i = static_cast<std::uint32_t>(index);
   for (std::size_t k = 0; i != 0; i >>= 1, ++k) x ^= (i & 1u) ? matrix[k] : 0u;
   const std::uint64_t key =

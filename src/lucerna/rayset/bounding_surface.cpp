@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "lucerna/core/error.h"
 
@@ -13,44 +12,6 @@ namespace lucerna {
 namespace {
 
 constexpr std::array<std::string_view, 5> kSurfaceNames{"none", "plane", "sphere", "cylinder", "box"};
-
-struct Interval {
-  double near, far;
-};
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// The part of the line o + t d inside |x| <= half. A line parallel to the slab is inside everywhere or
-/// nowhere.
-std::optional<Interval> inside_slab(double o, double d, double half) {
-  if (d == 0.0) {
-    if (std::abs(o) > half) return std::nullopt;
-    return Interval{-kInfinity, kInfinity};
-  }
-  const double a = (-half - o) / d, b = (half - o) / d;
-  return Interval{std::min(a, b), std::max(a, b)};
-}
-
-/// The part of the line inside |o + t d|^2 <= radius^2, of the vectors given (three components, or two for a
-/// cylinder).
-std::optional<Interval> inside_round(const Vec3& o, const Vec3& d, double radius) {
-  const double a = dot(d, d);
-  if (a == 0.0) return inside_slab(length(o), 0.0, radius);
-  const double b = dot(o, d);
-  // The distance of the line from the centre first: no cancellation for far starts.
-  const Vec3 nearest = o - (b / a) * d;
-  const double rest = radius * radius - dot(nearest, nearest);
-  if (rest < 0.0) return std::nullopt;
-  const double half = std::sqrt(rest / a);
-  return Interval{-b / a - half, -b / a + half};
-}
-
-std::optional<Interval> both(std::optional<Interval> a, std::optional<Interval> b) {
-  if (!a || !b) return std::nullopt;
-  const Interval common{std::max(a->near, b->near), std::min(a->far, b->far)};
-  if (common.near > common.far) return std::nullopt;
-  return common;
-}
 
 }  // namespace
 
@@ -118,32 +79,6 @@ double BoundingSurface::outside_mm(const Vec3& point_mm) const {
           {std::abs(p.x) - half_size_mm.x, std::abs(p.y) - half_size_mm.y, std::abs(p.z) - half_size_mm.z});
   }
   return 0.0;
-}
-
-std::optional<double> BoundingSurface::exit_distance_mm(const Ray& ray) const {
-  const Frame surface_from_world = world_from_surface.inverse();
-  const Vec3 o = surface_from_world.point(ray.origin_mm), d = surface_from_world.vector(ray.direction);
-  std::optional<Interval> inside;
-  switch (kind) {
-    case SurfaceKind::none:
-      return std::nullopt;
-    case SurfaceKind::plane:
-      if (d.z <= 0.0) return std::nullopt;
-      return -o.z / d.z;
-    case SurfaceKind::sphere:
-      inside = inside_round(o, d, radius_mm);
-      break;
-    case SurfaceKind::cylinder:
-      inside = both(inside_round({o.x, o.y, 0.0}, {d.x, d.y, 0.0}, radius_mm),
-                    inside_slab(o.z, d.z, half_size_mm.z));
-      break;
-    case SurfaceKind::box:
-      inside = both(inside_slab(o.x, d.x, half_size_mm.x),
-                    both(inside_slab(o.y, d.y, half_size_mm.y), inside_slab(o.z, d.z, half_size_mm.z)));
-      break;
-  }
-  if (!inside) return std::nullopt;
-  return inside->far;
 }
 
 }  // namespace lucerna

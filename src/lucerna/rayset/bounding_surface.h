@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -42,7 +45,74 @@ struct BoundingSurface {
   /// Distance along the ray to where its line last leaves the body (for a plane: crosses towards +z); may be
   /// negative when that lies behind the start. Nothing when the line misses it, or for `none`. A ray that
   /// starts inside has exactly one such point ahead of it: where it belongs on the surface.
-  std::optional<double> exit_distance_mm(const Ray& ray) const;
+  LUCERNA_HD std::optional<double> exit_distance_mm(const Ray& ray) const;
 };
+
+namespace detail {
+
+struct Interval {
+  double near, far;
+};
+
+/// The part of the line o + t d inside |x| <= half. A line parallel to the slab is inside everywhere or
+/// nowhere.
+LUCERNA_HD inline std::optional<Interval> inside_slab(double o, double d, double half) {
+  if (d == 0.0) {
+    if (std::abs(o) > half) return std::nullopt;
+    return Interval{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  }
+  const double a = (-half - o) / d, b = (half - o) / d;
+  return Interval{std::min(a, b), std::max(a, b)};
+}
+
+/// The part of the line inside |o + t d|^2 <= radius^2, of the vectors given (three components, or two for a
+/// cylinder).
+LUCERNA_HD inline std::optional<Interval> inside_round(const Vec3& o, const Vec3& d, double radius) {
+  const double a = dot(d, d);
+  if (a == 0.0) return inside_slab(length(o), 0.0, radius);
+  const double b = dot(o, d);
+  // The distance of the line from the centre first: no cancellation for far starts.
+  const Vec3 nearest = o - (b / a) * d;
+  const double rest = radius * radius - dot(nearest, nearest);
+  if (rest < 0.0) return std::nullopt;
+  const double half = std::sqrt(rest / a);
+  return Interval{-b / a - half, -b / a + half};
+}
+
+LUCERNA_HD inline std::optional<Interval> both(std::optional<Interval> a, std::optional<Interval> b) {
+  if (!a || !b) return std::nullopt;
+  const Interval common{std::max(a->near, b->near), std::min(a->far, b->far)};
+  if (common.near > common.far) return std::nullopt;
+  return common;
+}
+
+}  // namespace detail
+
+LUCERNA_HD inline std::optional<double> BoundingSurface::exit_distance_mm(const Ray& ray) const {
+  const Frame surface_from_world = world_from_surface.inverse();
+  const Vec3 o = surface_from_world.point(ray.origin_mm), d = surface_from_world.vector(ray.direction);
+  using namespace detail;
+  std::optional<Interval> inside;
+  switch (kind) {
+    case SurfaceKind::none:
+      return std::nullopt;
+    case SurfaceKind::plane:
+      if (d.z <= 0.0) return std::nullopt;
+      return -o.z / d.z;
+    case SurfaceKind::sphere:
+      inside = inside_round(o, d, radius_mm);
+      break;
+    case SurfaceKind::cylinder:
+      inside = both(inside_round({o.x, o.y, 0.0}, {d.x, d.y, 0.0}, radius_mm),
+                    inside_slab(o.z, d.z, half_size_mm.z));
+      break;
+    case SurfaceKind::box:
+      inside = both(inside_slab(o.x, d.x, half_size_mm.x),
+                    both(inside_slab(o.y, d.y, half_size_mm.y), inside_slab(o.z, d.z, half_size_mm.z)));
+      break;
+  }
+  if (!inside) return std::nullopt;
+  return inside->far;
+}
 
 }  // namespace lucerna

@@ -111,99 +111,31 @@ void HeightField::sample(const HeightSurface& surface) {
   });
 }
 
-FieldNode HeightField::leaf(std::size_t bx, std::size_t by) const {
-  constexpr std::size_t k = kBlock;
-  const std::size_t n = static_cast<std::size_t>(cells_) + 1;
-  const FieldVertex* const base = &vertices_[by * k * n + bx * k];
-  const FieldVertex &v00 = base[0], &v10 = base[k], &v01 = base[k * n], &v11 = base[k * n + k];
-  const float dx = 0.5F * (v10.z_mm - v00.z_mm + v11.z_mm - v01.z_mm) / static_cast<float>(k);
-  const float dy = 0.5F * (v01.z_mm - v00.z_mm + v11.z_mm - v10.z_mm) / static_cast<float>(k);
-  // Heights over that plane, and how far a cell's edges can bend away from their chords: at most a quarter of
-  // the greatest difference between a slope and the chord's, in each direction.
-  float low = std::numeric_limits<float>::max(), high = -low, bend_x = 0.0F, bend_y = 0.0F;
-  for (std::size_t j = 0; j <= k; ++j) {
-    const FieldVertex* const row = base + j * n;
-    for (std::size_t i = 0; i <= k; ++i) {
-      const float r = row[i].z_mm - dx * static_cast<float>(i) - dy * static_cast<float>(j);
-      low = std::min(low, r);
-      high = std::max(high, r);
-    }
-    for (std::size_t i = 0; i < k; ++i) {
-      const float chord = row[i + 1].z_mm - row[i].z_mm;
-      bend_x = std::max({bend_x, std::abs(row[i].dzdx * step_x_mm_ - chord),
-                         std::abs(row[i + 1].dzdx * step_x_mm_ - chord)});
-    }
-    if (j == k) break;
-    for (std::size_t i = 0; i <= k; ++i) {
-      const float chord = row[i + n].z_mm - row[i].z_mm;
-      bend_y = std::max({bend_y, std::abs(row[i].dzdy * step_y_mm_ - chord),
-                         std::abs(row[i + n].dzdy * step_y_mm_ - chord)});
-    }
-  }
-  const float half = 0.5F * static_cast<float>(k);
-  // A hair more for the rounding of these sums.
-  const float slack = 1e-6F * (std::abs(low) + std::abs(high)) + std::numeric_limits<float>::min();
-  return {0.5F * (low + high) + half * (dx + dy), dx / step_x_mm_, dy / step_y_mm_,
-          0.5F * (high - low) + 0.25F * (bend_x + bend_y) + slack};
-}
-
-FieldNode HeightField::parent(int level, std::size_t ix, std::size_t iy) const {
-  const std::size_t n = (static_cast<std::size_t>(cells_ / kBlock) >> level) * 2;
-  const FieldNode* const children =
-      &nodes_[static_cast<std::size_t>(offsets_[static_cast<std::size_t>(level) - 1])];
-  const FieldNode* const c[4] = {&children[2 * iy * n + 2 * ix], &children[2 * iy * n + 2 * ix + 1],
-                                 &children[(2 * iy + 1) * n + 2 * ix],
-                                 &children[(2 * iy + 1) * n + 2 * ix + 1]};
-  FieldNode p{0.0F, 0.0F, 0.0F, -1.0F};
-  float there = 0.0F;
-  for (const FieldNode* const q : c) {
-    if (q->e < 0.0F) continue;
-    there += 1.0F;
-    p.a += q->a;
-    p.b += q->b;
-    p.c += q->c;
-  }
-  if (there == 0.0F) return p;
-  p.a /= there;
-  p.b /= there;
-  p.c /= there;
-  // Half a child's size; the children's centres lie as far from the parent's.
-  const float hx = 0.5F * step_x_mm_ * static_cast<float>(kBlock << (level - 1));
-  const float hy = 0.5F * step_y_mm_ * static_cast<float>(kBlock << (level - 1));
-  float low = std::numeric_limits<float>::max(), high = -low;
-  for (int i = 0; i < 4; ++i) {
-    if (c[i]->e < 0.0F) continue;
-    const float at_centre = c[i]->a - p.a - p.b * (i % 2 == 0 ? -hx : hx) - p.c * (i / 2 == 0 ? -hy : hy);
-    const float tilt = std::abs(c[i]->b - p.b) * hx + std::abs(c[i]->c - p.c) * hy;
-    low = std::min(low, at_centre - tilt - c[i]->e);
-    high = std::max(high, at_centre + tilt + c[i]->e);
-  }
-  p.a += 0.5F * (low + high);
-  p.e = 0.5F * (high - low) * (1.0F + 1e-6F) + 1e-6F * std::abs(p.a);
-  return p;
-}
-
 void HeightField::rebuild() {
   const auto blocks = static_cast<std::size_t>(cells_ / kBlock);
   parallel_blocks(blocks, 4, [&](std::size_t first, std::size_t last) {
     for (std::size_t by = first; by < last; ++by) {
       for (std::size_t bx = 0; bx < blocks; ++bx) {
         const std::size_t i = by * blocks + bx;
-        nodes_[i] = leaf_is_mirror_[i] != 0 ? leaf(bx, by) : FieldNode{};
+        nodes_[i] = leaf_is_mirror_[i] != 0
+                        ? field_leaf(vertices_.data(), cells_, step_x_mm_, step_y_mm_, bx, by)
+                        : FieldNode{};
       }
     }
   });
   for (std::size_t level = 1; level < offsets_.size(); ++level) {
     const std::size_t n = blocks >> level;
     FieldNode* const out = &nodes_[static_cast<std::size_t>(offsets_[level])];
-    for (std::size_t i = 0; i < n * n; ++i) out[i] = parent(static_cast<int>(level), i % n, i / n);
+    const FieldNode* const below = &nodes_[static_cast<std::size_t>(offsets_[level - 1])];
+    for (std::size_t i = 0; i < n * n; ++i) {
+      out[i] = field_parent(below, 2 * n, step_x_mm_, step_y_mm_, static_cast<int>(level), i % n, i / n);
+    }
   }
-  const float hx = 0.5F * step_x_mm_ * kBlock, hy = 0.5F * step_y_mm_ * kBlock;
   band_ = {std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
   for (std::size_t i = 0; i < blocks * blocks; ++i) {
     const FieldNode& node = nodes_[i];
     if (node.e < 0.0F) continue;
-    const double reach = static_cast<double>(std::abs(node.b) * hx + std::abs(node.c) * hy + node.e);
+    const double reach = static_cast<double>(field_reach(node, step_x_mm_, step_y_mm_));
     band_.low_mm = std::min(band_.low_mm, static_cast<double>(node.a) - reach);
     band_.high_mm = std::max(band_.high_mm, static_cast<double>(node.a) + reach);
   }

@@ -5,20 +5,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "lucerna/reflector/field_hierarchy.h"
 #include "lucerna/reflector/reflector.h"
 
 namespace lucerna {
-
-/// One grid vertex of a HeightField: height and gradient of the surface less those of the field's quadric.
-struct FieldVertex {
-  float z_mm = 0.0F, dzdx = 0.0F, dzdy = 0.0F;
-};
-
-/// A plane slab over a square of cells: |z - (a + b (x - cx) + c (y - cy))| <= e with (cx, cy) the square's
-/// centre, z over the quadric. e < 0 where no part of the mirror is.
-struct FieldNode {
-  float a = 0.0F, b = 0.0F, c = 0.0F, e = -1.0F;
-};
 
 /// z = c0 + cx x + cy y + cxx x^2 + cxy x y + cyy y^2. Kept in float so that kernels and builders use the
 /// same numbers.
@@ -42,7 +32,7 @@ struct Quadric {
 class HeightField {
  public:
   /// Cells per side of a leaf square.
-  static constexpr int kBlock = 8;
+  static constexpr int kBlock = kFieldBlock;
 
   /// Samples `reflector`; `cells` a side, a power of two from 8 to 8192. Cost: cells^2 evaluations of the
   /// surface.
@@ -62,6 +52,8 @@ class HeightField {
   const std::vector<FieldNode>& nodes() const { return nodes_; }
   /// Index of the first node of each level; the last level has one node.
   const std::vector<std::int32_t>& level_offsets() const { return offsets_; }
+  /// By leaf square, row after row: 0 where no part of the mirror is.
+  const std::vector<std::uint8_t>& leaf_is_mirror() const { return leaf_is_mirror_; }
   /// Height over the quadric lies in [low, high] wherever the mirror is.
   const HeightRange& band() const { return band_; }
 
@@ -74,8 +66,6 @@ class HeightField {
  private:
   void fit_quadric(const HeightSurface& surface);
   void sample(const HeightSurface& surface);
-  FieldNode leaf(std::size_t bx, std::size_t by) const;
-  FieldNode parent(int level, std::size_t ix, std::size_t iy) const;
 
   Aperture aperture_;
   int cells_;

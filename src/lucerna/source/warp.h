@@ -12,7 +12,7 @@ namespace lucerna::warp {
 
 /// Uniform on the unit disk, concentric: squares go to squarish sectors, which Sobol points like
 /// (P. Shirley and K. Chiu, "A low distortion map between disk and square", 1997).
-inline Vec3 disk(double u, double v) {
+LUCERNA_HD inline Vec3 disk(double u, double v) {
   const double a = 2.0 * u - 1.0, b = 2.0 * v - 1.0;
   if (a == 0.0 && b == 0.0) return {};
   const bool steep = std::abs(b) > std::abs(a);
@@ -23,28 +23,28 @@ inline Vec3 disk(double u, double v) {
 }
 
 /// Density cos(theta) / pi per solid angle about +z: Lambert's law, uniform in projected solid angle.
-inline Direction cosine_hemisphere(double u, double v) {
+LUCERNA_HD inline Direction cosine_hemisphere(double u, double v) {
   const Vec3 d = disk(u, v);
   return Direction::from_unit({d.x, d.y, std::sqrt(std::max(0.0, 1.0 - d.x * d.x - d.y * d.y))});
 }
 
 /// The direction with the given cosine to +z, at azimuth 2 pi v.
-inline Direction at_cosine(double cosine, double v) {
+LUCERNA_HD inline Direction at_cosine(double cosine, double v) {
   const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine)), phi = 2.0 * std::numbers::pi * v;
   return Direction::from_unit({sine * std::cos(phi), sine * std::sin(phi), cosine});
 }
 
 /// Density 1 / (4 pi) per solid angle.
-inline Direction sphere(double u, double v) { return at_cosine(1.0 - 2.0 * u, v); }
+LUCERNA_HD inline Direction sphere(double u, double v) { return at_cosine(1.0 - 2.0 * u, v); }
 
 /// Density (n + 1) / (2 pi) cos^n(theta) per solid angle about +z: the Phong lobe as E. Lafortune and Y.
 /// Willems sample it ("Using the modified Phong reflectance model for physically based rendering", 1994).
-inline Direction phong_lobe(double exponent, double u, double v) {
+LUCERNA_HD inline Direction phong_lobe(double exponent, double u, double v) {
   return at_cosine(std::pow(1.0 - u, 1.0 / (exponent + 1.0)), v);
 }
 
 /// `d`, given about +z, turned so that it is about `normal`.
-inline Direction about(const Direction& normal, const Direction& d) {
+LUCERNA_HD inline Direction about(const Direction& normal, const Direction& d) {
   return Frame::from_z(normal).direction(d);
 }
 

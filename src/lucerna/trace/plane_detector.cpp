@@ -97,26 +97,4 @@ PlaneBins::PlaneBins(const LuminanceDetector& detector)
       distance_mm_(detector.distance_mm),
       pupil_radius_mm_(detector.pupil_radius_mm) {}
 
-bool PlaneBins::counts(const Ray& r, double t) const {
-  if (kind_ == Kind::plane) return r.direction.z() < 0.0 && t >= 0.0;
-  if (kind_ == Kind::cone) return r.direction.z() >= least_cosine_;
-  if (!(r.direction.z() > 0.0)) return false;
-  const double at_pupil = t + distance_mm_ / r.direction.z();
-  const Vec3 p = r.at(at_pupil);
-  return at_pupil >= 0.0 && p.x * p.x + p.y * p.y <= pupil_radius_mm_ * pupil_radius_mm_;
-}
-
-std::optional<std::size_t> PlaneBins::cell(const Ray& ray) const {
-  const Ray r = plane_from_world_.ray(ray);
-  const double t = -r.origin_mm.z / r.direction.z();
-  if (!counts(r, t)) return std::nullopt;
-  const Vec3 p = r.at(t);
-  const double u = (p.x / grid_.size_x_mm + 0.5) * static_cast<double>(grid_.nx);
-  const double v = (p.y / grid_.size_y_mm + 0.5) * static_cast<double>(grid_.ny);
-  if (!(u >= 0.0 && v >= 0.0 && u < static_cast<double>(grid_.nx) && v < static_cast<double>(grid_.ny))) {
-    return std::nullopt;
-  }
-  return static_cast<std::size_t>(v) * grid_.nx + static_cast<std::size_t>(u);
-}
-
 }  // namespace lucerna

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 
-#include "lucerna/core/direction.h"
+#include "lucerna/core/frame.h"
+#include "lucerna/core/random.h"
 
 namespace lucerna {
 
@@ -16,6 +19,15 @@ struct ReflectionKey {
 
 /// `normal` tilted by a Gaussian angle of standard deviation `slope_error_rad` about each of two
 /// perpendicular axes (a random stream of its own, independent of the sequence that emits). Thread safe.
-Direction tilted_normal(const Direction& normal, double slope_error_rad, const ReflectionKey& key);
+LUCERNA_HD inline Direction tilted_normal(const Direction& normal, double slope_error_rad,
+                                          const ReflectionKey& key) {
+  // Streams below 2^16 belong to whoever emits with the same seed.
+  Rng rng(key.sequence_seed, key.ray, 0x10000u + static_cast<std::uint32_t>(key.bounce));
+  const double radius = slope_error_rad * std::sqrt(-2.0 * std::log(1.0 - rng.uniform()));
+  const double angle = 2.0 * std::numbers::pi * rng.uniform();
+  const Frame tangent = Frame::from_z(normal);
+  return Direction::from(normal.vec() + (radius * std::cos(angle)) * tangent.ex() +
+                         (radius * std::sin(angle)) * tangent.ey());
+}
 
 }  // namespace lucerna

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cfloat>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "lucerna/core/host_device.h"
+
+namespace lucerna {
+
+// How the tree of plane slabs over a HeightField is made, node by node: what CPU and GPU share when a
+// mirror's shape has changed. Every node depends on vertices or on its four children alone, so the nodes of a
+// level may be made in any order.
+
+/// One grid vertex of a HeightField: height and gradient of the surface less those of the field's quadric.
+struct FieldVertex {
+  float z_mm = 0.0F, dzdx = 0.0F, dzdy = 0.0F;
+};
+
+/// A plane slab over a square of cells: |z - (a + b (x - cx) + c (y - cy))| <= e with (cx, cy) the square's
+/// centre, z over the quadric. e < 0 where no part of the mirror is.
+struct FieldNode {
+  float a = 0.0F, b = 0.0F, c = 0.0F, e = -1.0F;
+};
+
+/// Cells per side of a leaf square.
+inline constexpr int kFieldBlock = 8;
+
+namespace detail {
+LUCERNA_HD inline float least(float a, float b) { return b < a ? b : a; }
+LUCERNA_HD inline float greatest(float a, float b) { return a < b ? b : a; }
+}  // namespace detail
+
+/// The slab over leaf square (bx, by) of a grid of `cells` a side.
+LUCERNA_HD inline FieldNode field_leaf(const FieldVertex* vertices, int cells, float step_x_mm,
+                                       float step_y_mm, std::size_t bx, std::size_t by) {
+  using detail::greatest, detail::least;
+  constexpr std::size_t k = kFieldBlock;
+  const std::size_t n = static_cast<std::size_t>(cells) + 1;
+  const FieldVertex* const base = vertices + (by * k * n + bx * k);
+  const FieldVertex &v00 = base[0], &v10 = base[k], &v01 = base[k * n], &v11 = base[k * n + k];
+  const float dx = 0.5F * (v10.z_mm - v00.z_mm + v11.z_mm - v01.z_mm) / static_cast<float>(k);
+  const float dy = 0.5F * (v01.z_mm - v00.z_mm + v11.z_mm - v10.z_mm) / static_cast<float>(k);
+  // Heights over that plane, and how far a cell's edges can bend away from their chords: at most a quarter of
+  // the greatest difference between a slope and the chord's, in each direction.
+  float low = FLT_MAX, high = -low, bend_x = 0.0F, bend_y = 0.0F;
+  for (std::size_t j = 0; j <= k; ++j) {
+    const FieldVertex* const row = base + j * n;
+    for (std::size_t i = 0; i <= k; ++i) {
+      const float r = row[i].z_mm - dx * static_cast<float>(i) - dy * static_cast<float>(j);
+      low = least(low, r);
+      high = greatest(high, r);
+    }
+    for (std::size_t i = 0; i < k; ++i) {
+      const float chord = row[i + 1].z_mm - row[i].z_mm;
+      bend_x = greatest(greatest(bend_x, std::abs(row[i].dzdx * step_x_mm - chord)),
+                        std::abs(row[i + 1].dzdx * step_x_mm - chord));
+    }
+    if (j == k) break;
+    for (std::size_t i = 0; i <= k; ++i) {
+      const float chord = row[i + n].z_mm - row[i].z_mm;
+      bend_y = greatest(greatest(bend_y, std::abs(row[i].dzdy * step_y_mm - chord)),
+                        std::abs(row[i + n].dzdy * step_y_mm - chord));
+    }
+  }
+  const float half = 0.5F * static_cast<float>(k);
+  // A hair more for the rounding of these sums.
+  const float slack = 1e-6F * (std::abs(low) + std::abs(high)) + FLT_MIN;
+  return {0.5F * (low + high) + half * (dx + dy), dx / step_x_mm, dy / step_y_mm,
+          0.5F * (high - low) + 0.25F * (bend_x + bend_y) + slack};
+}
+
+/// The slab over square (ix, iy) of `level` > 0 from the four of the level below, whose nodes begin at
+/// `children`; `n` of them a side.
+LUCERNA_HD inline FieldNode field_parent(const FieldNode* children, std::size_t n, float step_x_mm,
+                                         float step_y_mm, int level, std::size_t ix, std::size_t iy) {
+  const FieldNode* const c[4] = {&children[2 * iy * n + 2 * ix], &children[2 * iy * n + 2 * ix + 1],
+                                 &children[(2 * iy + 1) * n + 2 * ix],
+                                 &children[(2 * iy + 1) * n + 2 * ix + 1]};
+  FieldNode p{0.0F, 0.0F, 0.0F, -1.0F};
+  float there = 0.0F;
+  for (const FieldNode* const q : c) {
+    if (q->e < 0.0F) continue;
+    there += 1.0F;
+    p.a += q->a;
+    p.b += q->b;
+    p.c += q->c;
+  }
+  if (there == 0.0F) return p;
+  p.a /= there;
+  p.b /= there;
+  p.c /= there;
+  // Half a child's size; the children's centres lie as far from the parent's.
+  const float hx = 0.5F * step_x_mm * static_cast<float>(kFieldBlock << (level - 1));
+  const float hy = 0.5F * step_y_mm * static_cast<float>(kFieldBlock << (level - 1));
+  float low = FLT_MAX, high = -low;
+  for (int i = 0; i < 4; ++i) {
+    if (c[i]->e < 0.0F) continue;
+    const float at_centre = c[i]->a - p.a - p.b * (i % 2 == 0 ? -hx : hx) - p.c * (i / 2 == 0 ? -hy : hy);
+    const float tilt = std::abs(c[i]->b - p.b) * hx + std::abs(c[i]->c - p.c) * hy;
+    low = detail::least(low, at_centre - tilt - c[i]->e);
+    high = detail::greatest(high, at_centre + tilt + c[i]->e);
+  }
+  p.a += 0.5F * (low + high);
+  p.e = 0.5F * (high - low) * (1.0F + 1e-6F) + 1e-6F * std::abs(p.a);
+  return p;
+}
+
+/// How far the surface over a leaf may be from the height at its centre.
+LUCERNA_HD inline float field_reach(const FieldNode& leaf, float step_x_mm, float step_y_mm) {
+  const float hx = 0.5F * step_x_mm * kFieldBlock, hy = 0.5F * step_y_mm * kFieldBlock;
+  return std::abs(leaf.b) * hx + std::abs(leaf.c) * hy + leaf.e;
+}
+
+}  // namespace lucerna
