@@ -74,6 +74,7 @@ void AdaptiveModel::build_sampler() {
       const double share = layer.share * chart.share / total;
       has_etendue_ = has_etendue_ && has_volume(chart.box);
       places_.push_back({&layer.support, chart.chart, share / static_cast<double>(chart.trees.size()), {}});
+      sampler_places_.push_back({layer.support, chart.chart});
       const auto place = static_cast<std::uint32_t>(places_.size() - 1);
       for (const DensityTree& tree : chart.trees) {
         places_.back().trees.emplace_back(tree, chart.box);
@@ -108,16 +109,11 @@ void AdaptiveModel::build_sampler() {
 }
 
 std::size_t AdaptiveModel::leaf_of(std::uint32_t bits) const {
-  std::size_t i = guide_[bits >> guide_shift_];
-  while (i + 2 < leaves_.size() && leaves_[i + 1].first <= bits) ++i;
-  return i;
+  return adaptive_leaf(leaves_.data(), leaves_.size(), guide_.data(), guide_shift_, bits);
 }
 
-/// The part of the leaf's stretch of first numbers that lies below `bits`.
 double AdaptiveModel::place_in(std::size_t leaf, std::uint32_t bits) const {
-  // One less than the length, so that the rest of 2^32 at the last leaf wraps as it should.
-  const std::uint32_t first = leaves_[leaf].first, length = leaves_[leaf + 1].first - first - 1;
-  return (static_cast<double>(bits - first) + 0.5) * (1.0 / (static_cast<double>(length) + 1.0));
+  return adaptive_place_in(leaves_.data(), leaf, bits);
 }
 
 Ray AdaptiveModel::sample(const std::array<double, 4>& u) const {
@@ -242,6 +238,17 @@ double AdaptiveModel::pdf_solid_angle(const Vec3& point_mm, const Direction& dir
   }
   const double all = 4.0 * std::numbers::pi * sum / static_cast<double>(kQuadrature);
   return all > 0.0 ? radiance_at(point_mm, direction) / all : 0.0;
+}
+
+AdaptiveView AdaptiveModel::view() const {
+  return {leaves_.data(),
+          guide_.data(),
+          sampler_places_.data(),
+          static_cast<std::uint32_t>(leaves_.size()),
+          static_cast<std::uint32_t>(guide_.size()),
+          static_cast<std::uint32_t>(sampler_places_.size()),
+          guide_shift_,
+          data_.surface};
 }
 
 }  // namespace lucerna

@@ -7,6 +7,7 @@
 
 #include "lucerna/rayset/ray_set.h"
 #include "lucerna/source/adaptive_tree.h"
+#include "lucerna/source/adaptive_view.h"
 #include "lucerna/source/source_model.h"
 #include "lucerna/source/support.h"
 
@@ -54,16 +55,6 @@ struct AdaptiveData {
 NflFile encode_adaptive(const AdaptiveData& data);
 AdaptiveData decode_adaptive(const NflFile& file, std::string_view name);
 
-/// A leaf as the sampler reads it: 40 bytes, the same on a GPU. A ray of the leaf is `low + t * width` in the
-/// four numbers of its place, t in [0, 1)^4.
-struct SamplerLeaf {
-  std::array<float, 4> low{}, width{};
-  /// First of the 2^32 values of a random number that choose this leaf.
-  std::uint32_t first = 0;
-  /// Index into the model's places (layer and chart).
-  std::uint32_t place = 0;
-};
-
 /// The adaptive model as a source. A ray takes four numbers of the sequence: the first chooses the leaf (by
 /// inverting the sum of their shares through a guide table: O(1)) and, with what the choice leaves of it, the
 /// first number of the ray in the leaf; 1-3 are the others. Even points stay even this way: leaves are in the
@@ -97,6 +88,8 @@ class AdaptiveModel final : public SourceModel {
 
   /// Ray of the point `u` of the unit cube (multiples of 2^-32).
   Ray sample(const std::array<double, 4>& u) const;
+  /// What sample_adaptive reads; points into the model.
+  AdaptiveView view() const;
 
  private:
   struct Place {
@@ -117,6 +110,7 @@ class AdaptiveModel final : public SourceModel {
   std::vector<Place> places_;
   std::vector<SamplerLeaf> leaves_;  // and one more that only ends the last
   std::vector<std::uint32_t> guide_;
+  std::vector<SamplerPlace> sampler_places_;
   unsigned guide_shift_ = 31;
   bool has_etendue_ = true;
 };

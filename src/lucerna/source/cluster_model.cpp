@@ -20,9 +20,6 @@ constexpr double kFlatEnough = 0.01;
 /// Fine meshes are split less, so that no model takes more memory than this.
 constexpr std::size_t kMostPieces = std::size_t{1} << 22;
 
-/// 1 point, 2 segment, 3 triangle.
-int corners(const Triangle& e) { return e[0] == e[1] ? 1 : e[1] == e[2] ? 2 : 3; }
-
 double triangle_area(const std::array<Vec3, 3>& p) { return 0.5 * length(cross(p[1] - p[0], p[2] - p[0])); }
 
 std::array<double, 3> middle_of(const std::array<double, 3>& a, const std::array<double, 3>& b) {
@@ -57,10 +54,6 @@ void split(const MeshSurface& surface, const MeshPiece& piece, int splits, std::
   part({middle[1], middle[0], p[2]}, {share[1], share[0], s[2]});
   part(middle, share);
 }
-
-/// lambda with density 6 lambda (1 - lambda): the corner coordinate of a point whose density in a triangle is
-/// that coordinate. Inverse of 3 x^2 - 2 x^3.
-double inverse_smoothstep(double u) { return 0.5 - std::sin(std::asin(1.0 - 2.0 * u) / 3.0); }
 
 }  // namespace
 
@@ -100,7 +93,7 @@ std::vector<MeshPiece> mesh_pieces(const ClusterData& data) {
     piece.element = e;
     piece.share = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
     for (std::size_t k = 0; k < 3; ++k) piece.corner_mm[k] = points[data.elements[e][k]];
-    const int shape = corners(data.elements[e]);
+    const int shape = mesh_corners(data.elements[e]);
     if (shape == 3) {
       split(data.surface, piece, splits, pieces);
     } else {
@@ -127,7 +120,7 @@ ClusterModel::ClusterModel(ClusterData data) : data_(std::move(data)), pieces_(m
   // One item per corner of a piece: the part of its density that is that corner's.
   std::vector<double> weights(3 * pieces_.size(), 0.0);
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    const int shape = corners(data_.elements[pieces_[i].element]);
+    const int shape = mesh_corners(data_.elements[pieces_[i].element]);
     for (std::size_t k = 0; k < static_cast<std::size_t>(shape); ++k) {
       weights[3 * i + k] = pieces_[i].measure * pieces_[i].density[k] / shape;
       total_ += weights[3 * i + k];
@@ -169,50 +162,14 @@ std::unique_ptr<ClusterModel> ClusterModel::from_nfl(const NflFile& file, std::s
 
 std::size_t ClusterModel::triangles() const {
   return static_cast<std::size_t>(std::count_if(data_.elements.begin(), data_.elements.end(),
-                                                [](const Triangle& e) { return corners(e) == 3; }));
+                                                [](const Triangle& e) { return mesh_corners(e) == 3; }));
 }
 
-std::uint32_t ClusterModel::nearest_cluster(std::uint32_t element, const Vec3& point_mm) const {
-  const Triangle& e = data_.elements[element];
-  std::uint32_t best = e[0];
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t v : e) {
-    const Vec3 d = points_[v] - point_mm;
-    if (dot(d, d) < nearest) {
-      nearest = dot(d, d);
-      best = v;
-    }
-  }
-  return best;
-}
-
-Ray ClusterModel::sample(const std::array<double, 6>& u) const {
-  const std::uint32_t item =
-      alias_pick(piece_probability_.data(), piece_alias_.data(), piece_alias_.size(), u[0]);
-  const MeshPiece& piece = pieces_[item / 3];
-  const std::size_t k = item % 3;
-  const Vec3 &a = piece.corner_mm[k], &b = piece.corner_mm[(k + 1) % 3], &c = piece.corner_mm[(k + 2) % 3];
-  Vec3 p = a;
-  switch (corners(data_.elements[piece.element])) {
-    case 3: {
-      const double own = inverse_smoothstep(u[1]), rest = 1.0 - own;
-      p = own * a + (rest * u[2]) * b + (rest * (1.0 - u[2])) * c;
-      break;
-    }
-    case 2: {
-      const double own = std::sqrt(u[1]);
-      p = own * a + (1.0 - own) * (k == 0 ? b : c);
-      break;
-    }
-    default:
-      break;
-  }
-  p = data_.surface.put_back(p);
-  const std::uint32_t v = nearest_cluster(piece.element, p);
-  const std::size_t first = data_.leaf_begin[v], n = data_.leaf_begin[v + 1] - first;
-  const std::size_t leaf =
-      first + alias_pick(leaf_probability_.data() + first, leaf_alias_.data() + first, n, u[3]);
-  return {p, triangle_[leaf_triangle_[leaf]].sample(u[4], u[5])};
+ClusterView ClusterModel::view() const {
+  return {pieces_.data(),        data_.elements.data(),   points_.data(),           piece_probability_.data(),
+          piece_alias_.data(),   data_.leaf_begin.data(), leaf_probability_.data(), leaf_alias_.data(),
+          leaf_triangle_.data(), triangle_.data(),        pieces_.size(),           data_.elements.size(),
+          points_.size(),        data_.leaf.size(),       triangle_.size(),         data_.surface};
 }
 
 void ClusterModel::emit(const Sequence& sequence, std::uint64_t first, RayBlock& out) const {
@@ -260,7 +217,7 @@ void ClusterModel::pieces_along(const Vec3& arm, const See& see) const {
   };
   for (std::size_t e = 0; e < data_.elements.size(); ++e) {
     const Triangle& v = data_.elements[e];
-    if (corners(v) != 3) continue;
+    if (mesh_corners(v) != 3) continue;
     if (!cast(from_centre({points_[v[0]], points_[v[1]], points_[v[2]]}), arm, kBorderSlack)) continue;
     for (std::size_t i = element_begin_[e]; i < element_begin_[e + 1]; ++i) {
       const std::array<Vec3, 3> corner = from_centre(pieces_[i].corner_mm);
@@ -308,7 +265,7 @@ double ClusterModel::pdf_solid_angle(const Vec3& point_mm, const Direction& dire
   bool found = false;
   const Vec3 arm = point_mm - data_.surface.centre_mm;
   pieces_along(arm, [&](const MeshPiece& piece, const auto&, const auto&) {
-    v = nearest_cluster(piece.element, point_mm);
+    v = nearest_cluster(data_.elements[piece.element], points_.data(), point_mm);
     found = true;
     return false;
   });

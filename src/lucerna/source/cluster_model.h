@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "lucerna/source/cluster_view.h"
 #include "lucerna/source/mesh_surface.h"
 #include "lucerna/source/mesh_triangulation.h"
 #include "lucerna/source/source_model.h"
@@ -57,17 +58,6 @@ std::uint8_t weight_level(double relative);
 NflFile encode_clusters(const ClusterData& data);
 ClusterData decode_clusters(const NflFile& file, std::string_view name);
 
-/// A piece of the mesh fine enough that flat and surface areas agree; its corners are on the surface.
-struct MeshPiece {
-  std::array<Vec3, 3> corner_mm;
-  /// Each corner's coordinates in its element: what its density is interpolated with.
-  std::array<std::array<double, 3>, 3> share{};
-  std::array<double, 3> density{};  // relative, at the corners
-  std::uint32_t element = 0;
-  /// mm^2, mm or 1 by the element's shape.
-  double measure = 0.0;
-};
-
 /// The pieces of all elements: triangles are split at their edges' midpoints, put back on the surface, while
 /// a midpoint lies off its edge by more than 1 % of it, at most `kMeshSplits` times.
 inline constexpr int kMeshSplits = 4;
@@ -104,10 +94,11 @@ class ClusterModel final : public SourceModel {
   std::size_t triangles() const;
 
   /// Ray of the point `u` of the unit cube.
-  Ray sample(const std::array<double, 6>& u) const;
+  Ray sample(const std::array<double, 6>& u) const { return sample_clusters(view(), u); }
+  /// What `sample` reads; points into the model.
+  ClusterView view() const;
 
  private:
-  std::uint32_t nearest_cluster(std::uint32_t element, const Vec3& point_mm) const;
   void build_directions();
   /// Calls `see(piece, corners from the surface's centre, barycentric coordinates)` for the triangular pieces
   /// that the line along `arm` from the surface's centre meets (several on their borders), until it is false.

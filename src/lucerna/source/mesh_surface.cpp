@@ -71,13 +71,6 @@ std::optional<MeshSurface> as_hull(const Points& points) {
   return MeshSurface{MeshSurfaceKind::hull, {}, 0.0, {}, mean};
 }
 
-BoundingSurface bounding(const MeshSurface& s) {
-  const SurfaceKind kind = s.kind == MeshSurfaceKind::sphere     ? SurfaceKind::sphere
-                           : s.kind == MeshSurfaceKind::cylinder ? SurfaceKind::cylinder
-                                                                 : SurfaceKind::box;
-  return {kind, s.world_from_surface, s.radius_mm, s.half_size_mm};
-}
-
 Vec3 box_normal(const Vec3& local, const Vec3& half) {
   const std::array<double, 3> x{local.x, local.y, local.z}, h{half.x, half.y, half.z};
   std::size_t face = 0;
@@ -92,32 +85,6 @@ Vec3 box_normal(const Vec3& local, const Vec3& half) {
 }  // namespace
 
 std::string_view to_string(MeshSurfaceKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
-
-Vec3 MeshSurface::put_back(const Vec3& point_mm) const {
-  switch (kind) {
-    case MeshSurfaceKind::point:
-      return world_from_surface.origin_mm();
-    case MeshSurfaceKind::line: {
-      const Vec3 x = world_from_surface.ex(), o = world_from_surface.origin_mm();
-      return o + dot(point_mm - o, x) * x;
-    }
-    case MeshSurfaceKind::plane: {
-      const Vec3 z = world_from_surface.ez();
-      return point_mm - dot(point_mm - world_from_surface.origin_mm(), z) * z;
-    }
-    case MeshSurfaceKind::hull:
-      return point_mm;
-    default:
-      break;
-  }
-  const Vec3 out = point_mm - centre_mm;
-  const double distance = length(out);
-  if (!(distance > 0.0)) return point_mm;
-  if (kind == MeshSurfaceKind::sphere) return centre_mm + (radius_mm / distance) * out;
-  const Ray ray{centre_mm, Direction::from_unit(out / distance)};
-  const auto t = bounding(*this).exit_distance_mm(ray);
-  return t ? ray.at(*t) : point_mm;
-}
 
 Vec3 MeshSurface::normal(const Vec3& point_mm) const {
   if (kind == MeshSurfaceKind::plane) return world_from_surface.ez();

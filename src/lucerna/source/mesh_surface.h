@@ -39,7 +39,7 @@ struct MeshSurface {
   /// The point of the surface that belongs to a point near it: on the line from the centre for sphere,
   /// cylinder and box; the nearest one for point, line and plane; for a hull the point itself (its facets are
   /// the mesh).
-  Vec3 put_back(const Vec3& point_mm) const;
+  LUCERNA_HD Vec3 put_back(const Vec3& point_mm) const;
 
   /// Outward unit normal at a point of the surface; for hull, line and point the direction from the centre
   /// (+z if none).
@@ -50,6 +50,42 @@ struct MeshSurface {
 
   friend bool operator==(const MeshSurface&, const MeshSurface&) = default;
 };
+
+namespace detail {
+/// The same as a body, for sphere, cylinder and box.
+LUCERNA_HD inline BoundingSurface bounding(const MeshSurface& s) {
+  const SurfaceKind kind = s.kind == MeshSurfaceKind::sphere     ? SurfaceKind::sphere
+                           : s.kind == MeshSurfaceKind::cylinder ? SurfaceKind::cylinder
+                                                                 : SurfaceKind::box;
+  return {kind, s.world_from_surface, s.radius_mm, s.half_size_mm};
+}
+}  // namespace detail
+
+LUCERNA_HD inline Vec3 MeshSurface::put_back(const Vec3& point_mm) const {
+  switch (kind) {
+    case MeshSurfaceKind::point:
+      return world_from_surface.origin_mm();
+    case MeshSurfaceKind::line: {
+      const Vec3 x = world_from_surface.ex(), o = world_from_surface.origin_mm();
+      return o + dot(point_mm - o, x) * x;
+    }
+    case MeshSurfaceKind::plane: {
+      const Vec3 z = world_from_surface.ez();
+      return point_mm - dot(point_mm - world_from_surface.origin_mm(), z) * z;
+    }
+    case MeshSurfaceKind::hull:
+      return point_mm;
+    default:
+      break;
+  }
+  const Vec3 out = point_mm - centre_mm;
+  const double distance = length(out);
+  if (!(distance > 0.0)) return point_mm;
+  if (kind == MeshSurfaceKind::sphere) return centre_mm + (radius_mm / distance) * out;
+  const Ray ray{centre_mm, Direction::from_unit(out / distance)};
+  const auto t = detail::bounding(*this).exit_distance_mm(ray);
+  return t ? ray.at(*t) : point_mm;
+}
 
 /// A surface, and whether rays had to leave their starts to be on it.
 struct FoundSurface {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/source/spherical_triangle.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -60,24 +59,6 @@ SphericalTriangleSampler::SphericalTriangleSampler(const SphericalTriangle& t)
       sin_alpha_(std::sin(alpha_)),
       cos_alpha_(std::cos(alpha_)),
       cos_side_(dot(t.a, t.b)) {}
-
-Direction SphericalTriangleSampler::sample(double u, double v) const {
-  // The great circle through b that cuts off the area u * solid angle beside a meets the side ac in `edge`.
-  const double angle = u * solid_angle_ - alpha_;
-  const double s = std::sin(angle), t = std::cos(angle);
-  const double p = t - cos_alpha_, r = s + sin_alpha_ * cos_side_;
-  const double denominator = (r * s + p * t) * sin_alpha_;
-  double q = denominator != 0.0 ? ((r * t - p * s) * cos_alpha_ - r) / denominator : 1.0;
-  q = std::clamp(q, -1.0, 1.0);
-  const Vec3 edge = q * a_ + std::sqrt(1.0 - q * q) * c_across_a_;
-  // On the arc from b to `edge`, uniform in the cosine. 1 - cosine from the chord keeps small arcs exact.
-  const Vec3 chord = edge - b_;
-  const double drop = v * 0.5 * dot(chord, chord), z = 1.0 - drop;
-  const Vec3 sideways = edge - dot(edge, b_) * b_;
-  const double sideways_length = length(sideways);
-  if (sideways_length == 0.0) return Direction::from_unit(b_);
-  return Direction::from(z * b_ + (std::sqrt(drop * (2.0 - drop)) / sideways_length) * sideways);
-}
 
 std::uint32_t direction_code(const Direction& d) {
   std::uint32_t code = (d.x() < 0.0 ? 1u : 0u) | (d.y() < 0.0 ? 2u : 0u) | (d.z() < 0.0 ? 4u : 0u);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "lucerna/core/direction.h"
@@ -25,7 +27,7 @@ class SphericalTriangleSampler {
   explicit SphericalTriangleSampler(const SphericalTriangle& triangle);
 
   /// u, v in [0, 1); keeps areas.
-  Direction sample(double u, double v) const;
+  LUCERNA_HD Direction sample(double u, double v) const;
   /// 1 / pdf of what `sample` returns.
   double solid_angle_sr() const { return solid_angle_; }
 
@@ -33,6 +35,24 @@ class SphericalTriangleSampler {
   Vec3 a_, b_, c_across_a_;
   double solid_angle_ = 0.0, alpha_ = 0.0, sin_alpha_ = 0.0, cos_alpha_ = 1.0, cos_side_ = 1.0;
 };
+
+LUCERNA_HD inline Direction SphericalTriangleSampler::sample(double u, double v) const {
+  // The great circle through b that cuts off the area u * solid angle beside a meets the side ac in `edge`.
+  const double angle = u * solid_angle_ - alpha_;
+  const double s = std::sin(angle), t = std::cos(angle);
+  const double p = t - cos_alpha_, r = s + sin_alpha_ * cos_side_;
+  const double denominator = (r * s + p * t) * sin_alpha_;
+  double q = denominator != 0.0 ? ((r * t - p * s) * cos_alpha_ - r) / denominator : 1.0;
+  q = std::clamp(q, -1.0, 1.0);
+  const Vec3 edge = q * a_ + std::sqrt(1.0 - q * q) * c_across_a_;
+  // On the arc from b to `edge`, uniform in the cosine. 1 - cosine from the chord keeps small arcs exact.
+  const Vec3 chord = edge - b_;
+  const double drop = v * 0.5 * dot(chord, chord), z = 1.0 - drop;
+  const Vec3 sideways = edge - dot(edge, b_) * b_;
+  const double sideways_length = length(sideways);
+  if (sideways_length == 0.0) return Direction::from_unit(b_);
+  return Direction::from(z * b_ + (std::sqrt(drop * (2.0 - drop)) / sideways_length) * sideways);
+}
 
 /// The hierarchical subdivision of the sphere of directions: the eight octants, each split at its edges'
 /// midpoints into four, again and again. A triangle is named by a code: 3 bits of octant (bit 0 = x < 0, 1 =
