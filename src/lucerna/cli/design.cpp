@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct DesignArguments {
-  std::string project, output, time, seed = "1", rays, report;
+  std::string project, output, time, seed = "1", rays, device = "auto", report;
   bool resume = false;
 };
 
@@ -39,6 +39,9 @@ const char* to_string(DesignEnd end) {
 }
 
 DesignOptions design_options(const DesignArguments& a, const fs::path& checkpoint) {
+  if (trace_device(a.device) == TraceDevice::cuda) {
+    throw InputError("--device cuda: designs are made on the CPU only; lucerna trace can use a device");
+  }
   DesignOptions options;
   options.seed = parse_count(a.seed);
   if (!a.time.empty()) options.time_s = parse_number(a.time);
@@ -156,6 +159,7 @@ void add_design(CLI::App& app, Session& session, int& exit_code) {
   command.add_option("--rays", a.rays, "Rays of the finest evaluations (default 2^20)");
   command.add_option("--seed", a.seed, "Seed of the random numbers")->capture_default_str();
   command.add_option("--report", a.report, "Also write the report as one HTML file");
+  command.add_option("--device", a.device, "cpu or auto: designs are made on the CPU")->capture_default_str();
   command.add_flag("--resume", a.resume, "Go on from the folder's checkpoint");
   command.add_flag("--force", session.force, "Write into a folder that is not empty");
   session.add_json(command);

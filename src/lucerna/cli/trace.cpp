@@ -9,6 +9,7 @@
 #include "lucerna/core/file.h"
 #include "lucerna/report/report_trace.h"
 #include "lucerna/report/trace_files.h"
+#include "lucerna/trace/accelerator.h"
 #include "lucerna/trace/project.h"
 
 namespace lucerna::cli {
@@ -20,11 +21,11 @@ struct TraceArguments {
 };
 
 TraceOptions trace_options(const TraceArguments& a) {
-  if (a.device != "auto" && a.device != "cpu" && a.device != "cuda") {
-    throw UsageError(fmt::format("unknown device '{}'; expected auto, cpu or cuda", a.device));
-  }
-  if (a.device == "cuda") throw InputError("--device cuda: this program was built without CUDA");
   TraceOptions options;
+  options.device = trace_device(a.device);
+  if (options.device == TraceDevice::cuda && !why_no_cuda().empty()) {
+    throw InputError(fmt::format("--device cuda: {}", why_no_cuda()));
+  }
   options.seed = parse_count(a.seed);
   options.sequence = sequence_kind(a.sequence);
   if (!a.rays.empty()) {
@@ -44,6 +45,7 @@ void run_trace(const TraceArguments& a, Session& session) {
   for (const auto& input : project.inputs) session.add_input(input);
   const TraceResult result =
       session.timed("trace", [&] { return trace(project.scene, options, session.progress()); });
+  if (!result.device_note.empty()) session.note(result.device_note);
   const TraceFigures figures = session.timed("figures", [&] { return trace_figures(result); });
   Json json = session.json_head(options.seed, result.isa);
   json["sequence"] = std::string(to_string(result.sequence));

@@ -5,13 +5,9 @@
 #include <vector>
 
 #include "lucerna/trace/scene.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
-
-/// Rays per block: the unit that is drawn, traced and given to one replicate.
-inline constexpr std::uint64_t kBlockRays = 512;
-/// Independent replicates of every run, for standard errors (design.md section 4).
-inline constexpr std::uint64_t kReplicates = 16;
 
 /// Deals the rays of a run, numbered 0, 1, 2, ..., to the sources. Which source a number belongs to is fixed
 /// by whole shares alone, in a balanced word: of the first n numbers, source s has n * share(s) / sum of

@@ -8,6 +8,8 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
+#include "lucerna/trace/device_scene.h"
+#include "lucerna/trace/device_trace.h"
 #include "lucerna/trace/ray_numbering.h"
 #include "lucerna/trace/trace_engine.h"
 
@@ -50,14 +52,22 @@ void order_rays(const std::vector<KeptRays>& tasks, TraceResult& result) {
 
 }  // namespace
 
+TraceDevice trace_device(std::string_view name) {
+  if (name == "cpu") return TraceDevice::cpu;
+  if (name == "cuda") return TraceDevice::cuda;
+  if (name == "auto") return TraceDevice::automatic;
+  throw UsageError(fmt::format("unknown device '{}'; expected auto, cpu or cuda", name));
+}
+
 std::uint64_t default_ray_count(const Scene& scene) {
   check(scene);
   return RayNumbering(scene.sources, 0).default_count();
 }
 
-TraceResult trace(const Scene& scene, const TraceOptions& options, Progress& progress) {
-  check(scene);
-  const RayNumbering numbering(scene.sources, options.seed);
+namespace {
+
+/// All of a result but what comes of tracing.
+TraceResult empty_result(const Scene& scene, const RayNumbering& numbering, const TraceOptions& options) {
   TraceResult result;
   result.first_ray = options.first_ray;
   result.last_ray = options.last_ray.value_or(numbering.default_count());
@@ -77,8 +87,70 @@ TraceResult trace(const Scene& scene, const TraceOptions& options, Progress& pro
   result.planes = scene.planes;
   result.luminances = scene.luminances;
   result.ray_detectors = scene.ray_detectors;
-  const bool keep_rays = !scene.ray_detectors.empty();
+  return result;
+}
 
+/// The accelerators that `options` ask for; none: the CPU traces, and `note` says why if that is a surprise.
+Accelerators chosen_accelerators(const Scene& scene, const TraceOptions& options, std::string& note) {
+  if (options.device == TraceDevice::cpu) return {};
+  const bool must = options.device == TraceDevice::cuda;
+  if (options.engine == EngineKind::reference || !options.isa.empty()) {
+    if (must) throw UsageError("the reference engine and chosen instruction sets are the CPU's");
+    return {};
+  }
+  Accelerators devices = cuda_accelerators();
+  if (devices.empty()) {
+    if (must) throw InputError(fmt::format("--device cuda: {}", why_no_cuda()));
+    return {};
+  }
+  const std::string why = why_not_on_accelerators(scene);
+  if (why.empty()) return devices;
+  if (must) throw InputError(fmt::format("--device cuda: {}", why));
+  note = fmt::format("traced on the CPU: {}", why);
+  return {};
+}
+
+TraceResult trace_on_cpu(const Scene& scene, const RayNumbering& numbering, const TraceOptions& options,
+                         Progress& progress);
+
+}  // namespace
+
+TraceResult trace(const Scene& scene, const TraceOptions& options, Progress& progress) {
+  check(scene);
+  std::string note;
+  const Accelerators devices = chosen_accelerators(scene, options, note);
+  if (!devices.empty()) return trace_on(devices, scene, options, progress);
+  TraceResult result = trace_on_cpu(scene, RayNumbering(scene.sources, options.seed), options, progress);
+  result.device_note = std::move(note);
+  return result;
+}
+
+TraceResult trace_on(const Accelerators& accelerators, const Scene& scene, const TraceOptions& options,
+                     Progress& progress) {
+  check(scene);
+  const std::string why = why_not_on_accelerators(scene);
+  if (!why.empty()) throw InputError(why);
+  const RayNumbering numbering(scene.sources, options.seed);
+  TraceResult result = empty_result(scene, numbering, options);
+  result.isa = accelerators.front()->isa();
+  Tally empty;
+  empty.absorbed.resize(kMirrorLosses + result.body_names.size());
+  empty.lost.resize(kLostCauses);
+  empty.lost_rays.resize(kLostCauses);
+  for (const FarFieldDetector& d : scene.far_fields) empty.bins.emplace_back(FarFieldGrid(d).size());
+  for (const PlaneDetector& d : scene.planes) empty.bins.emplace_back(d.grid.size());
+  for (const LuminanceDetector& d : scene.luminances) empty.bins.emplace_back(d.grid.size());
+  result.replicates.assign(kReplicates, empty);
+  run_on(accelerators, scene, numbering, options, result, progress);
+  return result;
+}
+
+namespace {
+
+TraceResult trace_on_cpu(const Scene& scene, const RayNumbering& numbering, const TraceOptions& options,
+                         Progress& progress) {
+  TraceResult result = empty_result(scene, numbering, options);
+  const bool keep_rays = !scene.ray_detectors.empty();
   const auto engine = options.engine == EngineKind::reference
                           ? make_reference_engine(scene, numbering, options)
                           : make_wavefront_engine(scene, numbering, options);
@@ -118,5 +190,7 @@ TraceResult trace(const Scene& scene, const TraceOptions& options, Progress& pro
   order_rays(kept, result);
   return result;
 }
+
+}  // namespace
 
 }  // namespace lucerna

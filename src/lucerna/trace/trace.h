@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "lucerna/core/progress.h"
 #include "lucerna/core/sequence.h"
@@ -15,6 +16,12 @@ namespace lucerna {
 /// `fast`: height fields sampled on a grid and traced in vectors of float32. `reference`: the exact surfaces,
 /// one ray at a time in double; what the fast one is checked against.
 enum class EngineKind { fast, reference };
+
+/// `automatic`: on CUDA devices where there are some and they can trace the scene, else on the CPU.
+enum class TraceDevice { cpu, cuda, automatic };
+
+/// "cpu", "cuda" or "auto"; throws UsageError on anything else.
+TraceDevice trace_device(std::string_view name);
 
 /// How a scene is traced.
 struct TraceOptions {
@@ -29,9 +36,11 @@ struct TraceOptions {
   EngineKind engine = EngineKind::fast;
   /// Cells a side of the height fields of the fast engine: a power of two, 8 to 8192.
   int cells = 1024;
-  /// Instruction set of the fast engine: "scalar", "portable", "avx2", "avx512"; empty = the best that the processor
-  /// has.
+  /// Instruction set of the fast engine: "scalar", "portable", "avx2", "avx512"; empty = the best that the
+  /// processor has.
   std::string isa;
+  /// `cuda` throws InputError where there is no device, or none that can trace the scene.
+  TraceDevice device = TraceDevice::cpu;
 };
 
 /// Rays that are traced when no number is asked for: every ray of the ray files once, and 2^20 for the other

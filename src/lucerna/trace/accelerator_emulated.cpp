@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#define LUCERNA_ONE_LANE
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <new>
+
+#include "lucerna/trace/accelerator.h"
+#include "lucerna/trace/trace_kernel.h"
+
+namespace lucerna {
+
+namespace {
+
+class EmulatedAccelerator final : public Accelerator {
+ public:
+  std::string name() const override { return "emulated"; }
+  std::string isa() const override { return "emulated"; }
+  /// Few, so that short tests use every stream again.
+  std::uint32_t chunk_blocks() const override { return 16; }
+
+  void* allocate(std::size_t bytes) override {
+    // What is not written first must show: no number in here is one by chance.
+    void* const p = allocate_host(bytes);
+    std::memset(p, 0xff, bytes);
+    return p;
+  }
+  void release(void* device) noexcept override { std::free(device); }
+  void* allocate_host(std::size_t bytes) override {
+    void* const p = std::malloc(bytes);
+    if (p == nullptr) throw std::bad_alloc();
+    return p;
+  }
+  void release_host(void* host) noexcept override { std::free(host); }
+
+  void upload(int, void* device, const void* host, std::size_t bytes) override {
+    std::memcpy(device, host, bytes);
+  }
+  void download(int, void* host, const void* device, std::size_t bytes) override {
+    std::memcpy(host, device, bytes);
+  }
+  void fill(int, void* device, unsigned char byte, std::size_t bytes) override {
+    std::memset(device, byte, bytes);
+  }
+
+  void trace(int, const LaunchView& v) override {
+    for (std::size_t block = 0; block < v.blocks; ++block) {
+      Counters counters;
+      for (std::uint32_t k = 0; k < kBlockRays; ++k) trace_number(v, block, k, counters);
+      std::int64_t* const ledger = v.ledger + (v.first_block + block) % kReplicates * kLedgerSums;
+      for (int i = 0; i < kLedgerSums; ++i) deposit(ledger + i, counters.sum[i]);
+    }
+  }
+
+  void rebuild(int, const HierarchyView& h) override {
+    for (int level = 0; level < h.levels; ++level) {
+      const std::size_t n = static_cast<std::size_t>(h.cells / kFieldBlock) >> level;
+      for (std::size_t i = 0; i < n * n; ++i) rebuild_node(h, level, i);
+    }
+    double low = std::numeric_limits<double>::max(), high = -low;
+    const std::size_t blocks = static_cast<std::size_t>(h.cells / kFieldBlock);
+    for (std::size_t i = 0; i < blocks * blocks; ++i) widen_band(h, i, low, high);
+    h.band[0] = low;
+    h.band[1] = high;
+  }
+
+  void wait(int) override {}
+};
+
+}  // namespace
+
+std::unique_ptr<Accelerator> make_emulated_accelerator() { return std::make_unique<EmulatedAccelerator>(); }
+
+}  // namespace lucerna

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stands in for cuda/accelerator_cuda.cu in a build without CUDA.
+#include "lucerna/trace/accelerator.h"
+
+namespace lucerna {
+
+std::vector<std::unique_ptr<Accelerator>> cuda_accelerators() { return {}; }
+std::string why_no_cuda() { return "this program was built without CUDA"; }
+
+}  // namespace lucerna

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/device_scene.h"
+
+#include <algorithm>
+#include <type_traits>
+
+#include "lucerna/core/error.h"
+#include "lucerna/source/adaptive_model.h"
+#include "lucerna/source/cluster_model.h"
+#include "lucerna/trace/field_view.h"
+
+namespace lucerna {
+
+std::string why_not_on_accelerators(const Scene& scene) {
+  // Whoever adds something to a scene meets a compiler error here, and says whether the kernels know it.
+  [[maybe_unused]] const auto& [sources, reflectors, far_fields, planes, luminances, ray_detectors, bodies] =
+      scene;
+  if (!bodies.empty()) return "bodies are traced on the CPU only";
+  for (const PlacedReflector& placed : reflectors) {
+    [[maybe_unused]] const auto& [reflector, frame, reflectance, slope_error_mrad] = placed;
+    [[maybe_unused]] const auto& [surface, aperture] = reflector;
+  }
+  return "";
+}
+
+namespace {
+
+/// Does ray_from_chart know all that this support has? What it does not know is drawn on the CPU and sent.
+bool device_draws(const Support& support) {
+  // Whoever adds something to a support meets a compiler error here.
+  [[maybe_unused]] const auto& [kind, map, frame, radius_mm, half_size_mm, twist_per_mm] = support;
+  return true;
+}
+
+bool device_draws(const AdaptiveView& model) {
+  return std::all_of(model.places, model.places + model.place_count,
+                     [](const SamplerPlace& place) { return device_draws(place.support); });
+}
+
+}  // namespace
+
+template <class T>
+const T* DeviceScene::put(const T* data, std::size_t n) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  const std::size_t bytes = std::max<std::size_t>(n, 1) * sizeof(T);
+  buffers_.emplace_back(accelerator_, bytes);
+  if (n > 0) accelerator_.upload(0, buffers_.back().as<void>(), data, n * sizeof(T));
+  // The caller's array may go; nothing may still be reading it.
+  accelerator_.wait(0);
+  return buffers_.back().as<const T>();
+}
+
+DeviceScene::DeviceScene(Accelerator& accelerator, const Scene& scene, const RayNumbering& numbering,
+                         const TraceOptions& options)
+    : accelerator_(accelerator) {
+  LUCERNA_CHECK(why_not_on_accelerators(scene).empty(), "{}", why_not_on_accelerators(scene));
+  for (std::size_t s = 0; s < scene.sources.size(); ++s) {
+    sources_.push_back(source_view(scene.sources[s], numbering.ray_flux(s)));
+    has_sent_ = has_sent_ || is_sent(s);
+  }
+  for (const PlacedReflector& r : scene.reflectors) add_mirror(r, options.cells);
+  view_.sequence = options.sequence;
+  view_.max_bounces = options.max_bounces;
+  view_.sources = put(sources_.data(), sources_.size());
+  view_.mirror_count = static_cast<std::int32_t>(mirrors_.size());
+  device_mirrors_ = const_cast<MirrorView*>(put(mirrors_.data(), mirrors_.size()));
+  view_.mirrors = device_mirrors_;
+  add_detectors(scene);
+}
+
+SourceView DeviceScene::source_view(const PlacedSource& source, double ray_flux) {
+  SourceView v;
+  v.world_from_source = view_of(source.world_from_source);
+  v.ray_flux = ray_flux;
+  const auto* const model = dynamic_cast<const AdaptiveModel*>(source.rays.get());
+  if (model != nullptr && device_draws(model->view())) {
+    AdaptiveView a = model->view();
+    a.leaves = put(a.leaves, a.leaf_count);
+    a.guide = put(a.guide, a.guide_count);
+    a.places = put(a.places, a.place_count);
+    v.kind = SourceView::Kind::adaptive;
+    v.adaptive = a;
+  } else if (const auto* clusters = dynamic_cast<const ClusterModel*>(source.rays.get())) {
+    ClusterView c = clusters->view();
+    c.pieces = put(c.pieces, c.piece_count);
+    c.elements = put(c.elements, c.element_count);
+    c.points = put(c.points, c.cluster_count);
+    c.piece_probability = put(c.piece_probability, 3 * c.piece_count);
+    c.piece_alias = put(c.piece_alias, 3 * c.piece_count);
+    c.leaf_begin = put(c.leaf_begin, c.cluster_count + 1);
+    c.leaf_probability = put(c.leaf_probability, c.leaf_count);
+    c.leaf_alias = put(c.leaf_alias, c.leaf_count);
+    c.leaf_triangle = put(c.leaf_triangle, c.leaf_count);
+    c.triangles = put(c.triangles, c.triangle_count);
+    v.kind = SourceView::Kind::clusters;
+    v.clusters = c;
+  }
+  return v;
+}
+
+void DeviceScene::add_mirror(const PlacedReflector& reflector, int cells) {
+  const HeightField field(reflector.reflector, cells);
+  MirrorView m;
+  m.field = view_of(field);
+  m.world_from_mirror = view_of(reflector.world_from_reflector);
+  m.mirror_from_world = view_of(reflector.world_from_reflector.inverse());
+  const auto& table = reflector.reflectance.table();
+  m.reflectance = put(table.data(), table.size());
+  m.reflectance_entries = static_cast<std::uint32_t>(table.size());
+  m.slope_error_rad = 1e-3 * reflector.slope_error_mrad;
+
+  HierarchyView h;
+  h.vertices = put(field.vertices().data(), field.vertices().size());
+  vertices_.push_back(const_cast<FieldVertex*>(h.vertices));
+  h.leaf_is_mirror = put(field.leaf_is_mirror().data(), field.leaf_is_mirror().size());
+  buffers_.emplace_back(accelerator_, field.nodes().size() * sizeof(FieldNode));
+  h.nodes = buffers_.back().as<FieldNode>();
+  buffers_.emplace_back(accelerator_, 2 * sizeof(double));
+  h.band = buffers_.back().as<double>();
+  std::copy(field.level_offsets().begin(), field.level_offsets().end(), h.offsets);
+  h.cells = field.cells();
+  h.levels = static_cast<std::int32_t>(field.level_offsets().size());
+  h.step_x = field.step_x_mm();
+  h.step_y = field.step_y_mm();
+  m.field.vertices = &h.vertices->z_mm;
+  m.field.nodes = &h.nodes->a;
+  mirrors_.push_back(m);
+  hierarchies_.push_back(h);
+  node_counts_.push_back(field.nodes().size());
+  bands_.emplace_back();
+  rebuild(mirrors_.size() - 1);
+}
+
+void DeviceScene::rebuild(std::size_t m) {
+  accelerator_.rebuild(0, hierarchies_[m]);
+  double band[2];
+  accelerator_.download(0, band, hierarchies_[m].band, sizeof band);
+  accelerator_.wait(0);
+  bands_[m] = {band[0], band[1]};
+  mirrors_[m].field.low = static_cast<float>(band[0]);
+  mirrors_[m].field.high = static_cast<float>(band[1]);
+  if (device_mirrors_ == nullptr) return;
+  accelerator_.upload(0, device_mirrors_ + m, &mirrors_[m], sizeof(MirrorView));
+  accelerator_.wait(0);
+}
+
+void DeviceScene::set_vertices(std::size_t m, const std::vector<FieldVertex>& vertices) {
+  const std::size_t n = static_cast<std::size_t>(hierarchies_[m].cells) + 1;
+  LUCERNA_CHECK(vertices.size() == n * n, "{} vertices, {} a side", vertices.size(), n);
+  accelerator_.upload(0, vertices_[m], vertices.data(), vertices.size() * sizeof(FieldVertex));
+  rebuild(m);
+}
+
+std::vector<FieldNode> DeviceScene::nodes(std::size_t m) const {
+  std::vector<FieldNode> nodes(node_counts_[m]);
+  accelerator_.download(0, nodes.data(), hierarchies_[m].nodes, nodes.size() * sizeof(FieldNode));
+  accelerator_.wait(0);
+  return nodes;
+}
+
+void DeviceScene::add_detectors(const Scene& scene) {
+  std::uint64_t first_bin = 0;
+  const auto count = [&](std::size_t bins) {
+    bin_counts_.push_back(bins);
+    first_bin += bins;
+  };
+  std::vector<FarFieldView> far_fields;
+  for (const FarFieldDetector& d : scene.far_fields) {
+    const FarFieldGrid grid(d);
+    far_fields.push_back({static_cast<std::int32_t>(grid.c_count()),
+                          static_cast<std::int32_t>(grid.gamma_count()), first_bin});
+    count(grid.size());
+  }
+  std::vector<PlaneView> planes;
+  const auto add = [&](const PlaneBins& bins) {
+    planes.push_back({bins, first_bin});
+    count(bins.size());
+  };
+  for (const PlaneDetector& d : scene.planes) add(PlaneBins(d));
+  for (const LuminanceDetector& d : scene.luminances) add(PlaneBins(d));
+  view_.far_fields = put(far_fields.data(), far_fields.size());
+  view_.far_field_count = static_cast<std::int32_t>(far_fields.size());
+  view_.planes = put(planes.data(), planes.size());
+  view_.plane_count = static_cast<std::int32_t>(planes.size());
+  view_.bins_per_replicate = first_bin;
+  const auto sums = [&](std::size_t n) {
+    buffers_.emplace_back(accelerator_, std::max<std::size_t>(n, 1) * sizeof(std::int64_t));
+    accelerator_.fill(0, buffers_.back().as<void>(), 0, buffers_.back().bytes());
+    return buffers_.back().as<std::int64_t>();
+  };
+  view_.bins = sums(kReplicates * first_bin);
+  view_.ledger = sums(kReplicates * kLedgerSums);
+  accelerator_.wait(0);
+}
+
+void DeviceScene::add_to(std::vector<Tally>& replicates) const {
+  std::vector<std::int64_t> bins(kReplicates * view_.bins_per_replicate);
+  std::vector<std::int64_t> ledger(kReplicates * kLedgerSums);
+  accelerator_.download(0, bins.data(), view_.bins, bins.size() * sizeof(std::int64_t));
+  accelerator_.download(0, ledger.data(), view_.ledger, ledger.size() * sizeof(std::int64_t));
+  accelerator_.wait(0);
+  const auto index = [](auto cause) { return static_cast<std::size_t>(cause); };
+  for (std::size_t r = 0; r < kReplicates; ++r) {
+    Tally& t = replicates[r];
+    const std::int64_t* const sum = &ledger[r * kLedgerSums];
+    t.rays += static_cast<std::uint64_t>(sum[kRays]);
+    t.reflections += static_cast<std::uint64_t>(sum[kReflections]);
+    t.emitted += sum[kEmitted];
+    t.out_direct += sum[kOutDirect];
+    t.out_reflected += sum[kOutReflected];
+    t.absorbed[index(MirrorLoss::face)] += sum[kAbsorbedFace];
+    t.absorbed[index(MirrorLoss::back)] += sum[kAbsorbedBack];
+    t.lost[index(LostCause::bounce_limit)] += sum[kLostBounceLimit];
+    t.lost[index(LostCause::not_finite)] += sum[kLostNotFinite];
+    t.lost_rays[index(LostCause::bounce_limit)] += static_cast<std::uint64_t>(sum[kLostBounceLimitRays]);
+    t.lost_rays[index(LostCause::not_finite)] += static_cast<std::uint64_t>(sum[kLostNotFiniteRays]);
+    const std::int64_t* bin = bins.data() + r * view_.bins_per_replicate;
+    for (std::size_t d = 0; d < bin_counts_.size(); ++d) {
+      for (std::size_t i = 0; i < bin_counts_[d]; ++i) t.bins[d][i] += *bin++;
+    }
+  }
+}
+
+}  // namespace lucerna

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lucerna/reflector/height_field.h"
+#include "lucerna/trace/accelerator.h"
+#include "lucerna/trace/ray_numbering.h"
+#include "lucerna/trace/scene.h"
+#include "lucerna/trace/trace.h"
+
+namespace lucerna {
+
+/// Memory of an accelerator, or memory of the CPU that it copies fast from and to; released with its owner.
+class AcceleratorBuffer {
+ public:
+  AcceleratorBuffer() = default;
+  AcceleratorBuffer(Accelerator& accelerator, std::size_t bytes, bool on_host = false)
+      : accelerator_(&accelerator),
+        data_(on_host ? accelerator.allocate_host(bytes) : accelerator.allocate(bytes)),
+        bytes_(bytes),
+        on_host_(on_host) {}
+  AcceleratorBuffer(AcceleratorBuffer&& other) noexcept { *this = std::move(other); }
+  AcceleratorBuffer& operator=(AcceleratorBuffer&& other) noexcept {
+    std::swap(accelerator_, other.accelerator_);
+    std::swap(data_, other.data_);
+    std::swap(bytes_, other.bytes_);
+    std::swap(on_host_, other.on_host_);
+    return *this;
+  }
+  AcceleratorBuffer(const AcceleratorBuffer&) = delete;
+  AcceleratorBuffer& operator=(const AcceleratorBuffer&) = delete;
+  ~AcceleratorBuffer() {
+    if (data_ == nullptr) return;
+    on_host_ ? accelerator_->release_host(data_) : accelerator_->release(data_);
+  }
+
+  template <class T>
+  T* as() const {
+    return static_cast<T*>(data_);
+  }
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  Accelerator* accelerator_ = nullptr;
+  void* data_ = nullptr;
+  std::size_t bytes_ = 0;
+  bool on_host_ = false;
+};
+
+/// Why `scene` can only be traced on the CPU, as half a sentence; empty if an accelerator can.
+std::string why_not_on_accelerators(const Scene& scene);
+
+/// A scene in an accelerator's memory: source models and height fields are uploaded once, the fields' trees
+/// are made there. Everything it was made from may go afterwards. Memory: 12 bytes a vertex of the fields, 16
+/// sets of bins of 8 bytes, the models' flat arrays.
+class DeviceScene {
+ public:
+  /// The scene must be one that why_not_on_accelerators accepts.
+  DeviceScene(Accelerator& accelerator, const Scene& scene, const RayNumbering& numbering,
+              const TraceOptions& options);
+
+  /// Gives mirror `m` another shape on the same grid, and makes its tree again.
+  void set_vertices(std::size_t m, const std::vector<FieldVertex>& vertices);
+  /// The tree of mirror `m` and its band, as they are in the accelerator's memory.
+  std::vector<FieldNode> nodes(std::size_t m) const;
+  HeightRange band(std::size_t m) const { return bands_[m]; }
+
+  /// All that a launch reads and writes but its blocks.
+  const LaunchView& view() const { return view_; }
+  /// Sources whose rays the CPU draws.
+  bool has_sent_sources() const { return has_sent_; }
+  bool is_sent(std::size_t source) const { return sources_[source].kind == SourceView::Kind::sent; }
+
+  /// Adds all sums to the kReplicates tallies. Waits for the first stream only.
+  void add_to(std::vector<Tally>& replicates) const;
+
+ private:
+  template <class T>
+  const T* put(const T* data, std::size_t n);
+  SourceView source_view(const PlacedSource& source, double ray_flux);
+  void add_mirror(const PlacedReflector& reflector, int cells);
+  void add_detectors(const Scene& scene);
+  void rebuild(std::size_t m);
+
+  Accelerator& accelerator_;
+  std::vector<AcceleratorBuffer> buffers_;
+  std::vector<SourceView> sources_;
+  std::vector<MirrorView> mirrors_;
+  std::vector<HierarchyView> hierarchies_;
+  std::vector<FieldVertex*> vertices_;
+  std::vector<std::size_t> node_counts_;
+  std::vector<HeightRange> bands_;
+  MirrorView* device_mirrors_ = nullptr;
+  std::vector<std::size_t> bin_counts_;
+  LaunchView view_;
+  bool has_sent_ = false;
+};
+
+}  // namespace lucerna

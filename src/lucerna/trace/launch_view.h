@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "lucerna/core/sequence.h"
+#include "lucerna/reflector/field_hierarchy.h"
+#include "lucerna/source/adaptive_view.h"
+#include "lucerna/source/cluster_view.h"
+#include "lucerna/trace/kernel.h"
+#include "lucerna/trace/plane_detector.h"
+#include "lucerna/trace/reflectance.h"
+#include "lucerna/trace/units.h"
+
+namespace lucerna {
+
+// What a launch of the tracing kernel reads and writes: plain data and pointers into the accelerator's
+// memory.
+
+/// Sums of one replicate, in units or counts.
+enum LedgerSum : std::int32_t {
+  kRays,
+  kReflections,
+  kEmitted,
+  kOutDirect,
+  kOutReflected,
+  kAbsorbedFace,
+  kAbsorbedBack,
+  kLostBounceLimit,
+  kLostNotFinite,
+  kLostBounceLimitRays,
+  kLostNotFiniteRays,
+  kLedgerSums
+};
+
+struct SourceView {
+  /// `sent`: the CPU draws the rays and sends them along (ray files, analytic emitters).
+  enum class Kind : std::int32_t { sent, adaptive, clusters } kind = Kind::sent;
+  FrameView world_from_source;
+  /// Flux of a ray of weight 1, in mean rays.
+  double ray_flux = 0.0;
+  AdaptiveView adaptive;
+  ClusterView clusters;
+};
+
+/// A SourceRun.
+struct RunView {
+  std::uint64_t first = 0, sequence_seed = 0;
+  std::uint32_t source = 0, count = 0;
+};
+
+struct MirrorView {
+  FieldView field;
+  FrameView world_from_mirror, mirror_from_world;
+  const ReflectanceEntry* reflectance = nullptr;
+  std::uint32_t reflectance_entries = 0;
+  double slope_error_rad = 0.0;
+};
+
+struct FarFieldView {
+  std::int32_t c_count = 0, gamma_count = 0;
+  /// Where its bins begin within those of a replicate.
+  std::uint64_t first_bin = 0;
+};
+struct PlaneView {
+  PlaneBins bins;
+  std::uint64_t first_bin = 0;
+};
+
+/// Rays drawn by the CPU, by their places in the launch.
+struct SentRays {
+  const float *x = nullptr, *y = nullptr, *z = nullptr, *dx = nullptr, *dy = nullptr, *dz = nullptr;
+  const float* weight = nullptr;
+};
+
+/// A ray that left, as RayBlock keeps it; all bytes 0xff (no number) where the ray of that place did not
+/// leave.
+struct OutRay {
+  float x, y, z, kx, ky, kz, weight;
+};
+
+/// Blocks first_block .. first_block + blocks - 1 of a run (kBlockRays numbers each).
+struct LaunchView {
+  std::uint64_t first_block = 0;
+  std::uint32_t blocks = 0;
+  /// Runs of block b of the launch: runs[run_begin[b]] .. runs[run_begin[b + 1] - 1], in order.
+  const std::uint32_t* run_begin = nullptr;
+  const RunView* runs = nullptr;
+  SentRays sent;
+
+  SequenceKind sequence = SequenceKind::sobol;
+  std::int32_t max_bounces = 0, mirror_count = 0, far_field_count = 0, plane_count = 0;
+  const SourceView* sources = nullptr;
+  const MirrorView* mirrors = nullptr;
+  const FarFieldView* far_fields = nullptr;
+  const PlaneView* planes = nullptr;
+
+  /// kReplicates times bins_per_replicate, and times kLedgerSums.
+  std::int64_t* bins = nullptr;
+  std::uint64_t bins_per_replicate = 0;
+  std::int64_t* ledger = nullptr;
+  /// By place; null if no detector keeps rays.
+  OutRay* out_rays = nullptr;
+};
+
+/// The tree over a height field, to be made again from its vertices.
+struct HierarchyView {
+  const FieldVertex* vertices = nullptr;
+  FieldNode* nodes = nullptr;
+  const std::uint8_t* leaf_is_mirror = nullptr;
+  /// Two numbers: low, high.
+  double* band = nullptr;
+  std::int32_t offsets[16] = {};
+  std::int32_t cells = 0, levels = 0;
+  float step_x = 0.0F, step_y = 0.0F;
+};
+
+}  // namespace lucerna

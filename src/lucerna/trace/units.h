@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+namespace lucerna {
+
+/// All sums of a trace are whole numbers of one unit, so that they do not depend on the order of adding: one
+/// unit is 2^-26 of the mean ray's flux. Rounding is at most 2^-27 of a mean ray per deposit, far below
+/// counting noise. No sum can overflow: a run has at most kMostRays = 2^34 rays and they sum to at most about
+/// 2^60 units, of 2^63.
+inline constexpr double kUnitsPerRay = 0x1p26;
+inline constexpr std::uint64_t kMostRays = std::uint64_t{1} << 34;
+
+/// A ray's flux, in mean rays, as whole units.
+inline std::int64_t to_units(double rays) { return std::llround(rays * kUnitsPerRay); }
+
+/// Rays per block: the unit that is drawn, traced and given to one replicate.
+inline constexpr std::uint64_t kBlockRays = 512;
+/// Independent replicates of every run, for standard errors (design.md section 4).
+inline constexpr std::uint64_t kReplicates = 16;
+
+}  // namespace lucerna

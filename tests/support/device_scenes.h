@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "lucerna/source/draw_rays.h"
+#include "lucerna/source/emitter.h"
+#include "lucerna/trace/trace.h"
+
+/// What both the CPU's stand-in for a GPU and real GPUs are tested with.
+namespace lucerna::test {
+
+/// A lamp in a deep mirror with a second mirror across its light, and every kind of detector.
+inline Scene scene_of(std::shared_ptr<const RaySource> rays) {
+  const Reflector deep = profile_reflector({{0.0, 0.0}, {10.0, 3.0}, {20.0, 4.0}, {30.0, 12.0}, {45.0, 40.0}},
+                                           Aperture::circle(90.0, 8.0));
+  const Reflector flat = conic_reflector(ConicPreset::parabola, 200.0, 0.0, Aperture::rectangle(30.0, 40.0));
+  Scene scene;
+  scene.sources = {{std::move(rays), Frame::from_axis(Direction::from({1, 2, 3}), 0.3, {1, 0, 0}), 800.0}};
+  scene.reflectors = {{deep, Frame::from_axis(Direction::from({0.1, 0, -1}), 0.0, {0, 0, 15}),
+                       Reflectance({{0.0, 0.9}, {45.0, 0.8}, {80.0, 0.95}}), 0.0},
+                      {flat, Frame::from_axis(Direction{}, 0.0, {10, 0, -50}), Reflectance(0.7), 3.0}};
+  scene.far_fields = {{"far", 5.0, 1.0}, {"coarse", 30.0, 10.0}};
+  scene.planes = {{"road", {Frame::from_axis(Direction{}, 0.0, {0, 0, -3000}), 9000.0, 9000.0, 50, 40}}};
+  scene.luminances = {
+      {"view",
+       {Frame::from_axis(Direction::from({0, 0.1, -1}), 0.0, {0, 0, 0}), 120.0, 120.0, 30, 30},
+       10.0}};
+  scene.ray_detectors = {{}};
+  return scene;
+}
+
+inline std::shared_ptr<const RaySource> cylinder() { return make_emitter({.kind = EmitterKind::cylinder}); }
+
+inline std::shared_ptr<RaySet> rays_of(const RaySource& source, std::size_t n) {
+  auto set = std::make_shared<RaySet>();
+  set->header.set_flux(1000.0);
+  set->rays = draw_rays(source, Sequence(SequenceKind::random, 5), n);
+  return set;
+}
+
+inline void expect_same(const TraceResult& a, const TraceResult& b) {
+  ASSERT_EQ(a.replicates.size(), b.replicates.size());
+  for (std::size_t r = 0; r < a.replicates.size(); ++r) EXPECT_TRUE(a.replicates[r] == b.replicates[r]) << r;
+  EXPECT_TRUE(a.out_rays == b.out_rays);
+  EXPECT_TRUE(a.out_runs == b.out_runs);
+}
+
+/// A mirror of every family that is traced as a height field.
+inline std::vector<Reflector> families() {
+  const Aperture round = Aperture::circle(90.0, 12.0), box = Aperture::rectangle(90.0, 70.0);
+  return {conic_reflector(ConicPreset::parabola, 15.0, 0.0, round),
+          conic_reflector(ConicPreset::ellipse, 25.0, 120.0, round),
+          conic_reflector(ConicPreset::hyperbola, 25.0, 120.0, box),
+          profile_reflector({{0.0, 10.0}, {20.0, 6.0}, {30.0, 3.0}, {45.0, -5.0}}, round),
+          conic_trough(ConicPreset::parabola, 10.0, 0.0, box)};
+}
+
+/// The same with one mirror instead of the two.
+inline Scene scene_of(std::shared_ptr<const RaySource> rays, const Reflector& mirror) {
+  Scene scene = scene_of(std::move(rays));
+  scene.reflectors = {{mirror, Frame::from_axis(Direction{}, 0.0, {0, 0, -12}), Reflectance(0.9), 0.0}};
+  return scene;
+}
+
+/// How the rays that left two traces compare, pairwise by number.
+struct RayPairs {
+  std::size_t rays = 0, differ = 0;
+  double most_mm = 0.0, most_direction = 0.0;
+};
+
+/// Runs whose counts differ hold at least that many rays that only one of the two has.
+inline RayPairs compare_rays(const TraceResult& a, const TraceResult& b) {
+  RayPairs p;
+  std::size_t i = 0, j = 0, k = 0;
+  for (const OutRun& run : a.out_runs) {
+    while (k < b.out_runs.size() && b.out_runs[k].block < run.block) j += b.out_runs[k++].rays;
+    const bool pairs =
+        k < b.out_runs.size() && b.out_runs[k].block == run.block && b.out_runs[k].rays == run.rays;
+    for (std::uint32_t n = 0; pairs && n < run.rays; ++n) {
+      const Vec3 from = a.out_rays.origin_mm(i + n) - b.out_rays.origin_mm(j + n);
+      const double mm = length(from);
+      const double turn = length(a.out_rays.direction(i + n).vec() - b.out_rays.direction(j + n).vec());
+      // Other hits than rounding explains: a ray that grazes an edge takes another way.
+      if (mm > 1e-4 || turn > 1e-5) {
+        ++p.differ;
+      } else {
+        p.most_mm = std::max(p.most_mm, mm);
+        p.most_direction = std::max(p.most_direction, turn);
+      }
+    }
+    p.rays += run.rays;
+    p.differ += pairs ? 0 : 1;
+    i += run.rays;
+    if (k < b.out_runs.size() && b.out_runs[k].block == run.block) j += b.out_runs[k++].rays;
+  }
+  return p;
+}
+
+}  // namespace lucerna::test
