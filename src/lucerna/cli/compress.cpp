@@ -88,7 +88,8 @@ Compressed make_model(const CompressArguments& a, Session& session) {
 void compress(const CompressArguments& a, Session& session) {
   session.start();
   const auto made = session.timed("compress", [&] { return make_model(a, session); });
-  const auto& [model, rays] = made;
+  const SourceModel* model = made.model.get();
+  const std::uint64_t rays = made.rays;
   const std::uint64_t bytes = session.timed("write", [&] { return save_source_model(a.output, *model); });
   Json json = session.json_head(parse_count(a.seed));
   json["method"] = std::string(model->method());
