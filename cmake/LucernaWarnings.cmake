@@ -4,11 +4,12 @@
 # Designated initialisers are meant to leave the rest at its default: no -Wmissing-field-initializers.
 add_library(lucerna_warnings INTERFACE)
 target_compile_options(lucerna_warnings INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Woverloaded-virtual
-  -Wcast-qual -Wundef -Wno-missing-field-initializers
+  "$<$<COMPILE_LANGUAGE:CXX>:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wconversion;-Wno-sign-conversion;-Wnon-virtual-dtor>"
+  "$<$<COMPILE_LANGUAGE:CXX>:-Woverloaded-virtual;-Wcast-qual;-Wundef;-Wno-missing-field-initializers>"
   # clang warns of every float that meets a double, also where a double is asked for.
-  $<$<CXX_COMPILER_ID:GNU>:-Wdouble-promotion>)
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wdouble-promotion>)
 
 # The same bits for every optimisation level and compiler: no contraction of a * b + c behind our back.
 add_library(lucerna_numerics INTERFACE)
-target_compile_options(lucerna_numerics INTERFACE -ffp-contract=off)
+target_compile_options(lucerna_numerics INTERFACE
+  "$<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>" "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-ffp-contract=off>")
