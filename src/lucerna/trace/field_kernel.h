@@ -12,6 +12,7 @@ namespace {
 
 inline constexpr float kFar = 1e18f;
 
+/// A component that is nearly 0 counts as a tiny positive one; its sign is the reciprocal's everywhere.
 LUCERNA_HD inline Float reciprocal_of(Float d) {
   const Float tiny = 1e-20f;
   return Float(1.0f) / select(abs(d) < tiny, tiny, d);
@@ -160,7 +161,7 @@ class Packet {
     const Float scale = to_float(shift_left(Int(8), level_));
     const Float wx = scale * f_.step_x, wy = scale * f_.step_y;
     const Float xl = fma(to_float(nx), wx, f_.x0), yl = fma(to_float(ny), wy, f_.y0);
-    const Mask right = Float(0.0f) < dx_, north = Float(0.0f) < dy_;
+    const Mask right = Float(0.0f) < idx_, north = Float(0.0f) < idy_;
     const Float tx = (select(right, xl + wx, xl) - ox_) * idx_,
                 ty = (select(north, yl + wy, yl) - oy_) * idy_;
     const Float te = max(min(min(tx, ty), end_), t_);
@@ -204,8 +205,8 @@ class Packet {
     Int cx, cy;
     cell_at(te, cx, cy);
     const Mask by_x = tx <= ty;
-    const Int step_x = select(Float(0.0f) < dx_, Int(1), Int(-1)),
-              step_y = select(Float(0.0f) < dy_, Int(1), Int(-1));
+    const Int step_x = select(Float(0.0f) < idx_, Int(1), Int(-1)),
+              step_y = select(Float(0.0f) < idy_, Int(1), Int(-1));
     const Int ex = nx + step_x, ey = ny + step_y;
     const Int last = shift_left(Int(1), level_) - Int(1);
     const Int fx = shift_left(nx, level_), fy = shift_left(ny, level_);
@@ -236,7 +237,7 @@ class Packet {
   }
 
   LUCERNA_HD void leaf_step() {
-    const Mask right = Float(0.0f) < dx_, north = Float(0.0f) < dy_;
+    const Mask right = Float(0.0f) < idx_, north = Float(0.0f) < idy_;
     const Int gx = ix_ + select(right, Int(1), Int(0)), gy = iy_ + select(north, Int(1), Int(0));
     const Float tx = (fma(to_float(gx), f_.step_x, f_.x0) - ox_) * idx_;
     const Float ty = (fma(to_float(gy), f_.step_y, f_.y0) - oy_) * idy_;

@@ -2,8 +2,14 @@
 #include "lucerna/trace/kernel.h"
 
 #include <gtest/gtest.h>
+#if defined(__linux__)
+#include <sys/mman.h>
+#include <unistd.h>
+#endif
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 
 #include "lucerna/core/error.h"
@@ -147,6 +153,97 @@ TEST(KernelsSlow, FewerThanOneDisagreementInAHundredThousand) {
   RecordProperty("disagreements", std::to_string(differ));
   EXPECT_LT(static_cast<double>(differ), 1e-5 * static_cast<double>(rays));
 }
+
+// Rays exactly along the axis, also on cell borders, and along the grid lines.
+TEST(Kernels, RaysAlongTheAxesOfTheGrid) {
+  const Reflector mirror = conic_reflector(ConicPreset::parabola, 15.0, 0.0, Aperture::rectangle(64.0, 64.0));
+  const HeightField field(mirror, 64);
+  const FieldView view = view_of(field);
+  for (const Kernels* kernels : available_kernels()) {
+    auto in = std::make_unique<LocalRays>();
+    auto out = std::make_unique<LocalHits>();
+    for (std::size_t i = 0; i < kBatch; ++i) {
+      const auto along = static_cast<float>(i % 63) - 31.5F + (i % 3 == 0 ? 0.5F : 0.0F);
+      const float zero = i % 2 == 0 ? 0.0F : -0.0F;
+      in->x[i] = i < 256 ? along : 0.0F;
+      in->y[i] = i < 256 ? 0.25F * along : along;
+      in->z[i] = i < 256 ? 90.0F : 20.0F;
+      in->dx[i] = i < 256 ? zero : (i % 2 == 0 ? 1.0F : -1.0F);
+      in->dy[i] = zero;
+      in->dz[i] = i < 256 ? -1.0F : zero;
+      in->on_mirror[i] = 0;
+    }
+    kernels->intersect(view, *in, kBatch, *out);
+    for (std::size_t i = 0; i < kBatch; ++i) {
+      const double x = in->x[i], y = in->y[i];
+      const double side = std::sqrt(std::max(0.0, 1200.0 - y * y));
+      const bool there = i < 256 || (side <= 32.0 && y * y < 1200.0);
+      ASSERT_EQ(out->state[i], there ? kFront : kMiss) << kernels->isa << ", ray " << i;
+      if (there) {
+        EXPECT_NEAR(out->t[i], i < 256 ? 90.0 - (x * x + y * y) / 60.0 : side, 1e-3) << i;
+      }
+    }
+  }
+}
+
+#if defined(__linux__)
+/// A copy of floats whose last one ends where a page that may not be read begins.
+class Fenced {
+ public:
+  Fenced(const float* from, std::size_t n) {
+    const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    const std::size_t bytes = (n * sizeof(float) + page - 1) / page * page;
+    size_ = bytes + 2 * page;
+    // Before it too: places off the grid may be below 0.
+    start_ = static_cast<char*>(mmap(nullptr, size_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+    if (start_ == MAP_FAILED || mprotect(start_ + page, bytes, PROT_READ | PROT_WRITE) != 0) std::abort();
+    data_ = reinterpret_cast<float*>(start_ + page + bytes) - n;
+    std::copy_n(from, n, data_);
+  }
+  ~Fenced() { munmap(start_, size_); }
+  Fenced(const Fenced&) = delete;
+  Fenced& operator=(const Fenced&) = delete;
+  const float* data() const { return data_; }
+
+ private:
+  char* start_;
+  std::size_t size_;
+  float* data_;
+};
+
+// Lanes that are done keep places off the grid and gather along with the others: they must stay within the
+// arrays. Rays that leave by the last row, beside others that go on, did not before.
+TEST(Kernels, FinishedLanesReadWithinTheArrays) {
+  const Reflector mirror = conic_reflector(ConicPreset::ellipse, 25.0, 120.0, Aperture::circle(90.0, 12.0));
+  const HeightField field(mirror, 64);
+  FieldView view = view_of(field);
+  const Fenced vertices(view.vertices, 3 * field.vertices().size());
+  const Fenced nodes(view.nodes, 4 * field.nodes().size());
+  view.vertices = vertices.data();
+  view.nodes = nodes.data();
+  Rng rng(5, 0);
+  for (const Kernels* kernels : available_kernels()) {
+    auto in = std::make_unique<LocalRays>();
+    auto out = std::make_unique<LocalHits>();
+    std::size_t hits = 0;
+    for (int batch = 0; batch < 200; ++batch) {
+      for (std::size_t i = 0; i < kBatch; ++i) {
+        const Direction d = random_direction(rng);
+        in->x[i] = static_cast<float>(80.0 * rng.uniform() - 40.0);
+        in->y[i] = static_cast<float>(80.0 * rng.uniform() - 40.0);
+        in->z[i] = static_cast<float>(40.0 * rng.uniform());
+        in->dx[i] = static_cast<float>(d.x());
+        in->dy[i] = static_cast<float>(d.y());
+        in->dz[i] = static_cast<float>(d.z());
+        in->on_mirror[i] = 0;
+      }
+      kernels->intersect(view, *in, kBatch, *out);
+      for (std::size_t i = 0; i < kBatch; ++i) hits += out->state[i] != kMiss;
+    }
+    EXPECT_GT(hits, 20000u);
+  }
+}
+#endif
 
 TEST(Kernels, FarFieldCellsAreThoseOfTheGrid) {
   const FarFieldGrid grid({"far", 5.0, 1.0});
