@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "lucerna/core/direction.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 
@@ -156,7 +157,12 @@ Mesh read_obj(const std::filesystem::path& path) {
       mesh.triangles.push_back({corners[0], corners[k - 1], corners[k]});
   }
   if (mesh.triangles.empty()) throw_input_error(path.string(), "", "holds no triangle");
-  return mesh;
+  // Exporters repeat vertices along seams of texture; to a mirror they are one.
+  Weld weld;
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t k : triangle) weld.corner(mesh.vertices_mm[k]);
+  }
+  return std::move(weld.mesh);
 }
 
 Mesh read_mesh(const std::filesystem::path& path) {
@@ -166,6 +172,38 @@ Mesh read_mesh(const std::filesystem::path& path) {
   if (ending == ".stl") return read_stl(path);
   if (ending == ".obj") return read_obj(path);
   throw_input_error(path.string(), "", "ends in '{}', expected .stl or .obj", ending);
+}
+
+std::vector<Vec3> corner_normals(const Mesh& mesh, double crease_deg) {
+  const double least_cosine = std::cos(radians(crease_deg));
+  const std::size_t n = mesh.triangles.size();
+  std::vector<Vec3> flat(n);
+  std::vector<std::vector<std::size_t>> corners_at(mesh.vertices_mm.size());
+  std::vector<double> angle(3 * n);
+  for (std::size_t t = 0; t < n; ++t) {
+    std::array<Vec3, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = mesh.vertices_mm[mesh.triangles[t][k]];
+      corners_at[mesh.triangles[t][k]].push_back(3 * t + k);
+    }
+    const Vec3 across = cross(p[1] - p[0], p[2] - p[0]);
+    flat[t] = length(across) > 0.0 ? Direction::from(across).vec() : Vec3{0.0, 0.0, 1.0};
+    if (length(across) == 0.0) continue;  // its corners weigh nothing
+    for (std::size_t k = 0; k < 3; ++k) {
+      angle[3 * t + k] =
+          angle_between(Direction::from(p[(k + 1) % 3] - p[k]), Direction::from(p[(k + 2) % 3] - p[k]));
+    }
+  }
+  std::vector<Vec3> normals(3 * n);
+  for (std::size_t c = 0; c < 3 * n; ++c) {
+    const Vec3& own = flat[c / 3];
+    Vec3 sum{};
+    for (const std::size_t other : corners_at[mesh.triangles[c / 3][c % 3]]) {
+      if (dot(own, flat[other / 3]) >= least_cosine) sum = sum + angle[other] * flat[other / 3];
+    }
+    normals[c] = length(sum) > 0.0 ? Direction::from(sum).vec() : own;
+  }
+  return normals;
 }
 
 std::size_t open_edges(const Mesh& mesh) {

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
@@ -77,6 +79,53 @@ TEST(Mesh, BadFilesAreRefused) {
   write_file(dir / "t.obj", kTetrahedron);
   const std::string good = binary_stl(read_mesh(dir / "t.obj"));
   refused("cut.stl", good.substr(0, good.size() - 1));
+}
+
+/// A sphere of radius 10 from `rings` by 2 `rings` squares.
+Mesh sphere(std::size_t rings) {
+  Mesh mesh;
+  const std::size_t turns = 2 * rings;
+  for (std::size_t i = 0; i <= rings; ++i) {
+    const double theta = std::numbers::pi * static_cast<double>(i) / static_cast<double>(rings);
+    for (std::size_t j = 0; j < turns; ++j) {
+      const double phi = 2.0 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(turns);
+      mesh.vertices_mm.push_back({10.0 * std::sin(theta) * std::cos(phi),
+                                  10.0 * std::sin(theta) * std::sin(phi), 10.0 * std::cos(theta)});
+    }
+  }
+  const auto at = [&](std::size_t i, std::size_t j) {
+    return static_cast<std::uint32_t>(i * turns + j % turns);
+  };
+  for (std::size_t i = 0; i < rings; ++i) {
+    for (std::size_t j = 0; j < turns; ++j) {
+      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  return mesh;
+}
+
+TEST(Mesh, CornerNormalsOfASphereAreRadialAndOfACubeSharp) {
+  double worst[2] = {0.0, 0.0};
+  for (const std::size_t fine : {std::size_t{0}, std::size_t{1}}) {
+    const Mesh mesh = sphere(fine == 0 ? 20 : 40);
+    const auto normals = corner_normals(mesh, 60.0);
+    ASSERT_EQ(normals.size(), 3 * mesh.triangles.size());
+    for (std::size_t c = 0; c < normals.size(); ++c) {
+      const Vec3& p = mesh.vertices_mm[mesh.triangles[c / 3][c % 3]];
+      if (std::abs(p.z) > 9.5) continue;  // poles are fans of slivers
+      worst[fine] = std::max(worst[fine], length(normals[c] - 0.1 * p));
+    }
+  }
+  EXPECT_LT(worst[0], 0.02);
+  EXPECT_LT(worst[1], 0.3 * worst[0]) << "the error falls with the square of the size";
+  // The corner of a tetrahedron's base: with a crease below the angles between faces each face stays flat.
+  const test::TempDir dir;
+  write_file(dir / "t.obj", kTetrahedron);
+  const Mesh tetrahedron = read_mesh(dir / "t.obj");
+  const auto sharp = corner_normals(tetrahedron, 30.0), round = corner_normals(tetrahedron, 180.0);
+  EXPECT_EQ(sharp[0], (Vec3{0, 0, -1}));
+  EXPECT_LT(length(round[0] - (-1.0 / std::sqrt(3.0)) * Vec3{1, 1, 1}), 1e-12);
 }
 
 }  // namespace

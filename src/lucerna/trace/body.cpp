@@ -9,6 +9,15 @@
 
 namespace lucerna {
 
+void check(const Body& body) {
+  if (!body.mesh || body.mesh->triangles.empty())
+    throw InputError(fmt::format("body '{}' has no triangles", body.name));
+  if (!(body.smooth_below_deg >= 0.0 && body.smooth_below_deg <= 180.0)) {
+    throw InputError(fmt::format("body '{}': smooth below {} degrees, expected 0 to 180", body.name,
+                                 body.smooth_below_deg));
+  }
+}
+
 #if defined(LUCERNA_EMBREE)
 
 struct BodyTracer::Device {
@@ -26,8 +35,6 @@ struct BodyTracer::Device {
 namespace {
 
 RTCGeometry geometry(RTCDevice device, const Body& body) {
-  if (!body.mesh || body.mesh->triangles.empty())
-    throw InputError(fmt::format("body '{}' has no triangles", body.name));
   const Mesh& mesh = *body.mesh;
   RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* v = static_cast<float*>(
@@ -47,6 +54,14 @@ RTCGeometry geometry(RTCDevice device, const Body& body) {
   return g;
 }
 
+/// Corner normals in the luminaire frame, if the body wants them.
+std::vector<Vec3> smooth_normals(const Body& body) {
+  if (body.smooth_below_deg == 0.0) return {};
+  std::vector<Vec3> normals = corner_normals(*body.mesh, body.smooth_below_deg);
+  for (Vec3& n : normals) n = body.world_from_body.vector(n);
+  return normals;
+}
+
 }  // namespace
 
 BodyTracer::BodyTracer(const std::vector<Body>& bodies)
@@ -57,6 +72,8 @@ BodyTracer::BodyTracer(const std::vector<Body>& bodies)
   device_->direct = rtcNewScene(device_->device);
   device_->returning = rtcNewScene(device_->device);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
+    check(bodies[i]);
+    corner_normals_.push_back(smooth_normals(bodies[i]));
     RTCGeometry g = geometry(device_->device, bodies[i]);
     rtcAttachGeometryByID(device_->returning, g, static_cast<unsigned>(i));
     if (!bodies[i].only_returning_light) rtcAttachGeometryByID(device_->direct, g, static_cast<unsigned>(i));
@@ -85,8 +102,20 @@ std::optional<BodyHit> BodyTracer::first_hit(const Ray& ray, double t_max_mm, bo
   q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(returning ? device_->returning : device_->direct, &context, &q);
   if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  const Direction n = Direction::from({q.hit.Ng_x, q.hit.Ng_y, q.hit.Ng_z});
-  return BodyHit{static_cast<double>(q.ray.tfar), q.hit.geomID, dot(n, ray.direction) > 0.0 ? -n : n};
+  Direction n = Direction::from({q.hit.Ng_x, q.hit.Ng_y, q.hit.Ng_z});
+  if (dot(n, ray.direction) > 0.0) n = -n;
+  BodyHit hit{static_cast<double>(q.ray.tfar), q.hit.geomID, n};
+  const std::vector<Vec3>& corners = corner_normals_[q.hit.geomID];
+  if (corners.empty()) return hit;
+  const double u = static_cast<double>(q.hit.u), v = static_cast<double>(q.hit.v);
+  const Vec3* const c = &corners[3 * std::size_t{q.hit.primID}];
+  const Vec3 blend = (1.0 - u - v) * c[0] + u * c[1] + v * c[2];
+  if (!(length(blend) > 0.0)) return hit;
+  Direction smooth = Direction::from(blend);
+  if (dot(smooth, n) < 0.0) smooth = -smooth;
+  const bool same_side = dot(smooth, ray.direction) < 0.0 && dot(reflect(ray.direction, smooth), n) > 0.0;
+  if (same_side) hit.normal = smooth;
+  return hit;
 }
 
 #else

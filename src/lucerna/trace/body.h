@@ -24,12 +24,19 @@ struct Body {
   /// True for the lamp's own body: rays of a lamp's file already left it, so it only meets light that comes
   /// back from a mirror or another body; else its shadow would be counted twice.
   bool only_returning_light = false;
+  /// > 0: a mirror's normal changes steadily across triangles that meet at less than this angle
+  /// (`corner_normals`); 0: every triangle is flat.
+  double smooth_below_deg = 0.0;
 };
+
+/// Throws InputError unless the body has triangles and 0 <= smooth_below_deg <= 180.
+void check(const Body& body);
 
 struct BodyHit {
   double t_mm = 0.0;
   std::size_t body = 0;
-  /// Flat normal of the triangle, towards the side the ray came from.
+  /// Normal towards the side the ray came from: the triangle's own, or the smooth one where that sends the
+  /// reflected ray to the same side.
   Direction normal;
 };
 
@@ -50,6 +57,8 @@ class BodyTracer {
 
  private:
   struct Device;
+  /// Smooth normals by body, three a triangle, in the luminaire frame; empty for flat ones.
+  std::vector<std::vector<Vec3>> corner_normals_;
   std::size_t count_;
   std::unique_ptr<Device> device_;
 };

@@ -29,6 +29,27 @@ void make_files_absolute(toml::table& table, const fs::path& folder) {
   }
 }
 
+/// A source that is partly before and partly behind a mirror reaches through it: nearly always a hole that
+/// was forgotten, or rays that a file has on a surface larger than the mirror allows.
+void check_sources_before_mirrors(Project& project, const std::string& file) {
+  constexpr double kFew = 1e-3;
+  const Scene& scene = project.scene;
+  for (std::size_t s = 0; s < scene.sources.size(); ++s) {
+    for (std::size_t m = 0; m < scene.reflectors.size(); ++m) {
+      const double share = share_behind(scene.sources[s], scene.reflectors[m]);
+      const std::string who =
+          fmt::format("source[{}]: {:.3g} % of its rays start behind reflector[{}]", s, 100.0 * share, m);
+      if (share >= kFew && share <= 1.0 - kFew) {
+        throw_input_error(file, "",
+                          "{}: the source reaches through the mirror; expected a hole_diameter_mm that lets "
+                          "it pass, or another position_mm",
+                          who);
+      }
+      if (share > 0.0) project.warnings.push_back(fmt::format("{}: {}", file, who));
+    }
+  }
+}
+
 }  // namespace
 
 namespace project_parts {
@@ -48,6 +69,7 @@ Project read_project(const fs::path& path, Progress& progress) {
   TomlReader root(project.table, path.string(), "");
   const auto sources = root.tables("source");
   const auto reflectors = root.tables("reflector");
+  const auto bodies = root.tables("body");
   const auto detectors = root.tables("detector");
   // What belongs to `design` alone is read there; here it is only known.
   root.has("target");
@@ -55,6 +77,7 @@ Project read_project(const fs::path& path, Progress& progress) {
   root.finish();
   if (sources.empty()) root.fail("source", "is missing: a project needs at least one [[source]]");
   for (const TomlReader& reader : reflectors) project_parts::read_reflector(reader, project);
+  for (const TomlReader& reader : bodies) project_parts::read_body(reader, project);
   for (const TomlReader& reader : detectors) project_parts::read_detector(reader, project.scene);
   if (detectors.empty()) project.scene.far_fields.emplace_back();
   // Sources last: a wrong key anywhere is told before gigabytes are read.
@@ -65,6 +88,7 @@ Project read_project(const fs::path& path, Progress& progress) {
   } catch (const InputError& e) {
     throw InputError(fmt::format("{}: {}", path.string(), e.what()));
   }
+  check_sources_before_mirrors(project, path.string());
   make_files_absolute(project.table, fs::absolute(path).parent_path());
   return project;
 }

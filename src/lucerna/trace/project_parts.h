@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+#include <string>
 #include <string_view>
 
 #include "lucerna/core/error.h"
@@ -30,7 +32,20 @@ Frame read_placement(TomlReader& reader);
 /// One [[source]]; its file and warnings are added to `project`.
 PlacedSource read_source(TomlReader reader, Project& project, Progress& progress);
 
-/// One [[reflector]], added to the scene.
+/// `file` with `scale` (mm per unit of the file): a mesh that belongs to the project.
+std::shared_ptr<const Mesh> read_mesh_file(TomlReader& reader, Project& project);
+
+/// A number, or [[angle of incidence in degrees, value], ...].
+Reflectance read_reflectance(TomlReader& reader);
+
+/// The cause of loss that a body is: `name`, by default its file's name without the ending
+/// (-2, -3, ... where that is taken).
+std::string read_cause(TomlReader& reader, const Scene& scene);
+
+/// One [[body]], added to the scene.
+void read_body(TomlReader reader, Project& project);
+
+/// One [[reflector]], added to the scene; a mesh becomes a body.
 void read_reflector(TomlReader reader, Project& project);
 
 /// One [[detector]], added to the scene.

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
 
 #include "lucerna/reflector/faceted_surface.h"
+#include "lucerna/reflector/height_map.h"
 #include "lucerna/reflector/smooth_shape.h"
+#include "lucerna/reflector/spline_surface.h"
 #include "lucerna/trace/project_parts.h"
 
 namespace lucerna::project_parts {
@@ -29,6 +32,25 @@ Aperture read_aperture(TomlReader& reader, std::optional<double> default_diamete
     return at_key(reader, "aperture", [&] { return Aperture::rectangle((*size)[0], (*size)[1], hole); });
   }
   reader.fail("aperture", fmt::format("found '{}', expected circle or rectangle", shape));
+}
+
+/// The aperture of a height map: all of it, or a circle within it.
+Aperture read_map_aperture(TomlReader& reader, double half_x_mm, double half_y_mm) {
+  const std::string shape = reader.text("aperture").value_or("rectangle");
+  const auto diameter = reader.positive("diameter_mm");
+  const double hole = reader.number("hole_diameter_mm", 0.0);
+  if (shape == "rectangle") {
+    if (diameter) reader.fail("diameter_mm", "belongs to a circular aperture");
+    return at_key(reader, "hole_diameter_mm",
+                  [&] { return Aperture::rectangle(2.0 * half_x_mm, 2.0 * half_y_mm, hole); });
+  }
+  if (shape != "circle")
+    reader.fail("aperture", fmt::format("found '{}', expected circle or rectangle", shape));
+  const double most = 2.0 * std::min(half_x_mm, half_y_mm);
+  if (diameter && *diameter > most) {
+    reader.fail("diameter_mm", fmt::format("found {}, the heights reach {} mm", *diameter, most));
+  }
+  return at_key(reader, "hole_diameter_mm", [&] { return Aperture::circle(diameter.value_or(most), hole); });
 }
 
 Reflector read_conic(TomlReader& reader, const std::string& preset, bool trough) {
@@ -97,32 +119,77 @@ Reflector read_bspline(TomlReader& reader) {
   return {std::make_shared<SmoothSurface<BsplineShape>>(BsplineShape(*focal, x, y, std::move(c))), aperture};
 }
 
-/// A number, or [[angle of incidence in degrees, value], ...].
-Reflectance read_reflectance(TomlReader& reader) {
-  return at_key(reader, "reflectance", [&] {
-    if (!reader.has_array("reflectance")) return Reflectance(reader.number("reflectance", 1.0));
-    std::vector<Reflectance::Entry> table;
-    const auto pairs = reader.pairs("reflectance");
-    for (const auto& [angle, value] : *pairs) table.push_back({angle, value});
-    return Reflectance(std::move(table));
-  });
+/// Heights of a file over `size_mm`: z = z_offset_mm + z_scale_mm * value.
+Reflector read_heightmap(TomlReader& reader, Project& project) {
+  const auto file = reader.file("file");
+  if (!file) reader.fail("file", "is missing: the heights, a .csv, .txt, .npy, .pgm or .png file");
+  const auto size = reader.numbers("size_mm", 2);
+  if (!size) reader.fail("size_mm", "is missing: the distances [x, y] from the first to the last sample");
+  for (const double mm : *size) {
+    if (!(mm > 0.0)) reader.fail("size_mm", fmt::format("found {}, expected > 0", mm));
+  }
+  static const std::map<std::string, FirstRow, std::less<>> kRows{{"bottom", FirstRow::bottom},
+                                                                  {"top", FirstRow::top}};
+  FirstRow first_row = FirstRow::as_usual;
+  if (const auto name = reader.text("first_row")) {
+    const auto found = kRows.find(*name);
+    if (found == kRows.end())
+      reader.fail("first_row", fmt::format("found '{}', expected bottom or top", *name));
+    first_row = found->second;
+  }
+  project.inputs.push_back(*file);
+  HeightMap map = read_height_map(*file, first_row);
+  const auto scale = reader.number("z_scale_mm");
+  if (map.white && !scale) reader.fail("z_scale_mm", "is missing: the mm that one level of grey stands for");
+  if (map.white && *map.white < 256.0) {
+    project.warnings.push_back(
+        fmt::format("{}: {} levels of grey make steps of {} mm; a mirror wants 16 bits", file->string(),
+                    *map.white + 1.0, std::abs(*scale)));
+  }
+  const double offset = reader.number("z_offset_mm", 0.0);
+  for (double& z : map.z) z = offset + scale.value_or(1.0) * z;
+  const double a = 0.5 * (*size)[0], b = 0.5 * (*size)[1];
+  const Aperture aperture = read_map_aperture(reader, a, b);
+  return {std::make_shared<SplineSurface>(SplineSurface::through({-a, a, -b, b}, map.nx, map.ny, map.z)),
+          aperture};
 }
 
-Reflector read_family(TomlReader& reader) {
-  const std::string family = reader.required_text("family");
+/// A mesh as a mirror: no height field, so it reflects on both sides.
+void read_mesh_mirror(TomlReader& reader, Project& project) {
+  Body body;
+  body.name = read_cause(reader, project.scene);
+  body.world_from_body = read_placement(reader);
+  body.reflectance = reader.has("reflectance") ? read_reflectance(reader) : Reflectance(1.0);
+  const bool smooth = reader.flag("smooth_normals").value_or(false);
+  if (!smooth && reader.has("crease_deg")) reader.fail("crease_deg", "needs smooth_normals = true");
+  if (smooth) body.smooth_below_deg = reader.positive("crease_deg").value_or(30.0);
+  body.mesh = read_mesh_file(reader, project);
+  at_key(reader, "crease_deg", [&] { return check(body), 0; });
+  project.scene.bodies.push_back(std::move(body));
+}
+
+Reflector read_family(TomlReader& reader, const std::string& family, Project& project) {
   if (family == "revolution") return read_profile_family(reader, false);
   if (family == "trough") return read_profile_family(reader, true);
   if (family == "faceted") return read_faceted(reader);
   if (family == "bspline") return read_bspline(reader);
-  reader.fail("family", fmt::format("found '{}', expected revolution, trough, bspline or faceted", family));
+  if (family == "heightmap") return read_heightmap(reader, project);
+  reader.fail(
+      "family",
+      fmt::format("found '{}', expected revolution, trough, bspline, faceted, heightmap or mesh", family));
 }
 
 }  // namespace
 
 void read_reflector(TomlReader reader, Project& project) {
+  const std::string family = reader.required_text("family");
+  if (family == "mesh") {
+    read_mesh_mirror(reader, project);
+    return reader.finish();
+  }
   PlacedReflector placed;
   placed.world_from_reflector = read_placement(reader);
-  placed.reflector = read_family(reader);
+  placed.reflector = read_family(reader, family, project);
   placed.reflectance = read_reflectance(reader);
   placed.slope_error_mrad = reader.number("slope_error_mrad", 0.0);
   if (!(placed.slope_error_mrad >= 0.0)) reader.fail("slope_error_mrad", "expected >= 0");

@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/rayset/ray_file.h"
+#include "tests/support/random_rays.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {
@@ -99,6 +101,116 @@ TEST(Project, TroughsFacetsAndTheirSurfacesAreRead) {
   EXPECT_NEAR(facets.reflectance.at(std::cos(radians(30.0))), 0.7, 1e-12);
 }
 
+constexpr const char* kTetrahedron =
+    "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+/// The project of `text` in a folder that holds t.obj, sheet.obj, z.csv and z.pgm.
+Project read_with_files(const std::string& text, const test::TempDir& dir) {
+  write_file(dir / "t.obj", kTetrahedron);
+  write_file(dir / "sheet.obj", "v 0 0 0\nv 10 0 0\nv 0 10 0\nf 1 2 3\n");
+  write_file(dir / "z.csv", "8,5,4,5,8\n5,2,1,2,5\n4,1,0,1,4\n5,2,1,2,5\n8,5,4,5,9\n");
+  write_file(dir / "z.pgm", "P2 4 4 65535\n0 0 0 0\n0 0 0 0\n0 0 0 0\n0 0 0 40000\n");
+  write_file(dir / "p.toml", std::string(kSource) + text);
+  return read_project(dir / "p.toml");
+}
+
+TEST(Project, BodiesHaveRolesPlacesAndNames) {
+  const test::TempDir dir;
+  const Project p = read_with_files(
+      "[[body]]\nfile = 't.obj'\nposition_mm = [0, 0, -50]\nscale = 2\n"
+      "[[body]]\nfile = 't.obj'\nrole = 'mirror'\nreflectance = 0.5\nposition_mm = [0, 0, 90]\n"
+      "[[body]]\nfile = 't.obj'\nname = 'bulb'\nrole = 'lamp'\n"
+      "[[body]]\nfile = 'sheet.obj'\nopen = true\n"
+      "[[reflector]]\nfamily = 'mesh'\nfile = 'sheet.obj'\nreflectance = 0.8\nsmooth_normals = true\n",
+      dir);
+  const std::vector<Body>& b = p.scene.bodies;
+  ASSERT_EQ(b.size(), 5u);
+  EXPECT_EQ(b[0].name, "sheet") << "mirrors come first";
+  EXPECT_EQ(b[0].reflectance.at(1.0), 0.8);
+  EXPECT_EQ(b[0].smooth_below_deg, 30.0);
+  EXPECT_EQ(b[1].name, "t");
+  EXPECT_EQ(b[1].reflectance.at(1.0), 0.0);
+  EXPECT_EQ(b[1].mesh->vertices_mm[1], (Vec3{0, 20, 0}));
+  EXPECT_EQ(b[1].world_from_body.origin_mm(), (Vec3{0, 0, -50}));
+  EXPECT_EQ(b[2].name, "t-2");
+  EXPECT_EQ(b[2].reflectance.at(0.3), 0.5);
+  EXPECT_EQ(b[3].name, "bulb");
+  EXPECT_TRUE(b[3].only_returning_light);
+  EXPECT_FALSE(b[2].only_returning_light);
+  EXPECT_EQ(b[4].name, "sheet-2");
+  EXPECT_EQ(std::count(p.inputs.begin(), p.inputs.end(), dir / "t.obj"), 3);
+  EXPECT_NE(project_text(p).find((dir / "sheet.obj").string()), std::string::npos);
+}
+
+TEST(Project, HeightMapsAreScaledPlacedAndClipped) {
+  const test::TempDir dir;
+  const std::string map =
+      "[[reflector]]\nfamily = 'heightmap'\nsize_mm = [80, 40]\nposition_mm = [0, 0, -40]\n";
+  const Reflector csv = read_with_files(map + "file = 'z.csv'\nz_scale_mm = 2\nz_offset_mm = 1\n", dir)
+                            .scene.reflectors[0]
+                            .reflector;
+  EXPECT_NEAR(csv.surface->at(40, 20).z_mm, 19.0, 1e-12) << "the last number is the corner +x +y";
+  EXPECT_NEAR(csv.surface->at(-40, -20).z_mm, 17.0, 1e-12);
+  EXPECT_NEAR(csv.surface->at(20, 0).z_mm, 3.0, 1e-12);
+  EXPECT_EQ(csv.aperture.half_x_mm(), 40.0);
+  const Reflector turned =
+      read_with_files(map +
+                          "file = 'z.csv'\nfirst_row = 'top'\naperture = 'circle'\ndiameter_mm = 30\n"
+                          "hole_diameter_mm = 4\n",
+                      dir)
+          .scene.reflectors[0]
+          .reflector;
+  EXPECT_NEAR(turned.surface->at(40, -20).z_mm, 9.0, 1e-12);
+  EXPECT_EQ(turned.aperture.half_x_mm(), 15.0);
+  EXPECT_EQ(turned.aperture.hole_radius_mm(), 2.0);
+  const Reflector grey =
+      read_with_files(map + "file = 'z.pgm'\nz_scale_mm = 1e-3\n", dir).scene.reflectors[0].reflector;
+  EXPECT_NEAR(grey.surface->at(40, -20).z_mm, 40.0, 1e-9) << "a picture's last row is at the bottom";
+}
+
+TEST(Project, DetectorsOfAllKindsAtOnce) {
+  const Project p =
+      read(std::string(kSource) +
+           "[[detector]]\nkind = 'far-field'\n[[detector]]\nkind = 'plane'\nposition_mm = [0, 0, -3000]\n"
+           "size_mm = [4000, 2000]\ncells = [40, 20]\n[[detector]]\nkind = 'plane'\nname = 'wall'\n"
+           "normal = '-x'\nposition_mm = [1000, 0, 0]\n[[detector]]\nkind = 'luminance'\nfrom = [0, 3, -4]\n"
+           "half_angle_deg = 1\n[[detector]]\nkind = 'luminance'\nname = 'eye'\nfrom_mm = [0, 0, -500]\n"
+           "[[detector]]\nkind = 'rays'\nformat = 'zemax-text'\n");
+  const Scene& s = p.scene;
+  ASSERT_EQ(s.planes.size(), 2u);
+  EXPECT_EQ(s.planes[0].grid.world_from_plane, Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -3000}));
+  EXPECT_EQ(s.planes[0].grid.nx, 40u);
+  EXPECT_EQ(s.planes[0].grid.size_y_mm, 2000.0);
+  EXPECT_EQ(s.planes[1].grid.world_from_plane.ey(), (Vec3{0, 0, 1})) << "a wall's up is up";
+  EXPECT_EQ(s.planes[1].grid.world_from_plane.ez(), (Vec3{-1, 0, 0}));
+  ASSERT_EQ(s.luminances.size(), 2u);
+  EXPECT_EQ(s.luminances[0].half_angle_deg, 1.0);
+  EXPECT_LT(length(s.luminances[0].grid.world_from_plane.ez() - Vec3{0, 0.6, -0.8}), 1e-15);
+  EXPECT_EQ(s.luminances[1].distance_mm, 500.0);
+  EXPECT_EQ(s.luminances[1].pupil_radius_mm, 10.0);
+  ASSERT_EQ(s.ray_detectors.size(), 1u);
+  EXPECT_EQ(s.ray_detectors[0].format, "zemax-text");
+}
+
+TEST(Project, ASourceThatReachesThroughTheMirrorIsRefused) {
+  const std::string bowl = "family = 'revolution'\npreset = 'parabola'\nfocal_mm = 10\ndiameter_mm = 80\n";
+  const auto lamp = [&](const std::string& place, const std::string& keys) {
+    return "[[source]]\nkind = 'cylinder'\nradius_mm = 1\nlength_mm = 20\nposition_mm = [0, 0, " + place +
+           "]\n[[reflector]]\n" + bowl + keys;
+  };
+  const std::string fault = message(lamp("5", ""));
+  EXPECT_NE(fault.find("source[0]: 2"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("start behind reflector[0]: the source reaches through the mirror; expected a "
+                       "hole_diameter_mm"),
+            std::string::npos)
+      << fault;
+  EXPECT_EQ(message(lamp("5", "hole_diameter_mm = 3\n")), "") << "the hole lets it through";
+  EXPECT_TRUE(read(lamp("15", "")).warnings.empty());
+  const Project behind = read(lamp("-30", ""));
+  ASSERT_EQ(behind.warnings.size(), 1u) << "wholly behind is odd, but may be meant";
+  EXPECT_NE(behind.warnings[0].find("100 % of its rays start behind"), std::string::npos);
+}
+
 TEST(Project, BadMirrorsNameTheirKey) {
   const std::string parabola = "family = 'revolution'\npreset = 'parabola'\n";
   const auto expect = [](const std::string& text, const std::string& part) {
@@ -118,6 +230,47 @@ TEST(Project, BadMirrorsNameTheirKey) {
   expect(std::string(kSource) + "surface = 'sphere'\nsurface_mm = 1.0\n", "outside its sphere surface");
   expect(std::string(kSource) + "[[detector]]\nkind = 'far-field'\nc_step_deg = 7\n", "detector[0]");
   expect(std::string(kSource) + "[[detector]]\nkind = 'far-field'\nname = '../x'\n", "no slash");
+}
+
+TEST(Project, BadBodiesMapsAndDetectorsNameTheirKey) {
+  const test::TempDir dir;
+  const auto expect = [&](const std::string& text, const std::string& part) {
+    const std::string found = test::message_of<InputError>([&] { read_with_files(text, dir); });
+    EXPECT_NE(found.find(part), std::string::npos) << found;
+    EXPECT_EQ(found.find('\n'), std::string::npos);
+  };
+  expect("[[body]]\n", "line 5: body[0].file: is missing");
+  expect("[[body]]\nfile = 'sheet.obj'\n", "the mesh is open: 3 edges");
+  expect("[[body]]\nfile = 't.obj'\nrole = 'shade'\n", "found 'shade', expected absorber");
+  expect("[[body]]\nfile = 't.obj'\nreflectance = 0.5\n", "belongs to role = \"mirror\"");
+  expect("[[body]]\nfile = 't.obj'\nrole = 'mirror'\nreflectance = -0.1\n", "outside 0..1");
+  expect("[[body]]\nfile = 't.obj'\nrol = 'mirror'\n", "nearest known one is 'role'");
+  expect("[[body]]\nfile = 't.step'\n", "t.step");
+  expect("[[body]]\nfile = 't.obj'\nname = 'x'\n[[body]]\nfile = 't.obj'\nname = 'x'\n", "named 'x'");
+  const std::string mesh = "[[reflector]]\nfamily = 'mesh'\nfile = 't.obj'\n";
+  expect(mesh + "crease_deg = 20\n", "needs smooth_normals");
+  expect(mesh + "smooth_normals = true\ncrease_deg = 200\n", "expected 0 to 180");
+  const std::string map = "[[reflector]]\nfamily = 'heightmap'\n";
+  expect(map + "size_mm = [1, 1]\n", "reflector[0].file: is missing");
+  expect(map + "file = 'z.csv'\n", "size_mm: is missing");
+  expect(map + "file = 'z.csv'\nsize_mm = [1, 0]\n", "found 0, expected > 0");
+  expect(map + "file = 'z.pgm'\nsize_mm = [9, 9]\n", "z_scale_mm: is missing");
+  expect(map + "file = 'z.csv'\nsize_mm = [9, 9]\nfirst_row = 'left'\n", "expected bottom or top");
+  expect(map + "file = 'z.csv'\nsize_mm = [9, 9]\naperture = 'circle'\ndiameter_mm = 10\n", "reach 9 mm");
+  expect(map + "file = 'z.csv'\nsize_mm = [9, 9]\nhole_diameter_mm = 10\n", "hole");
+  const std::string detector = "[[detector]]\nkind = ";
+  expect(detector + "'eye'\n", "expected far-field, plane, luminance or rays");
+  expect(detector + "'plane'\nsize_mm = [1, -1]\n", "found -1, expected > 0");
+  expect(detector + "'plane'\ncells = [1, 1.5]\n", "whole numbers");
+  expect(detector + "'plane'\ncells = [10000, 10000]\n", "cells");
+  expect(detector + "'plane'\nnormal = [0, 0, 0]\n", "zero vector");
+  expect(detector + "'luminance'\n", "from: is missing");
+  expect(detector + "'luminance'\nfrom = '+x'\nfrom_mm = [1, 0, 0]\n", "a direction (from) or from a point");
+  expect(detector + "'luminance'\nfrom_mm = [0, 0, 0]\n", "the observer is at position_mm");
+  expect(detector + "'luminance'\nfrom = '+x'\nhalf_angle_deg = 90\n", "below 90");
+  expect(detector + "'rays'\nformat = 'tm26'\n", "unknown ray format 'tm26'");
+  expect(detector + "'plane'\nname = 'x'\n[[detector]]\nkind = 'rays'\nname = 'x'\n",
+         "two detectors are named 'x'");
 }
 
 }  // namespace

@@ -1,12 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/trace/scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "lucerna/core/error.h"
 
 namespace lucerna {
+
+double share_behind(const PlacedSource& source, const PlacedReflector& mirror) {
+  RayBlock rays;
+  rays.resize(
+      static_cast<std::size_t>(std::min<std::uint64_t>(4096, source.rays->ray_count().value_or(4096))));
+  if (rays.empty()) return 0.0;
+  source.rays->emit(Sequence(SequenceKind::random, 1), 0, rays);
+  const Frame mirror_from_source = mirror.world_from_reflector.inverse() * source.world_from_source;
+  std::size_t behind = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Vec3 p = mirror_from_source.point(rays.origin_mm(i));
+    if (mirror.reflector.aperture.contains(p.x, p.y) && p.z < mirror.reflector.surface->at(p.x, p.y).z_mm)
+      ++behind;
+  }
+  return static_cast<double>(behind) / static_cast<double>(rays.size());
+}
 
 void check(const Scene& scene) {
   if (scene.sources.empty()) throw InputError("the scene has no source");
@@ -31,6 +48,7 @@ void check(const Scene& scene) {
   }
   std::set<std::string> causes{"mirror", "mirror_back"};
   for (const Body& b : scene.bodies) {
+    check(b);
     if (!causes.insert(b.name).second)
       throw InputError(fmt::format("two causes of loss are named '{}'", b.name));
   }

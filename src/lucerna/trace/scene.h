@@ -48,6 +48,10 @@ struct Scene {
   std::vector<Body> bodies;
 };
 
+/// Share of a source's rays (of its first 4096) that start behind a mirror: within its aperture, on the side
+/// of its back. A source that is partly behind reaches through the mirror.
+double share_behind(const PlacedSource& source, const PlacedReflector& mirror);
+
 /// Throws InputError if the scene cannot be traced: no source, a flux that is not above 0, lm and W together,
 /// a detector whose steps do not divide the circle, two detectors of one name.
 void check(const Scene& scene);
