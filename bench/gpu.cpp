@@ -44,7 +44,7 @@ Scene without(Scene scene, bool mirrors, bool detectors) {
 }
 
 void run(const Accelerators& devices, const bench::Case& c, int cells, std::uint64_t rays,
-         const std::shared_ptr<RaySet>& file, const std::shared_ptr<const AdaptiveModel>& model) {
+         const std::shared_ptr<const RaySet>& file, const std::shared_ptr<const AdaptiveModel>& model) {
   const Scene sent = bench::scene_of(c, file);
   Scene drawn = sent;
   drawn.sources[0].rays = model;

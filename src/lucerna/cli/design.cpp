@@ -101,7 +101,7 @@ std::vector<std::string> write_results(const DesignArguments& a, const DesignPro
   json.update(trace_json(figures));
   std::vector<std::string> names{"reflector.toml", "reflector.stl", "reflector.dxf", "history.csv",
                                  "checkpoint"};
-  for (std::string& name : write_trace_files(folder, project, figures, traced.out_rays, json))
+  for (std::string& name : write_trace_files(folder, trace_origin(project), figures, traced.out_rays, json))
     names.push_back(std::move(name));
   session.print_json(json);
   return names;

@@ -5,10 +5,11 @@
 
 #include "lucerna/cli/arguments.h"
 #include "lucerna/cli/commands.h"
+#include "lucerna/cli/trace_output.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/report/report_trace.h"
-#include "lucerna/report/trace_files.h"
+#include "lucerna/report/trace_folder.h"
 #include "lucerna/trace/accelerator.h"
 #include "lucerna/trace/project.h"
 
@@ -47,21 +48,14 @@ void run_trace(const TraceArguments& a, Session& session) {
       session.timed("trace", [&] { return trace(project.scene, options, session.progress()); });
   if (!result.device_note.empty()) session.note(result.device_note);
   const TraceFigures figures = session.timed("figures", [&] { return trace_figures(result); });
-  Json json = session.json_head(options.seed, result.isa);
-  json["sequence"] = std::string(to_string(result.sequence));
-  json["rays"] = {{"first", result.first_ray}, {"last", result.last_ray}};
-  json.update(trace_json(figures));
-  std::vector<std::string> warnings;
-  const auto names = write_trace_files(a.output, project, figures, result.out_rays, json, &warnings);
-  for (const std::string& warning : warnings) session.note(warning);
-  session.print_json(json);
+  const TraceOrigin origin = session.timed("hash", [&] { return trace_origin(project); });
+  const auto names = write_trace_output(a.output, result, origin, figures, session);
   const double seconds = session.seconds("trace");
   session.say(fmt::format(
       "{}: {} rays in {:.3g} s, {:.3g} M rays/s ({}, {} threads); read {:.3g} s, figures {:.3g} s", a.output,
       figures.ledger.rays, seconds, 1e-6 * static_cast<double>(figures.ledger.rays) / seconds, result.isa,
       ThreadLimit::current(), session.seconds("read"), session.seconds("figures")));
-  for (const std::string& line : trace_summary(figures)) session.say(line);
-  session.say(fmt::format("  written: {}", fmt::join(names, " ")));
+  say_trace_summary(figures, names, session);
   if (!a.report.empty()) {
     write_file(a.report, trace_report_html(read_trace_folder(a.output), {.scene = &project.scene}));
     session.say(fmt::format("  report: {}", a.report));

@@ -17,6 +17,10 @@ void write_png(const std::filesystem::path& path, std::size_t width, std::size_t
 struct GreyImage {
   std::size_t width = 0, height = 0;
   std::vector<double> value;
+  /// The level in the file that stands for 1.
+  double white = 255.0;
+  /// The file has colours.
+  bool colour = false;
 };
 
 /// Reads a PNG file of 8 or 16 bits a sample, grey, RGB or palette, with or without alpha (which is passed

@@ -39,7 +39,11 @@ class PngReader {
     for (std::size_t at = 8; !ended;) ended = chunk(at);
     if (picture_.width == 0) fail(8, "has no header (IHDR)");
     const std::string rows = unpacked();
-    GreyImage image{picture_.width, picture_.height, {}};
+    GreyImage image{picture_.width,
+                    picture_.height,
+                    {},
+                    picture_.bits == 8 ? 255.0 : 65535.0,
+                    picture_.colour == 2 || picture_.colour == 3 || picture_.colour == 6};
     image.value.reserve(picture_.width * picture_.height);
     unfilter(rows, image);
     return image;

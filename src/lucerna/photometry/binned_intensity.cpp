@@ -64,6 +64,56 @@ void check_bins(std::span<const double> flux, std::span<const double> error, std
   }
 }
 
+/// The integral over each tent in gamma of sin gamma: from the neighbour before to the neighbour after.
+std::vector<double> tent_integrals(std::span<const double> gamma_deg) {
+  std::vector<double> integrals(gamma_deg.size());
+  for (std::size_t g = 0; g < gamma_deg.size(); ++g) {
+    const double here = radians(gamma_deg[g]);
+    double sum = g == 0 ? std::cos(here) : (g + 1 == gamma_deg.size() ? -std::cos(here) : 0.0);
+    if (g > 0) {
+      const double before = radians(gamma_deg[g - 1]);
+      sum += (std::sin(here) - std::sin(before)) / (here - before);
+    }
+    if (g + 1 < gamma_deg.size()) {
+      const double after = radians(gamma_deg[g + 1]);
+      sum -= (std::sin(after) - std::sin(here)) / (after - here);
+    }
+    integrals[g] = sum;
+  }
+  return integrals;
+}
+
+/// The factor that makes the flux exact, and the errors of all values; those of a polar cap are of its mean.
+void close_flux(std::span<const double> flux, std::span<const double> flux_standard_error,
+                const std::vector<double>& solid_angle_sr, const std::vector<double>& factors,
+                BinnedIntensity& result) {
+  IntensityDistribution& d = result.distribution;
+  const std::size_t planes = d.c_deg.size(), gammas = d.gamma_deg.size();
+  const std::vector<double> width = plane_weights(d.c_deg);
+  const bool nadir = d.gamma_deg.front() == 0.0, zenith = d.gamma_deg.back() == 180.0;
+  const double wanted = std::accumulate(flux.begin(), flux.end(), 0.0);
+  if (wanted > 0.0) {
+    result.closure = wanted / total_flux(d);
+    scale(d, result.closure);
+  }
+  if (flux_standard_error.empty()) return;
+  result.standard_error_cd.resize(d.cd.size());
+  for (std::size_t i = 0; i < d.cd.size(); ++i) {
+    result.standard_error_cd[i] =
+        flux_standard_error[i] / solid_angle_sr[i] * factors[i % gammas] * result.closure;
+  }
+  // The error of a cap's mean: the wedges are counted independently.
+  for (const std::size_t g : {std::size_t{0}, gammas - 1}) {
+    if (!(g == 0 ? nadir : zenith)) continue;
+    double variance = 0.0;
+    for (std::size_t c = 0; c < planes; ++c) {
+      const double e = width[c] * result.standard_error_cd[c * gammas + g];
+      variance += e * e;
+    }
+    for (std::size_t c = 0; c < planes; ++c) result.standard_error_cd[c * gammas + g] = std::sqrt(variance);
+  }
+}
+
 }  // namespace
 
 IntensityBins intensity_bins(std::span<const double> c_deg, std::span<const double> gamma_deg) {
@@ -100,7 +150,7 @@ BinnedIntensity intensity_from_bins(std::span<const double> c_deg, std::span<con
   BinnedIntensity result;
   IntensityDistribution& d = result.distribution;
   d = zero_distribution({c_deg.begin(), c_deg.end()}, {gamma_deg.begin(), gamma_deg.end()}, unit);
-  const std::size_t planes = c_deg.size(), gammas = gamma_deg.size();
+  const std::size_t gammas = gamma_deg.size();
   for (std::size_t i = 0; i < d.cd.size(); ++i) d.cd[i] = flux[i] / bins.solid_angle_sr[i];
   const std::vector<double> width = plane_weights(c_deg);
   const bool nadir = gamma_deg.front() == 0.0, zenith = gamma_deg.back() == 180.0;
@@ -109,27 +159,29 @@ BinnedIntensity intensity_from_bins(std::span<const double> c_deg, std::span<con
 
   std::vector<double> factors = ring_factors(gamma_deg, ring_means(d));
   for (std::size_t i = 0; i < d.cd.size(); ++i) d.cd[i] *= factors[i % gammas];
-  const double wanted = std::accumulate(flux.begin(), flux.end(), 0.0);
-  if (wanted > 0.0) {
-    result.closure = wanted / total_flux(d);
-    scale(d, result.closure);
-  }
-  if (flux_standard_error.empty()) return result;
-  result.standard_error_cd.resize(d.cd.size());
+  close_flux(flux, flux_standard_error, bins.solid_angle_sr, factors, result);
+  return result;
+}
+
+BinnedIntensity intensity_from_tents(std::span<const double> c_deg, std::span<const double> gamma_deg,
+                                     std::span<const double> flux,
+                                     std::span<const double> flux_standard_error, FluxUnit unit) {
+  BinnedIntensity result;
+  IntensityDistribution& d = result.distribution;
+  d = zero_distribution({c_deg.begin(), c_deg.end()}, {gamma_deg.begin(), gamma_deg.end()}, unit);
+  check_bins(flux, flux_standard_error, d.cd.size());
+  if (gamma_deg.front() != 0.0 || gamma_deg.back() != 180.0)
+    throw InputError("tents: expected gammas from 0 to 180");
+  const std::vector<double> width = plane_weights(c_deg), tents = tent_integrals(gamma_deg);
+  const std::size_t gammas = gamma_deg.size();
+  std::vector<double> solid_angle(d.cd.size());
   for (std::size_t i = 0; i < d.cd.size(); ++i) {
-    result.standard_error_cd[i] =
-        flux_standard_error[i] / bins.solid_angle_sr[i] * factors[i % gammas] * result.closure;
+    solid_angle[i] = 2.0 * std::numbers::pi * width[i / gammas] * tents[i % gammas];
+    d.cd[i] = flux[i] / solid_angle[i];
   }
-  // The error of a cap's mean: the wedges are counted independently.
-  for (const std::size_t g : {std::size_t{0}, gammas - 1}) {
-    if (!(g == 0 ? nadir : zenith)) continue;
-    double variance = 0.0;
-    for (std::size_t c = 0; c < planes; ++c) {
-      const double e = width[c] * result.standard_error_cd[c * gammas + g];
-      variance += e * e;
-    }
-    for (std::size_t c = 0; c < planes; ++c) result.standard_error_cd[c * gammas + g] = std::sqrt(variance);
-  }
+  even_out_pole(d, width, 0);
+  even_out_pole(d, width, gammas - 1);
+  close_flux(flux, flux_standard_error, solid_angle, std::vector<double>(gammas, 1.0), result);
   return result;
 }
 

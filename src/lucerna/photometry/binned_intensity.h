@@ -57,4 +57,14 @@ BinnedIntensity intensity_from_bins(std::span<const double> c_deg, std::span<con
                                     std::span<const double> flux, std::span<const double> flux_standard_error,
                                     FluxUnit unit = FluxUnit::lumen);
 
+/// Intensities from flux that was dealt to the grid's angles by tents (each ray to its two neighbours in C
+/// and in gamma, in proportion to nearness): flux over the integral of the tent, the weighted mean of the
+/// intensity about the angle. Polar wedges get their common mean; one factor on all values (`closure`) makes
+/// `total_flux` exact. The grid must reach from 0 to 180. Errors and cost as `intensity_from_bins`;
+/// neighbours' errors are correlated.
+BinnedIntensity intensity_from_tents(std::span<const double> c_deg, std::span<const double> gamma_deg,
+                                     std::span<const double> flux,
+                                     std::span<const double> flux_standard_error,
+                                     FluxUnit unit = FluxUnit::lumen);
+
 }  // namespace lucerna

@@ -172,5 +172,48 @@ TEST(BinnedIntensity, NothingIsNothing) {
   EXPECT_EQ(result.closure, 1.0);
 }
 
+/// Flux by tents on a grid of 60 x 10 degrees, from 4 M points of a distribution I(gamma).
+template <class Intensity>
+std::vector<double> tents(const Intensity& intensity) {
+  std::vector<double> flux(6 * 19, 0.0);
+  constexpr int kC = 60, kU = 20'000;
+  for (int j = 0; j < kU; ++j) {
+    const double u = 1.0 - 2.0 * (j + 0.5) / kU, gamma = degrees(std::acos(u));
+    const auto g = std::min<std::size_t>(static_cast<std::size_t>(gamma / 10.0), 17);
+    const double t = gamma / 10.0 - static_cast<double>(g);
+    const double each = intensity(gamma) * 4.0 * std::numbers::pi / kU / kC;
+    for (int k = 0; k < kC; ++k) {
+      const double c = 6.0 * (k + 0.5) / kC;
+      const auto left = static_cast<std::size_t>(c);
+      for (const std::size_t plane : {left, (left + 1) % 6}) {
+        const double share =
+            plane == left ? 1.0 - (c - static_cast<double>(left)) : c - static_cast<double>(left);
+        flux[plane * 19 + g] += share * (1.0 - t) * each;
+        flux[plane * 19 + g + 1] += share * t * each;
+      }
+    }
+  }
+  return flux;
+}
+
+TEST(BinnedIntensity, TentsGiveBackIntensityAndFlux) {
+  std::vector<double> c, g;
+  for (int i = 0; i < 6; ++i) c.push_back(60.0 * i);
+  for (int i = 0; i < 19; ++i) g.push_back(10.0 * i);
+  const std::vector<double> even = tents([](double) { return 3.0; });
+  const BinnedIntensity uniform = intensity_from_tents(c, g, even, std::vector<double>(even.size(), 0.01));
+  EXPECT_NEAR(uniform.closure, 1.0, 1e-2);
+  for (const double cd : uniform.distribution.cd) EXPECT_NEAR(cd, 3.0, 0.03);
+  EXPECT_NEAR(total_flux(uniform.distribution), 12.0 * std::numbers::pi, 1e-9);
+  EXPECT_GT(uniform.standard_error_cd[0], uniform.standard_error_cd[9]) << "a pole's tents are small";
+  const BinnedIntensity lambert = intensity_from_tents(
+      c, g, tents([](double gamma) { return std::max(0.0, std::cos(radians(gamma))); }), {});
+  EXPECT_NEAR(total_flux(lambert.distribution), std::numbers::pi, 2e-3);
+  for (std::size_t k = 0; k < 8; ++k)
+    EXPECT_NEAR(lambert.distribution.at(2, k), std::cos(radians(10.0 * static_cast<double>(k))), 0.015) << k;
+  EXPECT_THROW(intensity_from_tents(c, std::vector<double>{0, 90}, std::vector<double>(12, 1.0), {}),
+               InputError);
+}
+
 }  // namespace
 }  // namespace lucerna

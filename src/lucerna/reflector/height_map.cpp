@@ -13,14 +13,15 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
-#include "lucerna/core/grey_image.h"
+#include "lucerna/core/pgm.h"
+#include "lucerna/core/png.h"
 
 namespace lucerna {
 
 namespace {
 
 constexpr std::uint64_t kMostBytes = std::uint64_t{2} << 30;
-constexpr std::size_t kMostHeights = std::size_t{1} << 26;
+constexpr std::size_t kMostHeights = std::size_t{1} << 24;
 
 HeightMap read_table(const std::filesystem::path& path) {
   const std::string text = read_file(path, kMostBytes);
@@ -169,9 +170,10 @@ class NpyReader {
   std::string file_, bytes_;
 };
 
-HeightMap from_picture(const GreyImage& image) {
-  HeightMap map{
-      image.width, image.height, {image.grey.begin(), image.grey.end()}, static_cast<double>(image.white)};
+HeightMap from_picture(const GreyImage& image, const std::string& file) {
+  if (image.colour) throw_input_error(file, "", "has colours, expected a grey picture of heights");
+  HeightMap map{image.width, image.height, image.value, image.white};
+  for (double& z : map.z) z = std::round(z * image.white);
   return map;
 }
 
@@ -186,16 +188,16 @@ HeightMap read_height_map(const std::filesystem::path& path, FirstRow first_row)
   } else if (ending == ".npy") {
     map = NpyReader(path).read();
   } else if (ending == ".pgm") {
-    map = from_picture(read_pgm(path));
+    map = from_picture(read_pgm(path), path.string());
   } else if (ending == ".png") {
-    map = from_picture(read_grey_png(path));
+    map = from_picture(read_png_grey(path), path.string());
   } else {
     throw_input_error(path.string(), "", "ends in '{}', expected .csv, .txt, .npy, .pgm or .png", ending);
   }
   if (map.nx < 4 || map.ny < 4) {
     throw_input_error(path.string(), "", "holds {} x {} heights, expected at least 4 x 4", map.nx, map.ny);
   }
-  if (first_row == FirstRow::top || (first_row == FirstRow::as_usual && map.white)) {
+  if (first_row == FirstRow::top) {
     for (std::size_t row = 0; 2 * row + 1 < map.ny; ++row) {
       std::swap_ranges(map.z.begin() + static_cast<std::ptrdiff_t>(row * map.nx),
                        map.z.begin() + static_cast<std::ptrdiff_t>((row + 1) * map.nx),

@@ -18,15 +18,14 @@ struct HeightMap {
   std::optional<double> white;
 };
 
-/// Where the file's first row lies: pictures are read from the top (largest y), tables from the bottom,
-/// unless told otherwise.
-enum class FirstRow { as_usual, bottom, top };
+/// Where the file's first row lies: at the largest y, as a picture is looked at, or at the lowest.
+enum class FirstRow { top, bottom };
 
 /// Reads a sampled surface by the file's ending: .csv .txt (numbers parted by commas, semicolons or blanks, a
 /// line a row, # begins a comment), .npy (NumPy 1 to 3, two-dimensional, integers of 8 to 32 bits or floats,
 /// either byte order, rows or columns first), .pgm and .png (grey, 8 or 16 bits). Throws InputError with file
 /// and line, row or byte on a number that is missing or not finite, ragged rows, another type, fewer than 4 x
-/// 4 or more than 2^26 heights. O(bytes); thread safe.
-HeightMap read_height_map(const std::filesystem::path& path, FirstRow first_row = FirstRow::as_usual);
+/// 4 or more than 2^24 heights. O(bytes); thread safe.
+HeightMap read_height_map(const std::filesystem::path& path, FirstRow first_row = FirstRow::top);
 
 }  // namespace lucerna

@@ -52,11 +52,11 @@ TEST(HeightMap, EveryFormHoldsTheSameHeights) {
   std::string csv = "# a mirror\n", pgm = "P2 5 4 1000\n";
   for (int i = 0; i < 20; ++i) {
     csv += fmt::format("{}{}", 10 * (i / 5) + i % 5, i % 5 < 4 ? (i % 2 == 0 ? "; " : ",") : "\r\n");
-    pgm += fmt::format("{} ", 10 * (3 - i / 5) + i % 5);
+    pgm += fmt::format("{} ", 10 * (i / 5) + i % 5);
   }
   const auto check = [&](const std::string& name, const std::string& content) {
     write_file(dir / name, content);
-    const HeightMap map = read_height_map(dir / name);
+    const HeightMap map = read_height_map(dir / name, FirstRow::bottom);
     EXPECT_EQ(map.nx, 5u) << name;
     EXPECT_EQ(map.ny, 4u) << name;
     EXPECT_EQ(map.z, ramp()) << name;
@@ -70,8 +70,8 @@ TEST(HeightMap, EveryFormHoldsTheSameHeights) {
   check("d.npy", npy("|u1", false, "4, 5", bytes<std::uint8_t>(ramp())));
   check("e.npy", npy(">i2", false, "4, 5", bytes<std::int16_t>(ramp(), true)));
   check("f.NPY", npy("<f8", true, "4, 5", bytes<double>(ramp(true))));
-  EXPECT_EQ(read_height_map(dir / "a.csv", FirstRow::top).z.front(), 30.0);
-  EXPECT_EQ(read_height_map(dir / "a.pgm", FirstRow::bottom).z.front(), 30.0);
+  EXPECT_EQ(read_height_map(dir / "a.csv").z.front(), 30.0) << "as it looks: the last row is the lowest y";
+  EXPECT_EQ(read_height_map(dir / "a.pgm").z.front(), 30.0);
   std::vector<double> negative(20, -300.0);
   write_file(dir / "n.npy", npy("<i2", false, "4, 5", bytes<std::int16_t>(negative)));
   EXPECT_EQ(read_height_map(dir / "n.npy").z, negative);

@@ -78,7 +78,7 @@ void make_design(const test::TempDir& dir, const std::string& target) {
             {"end", "time"},
             {"remarks", {"the target is <not> reached"}}};
   json.update(trace_json(figures));
-  write_trace_files(dir.path(), project, figures, {}, json);
+  write_trace_files(dir.path(), trace_origin(project), figures, {}, json);
   write_file(dir / "history.csv", kHistory);
 }
 

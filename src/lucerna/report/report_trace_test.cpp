@@ -53,7 +53,7 @@ void make_trace(const test::TempDir& dir, const std::string& project_toml = kPro
                               {"sequence", "sobol"},
                               {"rays", {{"first", 0}, {"last", 20'000}}}};
   json.update(trace_json(figures));
-  write_trace_files(dir.path(), project, figures, {}, json);
+  write_trace_files(dir.path(), trace_origin(project), figures, {}, json);
 }
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }

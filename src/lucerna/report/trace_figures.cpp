@@ -38,8 +38,9 @@ FarFieldFigures far_field_figures(FarField field, const Estimate& flux) {
              gamma = steps(field.gamma_count, field.gamma_step_deg);
   const bool error_known = std::none_of(field.standard_error.begin(), field.standard_error.end(),
                                         [](double se) { return std::isnan(se); });
-  f.intensity = intensity_from_bins(c, gamma, field.flux,
-                                    error_known ? field.standard_error : std::vector<double>(), field.unit);
+  const auto intensity_from = field.tent ? intensity_from_tents : intensity_from_bins;
+  f.intensity = intensity_from(c, gamma, field.flux,
+                               error_known ? field.standard_error : std::vector<double>(), field.unit);
   f.beam = beam_figures(f.intensity.distribution);
   f.flux = flux;
   f.centre_standard_error_cd = std::nan("");
@@ -123,6 +124,7 @@ Json far_field_json(const FarFieldFigures& f) {
       {"unit", f.field.unit == FluxUnit::lumen ? "cd" : "W/sr"},
       {"c_step_deg", f.field.c_step_deg},
       {"gamma_step_deg", f.field.gamma_step_deg},
+      {"bins", f.field.tent ? "tent" : "hard"},
       {"flux", f.flux.mean},
       {"flux_standard_error", number(f.flux.standard_error)},
       {"peak",

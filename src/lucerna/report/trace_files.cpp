@@ -19,26 +19,14 @@ namespace lucerna {
 
 namespace {
 
-/// The light-emitting area that photometric files state: the opening of the first mirror, if it looks up or
-/// down.
-void set_luminous_size(LuminaireData& luminaire, const Scene& scene) {
-  if (scene.reflectors.empty()) return;
-  const PlacedReflector& placed = scene.reflectors.front();
-  if (std::abs(placed.world_from_reflector.ez().z) < 0.999) return;
-  const Aperture& aperture = placed.reflector.aperture;
-  luminaire.luminous_length_mm = 2.0 * aperture.half_y_mm();
-  luminaire.luminous_width_mm = aperture.shape() == ApertureShape::circle ? 0.0 : 2.0 * aperture.half_x_mm();
-  luminaire.length_mm = luminaire.luminous_length_mm;
-  luminaire.width_mm = luminaire.luminous_width_mm;
-}
-
-PhotometricFile photometric_file(const FarFieldFigures& figures, const Scene& scene) {
+PhotometricFile photometric_file(const FarFieldFigures& figures, const TraceOrigin& origin) {
   PhotometricFile file{figures.intensity.distribution, {}};
   file.luminaire.name = figures.field.name;
   file.luminaire.manufacturer = "Lucerna simulation";
   file.luminaire.report_number = fmt::format("lucerna-{}", version());
   file.luminaire.test_lab = "none (computer simulation)";
-  set_luminous_size(file.luminaire, scene);
+  file.luminaire.luminous_length_mm = file.luminaire.length_mm = origin.luminous_length_mm;
+  file.luminaire.luminous_width_mm = file.luminaire.width_mm = origin.luminous_width_mm;
   return file;
 }
 
@@ -121,7 +109,7 @@ std::vector<std::string> write_rays(const std::filesystem::path& folder, const T
 
 }  // namespace
 
-std::vector<std::string> write_trace_files(const std::filesystem::path& folder, const Project& project,
+std::vector<std::string> write_trace_files(const std::filesystem::path& folder, const TraceOrigin& origin,
                                            const TraceFigures& figures, const RayBlock& rays,
                                            const nlohmann::ordered_json& result,
                                            std::vector<std::string>* warnings) {
@@ -131,7 +119,7 @@ std::vector<std::string> write_trace_files(const std::filesystem::path& folder, 
     names.push_back(name);
   };
   for (const FarFieldFigures& f : figures.far_fields) {
-    const PhotometricFile file = photometric_file(f, project.scene);
+    const PhotometricFile file = photometric_file(f, origin);
     if (f.field.unit == FluxUnit::lumen) write(f.field.name + ".ldt", ldt_text(file));
     write(f.field.name + ".ies", ies_text(file, PhotometricFormat::ies_2019));
     write(f.field.name + ".csv", far_field_csv(f));
@@ -146,7 +134,7 @@ std::vector<std::string> write_trace_files(const std::filesystem::path& folder, 
     }
   }
   for (std::string& name : write_rays(folder, figures, rays, warnings)) names.push_back(std::move(name));
-  write("project.toml", project_text(project));
+  write("project.toml", origin.project);
   // Last: a folder with a result.json is complete.
   write("result.json", result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
   return names;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lucerna/report/trace_figures.h"
-#include "lucerna/trace/project.h"
+#include "lucerna/trace/trace_origin.h"
 
 namespace lucerna {
 
@@ -18,7 +18,7 @@ namespace lucerna {
 /// field has no .ldt: the format has no unit for it. Each file appears whole or not at all; returns their
 /// names. `rays` are TraceResult::out_rays, `result` is what goes into result.json. What a ray format had to
 /// leave out goes to `warnings`.
-std::vector<std::string> write_trace_files(const std::filesystem::path& folder, const Project& project,
+std::vector<std::string> write_trace_files(const std::filesystem::path& folder, const TraceOrigin& origin,
                                            const TraceFigures& figures, const RayBlock& rays,
                                            const nlohmann::ordered_json& result,
                                            std::vector<std::string>* warnings = nullptr);

@@ -25,7 +25,7 @@ std::vector<std::string> files_of(const std::string& flux_line) {
   const TraceFigures figures = trace_figures(trace(project.scene, options));
   const std::string csv = far_field_csv(figures.far_fields[0]);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 72 * 181);
-  const auto names = write_trace_files(dir.path(), project, figures, {}, trace_json(figures));
+  const auto names = write_trace_files(dir.path(), trace_origin(project), figures, {}, trace_json(figures));
   for (const std::string& name : names) EXPECT_GT(std::filesystem::file_size(dir / name), 50u) << name;
   return names;
 }
@@ -52,7 +52,7 @@ TEST(TraceFiles, EveryDetectorHasItsFilesAndCanBeReadBack) {
   const TraceFigures figures = trace_figures(traced);
   nlohmann::ordered_json json = trace_json(figures);
   json["schema_version"] = kJsonSchemaVersion;
-  const auto names = write_trace_files(dir.path(), project, figures, traced.out_rays, json);
+  const auto names = write_trace_files(dir.path(), trace_origin(project), figures, traced.out_rays, json);
   EXPECT_EQ(names, (std::vector<std::string>{"roof.csv", "roof.png", "luminance.csv", "luminance.png",
                                              "rays.tm25ray", "text.ray", "project.toml", "result.json"}));
   const TraceFolder folder = read_trace_folder(dir.path());

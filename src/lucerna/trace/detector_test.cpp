@@ -205,5 +205,58 @@ TEST(Detector, RangesSayWhatIsMissingOrDouble) {
   EXPECT_EQ(fault(part(100, 200), part(0, 100)), "");
 }
 
+class TentFarField : public testing::Test {
+ protected:
+  static TraceResult run(std::uint64_t first, std::uint64_t last, EngineKind engine) {
+    Scene scene;
+    scene.sources = {emitter({.kind = EmitterKind::cylinder, .flux = 1000.0})};
+    scene.reflectors = {{conic_reflector(ConicPreset::parabola, 15.0, 0.0, Aperture::circle(100.0)),
+                         Frame::from_axis(-Direction(), 0.0, {0, 0, 15}), Reflectance(0.9)}};
+    scene.far_fields = {{"hard", 15.0, 5.0}, {"tent", 15.0, 5.0, true}};
+    return trace(scene, {.first_ray = first, .last_ray = last, .engine = engine, .cells = 256});
+  }
+};
+
+TEST(Detector, TentsDealEveryUnitToTheFourNeighbours) {
+  FarFieldDetector d{"far", 30.0, 10.0, true};
+  const FarFieldGrid grid(d);
+  Rng rng(11, 0);
+  for (int i = 0; i < 2000; ++i) {
+    const double c = 360.0 * rng.uniform(), gamma = i % 5 == 0 ? (i % 2) * 180.0 : 180.0 * rng.uniform();
+    std::vector<std::int64_t> bins(grid.size());
+    const std::int64_t units = 1 + static_cast<std::int64_t>(rng.bits() % 100'000'000);
+    grid.add_tent(direction_from_type_c({radians(c), radians(gamma)}), units, bins.data());
+    EXPECT_EQ(std::accumulate(bins.begin(), bins.end(), std::int64_t{0}), units);
+    double mean_gamma = 0.0;
+    for (std::size_t k = 0; k < bins.size(); ++k) {
+      if (bins[k] == 0) continue;
+      const double node_c = 30.0 * static_cast<double>(k / 19),
+                   node_gamma = 10.0 * static_cast<double>(k % 19);
+      EXPECT_LE(std::abs(node_gamma - gamma), 10.0 + 1e-9);
+      if (gamma > 1.0 && gamma < 179.0) {
+        EXPECT_LE(std::abs(std::remainder(node_c - c, 360.0)), 30.0 + 1e-9);
+      }
+      mean_gamma += node_gamma * static_cast<double>(bins[k]) / static_cast<double>(units);
+    }
+    EXPECT_NEAR(mean_gamma, gamma, 1e-6 + 30.0 / static_cast<double>(units)) << "tents keep the mean angle";
+  }
+}
+
+TEST_F(TentFarField, BothEnginesAndRangesAgreeAndFluxIsWhole) {
+  for (const EngineKind engine : {EngineKind::fast, EngineKind::reference}) {
+    const TraceResult whole = run(0, 100'000, engine);
+    EXPECT_EQ(merge(run(0, 33'333, engine), run(33'333, 100'000, engine)).replicates, whole.replicates);
+    double hard = 0.0, tent = 0.0;
+    for (const double x : far_field(whole, 0).flux) hard += x;
+    for (const double x : far_field(whole, 1).flux) tent += x;
+    EXPECT_NEAR(hard, tent, 1e-9 * hard);
+  }
+  const FarField a = far_field(run(0, 100'000, EngineKind::fast), 1),
+                 b = far_field(run(0, 100'000, EngineKind::reference), 1);
+  double moved = 0.0;
+  for (std::size_t i = 0; i < a.flux.size(); ++i) moved += std::abs(a.flux[i] - b.flux[i]);
+  EXPECT_LT(moved, 2e-3 * 1000.0);
+}
+
 }  // namespace
 }  // namespace lucerna

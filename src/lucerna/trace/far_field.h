@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "lucerna/core/direction.h"
@@ -14,6 +15,9 @@ struct FarFieldDetector {
   /// Must divide 360 and 180 evenly.
   double c_step_deg = 5.0;
   double gamma_step_deg = 1.0;
+  /// A ray counts for its four neighbours in proportion to nearness, not for the nearest alone: smooth curves
+  /// from few rays, edges a step wider.
+  bool tent = false;
   friend bool operator==(const FarFieldDetector&, const FarFieldDetector&) = default;
 };
 
@@ -38,9 +42,14 @@ class FarFieldGrid {
     return c * gamma_count_ + g;
   }
 
+  bool tent() const { return tent_; }
+  /// Deals `units` to the four grid angles about `d`, by tents in C and in gamma; their sum is exact.
+  void add_tent(const Direction& d, std::int64_t units, std::int64_t* bins) const;
+
  private:
   std::size_t c_count_, gamma_count_;
   double per_c_rad_, per_gamma_rad_;
+  bool tent_;
 };
 
 }  // namespace lucerna

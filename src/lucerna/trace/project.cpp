@@ -99,38 +99,4 @@ std::string project_text(const Project& project) {
   return out.str();
 }
 
-std::string project_template() {
-  return R"(# A Lucerna project: which light falls on which mirror, and what is looked at.
-# lucerna trace PROJECT.toml -o DIR
-# Lengths in mm, angles in degrees, fluxes in lm (or W). Luminaire frame: z up, nadir (gamma 0) = -z, C0 = +x, C90 = +y.
-
-[[source]]                    # any number of sources; their fluxes add
-kind = "led"                  # an analytic emitter, or: file = "led.tm25ray"
-# radius_mm, length_mm, size_mm = [x, y], surface = "sphere", surface_mm = 3.0: sizes of analytic emitters
-flux_lm = 1000.0              # for a file: overrides what it states; flux_w for radiometric sources
-position_mm = [0, 0, 0]       # where the source's origin goes
-axis = "+z"                   # where its +z points: +x -x +y -y +z -z or a vector
-turn_deg = 0.0                # then about that axis
-
-[[reflector]]                 # in its own frame: vertex at the origin, opening along +z; then placed
-family = "revolution"         # revolution, trough (along y), faceted (pitch_mm, pillow_radius_mm), bspline
-preset = "parabola"           # parabola, ellipse, hyperbola; or profile_mm = [[r, z], ...], a spline
-focal_mm = 15.0               # from the vertex; ellipse and hyperbola have focal2_mm too
-aperture = "circle"           # circle: diameter_mm; rectangle: size_mm = [x, y]
-diameter_mm = 100.0
-hole_diameter_mm = 0.0
-position_mm = [0, 0, 15]      # here: the focus is at the source
-axis = "-z"                   # the mirror opens downward
-turn_deg = 0.0
-reflectance = 0.92            # or over the angle of incidence: [[0, 0.92], [60, 0.90], [85, 0.95]]
-slope_error_mrad = 0.0        # Gaussian, standard deviation about each of two axes
-
-[[detector]]
-name = "far"                  # names the files
-kind = "far-field"
-c_step_deg = 5.0
-gamma_step_deg = 1.0
-)";
-}
-
 }  // namespace lucerna

@@ -31,7 +31,9 @@ Project read_project(const std::filesystem::path& path, Progress& progress = no_
 /// The text of the project's tables.
 std::string project_text(const Project& project);
 
-/// A commented project file with every key: what `lucerna init` writes.
+/// A commented project file with every kind of table: what `lucerna init` writes. It reads as it is; what it
+/// has beside one source, one reflector and one detector is commented out with '#' straight before the key
+/// (prose has a blank after it), in blocks that each read once they are uncommented.
 std::string project_template();
 
 }  // namespace lucerna

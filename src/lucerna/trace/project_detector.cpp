@@ -36,14 +36,15 @@ void read_cells(TomlReader& reader, PlaneGrid& grid) {
   }
 }
 
-/// `up`: which way is up in the picture.
-Vec3 read_up(TomlReader& reader) { return reader.axis("up").value_or(Direction()).vec(); }
-
 void read_far_field(TomlReader& reader, Scene& scene) {
   FarFieldDetector d;
   d.name = read_name(reader, "far-field");
   d.c_step_deg = reader.positive("c_step_deg").value_or(d.c_step_deg);
   d.gamma_step_deg = reader.positive("gamma_step_deg").value_or(d.gamma_step_deg);
+  const std::string bins = reader.text("bins").value_or("hard");
+  if (bins != "hard" && bins != "tent")
+    reader.fail("bins", fmt::format("found '{}', expected hard or tent", bins));
+  d.tent = bins == "tent";
   at_key(reader, "kind", [&] { return FarFieldGrid(d).size(); });
   scene.far_fields.push_back(std::move(d));
 }
@@ -53,7 +54,7 @@ void read_plane(TomlReader& reader, Scene& scene) {
   d.name = read_name(reader, "plane");
   const Vec3 position = reader.vector("position_mm").value_or(Vec3{});
   const Direction normal = reader.axis("normal").value_or(Direction());
-  d.grid.world_from_plane = facing_frame(normal, read_up(reader), position);
+  d.grid.world_from_plane = Frame::from_axis(normal, radians(reader.number("turn_deg", 0.0)), position);
   read_cells(reader, d.grid);
   at_key(reader, "cells", [&] { return check(d), 0; });
   scene.planes.push_back(std::move(d));
@@ -64,6 +65,7 @@ void read_luminance(TomlReader& reader, Scene& scene) {
   d.name = read_name(reader, "luminance");
   d.grid.size_x_mm = d.grid.size_y_mm = 200.0;
   const Vec3 position = reader.vector("position_mm").value_or(Vec3{});
+  const Vec3 up = reader.axis("up").value_or(Direction()).vec();
   const auto from_mm = reader.vector("from_mm");
   const auto from = reader.axis("from");
   if (from && from_mm) reader.fail("from_mm", "a view is from a direction (from) or from a point (from_mm)");
@@ -83,7 +85,7 @@ void read_luminance(TomlReader& reader, Scene& scene) {
     towards = *from;
     d.half_angle_deg = half_angle.value_or(d.half_angle_deg);
   }
-  d.grid.world_from_plane = facing_frame(towards, read_up(reader), position);
+  d.grid.world_from_plane = facing_frame(towards, up, position);
   read_cells(reader, d.grid);
   at_key(reader, "kind", [&] { return check(d), 0; });
   scene.luminances.push_back(std::move(d));

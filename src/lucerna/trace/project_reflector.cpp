@@ -130,7 +130,7 @@ Reflector read_heightmap(TomlReader& reader, Project& project) {
   }
   static const std::map<std::string, FirstRow, std::less<>> kRows{{"bottom", FirstRow::bottom},
                                                                   {"top", FirstRow::top}};
-  FirstRow first_row = FirstRow::as_usual;
+  FirstRow first_row = FirstRow::top;
   if (const auto name = reader.text("first_row")) {
     const auto found = kRows.find(*name);
     if (found == kRows.end())

@@ -53,7 +53,9 @@ std::shared_ptr<const RaySource> read_emitter(TomlReader& reader, const std::opt
 std::shared_ptr<const RaySource> read_ray_file_source(TomlReader& reader, const fs::path& file,
                                                       const std::optional<GivenFlux>& flux, Project& project,
                                                       Progress& progress) {
-  auto rays = std::make_shared<RaySet>(read_ray_set(file, {}, progress, &project.warnings));
+  std::vector<std::string> warnings;
+  auto rays = std::make_shared<RaySet>(read_ray_set(file, {}, progress, &warnings));
+  project.warnings.insert(project.warnings.end(), warnings.begin(), warnings.end());
   if (flux) {
     if (flux->unit != rays->header.flux_unit) {
       reader.fail(flux->unit == FluxUnit::lumen ? "flux_lm" : "flux_w",

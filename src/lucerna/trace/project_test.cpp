@@ -108,7 +108,7 @@ constexpr const char* kTetrahedron =
 Project read_with_files(const std::string& text, const test::TempDir& dir) {
   write_file(dir / "t.obj", kTetrahedron);
   write_file(dir / "sheet.obj", "v 0 0 0\nv 10 0 0\nv 0 10 0\nf 1 2 3\n");
-  write_file(dir / "z.csv", "8,5,4,5,8\n5,2,1,2,5\n4,1,0,1,4\n5,2,1,2,5\n8,5,4,5,9\n");
+  write_file(dir / "z.csv", "8,5,4,5,9\n5,2,1,2,5\n4,1,0,1,4\n5,2,1,2,5\n8,5,4,5,8\n");
   write_file(dir / "z.pgm", "P2 4 4 65535\n0 0 0 0\n0 0 0 0\n0 0 0 0\n0 0 0 40000\n");
   write_file(dir / "p.toml", std::string(kSource) + text);
   return read_project(dir / "p.toml");
@@ -149,13 +149,13 @@ TEST(Project, HeightMapsAreScaledPlacedAndClipped) {
   const Reflector csv = read_with_files(map + "file = 'z.csv'\nz_scale_mm = 2\nz_offset_mm = 1\n", dir)
                             .scene.reflectors[0]
                             .reflector;
-  EXPECT_NEAR(csv.surface->at(40, 20).z_mm, 19.0, 1e-12) << "the last number is the corner +x +y";
+  EXPECT_NEAR(csv.surface->at(40, 20).z_mm, 19.0, 1e-12) << "the first row is at +y";
   EXPECT_NEAR(csv.surface->at(-40, -20).z_mm, 17.0, 1e-12);
   EXPECT_NEAR(csv.surface->at(20, 0).z_mm, 3.0, 1e-12);
   EXPECT_EQ(csv.aperture.half_x_mm(), 40.0);
   const Reflector turned =
       read_with_files(map +
-                          "file = 'z.csv'\nfirst_row = 'top'\naperture = 'circle'\ndiameter_mm = 30\n"
+                          "file = 'z.csv'\nfirst_row = 'bottom'\naperture = 'circle'\ndiameter_mm = 30\n"
                           "hole_diameter_mm = 4\n",
                       dir)
           .scene.reflectors[0]
@@ -169,19 +169,20 @@ TEST(Project, HeightMapsAreScaledPlacedAndClipped) {
 }
 
 TEST(Project, DetectorsOfAllKindsAtOnce) {
-  const Project p =
-      read(std::string(kSource) +
-           "[[detector]]\nkind = 'far-field'\n[[detector]]\nkind = 'plane'\nposition_mm = [0, 0, -3000]\n"
-           "size_mm = [4000, 2000]\ncells = [40, 20]\n[[detector]]\nkind = 'plane'\nname = 'wall'\n"
-           "normal = '-x'\nposition_mm = [1000, 0, 0]\n[[detector]]\nkind = 'luminance'\nfrom = [0, 3, -4]\n"
-           "half_angle_deg = 1\n[[detector]]\nkind = 'luminance'\nname = 'eye'\nfrom_mm = [0, 0, -500]\n"
-           "[[detector]]\nkind = 'rays'\nformat = 'zemax-text'\n");
+  const Project p = read(
+      std::string(kSource) +
+      "[[detector]]\nkind = 'far-field'\n[[detector]]\nkind = 'plane'\nposition_mm = [0, 0, -3000]\n"
+      "size_mm = [4000, 2000]\ncells = [40, 20]\n[[detector]]\nkind = 'plane'\nname = 'wall'\n"
+      "normal = '-x'\nturn_deg = -90\nposition_mm = [1000, 0, 0]\n[[detector]]\nkind = 'luminance'\nfrom "
+      "= [0, 3, -4]\n"
+      "half_angle_deg = 1\n[[detector]]\nkind = 'luminance'\nname = 'eye'\nfrom_mm = [0, 0, -500]\n"
+      "[[detector]]\nkind = 'rays'\nformat = 'zemax-text'\n");
   const Scene& s = p.scene;
   ASSERT_EQ(s.planes.size(), 2u);
   EXPECT_EQ(s.planes[0].grid.world_from_plane, Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -3000}));
   EXPECT_EQ(s.planes[0].grid.nx, 40u);
   EXPECT_EQ(s.planes[0].grid.size_y_mm, 2000.0);
-  EXPECT_EQ(s.planes[1].grid.world_from_plane.ey(), (Vec3{0, 0, 1})) << "a wall's up is up";
+  EXPECT_LT(length(s.planes[1].grid.world_from_plane.ey() - Vec3{0, 0, 1}), 1e-12) << "turned upright";
   EXPECT_EQ(s.planes[1].grid.world_from_plane.ez(), (Vec3{-1, 0, 0}));
   ASSERT_EQ(s.luminances.size(), 2u);
   EXPECT_EQ(s.luminances[0].half_angle_deg, 1.0);

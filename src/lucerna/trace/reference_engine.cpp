@@ -89,7 +89,7 @@ class ReferenceEngine final : public TraceEngine {
       if (n.mirror == nullptr) {
         (bounce == 0 ? tally.out_direct : tally.out_reflected) += energy;
         for (std::size_t d = 0; d < far_fields().size(); ++d) {
-          tally.bins[d][far_fields()[d].cell(ray.direction)] += energy;
+          if (!far_fields()[d].tent()) tally.bins[d][far_fields()[d].cell(ray.direction)] += energy;
         }
         leave(ray, energy, scratch, tally);
         return;

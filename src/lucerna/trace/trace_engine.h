@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -49,11 +50,17 @@ class TraceEngine {
   }
 
  protected:
-  /// Does any detector look at where rays leave, not only at where they go?
-  bool looks_at_places() const { return keep_rays_ || !planes_.empty(); }
+  /// Is there any detector that `leave` serves?
+  bool looks_at_places() const {
+    return keep_rays_ || !planes_.empty() ||
+           std::any_of(far_fields_.begin(), far_fields_.end(), [](const auto& f) { return f.tent(); });
+  }
 
-  /// Gives the last leg of a ray to all detectors but far fields. `units` is what it carries.
+  /// Gives the last leg of a ray to all detectors but far fields of hard bins. `units` is what it carries.
   void leave(const Ray& ray, std::int64_t units, TraceScratch& scratch, Tally& tally) const {
+    for (std::size_t d = 0; d < far_fields_.size(); ++d) {
+      if (far_fields_[d].tent()) far_fields_[d].add_tent(ray.direction, units, tally.bins[d].data());
+    }
     for (std::size_t i = 0; i < planes_.size(); ++i) {
       if (const auto cell = planes_[i].cell(ray)) tally.bins[far_fields_.size() + i][*cell] += units;
     }

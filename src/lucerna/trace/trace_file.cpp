@@ -7,6 +7,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "lucerna/core/error.h"
@@ -20,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::string_view kMagic = "LUCTRACE";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 /// Sixteen replicates of three detectors of 16 M cells of 8 bytes: more than any project needs.
 constexpr std::uint64_t kMostBytes = std::uint64_t{6} << 30;
 
@@ -107,6 +108,15 @@ void describe_grid(Archive& archive, GridType& grid) {
   }
 }
 
+template <class Archive, class Origin>
+void describe_origin(Archive& archive, Origin& o) {
+  archive(o.scene_id);
+  archive(o.program_version);
+  archive(o.project);
+  archive(o.luminous_length_mm);
+  archive(o.luminous_width_mm);
+}
+
 template <class Archive, class Result>
 void describe_head(Archive& archive, Result& r) {
   archive(r.first_ray);
@@ -127,6 +137,9 @@ void describe_head(Archive& archive, Result& r) {
     archive(d.name);
     archive(d.c_step_deg);
     archive(d.gamma_step_deg);
+    std::uint8_t tent = d.tent ? 1 : 0;
+    archive(tent);
+    if constexpr (!std::is_const_v<Result>) d.tent = tent != 0;
   });
   each(archive, r.planes, 64, [&](auto& d) {
     archive(d.name);
@@ -136,7 +149,25 @@ void describe_head(Archive& archive, Result& r) {
     archive(d.name);
     describe_grid(archive, d.grid);
     archive(d.half_angle_deg);
+    archive(d.distance_mm);
+    archive(d.pupil_radius_mm);
   });
+  each(archive, r.ray_detectors, 16, [&](auto& d) {
+    archive(d.name);
+    archive(d.format);
+  });
+}
+
+template <class Archive, class Result>
+void describe_rays(Archive& archive, Result& r) {
+  each(archive, r.out_runs, 16, [&](auto& run) {
+    archive(run.block);
+    archive(run.source);
+    archive(run.rays);
+  });
+  auto& rays = r.out_rays;
+  for (auto* column : {&rays.x_mm, &rays.y_mm, &rays.z_mm, &rays.kx, &rays.ky, &rays.kz, &rays.weight})
+    each(archive, *column, 4, archive);
 }
 
 template <class Archive, class Replicates>
@@ -152,6 +183,27 @@ void describe_sums(Archive& archive, Replicates& replicates) {
     each(archive, t.lost_rays, 8, archive);
     each(archive, t.bins, 8, [&](auto& bins) { each(archive, bins, 8, archive); });
   });
+}
+
+/// Runs ascend and hold all kept rays.
+void check_rays(const TraceResult& r, const Reader& reader) {
+  const RayBlock& b = r.out_rays;
+  for (const RayDetector& d : r.ray_detectors) check(d);
+  std::uint64_t rays = 0;
+  bool good = true;
+  for (std::size_t i = 0; i < r.out_runs.size(); ++i) {
+    const OutRun& run = r.out_runs[i];
+    rays += run.rays;
+    if (i > 0)
+      good = good &&
+             std::pair(r.out_runs[i - 1].block, r.out_runs[i - 1].source) < std::pair(run.block, run.source);
+  }
+  for (const auto* column : {&b.x_mm, &b.y_mm, &b.z_mm, &b.kx, &b.ky, &b.kz})
+    good = good && column->size() == b.weight.size();
+  // Accelerators keep rays without their runs; those cannot be added to others, but are whole.
+  const bool all = r.out_runs.empty() || rays == b.weight.size();
+  if (!good || !all || (r.ray_detectors.empty() && !b.empty()))
+    reader.fail("kept rays that do not fit their runs");
 }
 
 /// What merging and the figures rely on.
@@ -178,16 +230,18 @@ void check_shape(const TraceResult& r, const Reader& reader) {
   }
   if (rays != r.last_ray - r.first_ray || emitted <= 0)
     reader.fail("{} rays in {}:{}", rays, r.first_ray, r.last_ray);
+  check_rays(r, reader);
 }
 
 }  // namespace
 
 void write_trace_file(const std::filesystem::path& path, const TraceResult& result,
-                      const std::string& scene_id) {
+                      const TraceOrigin& origin) {
   Writer writer;
-  writer(scene_id);
+  describe_origin(writer, origin);
   describe_head(writer, result);
   describe_sums(writer, result.replicates);
+  describe_rays(writer, result);
   std::string packed(ZSTD_compressBound(writer.bytes.size()), '\0');
   const std::size_t n =
       ZSTD_compress(packed.data(), packed.size(), writer.bytes.data(), writer.bytes.size(), 3);
@@ -226,9 +280,10 @@ StoredTrace read_trace_file(const std::filesystem::path& path) {
   }
   Reader reader(unpacked, path.string());
   StoredTrace stored;
-  reader(stored.scene_id);
+  describe_origin(reader, stored.origin);
   describe_head(reader, stored.result);
   describe_sums(reader, stored.result.replicates);
+  describe_rays(reader, stored.result);
   if (!reader.at_end()) reader.fail("more bytes than the sums need");
   check_shape(stored.result, reader);
   return stored;

@@ -85,6 +85,7 @@ FarField far_field(const TraceResult& result, std::size_t index) {
              detector.gamma_step_deg,
              grid.c_count(),
              grid.gamma_count(),
+             detector.tent,
              result.unit,
              {},
              {}};
@@ -194,6 +195,10 @@ TraceResult merge(const TraceResult& a, const TraceResult& b) {
        "detectors");
   if (const std::string fault = range_fault(a, b); !fault.empty())
     throw InputError("the traces cannot be added: " + fault);
+  for (const TraceResult* part : {&a, &b}) {
+    if (part->out_runs.empty() && !part->out_rays.empty())
+      throw InputError("the traces cannot be added: an accelerator keeps rays without their numbers");
+  }
   const bool a_first = a.first_ray < b.first_ray;
   TraceResult sum = a;
   sum.first_ray = std::min(a.first_ray, b.first_ray);

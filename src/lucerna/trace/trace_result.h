@@ -76,6 +76,7 @@ struct FarField {
   std::string name;
   double c_step_deg = 0.0, gamma_step_deg = 0.0;
   std::size_t c_count = 0, gamma_count = 0;
+  bool tent = false;
   FluxUnit unit = FluxUnit::lumen;
   std::vector<double> flux;
   /// NaN where not known, as in Ledger.

@@ -132,6 +132,7 @@ class WavefrontEngine final : public TraceEngine {
     alignas(64) std::int32_t cell[kBatch];
     for (std::size_t d = 0; d < far_fields().size(); ++d) {
       const FarFieldGrid& grid = far_fields()[d];
+      if (grid.tent()) continue;  // `leave` deals to its tents
       kernels_.far_field_cells(out, n, static_cast<std::int32_t>(grid.c_count()),
                                static_cast<std::int32_t>(grid.gamma_count()), cell);
       std::int64_t* const bins = tally.bins[d].data();

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "lucerna/cli/commands.h"
+#include "lucerna/cli/trace_output.h"
+#include "lucerna/trace/trace_file.h"
+
+namespace lucerna::cli {
+
+namespace {
+
+struct MergeArguments {
+  std::vector<std::string> folders;
+  std::string output;
+};
+
+void run_merge(const MergeArguments& a, Session& session) {
+  session.start();
+  const StoredTrace sum = session.timed("merge", [&] {
+    return merge_trace_folders({a.folders.begin(), a.folders.end()}, session.progress());
+  });
+  for (const std::string& folder : a.folders)
+    session.add_input(std::filesystem::path(folder) / kTraceFileName);
+  prepare_folder(a.output, session.force);
+  const TraceFigures figures = session.timed("figures", [&] { return trace_figures(sum.result); });
+  const auto names = write_trace_output(a.output, sum.result, sum.origin, figures, session);
+  session.say(fmt::format("{}: {} traces of one scene, rays {}:{} ({})", a.output, a.folders.size(),
+                          sum.result.first_ray, sum.result.last_ray, sum.result.isa));
+  say_trace_summary(figures, names, session);
+  if (sum.result.first_ray > 0) session.note(fmt::format("rays 0:{} are not in it", sum.result.first_ray));
+}
+
+}  // namespace
+
+void add_merge(CLI::App& app, Session& session, int&) {
+  CLI::App& command = *app.add_subcommand("merge", "Add traces of ranges of rays (trace --rays A:B)");
+  auto arguments = std::make_shared<MergeArguments>();
+  command.add_option("DIR", arguments->folders, "Folders that lucerna trace has written")->required();
+  command.add_option("-o,--output", arguments->output, "Folder for the sum")->required();
+  command.add_flag("--force", session.force, "Write into a folder that is not empty");
+  session.add_json(command);
+  session.add_common(command);
+  command.callback([arguments, &session] { run_merge(*arguments, session); });
+}
+
+}  // namespace lucerna::cli

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/cli/trace_output.h"
+
+#include <fmt/format.h>
+
+#include "lucerna/report/trace_files.h"
+#include "lucerna/trace/trace_file.h"
+
+namespace lucerna::cli {
+
+std::vector<std::string> write_trace_output(const std::string& folder, const TraceResult& result,
+                                            const TraceOrigin& origin, const TraceFigures& figures,
+                                            Session& session) {
+  Json json = session.json_head(result.seed, result.isa);
+  json["sequence"] = std::string(to_string(result.sequence));
+  json["rays"] = {{"first", result.first_ray}, {"last", result.last_ray}};
+  json.update(trace_json(figures));
+  const std::filesystem::path path = folder;
+  write_trace_file(path / kTraceFileName, result, origin);
+  std::vector<std::string> warnings;
+  auto names = write_trace_files(path, origin, figures, result.out_rays, json, &warnings);
+  names.insert(names.end() - 2, kTraceFileName);
+  for (const std::string& warning : warnings) session.note(warning);
+  session.print_json(json);
+  return names;
+}
+
+void say_trace_summary(const TraceFigures& figures, const std::vector<std::string>& names, Session& session) {
+  for (const std::string& line : trace_summary(figures)) session.say(line);
+  session.say(fmt::format("  written: {}", fmt::join(names, " ")));
+}
+
+}  // namespace lucerna::cli

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lucerna/cli/session.h"
+#include "lucerna/report/trace_figures.h"
+#include "lucerna/trace/trace_origin.h"
+
+namespace lucerna::cli {
+
+/// The end of `trace` and `merge`: fills `folder` (files by detector, result.json, the raw sums that `merge`
+/// takes), prints the JSON, and tells of warnings. Returns the names of the files. `seed` and inputs are what
+/// the session's head says.
+std::vector<std::string> write_trace_output(const std::string& folder, const TraceResult& result,
+                                            const TraceOrigin& origin, const TraceFigures& figures,
+                                            Session& session);
+
+/// The figures as text, and the files.
+void say_trace_summary(const TraceFigures& figures, const std::vector<std::string>& names, Session& session);
+
+}  // namespace lucerna::cli

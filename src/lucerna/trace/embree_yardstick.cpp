@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <memory>
+
+#include "lucerna/core/error.h"
+#include "lucerna/trace/benchmark.h"
+#include "lucerna/trace/kernel.h"
+
+#if defined(LUCERNA_EMBREE)
+#include <embree3/rtcore.h>
+#include <pmmintrin.h>
+#include <xmmintrin.h>
+#endif
+
+namespace lucerna {
+
+#if defined(LUCERNA_EMBREE)
+
+struct EmbreeYardstick::Device {
+  explicit Device(const HeightField& field) {
+    csr_ = _mm_getcsr();  // Embree's manual asks for these modes; they are this thread's until the end
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+    device_ = rtcNewDevice("threads=1");
+    scene_ = rtcNewScene(device_);
+    RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    const auto n = static_cast<std::size_t>(field.cells()) + 1;
+    auto* v = static_cast<float*>(
+        rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, n * n));
+    auto* t = static_cast<unsigned*>(
+        rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, 2 * (n - 1) * (n - 1)));
+    for (std::size_t i = 0; i < n * n; ++i) {
+      const double x =
+          field.region().x0_mm + static_cast<double>(i % n) * static_cast<double>(field.step_x_mm());
+      const double y =
+          field.region().y0_mm + static_cast<double>(i / n) * static_cast<double>(field.step_y_mm());
+      v[3 * i] = static_cast<float>(x);
+      v[3 * i + 1] = static_cast<float>(y);
+      v[3 * i + 2] =
+          static_cast<float>(field.quadric().at(x, y).z_mm + static_cast<double>(field.vertices()[i].z_mm));
+    }
+    for (std::size_t y = 0; y + 1 < n; ++y) {
+      for (std::size_t x = 0; x + 1 < n; ++x) {
+        const auto a = static_cast<unsigned>(y * n + x), b = static_cast<unsigned>(a + n);
+        for (const unsigned k : {a, a + 1, b + 1, a, b + 1, b}) *t++ = k;
+      }
+    }
+    rtcCommitGeometry(mesh);
+    rtcAttachGeometry(scene_, mesh);
+    rtcReleaseGeometry(mesh);
+    build_s = wall_seconds([&] { rtcCommitScene(scene_); });
+  }
+  ~Device() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+    _mm_setcsr(csr_);
+  }
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  /// All rays, at most `bounces` reflections; bins at one degree.
+  void trace(const RayBlock& source, double lift_mm, int bounces, std::span<double> bins) const {
+    const Kernels& kernels = best_kernels();
+    const FrameView same{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+    auto rays = std::make_unique<WorldRays>();
+    auto local = std::make_unique<LocalRays>();
+    auto hits = std::make_unique<LocalHits>();
+    for (std::size_t first = 0; first < source.size(); first += kBatch) {
+      std::size_t n = std::min(kBatch, source.size() - first);
+      for (std::size_t i = 0; i < n; ++i) {
+        rays->x[i] = source.x_mm[first + i];
+        rays->y[i] = source.y_mm[first + i];
+        rays->z[i] = source.z_mm[first + i] + static_cast<float>(lift_mm);
+        rays->dx[i] = source.kx[first + i];
+        rays->dy[i] = source.ky[first + i];
+        rays->dz[i] = source.kz[first + i];
+        rays->flux[i] = 1.0F;
+        rays->mirror[i] = -1;
+      }
+      for (int bounce = 0; n > 0; ++bounce)
+        n = step(kernels, same, *rays, *local, *hits, n, bounce < bounces, bins);
+    }
+  }
+
+  std::size_t step(const Kernels& kernels, const FrameView& same, WorldRays& rays, LocalRays& local,
+                   LocalHits& hits, std::size_t n, bool reflect, std::span<double> bins) const {
+    alignas(64) RTCRayHit16 packet;
+    alignas(64) int valid[16];
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    kernels.to_local(same, rays, n, 0, local);
+    for (std::size_t i = 0; i < n; i += 16) {
+      for (std::size_t k = 0; k < 16; ++k) {
+        valid[k] = i + k < n ? -1 : 0;
+        packet.ray.org_x[k] = rays.x[i + k];
+        packet.ray.org_y[k] = rays.y[i + k];
+        packet.ray.org_z[k] = rays.z[i + k];
+        packet.ray.dir_x[k] = rays.dx[i + k];
+        packet.ray.dir_y[k] = rays.dy[i + k];
+        packet.ray.dir_z[k] = rays.dz[i + k];
+        packet.ray.tnear[k] = rays.mirror[i + k] == 0 ? 1e-3F : 0.0F;
+        packet.ray.tfar[k] = 1e18F;
+        packet.ray.time[k] = 0.0F;
+        packet.ray.mask[k] = 0xFFFFFFFFU;
+        packet.ray.flags[k] = 0;
+        packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+      }
+      rtcIntersect16(valid, scene_, &context, &packet);
+      for (std::size_t k = 0; k < 16; ++k) {
+        const bool met = valid[k] != 0 && packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
+        hits.t[i + k] = packet.ray.tfar[k];
+        const float per = met ? -1.0F / packet.hit.Ng_z[k] : 0.0F;
+        hits.gx[i + k] = packet.hit.Ng_x[k] * per;
+        hits.gy[i + k] = packet.hit.Ng_y[k] * per;
+        const float towards = -packet.hit.Ng_x[k] * per * rays.dx[i + k] -
+                              packet.hit.Ng_y[k] * per * rays.dy[i + k] + rays.dz[i + k];
+        hits.state[i + k] = !met ? kMiss : towards < 0.0F ? kFront : kBack;
+      }
+    }
+    alignas(64) float cosine[kBatch];
+    alignas(64) std::int32_t cell[kBatch];
+    kernels.far_field_cells(rays, n, 360, 181, cell);
+    if (reflect) kernels.reflect(same, local, hits, n, rays, cosine);
+    std::size_t stay = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (hits.state[i] == kMiss)
+        bins[static_cast<std::size_t>(cell[i])] += static_cast<double>(rays.flux[i]);
+      if (hits.state[i] != kFront || !reflect) continue;
+      rays.x[stay] = rays.x[i];
+      rays.y[stay] = rays.y[i];
+      rays.z[stay] = rays.z[i];
+      rays.dx[stay] = rays.dx[i];
+      rays.dy[stay] = rays.dy[i];
+      rays.dz[stay] = rays.dz[i];
+      rays.flux[stay] = 0.9F * rays.flux[i];
+      rays.mirror[stay++] = 0;
+    }
+    return stay;
+  }
+
+  double build_s = 0.0;
+  unsigned csr_ = 0;
+  RTCDevice device_;
+  RTCScene scene_;
+};
+
+bool EmbreeYardstick::available() { return true; }
+
+EmbreeYardstick::EmbreeYardstick(const HeightField& field)
+    : device_(std::make_unique<Device>(field)), build_s_(device_->build_s) {}
+
+void EmbreeYardstick::trace(const RayBlock& rays, double lift_mm, int bounces, std::span<double> bins) const {
+  LUCERNA_CHECK(bins.size() == 360 * 181, "{} bins", bins.size());
+  device_->trace(rays, lift_mm, bounces, bins);
+}
+
+#else
+
+struct EmbreeYardstick::Device {};
+
+bool EmbreeYardstick::available() { return false; }
+
+EmbreeYardstick::EmbreeYardstick(const HeightField&) {
+  throw InputError("this program was built without Embree");
+}
+
+void EmbreeYardstick::trace(const RayBlock&, double, int, std::span<double>) const {}
+
+#endif
+
+EmbreeYardstick::~EmbreeYardstick() = default;
+
+}  // namespace lucerna

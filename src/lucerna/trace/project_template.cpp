@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/project.h"
+
+namespace lucerna {
+
+std::string project_template() {
+  return R"(# A Lucerna project: which light falls on which mirror, and what is looked at.
+# lucerna trace PROJECT.toml -o DIR, or lucerna design PROJECT.toml -o DIR
+# Lengths in mm, angles in degrees, fluxes in lm (or W). Luminaire frame: z up, nadir (gamma 0) = -z, C0 = +x, C90 = +y.
+# File names are relative to this file. Take away the # of a block to use it.
+
+# ---- sources: any number; their fluxes add ----
+[[source]]
+kind = "led"                  # point disk rectangle cylinder sphere filament led phong500 phong25 radial cosine
+flux_lm = 1000.0              # flux_w for radiometric sources
+position_mm = [0, 0, 0]       # where the source's origin goes
+axis = "+z"                   # where its +z points: +x -x +y -y +z -z or a vector
+turn_deg = 0.0                # then about that axis
+
+# A ray file or a model (lucerna compress); its own flux counts unless flux_lm or flux_w overrides it.
+#[[source]]
+#file = "led.tm25ray"
+#flux_lm = 337.0
+#position_mm = [5, 0, 0]
+
+# An analytic emitter with its sizes, and the surface that its rays are given on (none, sphere, cylinder, box, plane).
+#[[source]]
+#kind = "cylinder"
+#radius_mm = 1.0
+#length_mm = 6.0
+#surface = "sphere"
+#surface_mm = 10.0
+#axis = "+x"
+
+# ---- mirrors: each in its own frame, vertex at the origin, opening along +z, then placed; the side to +z reflects ----
+[[reflector]]
+family = "revolution"         # revolution, trough, faceted, bspline, heightmap, mesh
+preset = "parabola"           # parabola, ellipse, hyperbola (these two have focal2_mm as well)
+focal_mm = 15.0               # from the vertex
+aperture = "circle"           # circle: diameter_mm; rectangle: size_mm = [x, y]
+diameter_mm = 100.0
+hole_diameter_mm = 0.0        # for the lamp
+position_mm = [0, 0, 15]      # here: the focus is at the source
+axis = "-z"                   # the mirror opens downward
+turn_deg = 0.0
+reflectance = 0.92
+slope_error_mrad = 0.0        # Gaussian tilt of the normal, standard deviation about each of two axes
+
+# A profile as points [r, z], a spline through them; reflectance over the angle of incidence.
+#[[reflector]]
+#family = "revolution"
+#profile_mm = [[0, 0], [20, 6], [40, 24]]
+#position_mm = [200, 0, 15]
+#axis = "-z"
+#reflectance = [[0, 0.92], [60, 0.90], [85, 0.95]]
+
+# An ellipse drawn along y.
+#[[reflector]]
+#family = "trough"
+#preset = "ellipse"
+#focal_mm = 10.0
+#focal2_mm = 80.0
+#aperture = "rectangle"
+#size_mm = [40, 100]
+#position_mm = [300, 0, 10]
+#axis = "-z"
+
+# Facets on a base of revolution: flat, or pillows of a radius of curvature.
+#[[reflector]]
+#family = "faceted"
+#preset = "parabola"
+#focal_mm = 15.0
+#diameter_mm = 80.0
+#pitch_mm = 8.0
+#pillow_radius_mm = 60.0
+#position_mm = [400, 0, 15]
+#axis = "-z"
+
+# Free form: a bicubic B-spline of heights over a paraboloid; (intervals + 3) coefficients a side, x first.
+#[[reflector]]
+#family = "bspline"
+#focal_mm = 15.0
+#intervals = [8, 8]
+#aperture = "rectangle"
+#size_mm = [80, 60]
+#position_mm = [500, 0, 15]
+#axis = "-z"
+
+# Sampled heights (.csv .txt .npy .pgm .png), the first row at +y; z = z_offset_mm + z_scale_mm * number or level of grey.
+#[[reflector]]
+#family = "heightmap"
+#file = "heights.csv"
+#size_mm = [80, 60]
+#z_scale_mm = 1.0
+#z_offset_mm = 0.0
+#first_row = "top"
+#position_mm = [600, 0, 15]
+#axis = "-z"
+
+# A mesh as a mirror on both sides; smooth_normals bends light as the curved surface does, up to creases of that angle.
+#[[reflector]]
+#family = "mesh"
+#file = "mirror.stl"
+#scale = 1.0
+#smooth_normals = true
+#crease_deg = 30.0
+#reflectance = 0.9
+#position_mm = [700, 0, 0]
+
+# ---- bodies: .stl or .obj, closed unless open = true ----
+#[[body]]
+#file = "housing.stl"
+#name = "housing"
+#role = "absorber"
+#position_mm = [0, 0, 60]
+
+# A sheet that reflects on both sides.
+#[[body]]
+#file = "sheet.stl"
+#role = "mirror"
+#reflectance = 0.85
+#open = true
+#position_mm = [0, 0, 90]
+
+# The lamp's own body: rays of its file have left it already, so it stops only light that comes back.
+#[[body]]
+#file = "bulb.stl"
+#role = "lamp"
+
+# ---- detectors: any number at once; the name names the files ----
+[[detector]]
+name = "far"
+kind = "far-field"            # intensity by direction: .ldt .ies .csv .svg
+c_step_deg = 5.0
+gamma_step_deg = 1.0
+bins = "hard"                 # tent: a ray counts for its four neighbours; smoother from few rays
+
+# Illuminance on a plane, on the side that normal points to: .csv .png
+#[[detector]]
+#kind = "plane"
+#name = "floor"
+#position_mm = [0, 0, -2500]
+#normal = "+z"
+#turn_deg = 0.0
+#size_mm = [4000, 4000]
+#cells = [100, 100]
+
+# Luminance as seen from far away, by light within half_angle_deg of the direction from; up is up in the picture.
+#[[detector]]
+#kind = "luminance"
+#name = "side"
+#from = [1, 0, -1]
+#up = "+z"
+#half_angle_deg = 2.0
+#position_mm = [0, 0, 0]
+#size_mm = [200, 200]
+#cells = [100, 100]
+
+# Luminance as seen from a point, by light through a pupil there.
+#[[detector]]
+#kind = "luminance"
+#name = "eye"
+#from_mm = [500, 0, -1500]
+#pupil_radius_mm = 20.0
+#position_mm = [0, 0, 0]
+#size_mm = [200, 200]
+#cells = [100, 100]
+
+# All rays that leave, as a new source: tm25 zemax-binary zemax-text lighttools-binary lighttools-ascii speos asap text
+#[[detector]]
+#kind = "rays"
+#name = "luminaire"
+#format = "tm25"
+
+# ---- what a design is to reach (lucerna design), and what it may not do; it shapes the only reflector ----
+#[target]
+#file = "wanted.ldt"
+#mode = "shape"
+#[design]
+#optimizer = "auto"
+#time_s = 60
+#[design.limits]
+#max_diameter_mm = 120.0
+#max_height_mm = 60.0
+#symmetry = "none"
+#min_efficiency = 0.6
+
+# Or: the illuminance on a plane, as a .csv (lx) or a .png (white_lx is the illuminance of its white).
+#[target]
+#kind = "plane"
+#file = "wanted.png"
+#position_mm = [0, 0, -2500]
+#normal = "+z"
+#size_mm = [3000, 2000]
+#white_lx = 500.0
+#mode = "absolute"
+)";
+}
+
+}  // namespace lucerna
