@@ -46,12 +46,14 @@ std::vector<int> tied(const RevolutionShape& shape, ShapeSymmetry) {
 
 std::vector<int> tied(const BsplineShape& shape, ShapeSymmetry symmetry) {
   const int nx = shape.row_x().coefficients(), ny = shape.row_y().coefficients();
-  const bool in_x = symmetry == ShapeSymmetry::mirror_x || symmetry == ShapeSymmetry::both;
+  const bool in_x = symmetry == ShapeSymmetry::mirror_x || symmetry == ShapeSymmetry::both ||
+                    symmetry == ShapeSymmetry::trough_mirror_x;
   const bool in_y = symmetry == ShapeSymmetry::mirror_y || symmetry == ShapeSymmetry::both;
+  const bool all_y = symmetry == ShapeSymmetry::trough || symmetry == ShapeSymmetry::trough_mirror_x;
   std::vector<int> same;
   for (int j = 0; j < ny; ++j) {
     for (int i = 0; i < nx; ++i) {
-      const int a = in_x ? std::min(i, nx - 1 - i) : i, b = in_y ? std::min(j, ny - 1 - j) : j;
+      const int a = in_x ? std::min(i, nx - 1 - i) : i, b = all_y ? 0 : (in_y ? std::min(j, ny - 1 - j) : j);
       same.push_back(b * nx + a);
     }
   }
@@ -119,18 +121,37 @@ BsplineShape interpolate(const BsplineShape& s, int intervals_x, int intervals_y
   return {s.focal_mm(), x, y, std::move(coefficients)};
 }
 
+std::vector<double> above_parameters(const RevolutionShape& shape, ShapeSymmetry) {
+  return std::vector<double>(shape.coefficients().size(), 0.0);
+}
+
+/// A trough's: -y^2 / (4 f), which a cubic spline of y holds exactly.
+std::vector<double> above_parameters(const BsplineShape& shape, ShapeSymmetry symmetry) {
+  std::vector<double> above(shape.coefficients().size(), 0.0);
+  if (symmetry != ShapeSymmetry::trough && symmetry != ShapeSymmetry::trough_mirror_x) return above;
+  const KnotRow& row = shape.row_y();
+  Eigen::VectorXd values(row.coefficients());
+  for (int j = 0; j < row.coefficients(); ++j)
+    values[j] = -0.25 / shape.focal_mm() * std::pow(greville(row, j), 2);
+  const Eigen::VectorXd c = interpolation(row) * values;
+  const auto nx = static_cast<std::size_t>(shape.row_x().coefficients());
+  for (std::size_t i = 0; i < above.size(); ++i) above[i] = c[static_cast<Eigen::Index>(i / nx)];
+  return above;
+}
+
 }  // namespace
 
 DesignShape::DesignShape(std::variant<RevolutionShape, BsplineShape> shape, const Aperture& aperture,
                          ShapeSymmetry symmetry)
     : shape_(std::move(shape)), aperture_(aperture), symmetry_(symmetry) {
   parameter_of_ = std::visit([&](const auto& s) { return tied(s, symmetry); }, shape_);
+  above_ = std::visit([&](const auto& s) { return above_parameters(s, symmetry); }, shape_);
   const std::vector<double> c = coefficients();
   const int n = 1 + *std::max_element(parameter_of_.begin(), parameter_of_.end());
   parameters_ = Eigen::VectorXd::Zero(n);
   Eigen::VectorXd members = Eigen::VectorXd::Zero(n);
   for (std::size_t i = 0; i < c.size(); ++i) {
-    parameters_[parameter_of_[i]] += c[i];
+    parameters_[parameter_of_[i]] += c[i] - above_[i];
     members[parameter_of_[i]] += 1.0;
   }
   parameters_ = parameters_.cwiseQuotient(members);
@@ -158,6 +179,12 @@ DesignShape DesignShape::bspline(double focal_mm, const Aperture& aperture, int 
   return {BsplineShape(focal_mm, x, y, c), aperture, symmetry};
 }
 
+DesignShape DesignShape::trough(double focal_mm, const Aperture& aperture, int intervals, bool mirrored) {
+  const DesignShape shape = bspline(focal_mm, aperture, intervals, 1,
+                                    mirrored ? ShapeSymmetry::trough_mirror_x : ShapeSymmetry::trough);
+  return shape.with(Eigen::VectorXd::Zero(shape.parameters().size()));
+}
+
 double DesignShape::focal_mm() const {
   return std::visit([](const auto& s) { return s.focal_mm(); }, shape_);
 }
@@ -170,7 +197,7 @@ DesignShape DesignShape::with(const Eigen::VectorXd& parameters) const {
   LUCERNA_CHECK(parameters.size() == parameters_.size(), "{} parameters, expected {}", parameters.size(),
                 parameters_.size());
   std::vector<double> c(parameter_of_.size());
-  for (std::size_t i = 0; i < c.size(); ++i) c[i] = parameters[parameter_of_[i]];
+  for (std::size_t i = 0; i < c.size(); ++i) c[i] = parameters[parameter_of_[i]] + above_[i];
   DesignShape other = *this;
   std::visit([&](auto& s) { s = with_coefficients(s, c); }, other.shape_);
   other.parameters_ = parameters;

@@ -13,8 +13,9 @@
 
 namespace lucerna {
 
-/// Mirror symmetries that a free-form shape may be held to, in the mirror's frame.
-enum class ShapeSymmetry { none, mirror_y, mirror_x, both };
+/// Symmetries that a free-form shape may be held to, in the mirror's frame. `trough`: the same for every y;
+/// `trough_mirror_x`: and mirrored.
+enum class ShapeSymmetry { none, mirror_y, mirror_x, both, trough, trough_mirror_x };
 
 /// A mirror with free parameters: one of the smooth families, its aperture, and which coefficients are tied
 /// together. Parameters are heights in mm off a base paraboloid, at most 1000 or so are sensible. A value;
@@ -31,6 +32,14 @@ class DesignShape {
   static DesignShape bspline(double focal_mm, const Aperture& aperture, int intervals_x, int intervals_y,
                              ShapeSymmetry symmetry = ShapeSymmetry::none);
 
+  /// Trough z = x^2 / (4 f) + s(x) over the aperture's bounds, s a spline with `intervals` knot intervals:
+  /// intervals + 3 parameters, about half with `mirrored`. A bicubic patch in its family, whose coefficients
+  /// are one parameter for each x, less the paraboloid's y^2 / (4 f). Throws InputError as above.
+  static DesignShape trough(double focal_mm, const Aperture& aperture, int intervals, bool mirrored = false);
+
+  bool is_trough() const {
+    return symmetry_ == ShapeSymmetry::trough || symmetry_ == ShapeSymmetry::trough_mirror_x;
+  }
   bool is_revolution() const { return std::holds_alternative<RevolutionShape>(shape_); }
   const std::variant<RevolutionShape, BsplineShape>& family() const { return shape_; }
   const Aperture& aperture() const { return aperture_; }
@@ -72,6 +81,8 @@ class DesignShape {
   Aperture aperture_;
   ShapeSymmetry symmetry_;
   std::vector<int> parameter_of_;
+  /// What each coefficient is above its parameter.
+  std::vector<double> above_;
   Eigen::VectorXd parameters_;
 };
 

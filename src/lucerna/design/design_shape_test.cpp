@@ -75,6 +75,25 @@ TEST(DesignShape, RangesHoldTheSurface) {
   }
 }
 
+TEST(DesignShape, ATroughIsTheSameAlongY) {
+  const DesignShape plain = DesignShape::trough(10, Aperture::rectangle(50, 80), 4);
+  EXPECT_EQ(plain.parameter_count(), 7u);
+  EXPECT_TRUE(plain.is_trough());
+  for (double y = -40; y <= 40; y += 8) EXPECT_NEAR(plain.at(17, y).z_mm, 17.0 * 17.0 / 40.0, 1e-12) << y;
+  const DesignShape s = shaken(plain, 9);
+  EXPECT_LT(difference(s, s.refined(8, 1)), 1e-10);
+  EXPECT_TRUE(s.refined(8, 1).is_trough());
+  for (double x = -24; x < 25; x += 3) {
+    EXPECT_NEAR(s.at(x, 33).z_mm, s.at(x, -7).z_mm, 1e-11);
+    EXPECT_NEAR(s.at(x, 33).dzdy, 0.0, 1e-12);
+  }
+  const DesignShape mirrored = shaken(DesignShape::trough(10, Aperture::rectangle(50, 80), 4, true), 9);
+  EXPECT_EQ(mirrored.parameter_count(), 4u);
+  EXPECT_NEAR(mirrored.at(13, 5).z_mm, mirrored.at(-13, 5).z_mm, 1e-12);
+  const DesignShape wave = plain.through([](double x, double) { return 0.02 * x * x + 0.1 * x; });
+  EXPECT_NEAR(wave.at(11, 20).z_mm, 0.02 * 121 + 1.1, 1e-10);
+}
+
 TEST(DesignShape, RefusesWhatCannotBe) {
   EXPECT_THROW(DesignShape::revolution(0, Aperture::circle(50), 8), InputError);
   EXPECT_THROW(DesignShape::revolution(10, Aperture::rectangle(50, 50), 8), InputError);

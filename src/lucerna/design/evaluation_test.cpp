@@ -110,38 +110,81 @@ TEST(SmoothPath, FindsTheHitsOfTheReferenceTracer) {
   }
 }
 
+/// How far one column of the Jacobian is from the best of central differences over three steps: small enough
+/// that almost no ray crosses the ridge of a tent or a rim; a few do. A coefficient at the edge of the light
+/// moves a ray or two; it counts against the others.
+double disagreement(const DesignShape& shape, const DesignRays& rays, const TentBins& bins,
+                    EvaluationOptions options, const BinJacobian& jacobian, Eigen::Index p) {
+  options.derivatives = false;
+  double best = 1e9;
+  for (const double step : {1e-5, 1e-6, 1e-7}) {
+    Eigen::VectorXd x = shape.parameters();
+    x[p] += step;
+    const Eigen::VectorXd plus = evaluate(shape.with(x), Reflectance(0.9), rays, bins, options).flux;
+    x[p] -= 2.0 * step;
+    const Eigen::VectorXd minus = evaluate(shape.with(x), Reflectance(0.9), rays, bins, options).flux;
+    const Eigen::VectorXd difference = (plus - minus) / (2.0 * step);
+    const double scale = difference.norm() + 1e-3 * jacobian.colwise().norm().maxCoeff();
+    best = std::min(best, (difference - jacobian.col(p)).norm() / scale);
+  }
+  return best;
+}
+
 TEST(Evaluation, DerivativesAgreeWithCentralDifferences) {
   DesignRays rays = cylinder_rays(1 << 13, 15.0);
-  const Reflectance reflectance(0.9);
   EvaluationOptions options;
   options.rays = 1 << 13;
   int checked = 0;
   for (const Case& c : cases()) {
-    const Evaluation e = evaluate(c.shape, reflectance, rays, c.bins, options);
-    EvaluationOptions plain = options;
-    plain.derivatives = false;
-    const auto n = static_cast<Eigen::Index>(c.shape.parameter_count());
-    for (Eigen::Index p = 0; p < n; ++p) {
-      // Small enough that almost no ray crosses the ridge of a tent or a rim; a few do, so the sum over bins
-      // with random signs is compared in the mean over steps.
-      double best = 1e9;
-      for (const double step : {1e-5, 1e-6, 1e-7}) {
-        Eigen::VectorXd x = c.shape.parameters();
-        x[p] += step;
-        const Eigen::VectorXd plus = evaluate(c.shape.with(x), reflectance, rays, c.bins, plain).flux;
-        x[p] -= 2.0 * step;
-        const Eigen::VectorXd minus = evaluate(c.shape.with(x), reflectance, rays, c.bins, plain).flux;
-        const Eigen::VectorXd difference = (plus - minus) / (2.0 * step);
-        // A coefficient at the edge of the light moves a ray or two; it counts against the others.
-        const double scale = difference.norm() + 1e-3 * e.jacobian.colwise().norm().maxCoeff();
-        best = std::min(best, (difference - e.jacobian.col(p)).norm() / scale);
-      }
+    const Evaluation e = evaluate(c.shape, Reflectance(0.9), rays, c.bins, options);
+    for (Eigen::Index p = 0; p < e.jacobian.cols(); ++p) {
       if (e.jacobian.col(p).norm() == 0.0) continue;
       ++checked;
-      EXPECT_LT(best, 1e-3) << c.name << ", parameter " << p;
+      EXPECT_LT(disagreement(c.shape, rays, c.bins, options, e.jacobian, p), 1e-3)
+          << c.name << ", parameter " << p;
     }
   }
   EXPECT_GT(checked, 200);
+}
+
+/// Random shapes of all families and sizes, in bins of all kinds, 1000 random parameters.
+TEST(EvaluationSlow, DerivativesOfAThousandParameters) {
+  DesignRays rays = cylinder_rays(1 << 13, 15.0);
+  EvaluationOptions options;
+  options.rays = 1 << 13;
+  int checked = 0;
+  for (std::uint64_t seed = 0; checked < 1000; ++seed) {
+    Rng rng(seed, 99);
+    const auto between = [&](int low, int high) {
+      return low + static_cast<int>(rng.uniform() * (high - low + 1));
+    };
+    const double focal = 4.0 + 16.0 * rng.uniform(), hole = rng.uniform() < 0.5 ? 0.0 : 6.0;
+    const Aperture round = Aperture::circle(90, hole), square = Aperture::rectangle(100, 70, hole);
+    const bool revolution = seed % 3 == 0;
+    const auto symmetry = static_cast<ShapeSymmetry>(between(0, 3));
+    const DesignShape plain = revolution ? DesignShape::revolution(focal, round, between(2, 24))
+                              : seed % 7 == 1
+                                  ? DesignShape::trough(focal, square, between(2, 16), rng.uniform() < 0.5)
+                                  : DesignShape::bspline(focal, seed % 2 == 0 ? square : round,
+                                                         between(2, 12), between(2, 12), symmetry);
+    const DesignShape shape =
+        plain.with(random_parameters(plain.parameter_count(), 0.1 + 0.5 * rng.uniform(), seed));
+    const TentBins plane =
+        TentBins::plane(Frame({1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {30, 10, 900}), 500, 400, between(8, 32));
+    const TentBins bins = seed % 5 == 4 ? plane
+                          : revolution
+                              ? TentBins::rings(Frame(), 0.3 + 0.6 * rng.uniform(), between(12, 48))
+                              : TentBins::square(Frame(), 0.2 + 0.5 * rng.uniform(), between(12, 48));
+    const Evaluation e = evaluate(shape, Reflectance(0.9), rays, bins, options);
+    ASSERT_GT(e.flux.sum(), 0.05) << seed;
+    for (int k = 0; k < 12; ++k) {
+      const Eigen::Index p = between(0, static_cast<int>(e.jacobian.cols()) - 1);
+      if (e.jacobian.col(p).norm() < 1e-3 * e.jacobian.colwise().norm().maxCoeff()) continue;
+      ++checked;
+      EXPECT_LT(disagreement(shape, rays, bins, options, e.jacobian, p), 1e-3)
+          << "seed " << seed << ", parameter " << p;
+    }
+  }
 }
 
 TEST(Evaluation, IsTheSameForAnyNumberOfThreads) {
