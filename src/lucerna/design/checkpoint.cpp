@@ -10,7 +10,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr const char* kMagic = "lucerna-design-checkpoint-1";
+constexpr const char* kMagic = "lucerna-design-checkpoint-2";
 /// More numbers than any design has; keeps a damaged count from asking for memory.
 constexpr std::size_t kMostNumbers = 1 << 20;
 
@@ -76,7 +76,7 @@ std::string checkpoint_text(const FitState& s, const std::string& key) {
   put(text, "parameters", s.parameters);
   put(text, "costs", s.costs);
   put(text, "gate_parameters", s.gate_parameters);
-  put(text, "start_parameters", s.start_parameters);
+  put(text, "search_costs", s.search_costs);
   return text + "end\n";
 }
 
@@ -102,7 +102,7 @@ FitState parse_checkpoint(const std::string& text, const std::string& key) {
   s.parameters = in.numbers("parameters");
   s.costs = in.numbers("costs");
   s.gate_parameters = in.numbers("gate_parameters");
-  s.start_parameters = in.numbers("start_parameters");
+  s.search_costs = in.numbers("search_costs");
   in.expect("end");
   return s;
 }

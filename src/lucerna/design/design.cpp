@@ -9,6 +9,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/design/limits.h"
+#include "lucerna/design/reach.h"
 #include "lucerna/design/window.h"
 
 namespace lucerna {
@@ -19,29 +20,6 @@ namespace {
 constexpr double kFluxWeight = 0.2;
 /// Rays that measure how much light leaves the mirror to begin with.
 constexpr std::uint64_t kFluxRays = std::uint64_t{1} << 16;
-
-/// The problem as the fit sees it: in the mirror's frame, in shares of the sources' flux.
-FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& options, DesignRays& rays) {
-  FitProblem fit{&rays, problem.reflectance, {}, target_window(problem), problem.target.mode};
-  fit.seed = options.seed;
-  if (problem.target.mode == TargetMode::shape) {
-    rays.grow(kFluxRays);
-    EvaluationOptions plain;
-    plain.rays = kFluxRays;
-    plain.derivatives = false;
-    const Evaluation start = evaluate(problem.start, problem.reflectance, rays, fit.bins, plain);
-    fit.flux_weight = kFluxWeight;
-    fit.flux_reference = start.reflected + start.direct;
-  }
-  if (problem.limits.max_height_mm) {
-    const double most = *problem.limits.max_height_mm;
-    fit.limits = [most](const DesignShape& shape, std::uint64_t, NormalEquations* equations) {
-      return height_limit(shape, most, equations);
-    };
-  }
-  fit.target = target_flux(problem.target, problem.world_from_mirror, rays.flux());
-  return fit;
-}
 
 /// FNV-1a: tells checkpoints of different problems apart.
 std::string problem_key(const DesignProblem& problem, const DesignOptions& options) {
@@ -72,6 +50,12 @@ double source_blur_rad(const DesignRays& rays, const DesignShape& shape) {
 
 void add_remarks(const DesignProblem& problem, const DesignRays& rays, DesignResult& result) {
   const double error = result.error.relative_rms, floor = result.error.floor;
+  if (error <= 1.5 * floor) {
+    result.remarks.push_back(fmt::format(
+        "the noise floor is reached: {:.2f} % is left over, of which {:.2f} % is the noise of the "
+        "judging rays; only more rays could show more",
+        100.0 * error, 100.0 * floor));
+  }
   if (error > 3.0 * floor && error > 0.02) {
     result.remarks.push_back(
         fmt::format("the target is not reached: {:.1f} % of it is left over, {:.1f} % would be noise; seen "
@@ -121,10 +105,35 @@ void judge(const DesignProblem& problem, const DesignOptions& options, const Fit
   result.absorbed = e.absorbed;
   result.back = e.back;
   result.lost = e.lost;
+  result.remarks = target_reach(rays, problem.start, fit.bins, target, fit.mode,
+                                problem.limits.min_efficiency.value_or(0.0))
+                       .statements;
   add_remarks(problem, rays, result);
 }
 
 }  // namespace
+
+FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& options, DesignRays& rays) {
+  FitProblem fit{&rays, problem.reflectance, {}, target_window(problem), problem.target.mode};
+  fit.seed = options.seed;
+  if (problem.target.mode == TargetMode::shape) {
+    rays.grow(kFluxRays);
+    EvaluationOptions plain;
+    plain.rays = kFluxRays;
+    plain.derivatives = false;
+    const Evaluation start = evaluate(problem.start, problem.reflectance, rays, fit.bins, plain);
+    fit.flux_weight = kFluxWeight;
+    fit.flux_reference = start.reflected + start.direct;
+  }
+  if (problem.limits.max_height_mm) {
+    const double most = *problem.limits.max_height_mm;
+    fit.limits = [most](const DesignShape& shape, std::uint64_t, NormalEquations* equations) {
+      return height_limit(shape, most, equations);
+    };
+  }
+  fit.target = target_flux(problem.target, problem.world_from_mirror, rays.flux());
+  return fit;
+}
 
 DesignResult design(const DesignProblem& problem, const DesignOptions& options, Progress& progress,
                     const DesignObserver& observer) {
@@ -132,22 +141,40 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
   const Clock::time_point begin = Clock::now();
   const double time_s = options.time_s.value_or(problem.time_s);
   DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
-  const FitProblem fit_data = fit_problem(problem, options, rays);
+  FitProblem fit_data = fit_problem(problem, options, rays);
   const std::vector<FitStage> stages = ladder(problem.start, fit_data.bins, options.most_rays, true);
   const std::string key = problem_key(problem, options);
-  Fit fit = options.checkpoint.empty()
-                ? Fit(fit_data, stages, problem.start)
-                : Fit(fit_data, stages, problem.start, parse_checkpoint(options.checkpoint, key));
+  FitState state;
+  if (!options.checkpoint.empty()) state = parse_checkpoint(options.checkpoint, key);
   DesignResult result{problem.start};
-  while (!fit.done()) {
+  const auto stop = [&] {
     if (progress.stop_requested()) {
       result.end = DesignEnd::interrupted;
-      break;
-    }
-    if (std::chrono::duration<double>(Clock::now() - begin).count() > time_s) {
+    } else if (std::chrono::duration<double>(Clock::now() - begin).count() > time_s) {
       result.end = DesignEnd::time;
-      break;
     }
+    return result.end != DesignEnd::converged;
+  };
+  const bool begun = !state.parameters.empty();  // before the fit there may be a search
+  const bool ready = prepare_starts(
+      fit_data, problem.start, stages, problem.optimizer, state.search_costs,
+      [&](const FitRecord& record, const DesignShape& best) {
+        result.history.push_back(record);
+        if (observer) observer(record, best, checkpoint_text(state, key));
+        return !stop();
+      },
+      progress);
+  if (!ready) {
+    result.shape = fit_data.starts[0].shape;
+    result.checkpoint = checkpoint_text(state, key);
+    result.evaluations = static_cast<int>(state.search_costs.size());
+    judge(problem, options, fit_data, result, progress);
+    return result;
+  }
+  Fit fit = begun ? Fit(fit_data, stages, problem.start, state)
+                  : Fit(fit_data, stages, problem.start, state.search_costs);
+  while (!fit.done()) {
+    if (stop()) break;
     const FitRecord record = fit.step(progress);
     result.history.push_back(record);
     progress.update(

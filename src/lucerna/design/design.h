@@ -51,6 +51,10 @@ struct DesignResult {
 using DesignObserver =
     std::function<void(const FitRecord&, const DesignShape& best, const std::string& checkpoint)>;
 
+/// The problem as a fit sees it: in the mirror's frame, in shares of the sources' flux, with all limits. Both
+/// `problem` and `rays` (the problem's sources in the mirror's frame) must outlive it.
+FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& options, DesignRays& rays);
+
 /// Shapes the problem's mirror until its far field is the target's, as well as it can be: Levenberg-Marquardt
 /// with exact path derivatives on smooth bins, from coarse bins, knots and few rays to fine and many, with
 /// restarts where a start gets stuck (docs/algorithms/design.md). Progress phases "rays", "design" (in steps

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/reflector/trough_surface.h"
 #include "lucerna/trace/toml_reader.h"
 
 namespace lucerna {
@@ -96,6 +97,13 @@ DesignShape start_shape(const Reflector& reflector, const std::vector<int>& inte
         DesignShape::revolution(nearest_focal(s->profile(), radius), reflector.aperture, n);
     return plain.through([&](double x, double y) { return s->profile().at(std::hypot(x, y)).z_mm; });
   }
+  if (const auto* s = dynamic_cast<const TroughSurface*>(reflector.surface.get())) {
+    const Aperture& a = reflector.aperture;
+    const bool mirrored = symmetry == ShapeSymmetry::mirror_x || symmetry == ShapeSymmetry::both;
+    const DesignShape plain = DesignShape::trough(nearest_focal(s->profile(), a.half_x_mm()), a,
+                                                  intervals.empty() ? 12 : intervals[0], mirrored);
+    return plain.through([&](double x, double y) { return s->at(x, y).z_mm; });
+  }
   const auto* s = dynamic_cast<const SmoothSurface<BsplineShape>*>(reflector.surface.get());
   if (s == nullptr) reader.fail("intervals", "this reflector family cannot be designed");
   const int nx = intervals.empty() ? 8 : intervals[0];
@@ -133,9 +141,12 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
     root.fail("reflector", fmt::format("found {} reflectors, expected the one that is to be shaped",
                                        project.scene.reflectors.size()));
   }
-  const std::string optimizer = design.text("optimizer").value_or("auto");
-  if (optimizer != "auto" && optimizer != "least-squares") {
-    design.fail("optimizer", fmt::format("found '{}', expected auto or least-squares", optimizer));
+  Optimizer how;
+  try {
+    how = optimizer(design.text("optimizer").value_or("auto"));
+  } catch (const InputError&) {
+    design.fail("optimizer", fmt::format("found '{}', expected one of {}",
+                                         design.text("optimizer").value_or(""), optimizer_names()));
   }
   const double time_s = design.positive("time_s").value_or(60.0);
   const std::vector<int> intervals = read_intervals(design);
@@ -148,7 +159,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   DesignShape start = start_shape(placed.reflector, intervals, design, limits.symmetry);
   design.finish();
   return {std::move(project), std::move(target),           limits, std::move(start),
-          placed.reflectance, placed.world_from_reflector, time_s};
+          placed.reflectance, placed.world_from_reflector, time_s, how};
 }
 
 TentBins target_window(const DesignProblem& problem) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "lucerna/design/fit.h"
+#include "lucerna/design/optimizer.h"
 #include "lucerna/design/target.h"
 #include "lucerna/trace/project.h"
 
@@ -27,12 +28,13 @@ struct DesignProblem {
   Reflectance reflectance{1.0};
   Frame world_from_mirror;
   double time_s = 60.0;
+  Optimizer optimizer;
 };
 
 /// Reads [target] and [design] of a project and its only [[reflector]] as a shape with free parameters: a
-/// paraboloid, a profile of revolution (fitted by the family's spline) or a B-spline. Throws InputError with
-/// file, line, key, found and expected; also for limits that contradict each other or the mirror, naming the
-/// pair.
+/// paraboloid, a profile of revolution or of a trough (fitted by the family's spline) or a B-spline. Throws
+/// InputError with file, line, key, found and expected; also for limits that contradict each other or the
+/// mirror, naming the pair.
 DesignProblem design_problem(Project project, const std::filesystem::path& path);
 
 /// The bins in which the problem's result is judged.

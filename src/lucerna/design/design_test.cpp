@@ -119,7 +119,7 @@ TEST(Design, ResumesToTheSameBits) {
   const DesignResult whole = design(
       p, small(), no_progress(),
       [&](const FitRecord&, const DesignShape&, const std::string& state) { states.push_back(state); });
-  ASSERT_GT(states.size(), 8u);
+  ASSERT_GT(states.size(), 4u);
   for (const std::size_t at : {std::size_t{0}, states.size() / 2, states.size() - 2}) {
     DesignOptions options = small();
     options.checkpoint = states[at];
@@ -127,6 +127,37 @@ TEST(Design, ResumesToTheSameBits) {
     EXPECT_EQ(resumed.checkpoint, whole.checkpoint) << "from step " << at;
     EXPECT_EQ(resumed.shape.parameters(), whole.shape.parameters()) << "from step " << at;
   }
+}
+
+TEST(Design, ResumesInTheMiddleOfASearchToTheSameBits) {
+  const TempDir folder;
+  write_target(folder.path());
+  const DesignProblem p = problem(folder.path(), "intervals = 1\noptimizer = \"cma-es\"\n");
+  std::vector<std::string> states;
+  const DesignResult whole = design(p, small(), no_progress(),
+                                    [&](const FitRecord& r, const DesignShape&, const std::string& state) {
+                                      if (r.stage < 0) states.push_back(state);
+                                    });
+  ASSERT_GT(states.size(), 8u);
+  DesignOptions options = small();
+  options.checkpoint = states[states.size() / 2];
+  const DesignResult resumed = design(p, options);
+  EXPECT_EQ(resumed.checkpoint, whole.checkpoint);
+  EXPECT_LT(resumed.history.size(), whole.history.size());
+}
+
+/// A budget that ends within the search leaves the best so far, whole, and a state that goes on.
+TEST(Design, TimeMayEndWithinASearch) {
+  const TempDir folder;
+  write_target(folder.path());
+  const DesignProblem p = problem(folder.path(), "intervals = 2\noptimizer = \"tree\"\n");
+  DesignOptions options = small();
+  options.time_s = 1e-9;
+  const DesignResult result = design(p, options);
+  EXPECT_EQ(result.end, DesignEnd::time);
+  EXPECT_EQ(result.history.size(), 1u);
+  EXPECT_GT(result.efficiency, 0.5);
+  EXPECT_FALSE(parse_checkpoint(result.checkpoint, result.checkpoint.substr(32, 16)).search_costs.empty());
 }
 
 TEST(Design, RefusesForeignAndDamagedCheckpoints) {
@@ -184,7 +215,8 @@ TEST(DesignProblem, NamesWhatIsWrong) {
     return std::string();
   };
   EXPECT_THAT(message("optimiser = \"auto\"\n"), testing::HasSubstr("optimizer"));
-  EXPECT_THAT(message("optimizer = \"magic\"\n"), testing::HasSubstr("least-squares"));
+  EXPECT_THAT(message("optimizer = \"magic\"\n"),
+              testing::HasSubstr("expected one of auto, least-squares, tree"));
   EXPECT_THAT(message("[design.limits]\nmax_diameter_mm = 50\n"), testing::HasSubstr("60 mm across"));
   EXPECT_THAT(message("[design.limits]\nmin_hole_diameter_mm = 5\n"), testing::HasSubstr("hole_diameter_mm"));
   EXPECT_EQ(message("[design.limits]\nmax_diameter_mm = 60\n"), "");

@@ -29,13 +29,13 @@ Eigen::VectorXd to_eigen(const std::vector<double>& v) {
 
 }  // namespace
 
-Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignShape& shape)
+Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignShape& shape,
+         std::vector<double> search_costs)
     : problem_(problem), stages_(std::move(stages)), family_(shape), shape_(shape), bins_(problem.bins) {
   LUCERNA_CHECK(!stages_.empty(), "a fit without stages");
-  state_.intervals_x = shape.intervals_x();
-  state_.intervals_y = shape.intervals_y();
-  set_shape({}, stages_[0].intervals_x, stages_[0].intervals_y);
-  state_.start_parameters = state_.parameters;
+  if (problem_.starts.empty()) problem_.starts = {{shape, true, 0.0}};
+  state_.search_costs = std::move(search_costs);
+  begin_with(problem_.starts[0]);
 }
 
 Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignShape& family,
@@ -45,14 +45,28 @@ Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignSh
       family_(family),
       shape_(family.refined(state.intervals_x, state.intervals_y).with(to_eigen(state.parameters))),
       state_(state),
-      bins_(problem.bins) {}
+      bins_(problem.bins) {
+  if (problem_.starts.empty()) problem_.starts = {{family, true, 0.0}};
+}
 
-void Fit::set_shape(const std::vector<double>& parameters, int intervals_x, int intervals_y) {
-  shape_ = family_.refined(intervals_x, intervals_y);
-  if (!parameters.empty()) shape_ = shape_.with(to_eigen(parameters));
+std::size_t Fit::first_stage(bool few_knots) const {
+  if (few_knots) return 0;
+  std::size_t stage = 0;
+  const FitStage& last = stages_.back();
+  while (stages_[stage].intervals_x != last.intervals_x || stages_[stage].intervals_y != last.intervals_y) {
+    ++stage;
+  }
+  return stage;
+}
+
+void Fit::begin_with(const FitStart& start) {
+  const std::size_t stage = first_stage(start.few_knots);
+  shape_ = start.shape.refined(stages_[stage].intervals_x, stages_[stage].intervals_y);
+  state_.stage = static_cast<int>(stage);
+  state_.lambda = FitState{}.lambda;
   state_.parameters.assign(shape_.parameters().begin(), shape_.parameters().end());
-  state_.intervals_x = intervals_x;
-  state_.intervals_y = intervals_y;
+  state_.intervals_x = shape_.intervals_x();
+  state_.intervals_y = shape_.intervals_y();
 }
 
 Evaluation Fit::evaluate_at(const DesignShape& shape) {
@@ -105,17 +119,24 @@ void Fit::pass_gate() {
   }
   const double floor = bin_error(now_, target_, bins_, problem_.mode).floor;
   ++state_.starts;
-  if (state_.gate_cost <= kGateFloors * kGateFloors * floor * floor || state_.starts > problem_.restarts) {
-    set_shape(state_.gate_parameters, x, y);
+  const int most = 1 + std::max(problem_.restarts, static_cast<int>(problem_.starts.size()) - 1);
+  if (state_.gate_cost <= kGateFloors * kGateFloors * floor * floor || state_.starts >= most) {
+    shape_ = family_.refined(state_.gate_intervals_x, state_.gate_intervals_y)
+                 .with(to_eigen(state_.gate_parameters));
+    state_.parameters = state_.gate_parameters;
     return;
   }
-  std::vector<double> shaken = state_.start_parameters;
+  const auto begun = static_cast<std::size_t>(state_.starts);
+  if (begun < problem_.starts.size()) return begin_with(problem_.starts[begun]);
+  // By turns a little away from the best, whose basin may have a better neighbour, and from the first start.
+  const bool from_best = (begun - problem_.starts.size()) % 2 == 0;
+  FitStart next = problem_.starts[0];
+  if (from_best) next = {family_.refined(x, y).with(to_eigen(state_.gate_parameters)), false, 0.0};
+  begin_with(next);
   Rng rng(problem_.seed, static_cast<std::uint64_t>(state_.starts));
   const double size = problem_.shake * shape_.aperture().outer_radius_mm();
-  for (double& p : shaken) p += size * (2.0 * rng.uniform() - 1.0);
-  state_.stage = 0;
-  state_.lambda = FitState{}.lambda;
-  set_shape(shaken, stages_[0].intervals_x, stages_[0].intervals_y);
+  for (double& p : state_.parameters) p += size * (2.0 * rng.uniform() - 1.0);
+  shape_ = shape_.with(to_eigen(state_.parameters));
 }
 
 DesignShape Fit::best() const {
@@ -167,13 +188,14 @@ FitRecord Fit::step(Progress& progress) {
                              move.dot(equations_.hessian.selfadjointView<Eigen::Lower>() * move));
   if (record.accepted) {
     const double gain = (equations_.cost - equations.cost) / predicted;
-    state_.lambda = std::max(1e-7, state_.lambda * (gain > 0.75 ? 0.2 : (gain > 0.25 ? 0.6 : 2.0)));
+    // Nielsen's rule: no jumps, so that a narrow valley is not left at every other step.
+    state_.lambda = std::max(1e-7, state_.lambda * std::max(0.2, 1.0 - std::pow(2.0 * gain - 1.0, 3)));
     shape_ = trial;
     now_ = std::move(e);
     equations_ = std::move(equations);
     state_.costs.push_back(equations_.cost);
   } else {
-    state_.lambda *= 6.0;
+    state_.lambda *= 5.0;
   }
   state_.parameters.assign(shape_.parameters().begin(), shape_.parameters().end());
   state_.intervals_x = shape_.intervals_x();
@@ -185,7 +207,9 @@ FitRecord Fit::step(Progress& progress) {
   record.error = error.relative_rms;
   record.floor = error.floor;
   record.efficiency = now_.reflected + now_.direct;
-  if (state_.step >= stage().most_steps || state_.lambda > 1e4 || stalled()) finish_stage();
+  // At the noise of its own rays a stage has nothing left to learn.
+  const bool at_noise = equations_.cost <= error.floor * error.floor;
+  if (state_.step >= stage().most_steps || state_.lambda > 1e4 || at_noise || stalled()) finish_stage();
   return record;
 }
 

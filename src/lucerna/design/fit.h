@@ -10,6 +10,15 @@
 
 namespace lucerna {
 
+/// A shape that a fit may begin with.
+struct FitStart {
+  DesignShape shape;
+  /// Begins with few knots, which leave the details to what the light asks for; else with all.
+  bool few_knots = true;
+  /// Relative RMS^2 with limits, in a third of the bins.
+  double cost = 0.0;
+};
+
 /// What is fitted: all that stays the same while the shape changes.
 struct FitProblem {
   DesignRays* rays = nullptr;
@@ -26,6 +35,10 @@ struct FitProblem {
   /// What the limits cost at a shape, to be added to the squared error: 0 where all are held. Adds gradient
   /// and Hessian to `equations` unless null. Limits on light trace the first `rays` rays. Empty: no limits.
   std::function<double(const DesignShape&, std::uint64_t rays, NormalEquations* equations)> limits;
+  /// Shapes to begin with, the most promising first; empty: the shape that the fit is made with.
+  std::vector<FitStart> starts;
+  /// How often the fit begins again where a start ends well above the noise: with the next of `starts`, then
+  /// by turns with the best so far and the first one, shaken.
   int restarts = 4;
   /// Size of the shakes, over the mirror's outer radius.
   double shake = 0.015;
@@ -42,8 +55,8 @@ struct FitStage {
   int most_steps = 30;
   /// The stage ends when the last two accepted steps gained less than this share of the error.
   double least_gain = 0.03;
-  /// Where this stage ends well above the noise, the fit starts again from a shaken start, as often as
-  /// FitProblem::restarts says, and goes on with the best.
+  /// Where this stage ends well above the noise, the fit begins again, as often as FitProblem::restarts says,
+  /// and goes on with the best.
   bool gate = false;
 };
 
@@ -74,16 +87,17 @@ struct FitState {
   double gate_cost = 0.0;
   std::vector<double> gate_parameters;
   int gate_intervals_x = 1, gate_intervals_y = 1;
-  /// What shaken starts begin from.
-  std::vector<double> start_parameters;
+  /// What a global search before the fit has paid for so far (optimizer.h).
+  std::vector<double> search_costs;
 };
 
 /// Levenberg-Marquardt through a list of stages. Every decision depends on the state alone, so that a fit
 /// that is stopped after any step and taken up from its state goes on to the same bits.
 class Fit {
  public:
-  /// Starts at `shape` (refined to the first stage's knots).
-  Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignShape& shape);
+  /// Starts with the first of the problem's starts, or at `shape`. `search_costs` is kept in the state.
+  Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignShape& shape,
+      std::vector<double> search_costs = {});
   /// Goes on from a state of the same problem, stages and shape family.
   Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignShape& family,
       const FitState& state);
@@ -103,7 +117,8 @@ class Fit {
   void finish_stage();
   void pass_gate();
   NormalEquations equations_at(const DesignShape& shape, const Evaluation& e) const;
-  void set_shape(const std::vector<double>& parameters, int intervals_x, int intervals_y);
+  std::size_t first_stage(bool few_knots) const;
+  void begin_with(const FitStart& start);
   const FitStage& stage() const { return stages_[static_cast<std::size_t>(state_.stage)]; }
   Evaluation evaluate_at(const DesignShape& shape);
   bool stalled() const;

@@ -16,8 +16,21 @@ std::vector<FitStage> ladder(const DesignShape& shape, const TentBins& bins, std
     }
     stages.push_back({mx, my, count, widen, n, 30, gain});
   };
+  if (shape.is_revolution()) {
+    // A ring is one number: fewer rings than parameters would leave the shape open.
+    const int few = std::min(nx, 4), coarse = std::min(k, std::max(k / 3, nx + 6));
+    if (far) {
+      add(few, ny, k / 3, 1.3, 16, 0.03);
+      add(nx, ny, coarse, 1.3, 16, 0.02);
+    }
+    add(nx, ny, coarse, 1.0, 17, 0.02);
+    add(nx, ny, k, 1.0, 18, 0.03);
+    stages.back().gate = true;
+    add(nx, ny, k, 1.0, 20, 0.02);
+    return stages;
+  }
   if (far) {
-    const int few = shape.is_revolution() ? 4 : 2, gentle = std::min(nx, few), gentle_y = std::min(ny, few);
+    const int few = 2, gentle = std::min(nx, few), gentle_y = std::min(ny, few);
     add(gentle, gentle_y, k / 6, 1.5, 16, 0.03);
     add(gentle, gentle_y, k / 4, 1.2, 16, 0.03);
     add(nx, ny, k / 6, 1.5, 16, 0.02);
@@ -25,7 +38,7 @@ std::vector<FitStage> ladder(const DesignShape& shape, const TentBins& bins, std
   }
   add(nx, ny, k / 3, 1.0, 16, 0.03);
   add(nx, ny, k / 3, 1.0, 18, 0.03);
-  if (far) stages.back().gate = true;
+  stages.back().gate = true;
   add(nx, ny, k / 2, 1.0, 18, 0.03);
   add(nx, ny, k / 2, 1.0, 20, 0.03);
   add(nx, ny, k, 1.0, 20, 0.03);

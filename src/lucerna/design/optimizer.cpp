@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/optimizer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "lucerna/core/error.h"
+#include "lucerna/core/parallel.h"
+#include "lucerna/design/starts.h"
+
+namespace lucerna {
+
+namespace {
+
+const std::array<Optimizer, 6>& known() {
+  static const std::array<Optimizer, 6> kKnown{{{"auto", true, std::nullopt},
+                                                {"least-squares", false, std::nullopt},
+                                                {"tree", true, GlobalMethod::tree},
+                                                {"annealing", true, GlobalMethod::annealing},
+                                                {"cma-es", true, GlobalMethod::cma_es},
+                                                {"direct", true, GlobalMethod::direct}}};
+  return kKnown;
+}
+
+/// Rays of an evaluation of a search: noise far below what tells basins apart.
+constexpr std::uint64_t kSearchRays = std::uint64_t{1} << 15;
+/// Half width of the box, over the mirror's radius.
+constexpr double kReach = 0.06;
+/// A mirror of revolution has few parameters, cheap evaluations and many basins.
+constexpr int kRestartsOfRevolution = 6;
+
+struct Stopped {};
+
+}  // namespace
+
+std::string optimizer_names() {
+  std::string names;
+  for (const Optimizer& o : known()) names += (names.empty() ? "" : ", ") + o.name;
+  return names;
+}
+
+Optimizer optimizer(std::string_view name) {
+  for (const Optimizer& o : known()) {
+    if (o.name == name) return o;
+  }
+  throw InputError(fmt::format("optimizer: found '{}', expected one of {}", name, optimizer_names()));
+}
+
+SearchSpace search_space(const DesignShape& about, const std::vector<FitStage>& stages) {
+  // Enough knots for a shape, few enough for methods that learn from costs alone.
+  const int most = about.is_revolution() ? 8 : 3;
+  const int nx = std::min(most, stages.back().intervals_x), ny = std::min(most, stages.back().intervals_y);
+  const DesignShape shape = about.refined(nx, about.is_revolution() ? about.intervals_y() : ny);
+  const double half = kReach * shape.aperture().outer_radius_mm();
+  return {shape, {shape.parameters(), Eigen::VectorXd::Constant(shape.parameters().size(), half)}};
+}
+
+int search_evaluations(std::size_t parameters) { return 60 * static_cast<int>(parameters); }
+
+bool prepare_starts(FitProblem& problem, const DesignShape& shape, const std::vector<FitStage>& stages,
+                    const Optimizer& optimizer, std::vector<double>& costs, const SearchWatch& watch,
+                    Progress& progress) {
+  if (shape.is_revolution()) problem.restarts = std::max(problem.restarts, kRestartsOfRevolution);
+  problem.starts.clear();
+  if (!optimizer.zero_etendue) return true;
+  problem.starts = fit_starts(problem, shape, progress);
+  if (!optimizer.global) return true;
+
+  const SearchSpace space = search_space(problem.starts[0].shape, stages);
+  const std::uint64_t rays = std::min(kSearchRays, stages.back().rays);
+  problem.rays->grow(rays, progress);
+  const TentBins bins = rebinned(problem.bins, 1.0, problem.bins.count() / 3);
+  const Eigen::VectorXd target = problem.target(bins);
+  const SearchOptions options{problem.seed, search_evaluations(space.shape.parameter_count())};
+  std::size_t asked = 0;
+  FitRecord record;
+  record.error = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd best = space.shape.parameters();
+  const BatchCost batch = [&](const std::vector<Eigen::VectorXd>& points) {
+    const std::size_t n = points.size();
+    std::vector<double> now(n);
+    const bool fresh = asked + n > costs.size();
+    if (!fresh) {
+      std::copy_n(costs.begin() + static_cast<std::ptrdiff_t>(asked), n, now.begin());
+    } else {
+      parallel_blocks(n, 1, [&](std::size_t i, std::size_t) {
+        const double cost = fit_cost(problem, space.shape.with(points[i]), bins, target, rays);
+        now[i] = std::isfinite(cost) ? cost : 1e30;
+      });
+      costs.resize(asked);  // a batch is paid for as a whole
+      costs.insert(costs.end(), now.begin(), now.end());
+    }
+    asked += n;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!(std::sqrt(now[i]) < record.error)) continue;
+      record.error = std::sqrt(now[i]);
+      best = points[i];
+    }
+    record.rays = rays;
+    record.evaluations = static_cast<int>(asked);
+    record.total_rays = asked * rays;
+    record.stage = -1;  // before the fit's first
+    ++record.step;
+    progress.update("search", asked, static_cast<std::uint64_t>(options.most_evaluations));
+    if (fresh && !watch(record, space.shape.with(best))) throw Stopped();
+    return now;
+  };
+  bool whole = true;
+  try {
+    global_search(*optimizer.global, space.box, options, batch);
+  } catch (const Stopped&) {
+    whole = false;
+  }
+  const DesignShape found = space.shape.with(best);
+  problem.starts.insert(problem.starts.begin(), {found, false, record.error * record.error});
+  return whole;
+}
+
+}  // namespace lucerna
