@@ -81,17 +81,26 @@ BoundingSurface get_surface(NflReader& r) {
   return s;
 }
 
+/// Version 2 of the format: set in the byte of the kind where a dome follows. Programs that know version 1
+/// only see an unknown kind and refuse the file.
+constexpr std::uint8_t kHasDome = 0x80;
+constexpr double kLargestIndex = 10.0;
+
 void put_support(NflWriter& w, const Support& s) {
-  w.u8(static_cast<std::uint8_t>(s.kind));
+  w.u8(static_cast<std::uint8_t>(static_cast<std::uint8_t>(s.kind) | (s.dome.exists() ? kHasDome : 0)));
   w.u8(static_cast<std::uint8_t>(s.map));
   put_frame(w, s.world_from_support);
   w.f64(s.radius_mm);
   put_vector(w, s.half_size_mm);
   w.f64(s.twist_per_mm);
+  if (!s.dome.exists()) return;
+  put_vector(w, s.dome.centre_mm);
+  w.f64(s.dome.radius_mm);
+  w.f64(s.dome.index);
 }
 
 Support get_support(NflReader& r) {
-  const std::uint8_t kind = r.u8(), map = r.u8();
+  const std::uint8_t first = r.u8(), map = r.u8(), kind = first & static_cast<std::uint8_t>(~kHasDome);
   r.expect(kind < kSupportKinds && map <= 1, "an unknown support");
   Support s;
   s.kind = static_cast<SupportKind>(kind);
@@ -104,6 +113,12 @@ Support get_support(NflReader& r) {
   const bool round = s.kind == SupportKind::sphere || s.kind == SupportKind::cylinder;
   r.expect(!round || s.radius_mm > 0.0, "a round support without a radius");
   r.expect(h.x >= 0.0 && h.y >= 0.0 && h.z >= 0.0, "a support of negative size");
+  if ((first & kHasDome) == 0) return s;
+  s.dome.centre_mm = get_vector(r);
+  s.dome.radius_mm = get_length(r);
+  s.dome.index = r.f64();
+  r.expect(s.dome.radius_mm > 0.0, "a dome without a radius");
+  r.expect(s.dome.index >= 1.0 && s.dome.index <= kLargestIndex, "an index of refraction outside 1 to 10");
   return s;
 }
 

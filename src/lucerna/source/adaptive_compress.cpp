@@ -122,14 +122,19 @@ std::string describe_choice(const SearchResult& search) {
   if (search.degenerate) return "the rays fill no étendue";
   std::string text =
       fmt::format("{:.2f} % of the flux, {:.3f} nats per ray", 100.0 * search.best.carried, search.best.nats);
-  std::array<bool, kSupportKinds> told{};
-  told[static_cast<std::size_t>(search.best.on.support.kind)] = true;
+  const RefractingSphere& dome = search.best.on.support.dome;
+  if (dome.exists()) {
+    text += fmt::format("; in a dome of R {:.3f} mm, index {:.3f}", dome.radius_mm, dome.index);
+  }
+  std::array<std::array<bool, kSupportKinds>, 2> told{};
+  told[dome.exists() ? 1 : 0][static_cast<std::size_t>(search.best.on.support.kind)] = true;
   for (const SupportScore& rival : search.rivals) {
-    bool& known = told[static_cast<std::size_t>(rival.on.support.kind)];
+    const Support& s = rival.on.support;
+    bool& known = told[s.dome.exists() ? 1 : 0][static_cast<std::size_t>(s.kind)];
     if (known) continue;
     known = true;
-    text += fmt::format("; {:.3f} better than {}", search.coarse_nats - rival.nats,
-                        to_string(rival.on.support.kind));
+    text += fmt::format("; {:.3f} better than {}{}", search.coarse_nats - rival.nats, to_string(s.kind),
+                        s.dome.exists() ? " in a dome" : "");
   }
   return text;
 }

@@ -185,7 +185,8 @@ double AdaptiveModel::density(const Ray& ray) const {
   for (const Place& place : places_) {
     if (place.support != last) p = place.support->to_chart(ray), last = place.support;
     if (!p || p->chart != place.chart) continue;
-    for (const TreeLookup& tree : place.trees) sum += place.share * tree.density(p->c);
+    const double share = place.share / place.support->etendue_ratio();
+    for (const TreeLookup& tree : place.trees) sum += share * tree.density(p->c);
   }
   return sum;
 }

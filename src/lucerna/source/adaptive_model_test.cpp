@@ -58,6 +58,13 @@ AdaptiveData small_data() {
   return data;
 }
 
+/// The same with its first layer seen through a dome: version 2 of the format.
+AdaptiveData dome_data() {
+  AdaptiveData data = small_data();
+  data.layers.front().support.dome = {{0.1, 0.0, -0.2}, 1.8, 1.4};
+  return data;
+}
+
 TEST(AdaptiveModel, SurvivesItsFile) {
   AdaptiveData data = small_data();
   data.spectra = {{{400.0f, 500.0f}, {0.25f, 1.0f}}};
@@ -80,8 +87,23 @@ TEST(AdaptiveModel, FrozenFileOfVersion1Reads) {
   EXPECT_EQ(dynamic_cast<const AdaptiveModel&>(*model).data().layers, small_data().layers);
 }
 
+TEST(AdaptiveModel, FrozenFileOfVersion2Reads) {
+  const std::string path = std::string(LUCERNA_SOURCE_DIR) + "/tests/data/adaptive_v2.nfl";
+  const auto model = load_source_model(path);
+  EXPECT_EQ(dynamic_cast<const AdaptiveModel&>(*model).data().layers, dome_data().layers);
+}
+
+TEST(AdaptiveModel, ProgramsOfVersion1DoNotMistakeADome) {
+  const NflFile plain = encode_adaptive(small_data()), dome = encode_adaptive(dome_data());
+  // The kind of the first support, after the surface and the number of layers.
+  constexpr std::size_t kKind = 1 + 16 * 8 + 1;
+  EXPECT_LT(static_cast<std::uint8_t>(plain.sections[0].bytes[kKind]), kSupportKinds);
+  EXPECT_GE(static_cast<std::uint8_t>(dome.sections[0].bytes[kKind]), kSupportKinds);
+  EXPECT_EQ(plain.sections[1].bytes, dome.sections[1].bytes);
+}
+
 TEST(AdaptiveModelFuzz, DamagedSectionsAreRefusedOrReadable) {
-  const NflFile good = encode_adaptive(small_data());
+  const NflFile good = encode_adaptive(dome_data());
   int refused = 0;
   for (std::uint64_t i = 0; i < 4000; ++i) {
     Rng rng(9, i);
@@ -178,18 +200,20 @@ double agreement(const AdaptiveModel& model, const Sample& sample, const Support
 }
 
 TEST(AdaptiveModelStatistical, SamplesAgreeWithTheDensity) {
-  const AdaptiveModel model(small_data());
-  Support about;
-  about.map = PolarMap::concentric;
-  const TreeBox box{{-1.2, -1.2, -1, -std::numbers::pi}, {1.2, 1.2, 1, std::numbers::pi}};
-  EXPECT_GT(agreement(
-                model, [&](const auto& u) { return model.sample(u); }, about, box),
-            test::kFalseAlarm);
-  const auto wrong = [&](auto u) {
-    u[0] = u[0] * u[0];
-    return model.sample(u);
-  };
-  EXPECT_LT(agreement(model, wrong, about, box), test::kFalseAlarm);
+  for (const AdaptiveData& data : {small_data(), dome_data()}) {
+    const AdaptiveModel model(data);
+    Support about;
+    about.map = PolarMap::concentric;
+    const TreeBox box{{-1.2, -1.2, -1, -std::numbers::pi}, {1.2, 1.2, 1, std::numbers::pi}};
+    EXPECT_GT(agreement(
+                  model, [&](const auto& u) { return model.sample(u); }, about, box),
+              test::kFalseAlarm);
+    const auto wrong = [&](auto u) {
+      u[0] = u[0] * u[0];
+      return model.sample(u);
+    };
+    EXPECT_LT(agreement(model, wrong, about, box), test::kFalseAlarm);
+  }
 }
 
 TEST(AdaptiveModel, DensitiesOfDegenerateSourcesAreNamed) {

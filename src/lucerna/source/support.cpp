@@ -173,7 +173,13 @@ std::array<double, 2> Support::range(std::uint32_t chart, std::size_t d) const {
   return {-kPi, kPi};
 }
 
-std::optional<ChartPoint> Support::to_chart(const Ray& world) const {
+std::optional<ChartPoint> Support::to_chart(const Ray& outside) const {
+  Ray world = outside;
+  if (dome.exists()) {
+    const auto inside = dome.inside(outside);
+    if (!inside) return std::nullopt;
+    world = *inside;
+  }
   const Frame& f = world_from_support;
   const Vec3 o = world.origin_mm - f.origin_mm();
   const Vec3& d = world.direction.vec();
@@ -197,7 +203,10 @@ std::optional<ChartPoint> Support::to_chart(const Ray& world) const {
   return std::nullopt;
 }
 
-Ray Support::from_chart(const ChartPoint& p) const { return world_from_support.ray(local_ray(p, *this)); }
+Ray Support::from_chart(const ChartPoint& p) const {
+  const Ray ray = world_from_support.ray(local_ray(p, *this));
+  return dome.exists() ? dome.outside(ray) : ray;
+}
 
 std::optional<Support> support_on(const BoundingSurface& surface, PolarMap map) {
   Support s;

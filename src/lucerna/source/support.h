@@ -8,12 +8,13 @@
 
 #include "lucerna/core/frame.h"
 #include "lucerna/rayset/bounding_surface.h"
+#include "lucerna/source/refracting_sphere.h"
 
 namespace lucerna {
 
 /// Where the rays of a layer are written down: a way of giving every line of light four numbers whose volume
-/// is étendue (mm^2 sr). Density in these numbers is radiance, so a leaf of constant density is a piece of
-/// constant radiance.
+/// is étendue (mm^2 sr), or a constant multiple of it where the source is seen through a dome. Density in
+/// these numbers is radiance, so a leaf of constant density is a piece of constant radiance.
 ///
 /// | kind     | charts | position (0, 1) | direction (2, 3) |
 /// |----------|--------|-----------------|------------------|
@@ -52,6 +53,9 @@ struct Support {
   Vec3 half_size_mm;
   /// Cylinder, axis: azimuth is counted from a line that turns by so much per mm along z (a coil's wires).
   double twist_per_mm = 0.0;
+  /// Where there is one, lines are written down as they run inside this ball, in the world's frame: the
+  /// numbers' volume is then étendue inside it.
+  RefractingSphere dome;
 
   std::uint32_t charts() const;
   /// Largest range that coordinate `d` of `chart` can take; +-1e30 where only the data bound it.
@@ -60,8 +64,11 @@ struct Support {
   /// The numbers of a ray's line; nothing if the line misses the support, or runs along it.
   std::optional<ChartPoint> to_chart(const Ray& world) const;
   /// The inverse: the ray of that line that starts on the support (focal: beside the origin; axis: at its
-  /// nearest point). Azimuths may be given beyond their range.
+  /// nearest point; with a dome: on the dome). Azimuths may be given beyond their range.
   Ray from_chart(const ChartPoint& p) const;
+
+  /// Étendue outside for one unit of the numbers' volume: 1, or the square of the dome's index.
+  double etendue_ratio() const { return dome.etendue_ratio(); }
 
   friend bool operator==(const Support&, const Support&) = default;
 };

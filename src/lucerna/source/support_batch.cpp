@@ -198,10 +198,30 @@ void on_plane(const BoundingSurface& s, std::size_t n, RayBatch& r) {
   }
 }
 
-}  // namespace
+/// RefractingSphere::outside for all rays.
+void leave_dome(const RefractingSphere& dome, std::size_t n, RayBatch& r) {
+  const Vec3 o = dome.centre_mm;
+  const double index = dome.index, radius = dome.radius_mm, inverse = 1.0 / radius;
+  const double most = (1.0 - 1e-9) / index;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = (r.x[i] - o.x) * inverse, y = (r.y[i] - o.y) * inverse, z = (r.z[i] - o.z) * inverse;
+    const double along = x * r.kx[i] + y * r.ky[i] + z * r.kz[i];
+    double qx = x - along * r.kx[i], qy = y - along * r.ky[i], qz = z - along * r.kz[i];
+    const double q = std::sqrt(qx * qx + qy * qy + qz * qz);
+    const double scale = std::min(1.0, most / std::max(q, 1e-300));
+    qx *= scale, qy *= scale, qz *= scale;
+    const double sine = q * scale, in = std::sqrt(1.0 - sine * sine);
+    const double out = std::sqrt(std::max(0.0, 1.0 - index * index * sine * sine)), turn = out - index * in;
+    const double nx = qx + in * r.kx[i], ny = qy + in * r.ky[i], nz = qz + in * r.kz[i];
+    r.x[i] = o.x + radius * nx, r.y[i] = o.y + radius * ny, r.z[i] = o.z + radius * nz;
+    r.kx[i] = index * r.kx[i] + turn * nx;
+    r.ky[i] = index * r.ky[i] + turn * ny;
+    r.kz[i] = index * r.kz[i] + turn * nz;
+  }
+}
 
-void rays_from_chart(const Support& support, std::uint32_t chart, const std::array<BatchColumn, 4>& c,
-                     std::size_t n, RayBatch& out) {
+void rays_inside(const Support& support, std::uint32_t chart, const std::array<BatchColumn, 4>& c,
+                 std::size_t n, RayBatch& out) {
   if (support.kind == SupportKind::focal) return fill_focal(support, c, n, out);
   const bool done =
       support.map == PolarMap::polar
@@ -209,9 +229,19 @@ void rays_from_chart(const Support& support, std::uint32_t chart, const std::arr
           : fill_surface(support, chart, c, n, out,
                          [](double a, double b) { return concentric_direction(a, b); });
   if (done) return;
+  Support bare = support;
+  bare.dome = {};
   for (std::size_t i = 0; i < n; ++i) {
-    out.set(i, support.from_chart({chart, {c[0][i], c[1][i], c[2][i], c[3][i]}}));
+    out.set(i, bare.from_chart({chart, {c[0][i], c[1][i], c[2][i], c[3][i]}}));
   }
+}
+
+}  // namespace
+
+void rays_from_chart(const Support& support, std::uint32_t chart, const std::array<BatchColumn, 4>& c,
+                     std::size_t n, RayBatch& out) {
+  rays_inside(support, chart, c, n, out);
+  if (support.dome.exists()) leave_dome(support.dome, n, out);
 }
 
 void start_batch_on(const BoundingSurface& surface, std::size_t n, RayBatch& rays) {

@@ -12,10 +12,12 @@ namespace {
 
 TEST(SupportBatch, AgreesWithOneRayAtATime) {
   const Frame placed = Frame::from_axis(Direction::from({1, -2, 0.5}), 0.7, {0.3, -0.2, 0.4});
-  for (std::size_t k = 0; k < kSupportKinds; ++k) {
+  for (std::size_t k = 0; k < 2 * kSupportKinds; ++k) {
     for (const PolarMap map : {PolarMap::polar, PolarMap::concentric}) {
       Support s;
-      s.kind = static_cast<SupportKind>(k);
+      s.kind = static_cast<SupportKind>(k % kSupportKinds);
+      // Smaller than the support, so that some lines are moved to where they leave it.
+      if (k >= kSupportKinds) s.dome = {{0.2, -0.3, 0.1}, 1.9, 1.5};
       s.map = map;
       s.world_from_support = placed;
       s.radius_mm = 1.3;

@@ -32,7 +32,7 @@ double density_of(const std::vector<FittedChart>& charts, const Support& support
   const auto p = support.to_chart(ray);
   if (!p) return 0.0;
   for (const FittedChart& c : charts) {
-    if (c.chart == p->chart) return c.share * c.tree.density(p->c);
+    if (c.chart == p->chart) return c.share * c.tree.density(p->c) / support.etendue_ratio();
   }
   return 0.0;
 }

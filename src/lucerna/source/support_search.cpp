@@ -127,6 +127,32 @@ void add_round(std::vector<Support>& all, const RayBlock& rays, const Direction&
   }
 }
 
+/// Flat sources seen through balls of glass of several sizes: LEDs under a dome.
+void add_domes(std::vector<Support>& all, const RayBlock& rays, const Shape& shape) {
+  constexpr double kIndex = 1.5, kNearlyAll = 0.998;
+  for (const Vec3& centre : shape.centres_mm) {
+    std::vector<double> offset;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Vec3 o = rays.origin_mm(i) - centre;
+      offset.push_back(length(cross(o, rays.direction(i).vec())));
+    }
+    const double least = quantile(std::move(offset), kNearlyAll);
+    if (!(least > 0.0)) continue;
+    for (const Direction& axis : shape.axes) {
+      for (const double size : {1.1, 1.5, 2.2, 3.5}) {
+        for (const PolarMap map : {PolarMap::polar, PolarMap::concentric}) {
+          Support s;
+          s.kind = SupportKind::plane;
+          s.map = map;
+          s.world_from_support = upright_frame(axis, centre);
+          s.dome = {centre, size * least, kIndex};
+          all.push_back(s);
+        }
+      }
+    }
+  }
+}
+
 std::vector<Support> candidates(const RayBlock& rays, const Shape& shape, const BoundingSurface& surface) {
   std::vector<Support> all;
   for (const PolarMap map : {PolarMap::polar, PolarMap::concentric}) {
@@ -144,7 +170,30 @@ std::vector<Support> candidates(const RayBlock& rays, const Shape& shape, const 
   for (const Vec3& centre : shape.centres_mm) {
     for (const Direction& axis : shape.axes) add_round(all, rays, axis, centre);
   }
+  add_domes(all, rays, shape);
   return all;
+}
+
+/// One step of a support's dome: moved by `length_mm`, stronger or weaker, of another index but as strong.
+std::optional<Support> moved_dome(const Support& s, int move, double length_mm, double angle) {
+  if (!s.dome.exists()) return std::nullopt;
+  constexpr double kLeast = 1.02, kMost = 4.0;
+  Support t = s;
+  const Frame& f = s.world_from_support;
+  if (move < 3) {
+    const Vec3 axis = move == 0 ? f.ex() : move == 1 ? f.ey() : f.ez();
+    t.dome.centre_mm = s.dome.centre_mm + length_mm * axis;
+    return t;
+  }
+  if (move == 3) {
+    t.dome.radius_mm = s.dome.radius_mm * std::exp(angle);
+    return t;
+  }
+  t.dome.index = 1.0 + (s.dome.index - 1.0) * std::exp(angle);
+  if (t.dome.index < kLeast || t.dome.index > kMost) return std::nullopt;
+  const auto weakness = [](double index) { return 1.0 - 1.0 / index; };
+  t.dome.radius_mm = s.dome.radius_mm * weakness(t.dome.index) / weakness(s.dome.index);
+  return t;
 }
 
 /// One step of a support: moved along an axis of its own by `length_mm`, turned about one by `angle`, or
@@ -177,9 +226,10 @@ std::optional<Support> moved(const Support& s, int move, double length_mm, doubl
     if (!(t.half_size_mm.z > 0.2 * s.half_size_mm.z)) return std::nullopt;
     return t;
   }
+  if (move >= 8) return moved_dome(s, move - 8, length_mm, angle);
   return std::nullopt;
 }
-constexpr int kMoves = 8;
+constexpr int kMoves = 13;
 
 /// One round of compass search: the best of all single steps is taken while one gains.
 SupportScore refine_round(const SupportJudge& judge, SupportScore start, double length_mm, double angle,
@@ -256,6 +306,11 @@ std::optional<SupportScore> degenerate_support(const RayBlock& rays, const Shape
   return free ? refine(judge, start, 0.0, radians(12.0), 8, progress) : start;
 }
 
+/// Supports that are searched alike.
+std::size_t family(const Support& s) {
+  return static_cast<std::size_t>(s.kind) + (s.dome.exists() ? kSupportKinds : 0);
+}
+
 }  // namespace
 
 double rounding_mm(const RayBlock& rays, const Vec3& about_mm) {
@@ -293,17 +348,15 @@ SearchResult find_support(const RayBlock& rays, const BoundingSurface& surface, 
   progress.step("compress: supports", 0, 2);
   const SupportJudge screen(stratified_choice(coarse, kScreenRays, seed + 2), shape.focus_mm, tolerance_mm);
   std::vector<Support> promising;
-  std::array<std::size_t, kSupportKinds> of_kind{};
+  std::array<std::size_t, 2 * kSupportKinds> of_kind{};
   for (const SupportScore& score : best_first(screen.scores(candidates(coarse, shape, surface)))) {
-    if (of_kind[static_cast<std::size_t>(score.on.support.kind)]++ < 2 * kRefinedOfKind) {
-      promising.push_back(score.on.support);
-    }
+    if (of_kind[family(score.on.support)]++ < 2 * kRefinedOfKind) promising.push_back(score.on.support);
   }
   const SupportJudge judge(coarse, shape.focus_mm, tolerance_mm);
   std::vector<SupportScore> racers;
   of_kind.fill(0);
   for (const SupportScore& score : best_first(judge.scores(promising))) {
-    std::size_t& count = of_kind[static_cast<std::size_t>(score.on.support.kind)];
+    std::size_t& count = of_kind[family(score.on.support)];
     if (racers.size() < kRefined && count++ < kRefinedOfKind) racers.push_back(score);
   }
   double length_mm = 0.25 * shape.spread_mm, angle = radians(12.0);

@@ -30,6 +30,9 @@ std::vector<Support> all_supports() {
       if (s.kind == SupportKind::box) s.half_size_mm = {0.5, 0.8, 1.1};
       if (s.kind == SupportKind::cylinder || s.kind == SupportKind::axis) s.twist_per_mm = 2.5;
       all.push_back(s);
+      if (s.kind != SupportKind::plane && s.kind != SupportKind::sphere) continue;
+      s.dome = {placed.point({0.1, 0.0, -0.1}), 2.8, 1.2};
+      all.push_back(s);
     }
   }
   return all;
