@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Quality of the adaptive source model: bytes, excess in the five views beside what the training rays show,
-// CPU seconds, rays a second.
+// seconds, rays a second.
 //   bench_adaptive SOURCE RAYS [test rays] [trees] [penalty] [max-bytes ...]
-// SOURCE is an emitter, one of own_sources.h (dome, tilted, strip, arc), or a ray file: then one half of its
-// rays trains and the other is the truth. 0 = default; one line per ceiling.
+//   bench_adaptive table [RAYS] [test rays]
+//   ONE_SUPPORT=1 bench_adaptive ...     without a second support for light that overlaps
+// SOURCE is an emitter, one of own_sources.h (dome, tilted, strip, arc ...), or a ray file: then one half of
+// its rays trains and the other is the truth. 0 = default; one line per ceiling. `table` prints the table of
+// docs/algorithms/adaptive.md: every source with ceilings of 256, 64 and 16 kB (once where less is enough).
 #include <fmt/format.h>
+#include <sys/resource.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
@@ -51,33 +56,21 @@ double sampling_rate(const AdaptiveModel& model) {
   return static_cast<double>(some.size()) * 1e-6 / (cpu_seconds() - start);
 }
 
-void report(const std::string& name, const RaySet& rays, const Views& views, const ViewCounts& truth,
-            const ViewCounts& training, const AdaptiveOptions& options, std::uint64_t tests, bool first) {
-  const double start = cpu_seconds();
-  const auto model = compress_adaptive(rays, options);
-  const double used = cpu_seconds() - start;
-  ViewCounts test(views);
-  add_drawn(test, *model, Sequence(SequenceKind::random, 14), tests);
-  const RaySetComparison c = compare_view_counts(truth, test, &training);
-  for (const AdaptiveLayer& layer : model->data().layers) {
-    if (first) fmt::print("# {}: {:.5f} {}\n", to_string(layer.support.kind), layer.share, layer.why);
-  }
-  fmt::print("| {} | {} | {:.1f} kB | {} |", name, rays.rays.size(),
-             1e-3 * static_cast<double>(encode_nfl(model->to_nfl()).size()), model->leaves());
-  for (const ViewKind v : kViewKinds) {
-    fmt::print(" {:.4f} +- {:.4f} ({:.4f}) |", c[v].excess, c[v].standard_error, c[v].raw);
-  }
-  fmt::print(" {:.1f} s CPU | {:.1f} M/s |\n", used, sampling_rate(*model));
+double peak_gb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1e6;
 }
 
-}  // namespace
+/// Rays to train with, and what is known of the truth.
+struct Case {
+  std::string name;
+  RaySet rays;
+  std::unique_ptr<Views> views;  // the counts refer to it
+  ViewCounts truth, training;
+};
 
-int main(int argc, char** argv) {
-  const auto argument = [&](int i, double otherwise) {
-    return argc > i && std::atof(argv[i]) > 0.0 ? std::atof(argv[i]) : otherwise;
-  };
-  const std::string name = argc > 1 ? argv[1] : "led";
-  const auto tests = static_cast<std::uint64_t>(argument(3, 4e6));
+Case make_case(const std::string& name, std::size_t train, std::uint64_t tests) {
   RaySet rays;
   RayBlock reference;
   std::unique_ptr<RaySource> source;
@@ -90,24 +83,84 @@ int main(int argc, char** argv) {
     }
   } else {
     source = source_named(name);
-    rays.rays =
-        draw_rays(*source, Sequence(SequenceKind::random, 11), static_cast<std::size_t>(argument(2, 1e6)));
+    rays.rays = draw_rays(*source, Sequence(SequenceKind::random, 11), train);
     reference = draw_rays(*source, Sequence(SequenceKind::random, 12), 1 << 19);
   }
-  const Views views(reference);
-  ViewCounts truth(views), training(views);
+  auto views = std::make_unique<Views>(reference);
+  ViewCounts none(*views);
+  Case c{std::filesystem::path(name).filename().string(), std::move(rays), std::move(views), none, none};
   if (source)
-    add_drawn(truth, *source, Sequence(SequenceKind::random, 13), tests);
+    add_drawn(c.truth, *source, Sequence(SequenceKind::random, 13), tests);
   else
-    truth.add(reference);
-  training.add(rays.rays);
+    c.truth.add(reference);
+  c.training.add(c.rays.rays);
+  return c;
+}
+
+/// One line; returns the bytes of the file.
+std::uint64_t report(const Case& c, const AdaptiveOptions& options, std::uint64_t tests, bool why) {
+  const double start = cpu_seconds();
+  const auto wall = std::chrono::steady_clock::now();
+  const auto model = compress_adaptive(c.rays, options);
+  const double used = cpu_seconds() - start;
+  const double waited = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+  const double peak = peak_gb();
+  ViewCounts test(*c.views);
+  add_drawn(test, *model, Sequence(SequenceKind::random, 14), tests);
+  const RaySetComparison r = compare_view_counts(c.truth, test, &c.training);
+  for (const AdaptiveLayer& layer : model->data().layers) {
+    if (why) fmt::print("# {}: {:.5f} {}\n", to_string(layer.support.kind), layer.share, layer.why);
+  }
+  const std::uint64_t bytes = encode_nfl(model->to_nfl()).size();
+  fmt::print("| {} | {} | {:.1f} kB | {} |", c.name, c.rays.rays.size(), 1e-3 * static_cast<double>(bytes),
+             model->leaves());
+  for (const ViewKind v : kViewKinds) {
+    fmt::print(" {:.4f} +- {:.4f} ({:.4f}) |", r[v].excess, r[v].standard_error, r[v].raw);
+  }
+  fmt::print(" {:.1f} s, {:.1f} s CPU | {:.2f} GB | {:.1f} M/s |\n", waited, used, peak,
+             sampling_rate(*model));
+  std::fflush(stdout);
+  return bytes;
+}
+
+void print_table(std::size_t train, std::uint64_t tests) {
+  fmt::print(
+      "| source | rays | file | leaves | far | near | focus | beam | 4-D | compress | peak of all so far | "
+      "sample, one core |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const char* name :
+       {"point", "disk", "rectangle", "cylinder", "sphere", "filament", "led", "phong500", "phong25",
+        "radial", "cosine", "dome", "egg", "tilted", "strip", "arc", "ghost", "remote"}) {
+    const Case c = make_case(name, train, tests);
+    std::uint64_t bytes = ~std::uint64_t{0};
+    for (const std::uint64_t most : {256'000u, 64'000u, 16'000u}) {
+      if (bytes <= most) continue;
+      AdaptiveOptions options;
+      options.max_bytes = most;
+      bytes = report(c, options, tests, false);
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto argument = [&](int i, double otherwise) {
+    return argc > i && std::atof(argv[i]) > 0.0 ? std::atof(argv[i]) : otherwise;
+  };
+  const std::string name = argc > 1 ? argv[1] : "led";
+  const auto tests = static_cast<std::uint64_t>(argument(3, 4e6));
+  if (name == "table") {
+    print_table(static_cast<std::size_t>(argument(2, 1e7)), tests);
+    return 0;
+  }
+  const Case c = make_case(name, static_cast<std::size_t>(argument(2, 1e6)), tests);
   AdaptiveOptions options;
+  options.overlap = std::getenv("ONE_SUPPORT") == nullptr;
   if (argument(4, 0) > 0) options.trees = static_cast<int>(argument(4, 0));
   if (argument(5, 0) > 0) options.penalty_nats = argument(5, 0);
   for (int i = 6; i < std::max(argc, 7); ++i) {
     options.max_bytes.reset();
     if (argument(i, 0) > 0) options.max_bytes = static_cast<std::uint64_t>(argument(i, 0));
-    report(std::filesystem::path(name).filename().string(), rays, views, truth, training, options, tests,
-           i == 6);
+    report(c, options, tests, i == 6);
   }
 }

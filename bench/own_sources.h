@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sources that no method was tuned on, for bench_adaptive: dome, tilted, strip, arc, egg.
+// Sources that no method was tuned on, for bench_adaptive: dome, tilted, strip, arc, egg, ghost, remote.
 #pragma once
 
 #include <cmath>
@@ -93,6 +93,34 @@ inline WeightedRay arc_ray(const OwnNumbers& u) {
   return {{ray.at(*BoundingSurface::sphere(10.0).exit_distance_mm(ray)), d}};
 }
 
+/// A straight filament along x and its weak image in a mirror above it (12 % of the light): two cylinders
+/// whose light overlaps; on a sphere of 15 mm.
+inline WeightedRay ghost_ray(const OwnNumbers& u) {
+  constexpr double kRadius = 0.3, kLength = 6.0, kMirror = 1.3;
+  const double phi = 2.0 * std::numbers::pi * u[2];
+  const Vec3 n{0.0, std::cos(phi), std::sin(phi)};
+  Vec3 p = kRadius * n + Vec3{kLength * (u[3] - 0.5), 0, 0};
+  Direction d = warp::about(Direction::from_unit(n), warp::cosine_hemisphere(u[0], u[1]));
+  if (u[4] < 0.12) {
+    p.z = 2.0 * kMirror - p.z;
+    d = Direction::from({d.x(), d.y(), -d.z()});
+  }
+  const Ray ray{p, d};
+  return {{ray.at(*BoundingSurface::sphere(15.0).exit_distance_mm(ray)), d}};
+}
+
+/// A 1 mm die and a tenth of its light scattered by the round wall of its package, 3 mm across and 2 mm high.
+inline WeightedRay remote_ray(const OwnNumbers& u) {
+  Ray ray{{u[2] - 0.5, u[3] - 0.5, 0.0}, warp::cosine_hemisphere(u[0], u[1])};
+  if (u[4] < 0.1) {
+    const double phi = 2.0 * std::numbers::pi * u[2];
+    const Vec3 n{std::cos(phi), std::sin(phi), 0.0};
+    ray = {1.5 * n + Vec3{0, 0, 2.0 * u[3]},
+           warp::about(Direction::from_unit(n), warp::cosine_hemisphere(u[0], u[1]))};
+  }
+  return {{ray.at(*BoundingSurface::sphere(4.0).exit_distance_mm(ray)), ray.direction}};
+}
+
 class OwnSource final : public RaySource {
  public:
   using Sampler = WeightedRay (*)(const OwnNumbers&);
@@ -114,6 +142,8 @@ class OwnSource final : public RaySource {
 /// The source of that name, or nothing.
 inline std::unique_ptr<RaySource> own_source(std::string_view name) {
   if (name == "dome") return std::make_unique<OwnSource>(dome_ray);
+  if (name == "ghost") return std::make_unique<OwnSource>(ghost_ray);
+  if (name == "remote") return std::make_unique<OwnSource>(remote_ray);
   if (name == "egg") return std::make_unique<OwnSource>(egg_ray);
   if (name == "tilted") return std::make_unique<OwnSource>(tilted_ray);
   if (name == "strip") return std::make_unique<OwnSource>(strip_ray);

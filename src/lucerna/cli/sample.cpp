@@ -30,6 +30,10 @@ void sample(const SampleArguments& a, Session& session) {
   header.texts.light_source = "sampled from " + std::filesystem::path(a.model).filename().string();
   header.texts.file_creator = fmt::format("Lucerna {}", version());
   header.creation_method = 0;
+  header.spectra.assign(model->spectra().begin(), model->spectra().end());
+  if (model->has_wavelengths()) {
+    header.columns.push_back({ColumnKind::wavelength_nm, standard_label(ColumnKind::wavelength_nm)});
+  }
   const auto warnings = session.timed("write", [&] {
     return draw_rays(*model, sequence, n, *create_ray_file(a.output, format, header, n), session.progress());
   });

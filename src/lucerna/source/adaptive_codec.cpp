@@ -11,7 +11,7 @@ namespace lucerna {
 namespace {
 
 constexpr NflTag kLayerTag{'L', 'A', 'Y', 'R'}, kTreeTag{'T', 'R', 'E', 'E'},
-    kSpectrumTag{'S', 'P', 'E', 'C'};
+    kSpectrumTag{'S', 'P', 'E', 'C'}, kWaveTag{'W', 'A', 'V', 'E'};
 constexpr std::uint64_t kMostLayers = 64, kMostTrees = 64, kMostSpectra = 4096, kMostText = 4096;
 constexpr std::size_t kMostNodes = std::size_t{1} << 24;
 constexpr double kLargestLength = 1e9, kMostRays = 1e18;
@@ -165,11 +165,14 @@ void put_spectra(NflFile& file, const std::vector<SpectralTable>& spectra) {
   file.add(kSpectrumTag, w.take());
 }
 
+bool has_section(const NflFile& file, const NflTag& tag) {
+  return std::any_of(file.sections.begin(), file.sections.end(),
+                     [&](const NflFile::Section& s) { return s.tag == tag; });
+}
+
 std::vector<SpectralTable> get_spectra(const NflFile& file, std::string_view name) {
   std::vector<SpectralTable> spectra;
-  const bool there = std::any_of(file.sections.begin(), file.sections.end(),
-                                 [](const NflFile::Section& s) { return s.tag == kSpectrumTag; });
-  if (!there) return spectra;
+  if (!has_section(file, kSpectrumTag)) return spectra;
   NflReader r(file, kSpectrumTag, name);
   const std::uint64_t tables = r.varint();
   r.expect(tables <= kMostSpectra, "too many spectra");
@@ -187,6 +190,48 @@ std::vector<SpectralTable> get_spectra(const NflFile& file, std::string_view nam
   }
   r.finish();
   return spectra;
+}
+
+void put_wavelengths(NflFile& file, const AdaptiveData& data) {
+  if (data.wavelengths.empty()) return;
+  NflWriter w;
+  w.varint(data.wavelengths.size());
+  for (const WavelengthTable& table : data.wavelengths) {
+    w.varint(table.nm.size());
+    for (std::size_t i = 0; i < table.nm.size(); ++i) {
+      w.u32(std::bit_cast<std::uint32_t>(table.share[i]));
+      w.u32(std::bit_cast<std::uint32_t>(table.nm[i]));
+    }
+  }
+  for (const AdaptiveLayer& layer : data.layers) w.varint(layer.band);
+  file.add(kWaveTag, w.take());
+}
+
+void get_wavelengths(const NflFile& file, std::string_view name, AdaptiveData& data) {
+  if (!has_section(file, kWaveTag)) return;
+  NflReader r(file, kWaveTag, name);
+  const std::uint64_t tables = r.varint();
+  r.expect(tables >= 1 && tables <= kMostLayers, "a number of wavelength tables out of range");
+  for (std::uint64_t t = 0; t < tables; ++t) {
+    const std::uint64_t n = r.varint();
+    r.expect(n >= 2 && n <= r.left() / 8, "a table of wavelengths that does not fit");
+    WavelengthTable& table = data.wavelengths.emplace_back();
+    for (std::uint64_t i = 0; i < n; ++i) {
+      table.share.push_back(std::bit_cast<float>(r.u32()));
+      table.nm.push_back(std::bit_cast<float>(r.u32()));
+      r.expect(std::isfinite(table.nm.back()) && table.nm.back() > 0.0f, "a wavelength that is not > 0");
+      const bool ascends = i == 0 ? table.share[0] == 0.0f
+                                  : table.share[i] >= table.share[i - 1] && table.nm[i] >= table.nm[i - 1];
+      r.expect(ascends, "a table of wavelengths that does not ascend from share 0");
+    }
+    r.expect(table.share.back() == 1.0f, "a table of wavelengths that does not end at share 1");
+  }
+  for (AdaptiveLayer& layer : data.layers) {
+    const std::uint64_t band = r.varint();
+    r.expect(band < tables, "a band that has no table");
+    layer.band = static_cast<std::uint32_t>(band);
+  }
+  r.finish();
 }
 
 void decode_trees(const NflFile& file, std::string_view name, AdaptiveData& data) {
@@ -258,6 +303,7 @@ NflFile encode_adaptive(const AdaptiveData& data) {
   file.add(kLayerTag, w.take());
   file.add(kTreeTag, coder.finish());
   put_spectra(file, data.spectra);
+  put_wavelengths(file, data);
   return file;
 }
 
@@ -275,6 +321,7 @@ AdaptiveData decode_adaptive(const NflFile& file, std::string_view name) {
   r.finish();
   decode_trees(file, name, data);
   data.spectra = get_spectra(file, name);
+  get_wavelengths(file, name, data);
   return data;
 }
 

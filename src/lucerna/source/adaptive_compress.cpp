@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/random.h"
 #include "lucerna/rayset/ray_statistics.h"
 #include "lucerna/rayset/surface_guess.h"
+#include "lucerna/source/layer_split.h"
 #include "lucerna/source/penalty_choice.h"
 #include "lucerna/source/support_search.h"
 
@@ -165,10 +167,106 @@ BoundedSupport background_support(const BoundedSupport& best, const RayBlock& ra
   return all;
 }
 
-RayBlock chosen_rays(const RayBlock& rays, const std::vector<std::uint32_t>& which) {
-  RayBlock out;
-  for (const std::uint32_t i : which) out.append(rays, i);
-  return out;
+/// Appends rays `which` with the part of their weight that a layer had.
+void append_chosen(RayBlock& out, const RayBlock& rays, std::span<const float> weight,
+                   const std::vector<std::uint32_t>& which) {
+  for (const std::uint32_t i : which) {
+    out.append(rays, i);
+    out.weight.back() = weight[i];
+  }
+}
+
+/// Grows the layers of a model one after the other, so that only one holds its rays.
+struct LayerGrower {
+  const RayBlock& rays;
+  Setting setting;
+  double total_weight, tolerance_mm;
+  Progress& progress;
+  std::vector<GrownLayer> grown = {};
+  RayBlock missed = {};
+  /// Of the layers that are added, and in words.
+  std::uint32_t band = 0;
+  std::string light = "";
+
+  /// Adds a layer of `weight`; rays that it cannot carry go to `missed`.
+  void add(const BoundedSupport& on, std::span<const float> weight, bool has_etendue, std::string why) {
+    Projection p = project(rays, weight, on, tolerance_mm);
+    append_chosen(missed, rays, weight, p.missed);
+    p.missed = {};
+    add(p, on.support, has_etendue, std::move(why));
+  }
+
+  void add_background(const BoundedSupport& best) {
+    if (missed.empty()) return;
+    const BoundedSupport rest = background_support(best, missed);
+    Projection p = project(missed, missed.weight, rest, tolerance_mm);
+    add(p, rest.support, true, "what the layers above do not carry");
+    missed = {};
+  }
+
+  void add(Projection& p, const Support& support, bool has_etendue, std::string why) {
+    if (has_etendue) widen(p, support, tolerance_mm);
+    GrownLayer g =
+        grown_layer(p, support, total_weight, setting.trees, kGrowShare * setting.penalty_nats, progress);
+    if (g.layer.charts.empty()) return;
+    g.layer.why = light + why;
+    g.layer.band = band;
+    grown.push_back(std::move(g));
+  }
+};
+
+double sum_of(std::span<const float> weight) {
+  double sum = 0.0;
+  for (const float w : weight) sum += static_cast<double>(w);
+  return sum;
+}
+
+/// The layers of one band of wavelengths: the best support, a second one that overlaps it if there is one,
+/// and what is left.
+void add_layers(LayerGrower& grower, std::span<const float> weight, std::span<const float> second_part,
+                const SearchResult& search, const std::optional<LayerSplit>& split) {
+  const std::string why = fmt::format("{}; {} trees, {:.1f} nats a split", describe_choice(search),
+                                      grower.setting.trees, grower.setting.penalty_nats);
+  if (split) {
+    std::vector<float> part(weight.size());
+    for (std::size_t i = 0; i < part.size(); ++i) part[i] = weight[i] * (1.0f - second_part[i]);
+    grower.add(search.best.on, part, true, why);
+    for (std::size_t i = 0; i < part.size(); ++i) part[i] = weight[i] * second_part[i];
+    grower.add(split->second(), part, true,
+               fmt::format("light that overlaps: {:.4f} +- {:.4f} nats per ray better than without",
+                           split->gain_nats(), split->gain_error()));
+  } else {
+    grower.add(search.best.on, weight, !search.degenerate, why);
+  }
+  grower.add_background(search.best.on);
+}
+
+/// All layers of all bands.
+std::vector<GrownLayer> grown_layers(const RayBlock& rays, std::span<const float> nm,
+                                     const ColourBands& bands, const SearchResult& search,
+                                     const std::optional<LayerSplit>& split, const Setting& setting,
+                                     double tolerance_mm, Progress& progress) {
+  LayerGrower grower{rays, setting, sum_of(rays.weight), tolerance_mm, progress};
+  const std::vector<float> second = split ? split->second_parts(rays) : std::vector<float>{};
+  if (bands.cuts_nm.empty()) add_layers(grower, rays.weight, second, search, split);
+  for (std::uint32_t b = 0; b < bands.tables.size() && !bands.cuts_nm.empty(); ++b) {
+    std::vector<float> weight(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) weight[i] = bands.band(nm[i]) == b ? rays.weight[i] : 0.0f;
+    grower.band = b;
+    grower.light =
+        fmt::format("{:.0f} to {:.0f} nm; ", bands.tables[b].nm.front(), bands.tables[b].nm.back());
+    if (sum_of(weight) > 0.0) add_layers(grower, weight, second, search, split);
+  }
+  double sum = 0.0;
+  for (const GrownLayer& g : grower.grown) sum += g.layer.share;
+  for (GrownLayer& g : grower.grown) g.layer.share /= sum;
+  return std::move(grower.grown);
+}
+
+/// The rays' own wavelengths, or none.
+std::span<const float> wavelengths_of(const RayBlock& rays, const RaySetHeader& header) {
+  const auto column = find_column(header.columns, ColumnKind::wavelength_nm);
+  return column && *column < rays.extra.size() ? rays.extra[*column] : std::span<const float>{};
 }
 
 void check_rays(const RayBlock& rays) {
@@ -186,9 +284,13 @@ double model_flux(const RaySetHeader& header, const AdaptiveOptions& options) {
   return *flux;
 }
 
-std::unique_ptr<AdaptiveModel> compress(const RayBlock& rays, const RaySetHeader& header, std::uint64_t count,
+/// `rays` have no extra columns; `nm` are their wavelengths, if they have any.
+std::unique_ptr<AdaptiveModel> compress(const RayBlock& rays, std::span<const float> nm,
+                                        const RaySetHeader& header, std::uint64_t count,
                                         const AdaptiveOptions& options, Progress& progress) {
   check_rays(rays);
+  const bool coloured = std::all_of(nm.begin(), nm.end(), [](float x) { return x > 0.0f; });
+  if (!coloured) nm = {};
   AdaptiveData data;
   data.flux = model_flux(header, options);
   data.flux_unit = header.flux_unit;
@@ -205,26 +307,14 @@ std::unique_ptr<AdaptiveModel> compress(const RayBlock& rays, const RaySetHeader
     const double likeliest = choose_penalty(rays, search.best.on, tolerance, setting.trees, options.seed + 3);
     setting.penalty_nats = std::max(kPenalties.front(), kDeeper * likeliest);
   }
-  std::vector<GrownLayer> grown;
-  Projection p = project(rays, rays.weight, search.best.on, tolerance);
-  const double total = p.weight + p.missed_weight, penalty = kGrowShare * setting.penalty_nats;
-  const RayBlock missed = chosen_rays(rays, p.missed);
-  if (!search.degenerate) widen(p, search.best.on.support, tolerance);
-  p.missed = {};
-  grown.push_back(grown_layer(p, search.best.on.support, total, setting.trees, penalty, progress));
-  grown.back().layer.why = fmt::format("{}; {} trees, {:.1f} nats a split", describe_choice(search),
-                                       setting.trees, setting.penalty_nats);
-  if (missed.size() > 0) {
-    const BoundedSupport rest = background_support(search.best.on, missed);
-    Projection q = project(missed, missed.weight, rest, tolerance);
-    widen(q, rest.support, tolerance);
-    grown.push_back(grown_layer(q, rest.support, total, setting.trees, penalty, progress));
-    grown.back().layer.why = "what the layers above do not carry";
-  }
-  if (grown.back().layer.charts.empty()) grown.pop_back();
-  double sum = 0.0;
-  for (const GrownLayer& g : grown) sum += g.layer.share;
-  for (GrownLayer& g : grown) g.layer.share /= sum;
+  std::optional<LayerSplit> split;
+  if (options.overlap) split = split_layers(rays, search, data.surface, options.seed + 4, progress);
+  ColourBands bands;
+  if (!nm.empty()) bands = colour_bands(rays, nm, search.best.on, tolerance, options.seed + 5);
+  if (nm.empty() && header.wavelength_nm)
+    bands.tables = {{{0.0f, 1.0f}, {*header.wavelength_nm, *header.wavelength_nm}}};
+  const auto grown = grown_layers(rays, nm, bands, search, split, setting, tolerance, progress);
+  data.wavelengths = bands.tables;
   fit_to_size(data, grown, setting, options.max_bytes.value_or(std::uint64_t{1} << 27));
   return std::make_unique<AdaptiveModel>(std::move(data));
 }
@@ -248,13 +338,20 @@ BoundingSurface starting_surface(const RayBlock& rays) {
 
 std::unique_ptr<AdaptiveModel> compress_adaptive(const RaySet& rays, const AdaptiveOptions& options,
                                                  Progress& progress) {
-  return compress(rays.rays, rays.header, rays.rays.size(), options, progress);
+  const auto nm = wavelengths_of(rays.rays, rays.header);
+  if (rays.rays.extra.empty()) {
+    return compress(rays.rays, nm, rays.header, rays.rays.size(), options, progress);
+  }
+  RayBlock plain = rays.rays;
+  plain.extra.clear();
+  return compress(plain, nm, rays.header, rays.rays.size(), options, progress);
 }
 
 std::unique_ptr<AdaptiveModel> compress_adaptive(RayReader& reader, const AdaptiveOptions& options,
                                                  Progress& progress) {
   const std::uint64_t count = reader.ray_count(), kept = std::min(count, kMostTrainingRays);
   RayBlock rays, block;
+  std::vector<float> nm;
   std::uint64_t read = 0, next = 0;
   const auto place_of = [&](std::uint64_t i) {
     if (kept == count) return i;
@@ -263,15 +360,22 @@ std::unique_ptr<AdaptiveModel> compress_adaptive(RayReader& reader, const Adapti
   };
   std::uint64_t wanted = place_of(0);
   while (const std::size_t n = reader.read(block, kStreamBlock)) {
+    const auto its = wavelengths_of(block, reader.header());
+    const std::vector<float> block_nm(its.begin(), its.end());
     block.extra.clear();
-    if (kept == count) rays.append(block);
+    if (kept == count) {
+      rays.append(block);
+      nm.insert(nm.end(), block_nm.begin(), block_nm.end());
+    }
     for (; kept < count && next < kept && wanted < read + n; wanted = place_of(++next)) {
-      rays.append(block, static_cast<std::size_t>(wanted - read));
+      const auto i = static_cast<std::size_t>(wanted - read);
+      rays.append(block, i);
+      if (!block_nm.empty()) nm.push_back(block_nm[i]);
     }
     read += n;
     progress.step("compress: read", read, count);
   }
-  return compress(rays, reader.header(), count, options, progress);
+  return compress(rays, nm, reader.header(), count, options, progress);
 }
 
 }  // namespace lucerna

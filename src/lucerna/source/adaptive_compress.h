@@ -17,21 +17,23 @@ struct AdaptiveOptions {
   std::uint64_t seed = 1;
   /// Total flux of the model, in the unit of the rays; absent: what the header states.
   std::optional<double> flux;
-  /// For studies only; absent: what the rays say. Trees averaged in each chart, and nats a split must gain.
+  /// For studies only; absent: what the rays say. Trees averaged in each chart, nats a split must gain, and
+  /// whether a second support is looked for.
   std::optional<int> trees;
   std::optional<double> penalty_nats;
+  bool overlap = true;
 };
 
 /// Compresses a ray set by the adaptive method (docs/algorithms/adaptive.md). The same rays, options and seed
 /// give the same model for any number of threads. Throws InputError without rays, without flux, or if
-/// `max_bytes` is too little for any model (1000 always do). Cost: about 1 us a ray; memory: 30 bytes a ray
+/// `max_bytes` is too little for any model (1000 always do). Cost: about 1 us a ray; memory: 40 bytes a ray
 /// beside the rays.
 std::unique_ptr<AdaptiveModel> compress_adaptive(const RaySet& rays, const AdaptiveOptions& options,
                                                  Progress& progress = no_progress());
 
 /// Rays of a file that are used: more are thinned out evenly, by chance within each stretch, as they are
 /// read. Keeps memory below 1.5 GB for files of any size.
-inline constexpr std::uint64_t kMostTrainingRays = 24'000'000;
+inline constexpr std::uint64_t kMostTrainingRays = 20'000'000;
 
 /// The same for rays still in their file.
 std::unique_ptr<AdaptiveModel> compress_adaptive(RayReader& reader, const AdaptiveOptions& options,

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "lucerna/core/error.h"
+#include "lucerna/core/vector_clones.h"
+#include "lucerna/source/number_batch.h"
 #include "lucerna/source/support_batch.h"
 #include "lucerna/source/warp.h"
 
@@ -45,6 +48,54 @@ Vec3 normal_at(const BoundingSurface& surface, const Vec3& point_mm) {
   return surface.world_from_surface.vector(n);
 }
 
+/// The leaves of a batch of rays as columns.
+struct LeafBatch {
+  std::array<std::array<float, kSupportBatch>, 4> low, width;
+  BitColumn first, length;  // a length of 2^32 is 0
+};
+
+/// AdaptiveModel::place_in and the other three numbers, for all rays of a batch.
+LUCERNA_VECTOR_CLONES void place_in_leaves(const std::array<BitColumn, 4>& bits, const LeafBatch& leaves,
+                                           std::array<BatchColumn, 4>& to) {
+  std::array<BatchColumn, 4> c;
+  for (std::size_t i = 0; i < kSupportBatch; ++i) {
+    const double part = static_cast<double>(bits[0][i] - leaves.first[i]) + 0.5;
+    const double t = part / (static_cast<double>(leaves.length[i] - 1u) + 1.0);
+    c[0][i] = static_cast<double>(leaves.low[0][i]) + t * static_cast<double>(leaves.width[0][i]);
+  }
+  for (std::size_t d = 1; d < 4; ++d) {
+    for (std::size_t i = 0; i < kSupportBatch; ++i) {
+      const double u = static_cast<double>(bits[d][i]) * 0x1p-32;
+      c[d][i] = static_cast<double>(leaves.low[d][i]) + u * static_cast<double>(leaves.width[d][i]);
+    }
+  }
+  to = c;
+}
+
+/// The first `n` rays in float32, to places `at` on.
+LUCERNA_VECTOR_CLONES void put_batch(const RayBatch& rays, std::size_t n, std::size_t at, RayBlock& out) {
+  const std::array<const BatchColumn*, 6> from{&rays.x, &rays.y, &rays.z, &rays.kx, &rays.ky, &rays.kz};
+  const std::array<float*, 6> to{out.x_mm.data(), out.y_mm.data(), out.z_mm.data(),
+                                 out.kx.data(),   out.ky.data(),   out.kz.data()};
+  for (std::size_t k = 0; k < 6; ++k) {
+    for (std::size_t i = 0; i < n; ++i) to[k][at + i] = static_cast<float>((*from[k])[i]);
+  }
+}
+
+/// Ray j to place at + which[j].
+void put_scattered(const RayBatch& rays, std::span<const std::uint32_t> which, std::size_t at,
+                   RayBlock& out) {
+  for (std::size_t j = 0; j < which.size(); ++j) {
+    const std::size_t i = at + which[j];
+    out.x_mm[i] = static_cast<float>(rays.x[j]);
+    out.y_mm[i] = static_cast<float>(rays.y[j]);
+    out.z_mm[i] = static_cast<float>(rays.z[j]);
+    out.kx[i] = static_cast<float>(rays.kx[j]);
+    out.ky[i] = static_cast<float>(rays.ky[j]);
+    out.kz[i] = static_cast<float>(rays.kz[j]);
+  }
+}
+
 }  // namespace
 
 std::size_t AdaptiveData::leaves() const {
@@ -73,7 +124,8 @@ void AdaptiveModel::build_sampler() {
     for (const AdaptiveChart& chart : layer.charts) {
       const double share = layer.share * chart.share / total;
       has_etendue_ = has_etendue_ && has_volume(chart.box);
-      places_.push_back({&layer.support, chart.chart, share / static_cast<double>(chart.trees.size()), {}});
+      places_.push_back(
+          {&layer.support, chart.chart, layer.band, share / static_cast<double>(chart.trees.size()), {}});
       sampler_places_.push_back({layer.support, chart.chart});
       const auto place = static_cast<std::uint32_t>(places_.size() - 1);
       for (const DensityTree& tree : chart.trees) {
@@ -129,52 +181,82 @@ Ray AdaptiveModel::sample(const std::array<double, 4>& u) const {
   return start_on(data_.surface, place.support->from_chart(p));
 }
 
-void AdaptiveModel::emit_batch(const Sequence& sequence, std::uint64_t first, std::size_t at, std::size_t n,
-                               RayBlock& out) const {
-  std::array<BatchColumn, 4> c;
-  std::array<std::uint32_t, kSupportBatch> places{}, order{};
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto u = sequence.point<4>(first + at + i);
-    const auto bits = static_cast<std::uint32_t>(u[0] * 4294967296.0);
-    const std::size_t k = leaf_of(bits);
+/// Chooses the leaves of kSupportBatch rays and their numbers in them.
+void AdaptiveModel::choose(const Sequence& sequence, std::uint64_t first, Chosen& to) const {
+  std::array<BitColumn, 4> bits;
+  number_batch(sequence, first, bits);
+  LeafBatch leaves;
+  for (std::size_t i = 0; i < kSupportBatch; ++i) {
+    const std::size_t k = leaf_of(bits[0][i]);
     const SamplerLeaf& leaf = leaves_[k];
-    places[i] = leaf.place;
-    c[0][i] = static_cast<double>(leaf.low[0]) + place_in(k, bits) * static_cast<double>(leaf.width[0]);
-    for (std::size_t d = 1; d < 4; ++d) {
-      c[d][i] = static_cast<double>(leaf.low[d]) + u[d] * static_cast<double>(leaf.width[d]);
-    }
+    for (std::size_t d = 0; d < 4; ++d) leaves.low[d][i] = leaf.low[d], leaves.width[d][i] = leaf.width[d];
+    leaves.first[i] = leaf.first;
+    leaves.length[i] = leaves_[k + 1].first - leaf.first;
+    to.place[i] = leaf.place;
+  }
+  place_in_leaves(bits, leaves, to.c);
+}
+
+void AdaptiveModel::make(std::uint32_t place, const std::array<BatchColumn, 4>& c, std::size_t n,
+                         RayBatch& rays) const {
+  rays_from_chart(*places_[place].support, places_[place].chart, c, rays);
+  start_batch_on(data_.surface, n, rays);
+}
+
+/// Up to kPieceBatches batches at once: rays of one place are gathered from all of them, so that batches of a
+/// support of many charts are full too.
+void AdaptiveModel::emit_piece(const Sequence& sequence, std::uint64_t first, std::size_t at, std::size_t n,
+                               RayBlock& out) const {
+  std::array<Chosen, kPieceBatches> chosen;
+  std::vector<std::uint32_t> order(n), count(places_.size() + 1, 0);
+  for (std::size_t b = 0; b * kSupportBatch < n; ++b) {
+    choose(sequence, first + at + b * kSupportBatch, chosen[b]);
+    const std::size_t size = std::min(kSupportBatch, n - b * kSupportBatch);
+    for (std::size_t i = 0; i < size; ++i) ++count[chosen[b].place[i] + 1];
   }
   RayBatch rays;
+  const bool one_place = count[chosen[0].place[0] + 1] == n;
+  for (std::size_t b = 0; one_place && b * kSupportBatch < n; ++b) {
+    const std::size_t size = std::min(kSupportBatch, n - b * kSupportBatch);
+    make(chosen[0].place[0], chosen[b].c, size, rays);
+    put_batch(rays, size, at + b * kSupportBatch, out);
+  }
+  if (one_place) return;
+  for (std::size_t p = 0; p + 1 < count.size(); ++p) count[p + 1] += count[p];
+  for (std::uint32_t i = 0; i < n; ++i) {
+    order[count[chosen[i / kSupportBatch].place[i % kSupportBatch]]++] = i;
+  }
+  // `count` has moved on: it now holds where each place ends.
+  std::array<BatchColumn, 4> packed{};
+  std::size_t from = 0;
   for (std::uint32_t place = 0; place < places_.size(); ++place) {
-    // The rays of one place are packed, made and put back; mostly they are all of the batch.
-    std::size_t m = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      order[m] = static_cast<std::uint32_t>(i);
-      m += places[i] == place ? 1 : 0;
-    }
-    if (m == 0) continue;
-    std::array<BatchColumn, 4> packed;
-    for (std::size_t d = 0; d < 4; ++d) {
-      for (std::size_t j = 0; j < m; ++j) packed[d][j] = c[d][order[j]];
-    }
-    rays_from_chart(*places_[place].support, places_[place].chart, packed, m, rays);
-    start_batch_on(data_.surface, m, rays);
-    for (std::size_t j = 0; j < m; ++j) {
-      const std::size_t i = at + order[j];
-      out.x_mm[i] = static_cast<float>(rays.x[j]);
-      out.y_mm[i] = static_cast<float>(rays.y[j]);
-      out.z_mm[i] = static_cast<float>(rays.z[j]);
-      out.kx[i] = static_cast<float>(rays.kx[j]);
-      out.ky[i] = static_cast<float>(rays.ky[j]);
-      out.kz[i] = static_cast<float>(rays.kz[j]);
-      out.weight[i] = 1.0f;
+    for (; from < count[place]; from += std::min<std::size_t>(kSupportBatch, count[place] - from)) {
+      const std::size_t m = std::min<std::size_t>(kSupportBatch, count[place] - from);
+      for (std::size_t j = 0; j < m; ++j) {
+        const Chosen& c = chosen[order[from + j] / kSupportBatch];
+        for (std::size_t d = 0; d < 4; ++d) packed[d][j] = c.c[d][order[from + j] % kSupportBatch];
+      }
+      make(place, packed, m, rays);
+      put_scattered(rays, {order.data() + from, m}, at, out);
     }
   }
 }
 
 void AdaptiveModel::emit(const Sequence& sequence, std::uint64_t first, RayBlock& out) const {
-  for (std::size_t at = 0; at < out.size(); at += kSupportBatch) {
-    emit_batch(sequence, first, at, std::min(kSupportBatch, out.size() - at), out);
+  constexpr std::size_t kPiece = kPieceBatches * kSupportBatch;
+  for (std::size_t at = 0; at < out.size(); at += kPiece) {
+    emit_piece(sequence, first, at, std::min(kPiece, out.size() - at), out);
+  }
+  std::fill(out.weight.begin(), out.weight.end(), 1.0f);
+}
+
+void AdaptiveModel::emit_wavelengths(const Sequence& sequence, std::uint64_t first,
+                                     std::span<float> nm) const {
+  LUCERNA_CHECK(has_wavelengths(), "wavelengths of a model without, {} wanted", nm.size());
+  for (std::size_t i = 0; i < nm.size(); ++i) {
+    const auto u = sequence.point<5>(first + i);
+    const SamplerLeaf& leaf = leaves_[leaf_of(static_cast<std::uint32_t>(u[0] * 4294967296.0))];
+    nm[i] = data_.wavelengths[places_[leaf.place].band].at(u[4]);
   }
 }
 

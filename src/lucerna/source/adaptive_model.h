@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,8 @@
 #include "lucerna/source/adaptive_tree.h"
 #include "lucerna/source/adaptive_view.h"
 #include "lucerna/source/source_model.h"
-#include "lucerna/source/support.h"
+#include "lucerna/source/support_batch.h"
+#include "lucerna/source/wavelengths.h"
 
 namespace lucerna {
 
@@ -33,6 +35,8 @@ struct AdaptiveLayer {
   std::vector<AdaptiveChart> charts;
   /// Why this support, for people: "plane: 3.21 nats per ray better than the bounding surface".
   std::string why;
+  /// Which of the model's wavelength tables this light has; 0 if there are none.
+  std::uint32_t band = 0;
   friend bool operator==(const AdaptiveLayer&, const AdaptiveLayer&) = default;
 };
 
@@ -44,8 +48,10 @@ struct AdaptiveData {
   /// Where sampled rays start; `none`: on the supports themselves.
   BoundingSurface surface;
   std::vector<AdaptiveLayer> layers;
-  /// Spectra of the ray file, as they were; none of the rays' own wavelengths.
+  /// Spectra of the ray file, as they were.
   std::vector<SpectralTable> spectra;
+  /// Of rays with wavelengths of their own: one table, or one for each band of layers; else empty.
+  std::vector<WavelengthTable> wavelengths;
 
   std::size_t leaves() const;
 };
@@ -68,6 +74,9 @@ class AdaptiveModel final : public SourceModel {
   double flux() const override { return data_.flux; }
   FluxUnit flux_unit() const override { return data_.flux_unit; }
   void emit(const Sequence& sequence, std::uint64_t first, RayBlock& out) const override;
+  bool has_wavelengths() const override { return !data_.wavelengths.empty(); }
+  void emit_wavelengths(const Sequence& sequence, std::uint64_t first, std::span<float> nm) const override;
+  std::span<const SpectralTable> spectra() const override { return data_.spectra; }
 
   std::string_view method() const override { return "adaptive"; }
   std::size_t layers() const override { return data_.layers.size(); }
@@ -94,7 +103,7 @@ class AdaptiveModel final : public SourceModel {
  private:
   struct Place {
     const Support* support;
-    std::uint32_t chart;
+    std::uint32_t chart, band;
     double share;
     std::vector<TreeLookup> trees;
   };
@@ -103,7 +112,16 @@ class AdaptiveModel final : public SourceModel {
   void build_sampler();
   std::size_t leaf_of(std::uint32_t bits) const;
   double place_in(std::size_t leaf, std::uint32_t bits) const;
-  void emit_batch(const Sequence& sequence, std::uint64_t first, std::size_t at, std::size_t n,
+
+  /// A batch of rays as numbers in their leaves.
+  struct Chosen {
+    std::array<BatchColumn, 4> c;
+    std::array<std::uint32_t, kSupportBatch> place;
+  };
+  static constexpr std::size_t kPieceBatches = 8;
+  void choose(const Sequence& sequence, std::uint64_t first, Chosen& to) const;
+  void make(std::uint32_t place, const std::array<BatchColumn, 4>& c, std::size_t n, RayBatch& rays) const;
+  void emit_piece(const Sequence& sequence, std::uint64_t first, std::size_t at, std::size_t n,
                   RayBlock& out) const;
 
   AdaptiveData data_;

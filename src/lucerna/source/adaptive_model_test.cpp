@@ -58,20 +58,23 @@ AdaptiveData small_data() {
   return data;
 }
 
-/// The same with its first layer seen through a dome: version 2 of the format.
+/// The same with its first layer seen through a dome and two bands of wavelengths: version 2 of the format.
 AdaptiveData dome_data() {
   AdaptiveData data = small_data();
   data.layers.front().support.dome = {{0.1, 0.0, -0.2}, 1.8, 1.4};
+  data.layers.back().band = 1;
+  data.wavelengths = {{{0.0f, 0.25f, 1.0f}, {440.0f, 450.0f, 480.0f}}, {{0.0f, 1.0f}, {600.0f, 600.0f}}};
   return data;
 }
 
 TEST(AdaptiveModel, SurvivesItsFile) {
-  AdaptiveData data = small_data();
+  AdaptiveData data = dome_data();
   data.spectra = {{{400.0f, 500.0f}, {0.25f, 1.0f}}};
   const NflFile file = decode_nfl(encode_nfl(encode_adaptive(data)), "test");
   const AdaptiveData back = decode_adaptive(file, "test");
   EXPECT_EQ(back.layers, data.layers);
   EXPECT_EQ(back.spectra, data.spectra);
+  EXPECT_EQ(back.wavelengths, data.wavelengths);
   EXPECT_EQ(back.flux, data.flux);
   EXPECT_EQ(back.training_rays, data.training_rays);
   EXPECT_EQ(back.surface.kind, data.surface.kind);
@@ -88,9 +91,11 @@ TEST(AdaptiveModel, FrozenFileOfVersion1Reads) {
 }
 
 TEST(AdaptiveModel, FrozenFileOfVersion2Reads) {
-  const std::string path = std::string(LUCERNA_SOURCE_DIR) + "/tests/data/adaptive_v2.nfl";
+  const std::filesystem::path path = test::source_dir() / "tests/data/adaptive_v2.nfl";
   const auto model = load_source_model(path);
-  EXPECT_EQ(dynamic_cast<const AdaptiveModel&>(*model).data().layers, dome_data().layers);
+  const AdaptiveData& data = dynamic_cast<const AdaptiveModel&>(*model).data();
+  EXPECT_EQ(data.layers, dome_data().layers);
+  EXPECT_EQ(data.wavelengths, dome_data().wavelengths);
 }
 
 TEST(AdaptiveModel, ProgramsOfVersion1DoNotMistakeADome) {
@@ -120,6 +125,9 @@ TEST(AdaptiveModelFuzz, DamagedSectionsAreRefusedOrReadable) {
       const AdaptiveModel model(decode_adaptive(bad, "test"));
       for (const float x : draw_rays(model, Sequence(SequenceKind::random, 1), 50).x_mm)
         ASSERT_TRUE(std::isfinite(x));
+      std::vector<float> nm(model.has_wavelengths() ? 50 : 0);
+      if (!nm.empty()) model.emit_wavelengths(Sequence(SequenceKind::random, 1), 0, nm);
+      for (const float x : nm) ASSERT_TRUE(x > 0.0f);
     } catch (const InputError&) {
       ++refused;
     }

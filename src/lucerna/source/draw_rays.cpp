@@ -2,6 +2,7 @@
 #include "lucerna/source/draw_rays.h"
 
 #include <algorithm>
+#include <span>
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
@@ -13,7 +14,7 @@ namespace {
 /// Rays per task: large enough to keep threads busy, small enough to share out one streaming block.
 constexpr std::size_t kTaskRays = 4096;
 
-/// Fills all of `out` with rays from `first` on.
+/// Fills all of `out` with rays from `first` on; an extra column gets their wavelengths.
 void fill(const RaySource& source, const Sequence& sequence, std::uint64_t first, RayBlock& out) {
   parallel_blocks(out.size(), kTaskRays, [&](std::size_t begin, std::size_t end) {
     RayBlock part;
@@ -29,6 +30,8 @@ void fill(const RaySource& source, const Sequence& sequence, std::uint64_t first
     put(part.ky, out.ky);
     put(part.kz, out.kz);
     put(part.weight, out.weight);
+    if (out.extra.empty()) return;
+    source.emit_wavelengths(sequence, first + begin, std::span(out.extra[0]).subspan(begin, end - begin));
   });
 }
 
@@ -40,7 +43,8 @@ std::vector<std::string> draw_rays(const RaySource& source, const Sequence& sequ
       static_cast<float>(source.flux() / static_cast<double>(std::max<std::uint64_t>(n, 1)));
   RayBlock block;
   for (std::uint64_t done = 0; done < n;) {
-    block.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kStreamBlock, n - done)), 0);
+    block.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kStreamBlock, n - done)),
+                 source.has_wavelengths() ? 1 : 0);
     fill(source, sequence, done, block);
     for (float& weight : block.weight) weight *= flux_per_ray;
     writer.write(block);

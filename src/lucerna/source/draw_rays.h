@@ -10,7 +10,8 @@
 
 namespace lucerna {
 
-/// Writes rays 0 .. n - 1 of `source` to `writer` (made for a header without extra columns) and finishes it;
+/// Writes rays 0 .. n - 1 of `source` to `writer` (made for a header without extra columns, or with one of
+/// wavelengths if the source has them) and finishes it;
 /// weights are multiplied by flux() / n, so that files whose rays carry lm or W hold what they should.
 /// Returns the writer's warnings. Rays are drawn on all threads, the file is the same for any number of them.
 /// Throws Interrupted when asked to stop, and then leaves no file.

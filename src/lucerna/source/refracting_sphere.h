@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "lucerna/core/frame.h"
+#include "lucerna/core/host_device.h"
 
 namespace lucerna {
 
@@ -17,7 +20,10 @@ struct RefractingSphere {
   double radius_mm = 0.0;
   double index = 1.0;
 
-  bool exists() const { return radius_mm > 0.0; }
+  /// Share of the largest offset at which light still leaves: at the whole of it, it runs along the surface.
+  static constexpr double kLeaves = 1.0 - 1e-9;
+
+  LUCERNA_HD bool exists() const { return radius_mm > 0.0; }
   /// dG outside over dG inside.
   double etendue_ratio() const { return exists() ? index * index : 1.0; }
 
@@ -26,9 +32,21 @@ struct RefractingSphere {
   /// The ray outside, from the point where it leaves the ball. Lines that would be reflected back inside are
   /// first moved towards the centre until they leave along the surface (leaves of a model reach a little too
   /// far).
-  Ray outside(const Ray& inside) const;
+  LUCERNA_HD Ray outside(const Ray& inside) const;
 
   friend bool operator==(const RefractingSphere&, const RefractingSphere&) = default;
 };
+
+LUCERNA_HD inline Ray RefractingSphere::outside(const Ray& inside) const {
+  const Vec3& d = inside.direction.vec();
+  const Vec3 o = inside.origin_mm - centre_mm;
+  Vec3 q = o - dot(o, d) * d;
+  const double most = kLeaves * radius_mm / index;
+  q = std::min(1.0, most / std::max(length(q), 1e-300)) * q;
+  const double sine2 = dot(q, q) / (radius_mm * radius_mm);
+  const double in = std::sqrt(1.0 - sine2), out = std::sqrt(std::max(0.0, 1.0 - index * index * sine2));
+  const Vec3 normal = (1.0 / radius_mm) * q + in * d;
+  return {centre_mm + radius_mm * normal, Direction::from(index * d + (out - index * in) * normal)};
+}
 
 }  // namespace lucerna

@@ -203,10 +203,7 @@ std::optional<ChartPoint> Support::to_chart(const Ray& outside) const {
   return std::nullopt;
 }
 
-Ray Support::from_chart(const ChartPoint& p) const {
-  const Ray ray = world_from_support.ray(local_ray(p, *this));
-  return dome.exists() ? dome.outside(ray) : ray;
-}
+Ray Support::from_chart(const ChartPoint& p) const { return ray_from_chart(*this, p); }
 
 std::optional<Support> support_on(const BoundingSurface& surface, PolarMap map) {
   Support s;

@@ -5,250 +5,275 @@
 #include <cmath>
 #include <numbers>
 
+#include "lucerna/source/batch_math.h"
+
 namespace lucerna {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
-struct SinCos {
-  double sine, cosine;
-};
-
-/// Taylor polynomials, exact to 2e-14 for |t| <= pi / 2.
-inline double sine_of(double t) {
-  const double t2 = t * t;
-  double s = 1.0 / 355687428096000.0;
-  s = s * t2 - 1.0 / 1307674368000.0;
-  s = s * t2 + 1.0 / 6227020800.0;
-  s = s * t2 - 1.0 / 39916800.0;
-  s = s * t2 + 1.0 / 362880.0;
-  s = s * t2 - 1.0 / 5040.0;
-  s = s * t2 + 1.0 / 120.0;
-  s = s * t2 - 1.0 / 6.0;
-  return t + t * t2 * s;
-}
-inline double cosine_of(double t) {
-  const double t2 = t * t;
-  double c = -1.0 / 6402373705728000.0;
-  c = c * t2 + 1.0 / 20922789888000.0;
-  c = c * t2 - 1.0 / 87178291200.0;
-  c = c * t2 + 1.0 / 479001600.0;
-  c = c * t2 - 1.0 / 3628800.0;
-  c = c * t2 + 1.0 / 40320.0;
-  c = c * t2 - 1.0 / 720.0;
-  c = c * t2 + 1.0 / 24.0;
-  c = c * t2 - 0.5;
-  return 1.0 + t2 * c;
-}
-
-/// The nearest integer for |x| < 2^51, by the rounding of additions.
-inline double nearest_integer(double x) {
-  constexpr double kMagic = 6755399441055744.0;  // 1.5 * 2^52
-  return (x + kMagic) - kMagic;
-}
-
-/// Any angle: brought to one turn, halved, doubled.
-inline SinCos sin_cos(double angle) {
-  const double turns = nearest_integer(angle * (0.5 / kPi));
-  const double half = 0.5 * (angle - turns * (2.0 * kPi));
-  const double s = sine_of(half), c = cosine_of(half);
-  return {2.0 * s * c, 1.0 - 2.0 * s * s};
-}
+using batch::clamped;
+using batch::cosine_of;
+using batch::sin_cos;
+using batch::SinCos;
+using batch::sine_of;
+using Columns = std::array<BatchColumn, 4>;
 
 /// Projected direction across a normal, and along it.
 struct Local {
   double x, y, z;
 };
 
-inline Local polar_direction(double a, double b) {
-  const double r2 = std::clamp(2.0 * a, 0.0, 1.0), r = std::sqrt(r2);
-  const SinCos t = sin_cos(b);
-  return {r * t.cosine, r * t.sine, std::sqrt(1.0 - r2)};
+struct PolarDirection {
+  LUCERNA_ALWAYS_INLINE Local operator()(double a, double b) const {
+    const double r2 = clamped(2.0 * a, 0.0, 1.0), r = std::sqrt(r2);
+    const SinCos t = sin_cos(b);
+    return {r * t.cosine, r * t.sine, std::sqrt(1.0 - r2)};
+  }
+};
+
+struct ConcentricDirection {
+  LUCERNA_ALWAYS_INLINE Local operator()(double a, double b) const {
+    constexpr double kScale = 2.0 / 1.7724538509055160273;  // 2 / sqrt(pi)
+    const double u = clamped(kScale * a - 1.0, -1.0, 1.0), v = clamped(kScale * b - 1.0, -1.0, 1.0);
+    // Choices as products with 0 and 1, which are exact: compilers make branches of anything else.
+    const double steep = std::abs(v) > std::abs(u) ? 1.0 : 0.0, flat = 1.0 - steep;
+    const double r = steep * v + flat * u, other = steep * u + flat * v;
+    const double angle = 0.25 * std::numbers::pi * (other / (r + (r == 0.0 ? 1.0 : 0.0)));
+    const double s = r * sine_of(angle), c = r * cosine_of(angle);
+    return {steep * s + flat * c, steep * c + flat * s, std::sqrt(std::max(0.0, 1.0 - r * r))};
+  }
+};
+
+/// A point of a support with the triad that directions are counted in: u, v across the normal w.
+struct Place {
+  Vec3 p, u, v, w;
+};
+
+struct OnPlane {
+  double sign;
+  LUCERNA_ALWAYS_INLINE Place operator()(double a, double b) const {
+    return {{a, b, 0.0}, {1, 0, 0}, {0, sign, 0}, {0, 0, sign}};
+  }
+};
+
+struct OnDisk {
+  double sign;
+  LUCERNA_ALWAYS_INLINE Place operator()(double a, double b) const {
+    const double r = std::sqrt(std::max(0.0, 2.0 * a));
+    const SinCos t = sin_cos(b);
+    return {{r * t.cosine, r * t.sine, 0.0},
+            {t.cosine, t.sine, 0},
+            {-sign * t.sine, sign * t.cosine, 0},
+            {0, 0, sign}};
+  }
+};
+
+/// The ends of a cylinder, where triads do not turn with the radius.
+struct OnEnd {
+  double sign, z, radius;
+  LUCERNA_ALWAYS_INLINE Place operator()(double a, double b) const {
+    const double r = std::min(radius, std::sqrt(std::max(0.0, 2.0 * a)));
+    const SinCos t = sin_cos(b);
+    return {{r * t.cosine, r * t.sine, z}, {1, 0, 0}, {0, sign, 0}, {0, 0, sign}};
+  }
+};
+
+struct OnSphere {
+  double radius;
+  LUCERNA_ALWAYS_INLINE Place operator()(double a, double b) const {
+    const double z = clamped(a / radius, -1.0, 1.0), across = std::sqrt(1.0 - z * z);
+    const SinCos t = sin_cos(b / radius);
+    const Vec3 w{across * t.cosine, across * t.sine, z};
+    return {radius * w, {-t.sine, t.cosine, 0}, {-z * t.cosine, -z * t.sine, across}, w};
+  }
+};
+
+struct OnMantle {
+  double radius, twist;
+  LUCERNA_ALWAYS_INLINE Place operator()(double a, double b) const {
+    const SinCos t = sin_cos(a / radius + twist * b);
+    return {
+        {radius * t.cosine, radius * t.sine, b}, {-t.sine, t.cosine, 0}, {0, 0, 1}, {t.cosine, t.sine, 0}};
+  }
+};
+
+/// The face of a box `half` along `Axis`, on its side `sign`.
+template <int Axis>
+struct OnFace {
+  double half, sign;
+  /// The vector of these components along Axis and the two axes after it, in cyclic order.
+  LUCERNA_ALWAYS_INLINE static Vec3 cyclic(double x, double y, double z) {
+    if constexpr (Axis == 0) return {x, y, z};
+    if constexpr (Axis == 1) return {z, x, y};
+    return {y, z, x};
+  }
+  LUCERNA_ALWAYS_INLINE Place operator()(double a, double b) const {
+    return {cyclic(sign * half, a, b), cyclic(0, 1, 0), cyclic(0, 0, sign), cyclic(sign, 0, 0)};
+  }
+};
+
+/// Position `p` and direction `d` of ray `i` of a support's own frame, put in the world.
+LUCERNA_ALWAYS_INLINE inline void put(const Frame& f, const Vec3& p, const Vec3& d, std::size_t i,
+                                      RayBatch& rays) {
+  const Vec3 &ex = f.ex(), &ey = f.ey(), &ez = f.ez(), &o = f.origin_mm();
+  rays.x[i] = p.x * ex.x + p.y * ey.x + p.z * ez.x + o.x;
+  rays.y[i] = p.x * ex.y + p.y * ey.y + p.z * ez.y + o.y;
+  rays.z[i] = p.x * ex.z + p.y * ey.z + p.z * ez.z + o.z;
+  rays.kx[i] = d.x * ex.x + d.y * ey.x + d.z * ez.x;
+  rays.ky[i] = d.x * ex.y + d.y * ey.y + d.z * ez.y;
+  rays.kz[i] = d.x * ex.z + d.y * ey.z + d.z * ez.z;
 }
 
-inline Local concentric_direction(double a, double b) {
-  constexpr double kScale = 2.0 / 1.7724538509055160273;  // 2 / sqrt(pi)
-  const double u = std::clamp(kScale * a - 1.0, -1.0, 1.0), v = std::clamp(kScale * b - 1.0, -1.0, 1.0);
-  const bool steep = std::abs(v) > std::abs(u);
-  const double r = steep ? v : u, other = steep ? u : v;
-  const double angle = 0.25 * kPi * (other / (r == 0.0 ? 1.0 : r));
-  const double s = r * sine_of(angle), c = r * cosine_of(angle);
-  return {steep ? s : c, steep ? c : s, std::sqrt(std::max(0.0, 1.0 - r * r))};
-}
-
-/// Every form is `place(c, i) -> position, triad` and a map of directions; the loop is the same.
-template <class Map, class Place>
-void fill(const Frame& f, const std::array<BatchColumn, 4>& c, std::size_t n, RayBatch& out, const Map& map,
-          const Place& place) {
-  const Vec3 ex = f.ex(), ey = f.ey(), ez = f.ez(), o = f.origin_mm();
-  for (std::size_t i = 0; i < n; ++i) {
-    Vec3 p, u, v, w;
-    place(c[0][i], c[1][i], p, u, v, w);
+/// All of a batch; what lies behind its end is made and not used. Rays are made in an array of the function's
+/// own: only then compilers know that nothing else is written.
+template <class Map, class On>
+LUCERNA_ALWAYS_INLINE inline void fill(const Support& s, const Columns& c, const Map map, const On on,
+                                       RayBatch& out) {
+  const Frame f = s.world_from_support;
+  RayBatch rays;
+  for (std::size_t i = 0; i < kSupportBatch; ++i) {
+    const Place at = on(c[0][i], c[1][i]);
     const Local d = map(c[2][i], c[3][i]);
-    const double dx = d.x * u.x + d.y * v.x + d.z * w.x, dy = d.x * u.y + d.y * v.y + d.z * w.y;
-    const double dz = d.x * u.z + d.y * v.z + d.z * w.z;
-    out.x[i] = p.x * ex.x + p.y * ey.x + p.z * ez.x + o.x;
-    out.y[i] = p.x * ex.y + p.y * ey.y + p.z * ez.y + o.y;
-    out.z[i] = p.x * ex.z + p.y * ey.z + p.z * ez.z + o.z;
-    out.kx[i] = dx * ex.x + dy * ey.x + dz * ez.x;
-    out.ky[i] = dx * ex.y + dy * ey.y + dz * ez.y;
-    out.kz[i] = dx * ex.z + dy * ey.z + dz * ez.z;
+    put(f, at.p, d.x * at.u + d.y * at.v + d.z * at.w, i, rays);
   }
+  out = rays;
 }
 
-template <class Map>
-bool fill_surface(const Support& s, std::uint32_t chart, const std::array<BatchColumn, 4>& c, std::size_t n,
-                  RayBatch& out, const Map& map) {
-  const Frame& f = s.world_from_support;
-  const double sign = chart == 0 ? 1.0 : -1.0;
-  if (s.kind == SupportKind::plane) {
-    fill(f, c, n, out, map, [sign](double a, double b, Vec3& p, Vec3& u, Vec3& v, Vec3& w) {
-      p = {a, b, 0.0}, u = {1, 0, 0}, v = {0, sign, 0}, w = {0, 0, sign};
-    });
-    return true;
-  }
-  if (s.kind == SupportKind::disk) {
-    fill(f, c, n, out, map, [sign](double a, double b, Vec3& p, Vec3& u, Vec3& v, Vec3& w) {
-      const double r = std::sqrt(std::max(0.0, 2.0 * a));
-      const SinCos t = sin_cos(b);
-      p = {r * t.cosine, r * t.sine, 0.0}, u = {t.cosine, t.sine, 0};
-      v = {-sign * t.sine, sign * t.cosine, 0}, w = {0, 0, sign};
-    });
-    return true;
-  }
-  if (s.kind == SupportKind::sphere) {
-    const double radius = s.radius_mm, inverse = 1.0 / s.radius_mm;
-    fill(f, c, n, out, map, [=](double a, double b, Vec3& p, Vec3& u, Vec3& v, Vec3& w) {
-      const double z = std::clamp(a * inverse, -1.0, 1.0), across = std::sqrt(1.0 - z * z);
-      const SinCos t = sin_cos(b * inverse);
-      w = {across * t.cosine, across * t.sine, z}, p = radius * w;
-      u = {-t.sine, t.cosine, 0}, v = {-z * t.cosine, -z * t.sine, across};
-    });
-    return true;
-  }
-  if (s.kind == SupportKind::cylinder && chart == 0) {
-    const double radius = s.radius_mm, inverse = 1.0 / s.radius_mm, twist = s.twist_per_mm;
-    fill(f, c, n, out, map, [=](double a, double b, Vec3& p, Vec3& u, Vec3& v, Vec3& w) {
-      const SinCos t = sin_cos(a * inverse + twist * b);
-      p = {radius * t.cosine, radius * t.sine, b}, u = {-t.sine, t.cosine, 0};
-      v = {0, 0, 1}, w = {t.cosine, t.sine, 0};
-    });
-    return true;
-  }
-  return false;
+LUCERNA_VECTOR_CLONES void fill_plane(const Support& s, double sign, const Columns& c, RayBatch& out) {
+  if (s.map == PolarMap::polar) return fill(s, c, PolarDirection(), OnPlane{sign}, out);
+  fill(s, c, ConcentricDirection(), OnPlane{sign}, out);
 }
 
-void fill_focal(const Support& s, const std::array<BatchColumn, 4>& c, std::size_t n, RayBatch& out) {
-  const Vec3 ex = s.world_from_support.ex(), ey = s.world_from_support.ey(), ez = s.world_from_support.ez();
-  const Vec3 o = s.world_from_support.origin_mm();
-  const bool polar = s.map == PolarMap::polar;
-  for (std::size_t i = 0; i < n; ++i) {
-    double x = c[0][i], y = c[1][i];
-    if (polar) {
-      const double r = std::sqrt(std::max(0.0, 2.0 * c[0][i]));
-      const SinCos t = sin_cos(c[1][i]);
-      x = r * t.cosine, y = r * t.sine;
-    }
-    const double z = std::clamp(c[2][i], -1.0, 1.0), across = std::sqrt(1.0 - z * z);
-    const SinCos t = sin_cos(c[3][i]);
-    const Vec3 d{across * t.cosine, across * t.sine, z};
-    const Vec3 p{-x * z * t.cosine - y * t.sine, -x * z * t.sine + y * t.cosine, x * across};
-    out.x[i] = p.x * ex.x + p.y * ey.x + p.z * ez.x + o.x;
-    out.y[i] = p.x * ex.y + p.y * ey.y + p.z * ez.y + o.y;
-    out.z[i] = p.x * ex.z + p.y * ey.z + p.z * ez.z + o.z;
-    out.kx[i] = d.x * ex.x + d.y * ey.x + d.z * ez.x;
-    out.ky[i] = d.x * ex.y + d.y * ey.y + d.z * ez.y;
-    out.kz[i] = d.x * ex.z + d.y * ey.z + d.z * ez.z;
-  }
+LUCERNA_VECTOR_CLONES void fill_disk(const Support& s, double sign, const Columns& c, RayBatch& out) {
+  if (s.map == PolarMap::polar) return fill(s, c, PolarDirection(), OnDisk{sign}, out);
+  fill(s, c, ConcentricDirection(), OnDisk{sign}, out);
 }
 
-void on_sphere(const BoundingSurface& s, std::size_t n, RayBatch& r) {
-  const Vec3 o = s.world_from_surface.origin_mm();
-  const double radius2 = s.radius_mm * s.radius_mm;
-  double least = 1.0;
-  BatchColumn rest;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double x = r.x[i] - o.x, y = r.y[i] - o.y, z = r.z[i] - o.z;
-    const double along = x * r.kx[i] + y * r.ky[i] + z * r.kz[i];
-    const double qx = x - along * r.kx[i], qy = y - along * r.ky[i], qz = z - along * r.kz[i];
-    rest[i] = radius2 - (qx * qx + qy * qy + qz * qz);
-    least = std::min(least, rest[i]);
-    const double t = std::sqrt(std::max(0.0, rest[i])) - along;
-    if (rest[i] < 0.0) continue;
-    r.x[i] += t * r.kx[i], r.y[i] += t * r.ky[i], r.z[i] += t * r.kz[i];
-  }
-  if (least >= 0.0) return;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (rest[i] < 0.0) r.set(i, start_on(s, r.ray(i)));
-  }
+LUCERNA_VECTOR_CLONES void fill_end(const Support& s, double sign, const Columns& c, RayBatch& out) {
+  const OnEnd on{sign, sign * s.half_size_mm.z, s.radius_mm};
+  if (s.map == PolarMap::polar) return fill(s, c, PolarDirection(), on, out);
+  fill(s, c, ConcentricDirection(), on, out);
 }
 
-void on_plane(const BoundingSurface& s, std::size_t n, RayBatch& r) {
-  const Vec3 o = s.world_from_surface.origin_mm(), w = s.world_from_surface.ez();
-  for (std::size_t i = 0; i < n; ++i) {
-    const double dz = r.kx[i] * w.x + r.ky[i] * w.y + r.kz[i] * w.z;
-    const double z = (r.x[i] - o.x) * w.x + (r.y[i] - o.y) * w.y + (r.z[i] - o.z) * w.z;
-    if (std::abs(dz) < 1e-3) {
-      r.set(i, start_on(s, r.ray(i)));
-      continue;
-    }
-    const double t = -z / dz;
-    r.x[i] += t * r.kx[i], r.y[i] += t * r.ky[i], r.z[i] += t * r.kz[i];
+LUCERNA_VECTOR_CLONES void fill_sphere(const Support& s, const Columns& c, RayBatch& out) {
+  if (s.map == PolarMap::polar) return fill(s, c, PolarDirection(), OnSphere{s.radius_mm}, out);
+  fill(s, c, ConcentricDirection(), OnSphere{s.radius_mm}, out);
+}
+
+LUCERNA_VECTOR_CLONES void fill_mantle(const Support& s, const Columns& c, RayBatch& out) {
+  const OnMantle on{s.radius_mm, s.twist_per_mm};
+  if (s.map == PolarMap::polar) return fill(s, c, PolarDirection(), on, out);
+  fill(s, c, ConcentricDirection(), on, out);
+}
+
+template <int Axis>
+LUCERNA_ALWAYS_INLINE inline void fill_face(const Support& s, double half, double sign, const Columns& c,
+                                            RayBatch& out) {
+  if (s.map == PolarMap::polar) return fill(s, c, PolarDirection(), OnFace<Axis>{half, sign}, out);
+  fill(s, c, ConcentricDirection(), OnFace<Axis>{half, sign}, out);
+}
+
+LUCERNA_VECTOR_CLONES void fill_box(const Support& s, std::uint32_t chart, const Columns& c, RayBatch& out) {
+  const double sign = chart % 2 == 0 ? 1.0 : -1.0;
+  if (chart / 2 == 0) return fill_face<0>(s, s.half_size_mm.x, sign, c, out);
+  if (chart / 2 == 1) return fill_face<1>(s, s.half_size_mm.y, sign, c, out);
+  fill_face<2>(s, s.half_size_mm.z, sign, c, out);
+}
+
+/// Offsets x, y across a direction of cosine `z` and azimuth `t` to the axis.
+LUCERNA_ALWAYS_INLINE inline void put_focal(const Frame& f, double x, double y, double cosine, const SinCos t,
+                                            std::size_t i, RayBatch& rays) {
+  const double z = clamped(cosine, -1.0, 1.0), across = std::sqrt(1.0 - z * z);
+  const Vec3 p{-x * z * t.cosine - y * t.sine, -x * z * t.sine + y * t.cosine, x * across};
+  put(f, p, {across * t.cosine, across * t.sine, z}, i, rays);
+}
+
+LUCERNA_VECTOR_CLONES void fill_focal(const Support& s, const Columns& c, RayBatch& out) {
+  const Frame f = s.world_from_support;
+  RayBatch rays;
+  for (std::size_t i = 0; i < kSupportBatch; ++i) {
+    put_focal(f, c[0][i], c[1][i], c[2][i], sin_cos(c[3][i]), i, rays);
   }
+  out = rays;
+}
+
+LUCERNA_VECTOR_CLONES void fill_focal_polar(const Support& s, const Columns& c, RayBatch& out) {
+  const Frame f = s.world_from_support;
+  RayBatch rays;
+  for (std::size_t i = 0; i < kSupportBatch; ++i) {
+    const double r = std::sqrt(std::max(0.0, 2.0 * c[0][i]));
+    const SinCos t = sin_cos(c[1][i]);
+    put_focal(f, r * t.cosine, r * t.sine, c[2][i], sin_cos(c[3][i]), i, rays);
+  }
+  out = rays;
+}
+
+LUCERNA_VECTOR_CLONES void fill_axis(const Support& s, const Columns& c, RayBatch& out) {
+  const Frame f = s.world_from_support;
+  const double twist = s.twist_per_mm;
+  RayBatch rays;
+  for (std::size_t i = 0; i < kSupportBatch; ++i) {
+    const double z = c[0][i], b = c[1][i];
+    const SinCos angle =
+        sin_cos(batch::half_kepler_angle(clamped(4.0 * c[2][i], 0.0, 2.0 * std::numbers::pi)));
+    const SinCos t = sin_cos(c[3][i] + twist * z);
+    put(f, {-b * t.sine, b * t.cosine, z}, {angle.sine * t.cosine, angle.sine * t.sine, angle.cosine}, i,
+        rays);
+  }
+  out = rays;
 }
 
 /// RefractingSphere::outside for all rays.
-void leave_dome(const RefractingSphere& dome, std::size_t n, RayBatch& r) {
+LUCERNA_VECTOR_CLONES void leave_dome(const RefractingSphere dome, const RayBatch& r, RayBatch& to) {
   const Vec3 o = dome.centre_mm;
   const double index = dome.index, radius = dome.radius_mm, inverse = 1.0 / radius;
   const double most = (1.0 - 1e-9) / index;
-  for (std::size_t i = 0; i < n; ++i) {
+  RayBatch rays;
+  for (std::size_t i = 0; i < kSupportBatch; ++i) {
+    const double kx = r.kx[i], ky = r.ky[i], kz = r.kz[i];
     const double x = (r.x[i] - o.x) * inverse, y = (r.y[i] - o.y) * inverse, z = (r.z[i] - o.z) * inverse;
-    const double along = x * r.kx[i] + y * r.ky[i] + z * r.kz[i];
-    double qx = x - along * r.kx[i], qy = y - along * r.ky[i], qz = z - along * r.kz[i];
+    const double along = x * kx + y * ky + z * kz;
+    double qx = x - along * kx, qy = y - along * ky, qz = z - along * kz;
     const double q = std::sqrt(qx * qx + qy * qy + qz * qz);
     const double scale = std::min(1.0, most / std::max(q, 1e-300));
     qx *= scale, qy *= scale, qz *= scale;
     const double sine = q * scale, in = std::sqrt(1.0 - sine * sine);
     const double out = std::sqrt(std::max(0.0, 1.0 - index * index * sine * sine)), turn = out - index * in;
-    const double nx = qx + in * r.kx[i], ny = qy + in * r.ky[i], nz = qz + in * r.kz[i];
-    r.x[i] = o.x + radius * nx, r.y[i] = o.y + radius * ny, r.z[i] = o.z + radius * nz;
-    r.kx[i] = index * r.kx[i] + turn * nx;
-    r.ky[i] = index * r.ky[i] + turn * ny;
-    r.kz[i] = index * r.kz[i] + turn * nz;
+    const double nx = qx + in * kx, ny = qy + in * ky, nz = qz + in * kz;
+    rays.x[i] = o.x + radius * nx, rays.y[i] = o.y + radius * ny, rays.z[i] = o.z + radius * nz;
+    rays.kx[i] = index * kx + turn * nx;
+    rays.ky[i] = index * ky + turn * ny;
+    rays.kz[i] = index * kz + turn * nz;
   }
+  to = rays;
 }
 
-void rays_inside(const Support& support, std::uint32_t chart, const std::array<BatchColumn, 4>& c,
-                 std::size_t n, RayBatch& out) {
-  if (support.kind == SupportKind::focal) return fill_focal(support, c, n, out);
-  const bool done =
-      support.map == PolarMap::polar
-          ? fill_surface(support, chart, c, n, out, [](double a, double b) { return polar_direction(a, b); })
-          : fill_surface(support, chart, c, n, out,
-                         [](double a, double b) { return concentric_direction(a, b); });
-  if (done) return;
-  Support bare = support;
-  bare.dome = {};
-  for (std::size_t i = 0; i < n; ++i) {
-    out.set(i, bare.from_chart({chart, {c[0][i], c[1][i], c[2][i], c[3][i]}}));
+void rays_inside(const Support& s, std::uint32_t chart, const Columns& c, RayBatch& out) {
+  const double sign = chart == 0 ? 1.0 : -1.0;
+  switch (s.kind) {
+    case SupportKind::plane:
+      return fill_plane(s, sign, c, out);
+    case SupportKind::disk:
+      return fill_disk(s, sign, c, out);
+    case SupportKind::sphere:
+      return fill_sphere(s, c, out);
+    case SupportKind::cylinder:
+      return chart == 0 ? fill_mantle(s, c, out) : fill_end(s, chart == 1 ? 1.0 : -1.0, c, out);
+    case SupportKind::box:
+      return fill_box(s, chart, c, out);
+    case SupportKind::focal:
+      return s.map == PolarMap::polar ? fill_focal_polar(s, c, out) : fill_focal(s, c, out);
+    case SupportKind::axis:
+      return fill_axis(s, c, out);
   }
 }
 
 }  // namespace
 
 void rays_from_chart(const Support& support, std::uint32_t chart, const std::array<BatchColumn, 4>& c,
-                     std::size_t n, RayBatch& out) {
-  rays_inside(support, chart, c, n, out);
-  if (support.dome.exists()) leave_dome(support.dome, n, out);
-}
-
-void start_batch_on(const BoundingSurface& surface, std::size_t n, RayBatch& rays) {
-  if (surface.kind == SurfaceKind::none) return;
-  if (surface.kind == SurfaceKind::sphere) return on_sphere(surface, n, rays);
-  if (surface.kind == SurfaceKind::plane) return on_plane(surface, n, rays);
-  for (std::size_t i = 0; i < n; ++i) rays.set(i, start_on(surface, rays.ray(i)));
+                     RayBatch& out) {
+  rays_inside(support, chart, c, out);
+  if (support.dome.exists()) leave_dome(support.dome, out, out);
 }
 
 }  // namespace lucerna

@@ -23,13 +23,13 @@ struct RayBatch {
   }
 };
 
-/// Support::from_chart for the first `n` <= kSupportBatch entries of four columns, all of one chart, to
-/// within rounding (1e-12 relative): polynomials instead of library functions, without branches, so that
-/// compilers vectorise it. The same bits whatever `n`.
+/// Support::from_chart for the entries of four columns, all of one chart, to within rounding (1e-9 in the
+/// direction of an axis support, else 1e-12): polynomials instead of library functions, without branches, so
+/// that compilers vectorise it. Always makes all kSupportBatch rays; entries that hold no number make none.
 void rays_from_chart(const Support& support, std::uint32_t chart, const std::array<BatchColumn, 4>& c,
-                     std::size_t n, RayBatch& out);
+                     RayBatch& out);
 
-/// start_on for the first `n` rays.
+/// start_on for the first `n` rays. The others have numbers, but may stay off the surface.
 void start_batch_on(const BoundingSurface& surface, std::size_t n, RayBatch& rays);
 
 }  // namespace lucerna

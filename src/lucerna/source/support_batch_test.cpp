@@ -36,10 +36,12 @@ TEST(SupportBatch, AgreesWithOneRayAtATime) {
           }
         }
         RayBatch batch;
-        rays_from_chart(s, chart, c, kSupportBatch, batch);
+        rays_from_chart(s, chart, c, batch);
         for (std::size_t i = 0; i < kSupportBatch; ++i) {
           const Ray one = s.from_chart({chart, {c[0][i], c[1][i], c[2][i], c[3][i]}});
-          ASSERT_LT(length(batch.ray(i).origin_mm - one.origin_mm), 1e-11)
+          // Kepler's equation is solved to 1e-10 in batches; on a dome that moves starts too.
+          const double tolerance = s.kind == SupportKind::axis ? 1e-9 : 1e-11;
+          ASSERT_LT(length(batch.ray(i).origin_mm - one.origin_mm), tolerance)
               << to_string(s.kind) << " ray " << i;
           ASSERT_LT(length(batch.ray(i).direction.vec() - one.direction.vec()), 2e-8) << to_string(s.kind);
         }

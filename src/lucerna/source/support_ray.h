@@ -171,9 +171,10 @@ LUCERNA_HD inline Ray local_ray(const ChartPoint& p, const Support& s) {
 
 }  // namespace detail
 
-/// Support::from_chart for plain supports.
+/// Support::from_chart.
 LUCERNA_HD inline Ray ray_from_chart(const Support& support, const ChartPoint& p) {
-  return support.world_from_support.ray(detail::local_ray(p, support));
+  const Ray ray = support.world_from_support.ray(detail::local_ray(p, support));
+  return support.dome.exists() ? support.dome.outside(ray) : ray;
 }
 
 /// start_on; nothing where even a line through the surface's centre misses it, which none does.

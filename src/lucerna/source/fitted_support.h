@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lucerna/source/support_fit.h"
+
+namespace lucerna {
+
+/// Nats that a split of a quick density must gain.
+inline constexpr double kQuickPenaltyNats = 6.0;
+
+/// A quick density of some rays on a support: one tree a chart. What supports are judged by and what tells
+/// overlapping layers apart. Immutable once made; thread safe.
+class FittedSupport {
+ public:
+  /// Only rays that the support carries are in it; `weight` as for project().
+  FittedSupport(const RayBlock& rays, std::span<const float> weight, BoundedSupport on, double tolerance_mm);
+
+  /// Density of the ray's line, 1/(mm^2 sr), times carried(): it integrates to that share.
+  double density(const Ray& ray) const;
+  /// Share of the weight that the support carries.
+  double carried() const { return carried_; }
+  /// Étendue of the boxes about its rays.
+  double volume() const { return volume_; }
+  std::size_t leaves() const { return leaves_; }
+
+ private:
+  struct Chart {
+    std::uint32_t chart;
+    double share;
+    TreeLookup tree;
+  };
+  BoundedSupport on_;
+  double carried_ = 0.0, volume_ = 0.0;
+  std::size_t leaves_ = 0;
+  std::vector<Chart> charts_;
+};
+
+/// The plain density that everything is compared with: lines about the focus, with a hundredth of the light
+/// spread evenly so that nothing is impossible.
+class PlainDensity {
+ public:
+  PlainDensity(const RayBlock& rays, std::span<const float> weight, const Vec3& focus_mm,
+               double tolerance_mm);
+  double density(const Ray& ray) const;
+
+ private:
+  FittedSupport fitted_;
+  double even_ = 0.0;
+};
+
+}  // namespace lucerna
