@@ -31,7 +31,7 @@ namespace {
 /// Does ray_from_chart know all that this support has? What it does not know is drawn on the CPU and sent.
 bool device_draws(const Support& support) {
   // Whoever adds something to a support meets a compiler error here.
-  [[maybe_unused]] const auto& [kind, map, frame, radius_mm, half_size_mm, twist_per_mm] = support;
+  [[maybe_unused]] const auto& [kind, map, frame, radius_mm, half_size_mm, twist_per_mm, dome] = support;
   return true;
 }
 
