@@ -50,7 +50,7 @@ void run_bench(const BenchArguments& a, Session& session) {
   session.start();
   if (trace_device(a.device) == TraceDevice::cuda) {
     const std::string why = why_no_cuda();
-    throw InputError("--device cuda: " + (why.empty() ? "bench_trace_gpu measures the card" : why));
+    throw InputError("--device cuda: " + (why.empty() ? "bench_gpu measures the card" : why));
   }
   const std::vector<int> sizes = parse_cells(a.cells);
   const std::uint64_t count = parse_count(a.rays);
