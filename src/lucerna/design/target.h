@@ -41,10 +41,10 @@ struct DesignTarget {
   std::optional<PlaneTarget> plane;
 };
 
-/// Reads [target]: `file` (IES, EULUMDAT), or kind = "plane" with `position_mm`, `normal`, `turn_deg`,
-/// `size_mm` and a `file` of illuminance (CSV or PNG; `white_lx` is a PNG's white in absolute mode), and
-/// `mode`. `unit` is the sources', `luminaire_mm` the mirror's place. The file is added to `inputs`. Throws
-/// InputError with file, line, key, found and expected.
+/// Reads [target]: `file` (IES, EULUMDAT), or kind = "plane" with `position_mm`, `normal`, `up`
+/// (as a plane detector has them), `size_mm` and a `file` of illuminance (CSV or PNG; `white_lx` is a PNG's
+/// white in absolute mode), and `mode`. `unit` is the sources', `luminaire_mm` the mirror's place. The file
+/// is added to `inputs`. Throws InputError with file, line, key, found and expected.
 DesignTarget read_target(TomlReader reader, FluxUnit unit, const Vec3& luminaire_mm,
                          std::vector<std::filesystem::path>& inputs);
 
