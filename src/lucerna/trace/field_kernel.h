@@ -40,6 +40,7 @@ struct LaneRays {
 struct LaneHits {
   Float t, gx, gy;
   Int state;
+  Float gz = 1.0f;  ///< always, of height fields
 };
 
 /// kLanes rays on their way through one field.
@@ -150,14 +151,20 @@ class Packet {
     iy = min(max(truncate((fma(t, dy_, oy_) - f_.y0) * (1.0f / f_.step_y)), Int(0)), Int(last));
   }
 
+  /// FieldView::offsets without a look-up: with L levels, level k begins at the sum of 4^(L - 1 - j) over j <
+  /// k, a difference of two prefixes of binary 0101...01.
+  LUCERNA_HD Int first_node(Int level) const {
+    const int32_t shift = 32 - 2 * f_.levels;
+    return Int(0x55555555 >> shift) - shift_right(Int(0x55555555), Int(shift) + level + level);
+  }
+
   LUCERNA_HD void node_step() {
     const Int last_square = Int(f_.blocks - 1);
     const Int nx = shift_right(min(max(bx_, Int(0)), last_square), level_);
     const Int ny = shift_right(min(max(by_, Int(0)), last_square), level_);
     const Int per_side = shift_right(Int(f_.blocks), level_);
-    const Int node = shift_left(gather(f_.offsets, level_) + ny * per_side + nx, Int(2));
-    const Float a = gather(f_.nodes, node), b = gather(f_.nodes + 1, node), c = gather(f_.nodes + 2, node);
-    const Float e = gather(f_.nodes + 3, node);
+    Float a, b, c, e;
+    gather4(f_.nodes, shift_left(first_node(level_) + ny * per_side + nx, Int(2)), a, b, c, e);
     const Float scale = to_float(shift_left(Int(8), level_));
     const Float wx = scale * f_.step_x, wy = scale * f_.step_y;
     const Float xl = fma(to_float(nx), wx, f_.x0), yl = fma(to_float(ny), wy, f_.y0);
@@ -195,6 +202,11 @@ class Packet {
     iy_ = select(down, min(max(cy, shift_left(by_, Int(3))), shift_left(by_, Int(3)) + Int(7)), iy_);
     leaf_ = leaf_ | down;
     node_ = node_ & ~down;
+    if (any(down)) {  // while other lanes are still looking for their leaf
+      const Int row = Int((f_.blocks * 8 + 1) * 3), at = iy_ * row + ix_ * Int(3);
+      prefetch(f_.vertices, at, down);
+      prefetch(f_.vertices, at + row, down);
+    }
     level_ = select(enter & ~down, level_ - Int(1), level_);
     if (any(skip)) skip_node(skip, nx, ny, tx, ty, te);
   }
@@ -282,9 +294,9 @@ class Packet {
     const Int vy = min(max(select(by_x, iy_, gy), zero), select(by_x, last, last + one));
     const Int first = (vy * per_row + vx) * Int(3);
     const Int second = first + select(by_x, per_row * Int(3), Int(3));
+    const Float step = select(by_x, Float(f_.step_y), Float(f_.step_x));
     const Int slope = select(by_x, Int(2), Int(1));
     const Float z0 = gather(f_.vertices, first), z1 = gather(f_.vertices, second);
-    const Float step = select(by_x, Float(f_.step_y), Float(f_.step_x));
     const Float g0 = gather(f_.vertices, first + slope) * step,
                 g1 = gather(f_.vertices, second + slope) * step;
     const Float along = select(by_x, (fma(t, dy_, oy_) - f_.y0) * (1.0f / f_.step_y) - to_float(iy_),
@@ -304,21 +316,20 @@ class Packet {
   LUCERNA_HD Cell cell(Int ix, Int iy) const {
     const Int row = Int((f_.blocks * 8 + 1) * 3);
     const Int a = iy * row + ix * Int(3), b = a + row;
-    const float* const z = f_.vertices;
     Cell k;
-    k.z00 = gather(z, a);
-    k.z10 = gather(z + 3, a);
-    k.z01 = gather(z, b);
-    k.z11 = gather(z + 3, b);
-    const Float s = f_.step_x, q = f_.step_y;
-    k.p00 = s * gather(z + 1, a);
-    k.p10 = s * gather(z + 4, a);
-    k.p01 = s * gather(z + 1, b);
-    k.p11 = s * gather(z + 4, b);
-    k.q00 = q * gather(z + 2, a);
-    k.q10 = q * gather(z + 5, a);
-    k.q01 = q * gather(z + 2, b);
-    k.q11 = q * gather(z + 5, b);
+    Float p, q, again;
+    gather4(f_.vertices, a, k.z00, p, q, k.z10);
+    k.p00 = f_.step_x * p;
+    k.q00 = f_.step_y * q;
+    gather4(f_.vertices + 2, a, again, again, p, q);
+    k.p10 = f_.step_x * p;
+    k.q10 = f_.step_y * q;
+    gather4(f_.vertices, b, k.z01, p, q, k.z11);
+    k.p01 = f_.step_x * p;
+    k.q01 = f_.step_y * q;
+    gather4(f_.vertices + 2, b, again, again, p, q);
+    k.p11 = f_.step_x * p;
+    k.q11 = f_.step_y * q;
     return k;
   }
   LUCERNA_HD static void bend(Float u, Float a, Float b, Float& value, Float& slope) {
@@ -402,6 +413,7 @@ inline void intersect(const FieldView& field, const LocalRays& rays, size_t n, L
     store(hits.t + i, hit.t);
     store(hits.gx + i, hit.gx);
     store(hits.gy + i, hit.gy);
+    store(hits.gz + i, hit.gz);
     store(hits.state + i, hit.state);
   }
 }
@@ -433,10 +445,11 @@ inline void to_local(const FrameView& k, const WorldRays& in, size_t n, int32_t 
 
 /// Rays reflected where they hit, in the mirror's frame still; also the cosine of incidence.
 LUCERNA_HD inline LaneRays reflected(const LaneRays& ray, const LaneHits& hit, Float& cosine) {
-  const Float across = ray.dz - hit.gx * ray.dx - hit.gy * ray.dy;   // d . n times the length of n
-  const Float n2 = Float(1.0f) + hit.gx * hit.gx + hit.gy * hit.gy;  // n = (-gx, -gy, 1)
+  // d . n times the length of n = (-gx, -gy, gz).
+  const Float across = hit.gz * ray.dz - hit.gx * ray.dx - hit.gy * ray.dy;
+  const Float n2 = hit.gz * hit.gz + hit.gx * hit.gx + hit.gy * hit.gy;
   const Float twice = 2.0f * across / n2;
-  const Float rx = fma(twice, hit.gx, ray.dx), ry = fma(twice, hit.gy, ray.dy), rz = ray.dz - twice;
+  const Float rx = fma(twice, hit.gx, ray.dx), ry = fma(twice, hit.gy, ray.dy), rz = ray.dz - twice * hit.gz;
   const Float unit = Float(1.0f) / sqrt(rx * rx + ry * ry + rz * rz);
   cosine = abs(across) / sqrt(n2);
   return {fma(hit.t, ray.dx, ray.x),
@@ -451,7 +464,8 @@ LUCERNA_HD inline LaneRays reflected(const LaneRays& ray, const LaneHits& hit, F
 inline void reflect_rays(const FrameView& k, const LocalRays& rays, const LocalHits& hits, size_t n,
                          WorldRays& out, float* cosine) {
   for (size_t i = 0; i < n; i += static_cast<size_t>(kLanes)) {
-    const LaneHits hit{load(hits.t + i), load(hits.gx + i), load(hits.gy + i), load(hits.state + i)};
+    const LaneHits hit{load(hits.t + i), load(hits.gx + i), load(hits.gy + i), load(hits.state + i),
+                       load(hits.gz + i)};
     const Mask m = hit.state == Int(kFront);
     Float c;
     const LaneRays r = in_frame(k, reflected(load_rays(rays, i), hit, c));

@@ -91,6 +91,13 @@ LUCERNA_HD inline Int gather(const int32_t* p, Int i) {
   return Int(p[i.v]);
 #endif
 }
+/// p[i] .. p[i + 3].
+LUCERNA_HD inline void gather4(const float* p, Int i, Float& a, Float& b, Float& c, Float& d) {
+  a = gather(p, i);
+  b = gather(p + 1, i);
+  c = gather(p + 2, i);
+  d = gather(p + 3, i);
+}
 LUCERNA_HD inline Int float_bits(Float a) {
 #if defined(__CUDA_ARCH__)
   return Int(__float_as_int(a.v));

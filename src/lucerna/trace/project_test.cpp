@@ -225,7 +225,9 @@ TEST(Project, BadMirrorsNameTheirKey) {
          "reflector[0].reflectance");
   expect(reflector(parabola + "focal_mm = 10\nfocal2_mm = 10\ndiameter_mm = 80\n"),
          "a parabola has one focus");
-  expect(reflector("family = 'revolution'\nprofile_mm = [[0, 0], [20, 10], [15, 40]]\n"), "profile_mm");
+  expect(reflector(
+             "family = 'revolution'\nprofile_mm = [[0, 0], [20, 10], [20, 30], [5, 20], [10, 5], [30, 2]]\n"),
+         "profile_mm: reflector: the profile crosses itself");
   expect(reflector("family = 'revolution'\n"), "needs a preset or a profile_mm");
   expect(std::string(kSource) + "surface = 'sphere'\n", "surface");
   expect(std::string(kSource) + "surface = 'sphere'\nsurface_mm = 1.0\n", "outside its sphere surface");

@@ -81,6 +81,25 @@ inline void store(int32_t* p, Int a) { _mm512_storeu_si512(p, a.v); }
 inline Int gather(const int32_t* p, Int i) { return _mm512_i32gather_epi32(i.v, p, 4); }
 inline Int float_bits(Float a) { return _mm512_castps_si512(a.v); }
 
+/// p[i] .. p[i + 3] of every lane. Whole loads and a transpose cost half of four gathers.
+inline void gather4(const float* p, Int i, Float& a, Float& b, Float& c, Float& d) {
+  alignas(64) int32_t k[16];
+  _mm512_store_si512(k, i.v);
+  const auto four = [&](int n) {
+    __m512 r = _mm512_castps128_ps512(_mm_loadu_ps(p + k[n]));
+    r = _mm512_insertf32x4(r, _mm_loadu_ps(p + k[n + 4]), 1);
+    r = _mm512_insertf32x4(r, _mm_loadu_ps(p + k[n + 8]), 2);
+    return _mm512_insertf32x4(r, _mm_loadu_ps(p + k[n + 12]), 3);
+  };
+  const __m512 q0 = four(0), q1 = four(1), q2 = four(2), q3 = four(3);
+  const __m512 l01 = _mm512_unpacklo_ps(q0, q1), l23 = _mm512_unpacklo_ps(q2, q3);
+  const __m512 h01 = _mm512_unpackhi_ps(q0, q1), h23 = _mm512_unpackhi_ps(q2, q3);
+  a = _mm512_shuffle_ps(l01, l23, 0x44);
+  b = _mm512_shuffle_ps(l01, l23, 0xEE);
+  c = _mm512_shuffle_ps(h01, h23, 0x44);
+  d = _mm512_shuffle_ps(h01, h23, 0xEE);
+}
+
 #elif defined(__AVX2__)
 
 inline constexpr int kLanes = 8;
@@ -142,6 +161,23 @@ inline Int load(const int32_t* p) { return _mm256_loadu_si256(reinterpret_cast<c
 inline void store(int32_t* p, Int a) { _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), a.v); }
 inline Int gather(const int32_t* p, Int i) { return _mm256_i32gather_epi32(p, i.v, 4); }
 inline Int float_bits(Float a) { return _mm256_castps_si256(a.v); }
+
+/// p[i] .. p[i + 3] of every lane. Whole loads and a transpose cost half of four gathers.
+inline void gather4(const float* p, Int i, Float& a, Float& b, Float& c, Float& d) {
+  alignas(32) int32_t k[8];
+  _mm256_store_si256(reinterpret_cast<__m256i*>(k), i.v);
+  const auto two = [&](int n) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p + k[n])), _mm_loadu_ps(p + k[n + 4]),
+                                1);
+  };
+  const __m256 q0 = two(0), q1 = two(1), q2 = two(2), q3 = two(3);
+  const __m256 l01 = _mm256_unpacklo_ps(q0, q1), l23 = _mm256_unpacklo_ps(q2, q3);
+  const __m256 h01 = _mm256_unpackhi_ps(q0, q1), h23 = _mm256_unpackhi_ps(q2, q3);
+  a = _mm256_shuffle_ps(l01, l23, 0x44);
+  b = _mm256_shuffle_ps(l01, l23, 0xEE);
+  c = _mm256_shuffle_ps(h01, h23, 0x44);
+  d = _mm256_shuffle_ps(h01, h23, 0xEE);
+}
 
 #else
 
@@ -297,10 +333,30 @@ inline Int float_bits(Float a) {
     return b;
   });
 }
+/// p[i] .. p[i + 3] of every lane.
+inline void gather4(const float* p, Int k, Float& a, Float& b, Float& c, Float& d) {
+  for (int i = 0; i < kLanes; ++i) {
+    const float* const q = p + k.v[i];
+    a.v[i] = q[0];
+    b.v[i] = q[1];
+    c.v[i] = q[2];
+    d.v[i] = q[3];
+  }
+}
 
 #endif
 
 LUCERNA_HD inline bool any(Mask a) { return bits(a) != 0; }
+
+/// Asks for the cache lines of p[i] in the lanes of `m`, which will be read soon.
+LUCERNA_HD inline void prefetch([[maybe_unused]] const float* p, [[maybe_unused]] Int i,
+                                [[maybe_unused]] Mask m) {
+#if !defined(LUCERNA_ONE_LANE) && !defined(__CUDACC__)
+  alignas(64) int32_t k[kLanes];
+  store(k, i);
+  for (uint32_t left = bits(m); left != 0; left &= left - 1) __builtin_prefetch(p + k[__builtin_ctz(left)]);
+#endif
+}
 
 }  // namespace
 }  // namespace lucerna
