@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # The main job on a bundled source: an LED ray file, a small model of it, a paraboloid, a light distribution; and how far the
-# model's light is from the rays'. Usage: scripts/demo.sh LUCERNA
+# model's light is from the rays'; then a mirror shaped for a target. Usage: scripts/demo.sh LUCERNA
 set -eu
 lucerna=$(realpath "$1")
 here=$(realpath "$(dirname "$0")/..")
@@ -25,4 +25,34 @@ sed 's|led.nfl|led.tm25ray|' model.toml > rays.toml
 "$lucerna" trace model.toml -o model --rays 1e6 --force --report model.html
 "$lucerna" compare rays model
 
+echo "== a mirror for a beam that is wanted: an oval of 64 x 32 degrees (scripts/demo_data/oval-beam.ldt), at most 60 seconds"
+cat > design.toml <<'END'
+[[source]]
+file = "led.nfl"
+[[reflector]]
+family = "bspline"
+focal_mm = 15.0
+diameter_mm = 80.0
+hole_diameter_mm = 8.0
+position_mm = [0, 0, 15]
+axis = "-z"
+reflectance = 0.9
+[[detector]]
+name = "far"
+kind = "far-field"
+[target]
+file = "oval-beam.ldt"
+[design]
+intervals = [8, 8]
+[design.limits]
+symmetry = "both"
+max_height_mm = 35.0
+END
+cp "$here/scripts/demo_data/oval-beam.ldt" .
+"$lucerna" design design.toml -o mirror --force --time 60 --tolerances --report mirror.html
+
+echo "== the mirror as it would be checked: traced again, and held against the target"
+"$lucerna" trace mirror/reflector.toml -o mirror-traced --force
+
 echo "== look at demo/model/far.svg (polar diagram), demo/model/far.ldt, far.ies, and demo/model.html (the report)"
+echo "== and, of the mirror, at demo/mirror.html, demo/mirror/reflector.step, .stl, far.ldt and result.json"

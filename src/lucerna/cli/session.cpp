@@ -52,6 +52,15 @@ void TerminalProgress::update(std::string_view phase, std::uint64_t done, std::u
   drawn_ = true;
 }
 
+void TerminalProgress::show(const std::string& line) {
+  const auto now = Clock::now();
+  if (!visible_ || now - last_draw_ < std::chrono::milliseconds(200)) return;
+  last_draw_ = now;
+  fmt::print(stderr, "\r\033[K{}", line);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
 bool TerminalProgress::stop_requested() const { return stop_signal != 0; }
 
 void TerminalProgress::clear() {

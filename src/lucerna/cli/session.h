@@ -26,6 +26,8 @@ class TerminalProgress final : public Progress {
   ~TerminalProgress() override { clear(); }
   void update(std::string_view phase, std::uint64_t done, std::uint64_t total) override;
   bool stop_requested() const override;
+  /// Draws a line of the caller's own instead, as often as `update` would.
+  void show(const std::string& line);
   /// Wipes the line, so that results can follow.
   void clear();
 
@@ -51,6 +53,8 @@ class Session {
   /// To be called once all options are parsed and before any work.
   void start();
   Progress& progress() { return *progress_; }
+  /// A line of progress on a terminal, redrawn a few times a second.
+  void show(const std::string& line) { progress_->show(line); }
 
   /// Runs `work` and adds its wall time to the phase `name`.
   template <class Work>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -105,6 +106,15 @@ FitState parse_checkpoint(const std::string& text, const std::string& key) {
   s.search_costs = in.numbers("search_costs");
   in.expect("end");
   return s;
+}
+
+int checkpoint_evaluations(const std::string& text) {
+  constexpr std::string_view kKey = "\nkey ";
+  const std::size_t at = text.find(kKey);
+  if (at == std::string::npos) damaged("it has no key");
+  const std::size_t from = at + kKey.size(), end = text.find('\n', from);
+  const FitState state = parse_checkpoint(text, text.substr(from, end - from));
+  return std::max(state.evaluations, static_cast<int>(state.search_costs.size()));
 }
 
 }  // namespace lucerna

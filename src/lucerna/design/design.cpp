@@ -2,15 +2,17 @@
 #include "lucerna/design/design.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <sstream>
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/design/light_limits.h"
 #include "lucerna/design/limits.h"
 #include "lucerna/design/reach.h"
+#include "lucerna/design/time_budget.h"
 #include "lucerna/design/window.h"
+#include "lucerna/reflector/cad_export.h"
 
 namespace lucerna {
 
@@ -18,13 +20,29 @@ namespace {
 
 /// In shape mode a tenth of the light beside the window counts as an error of 4.5 %.
 constexpr double kFluxWeight = 0.2;
+/// Rays that judge a result for which there is no time left.
+constexpr std::uint64_t kFewestJudgeRays = std::uint64_t{1} << 18;
 /// Rays that measure how much light leaves the mirror to begin with.
 constexpr std::uint64_t kFluxRays = std::uint64_t{1} << 16;
+
+/// All limits as one cost; empty without any. `rays` must outlive it.
+std::function<double(const DesignShape&, std::uint64_t, NormalEquations*)> limits_cost(
+    const DesignProblem& problem, const DesignRays& rays) {
+  const ShapeLimits form(problem.limits, problem.start);
+  const LightLimits light(problem.limits, problem.reflectance);
+  if (form.empty() && light.empty()) return {};
+  return [form, light, &rays](const DesignShape& shape, std::uint64_t n, NormalEquations* equations) {
+    return form.cost(shape, equations) + light.cost(shape, rays, n, equations);
+  };
+}
 
 /// FNV-1a: tells checkpoints of different problems apart.
 std::string problem_key(const DesignProblem& problem, const DesignOptions& options) {
   toml::table table = problem.project.table;
-  if (auto* design = table["design"].as_table()) design->erase("time_s");
+  if (auto* design = table["design"].as_table()) {
+    design->erase("time_s");
+    design->erase("tolerances");  // a sweep after the fit
+  }
   std::ostringstream text;
   text << table << options.seed << ' ' << options.most_rays;
   std::uint64_t hash = 0xcbf29ce484222325ull;
@@ -48,7 +66,7 @@ double source_blur_rad(const DesignRays& rays, const DesignShape& shape) {
   return std::atan2(std::sqrt(square), std::max(std::hypot(rim, z), std::abs(shape.at(0, 0).z_mm - mean.z)));
 }
 
-void add_remarks(const DesignProblem& problem, const DesignRays& rays, DesignResult& result) {
+void add_remarks(const DesignRays& rays, DesignResult& result) {
   const double error = result.error.relative_rms, floor = result.error.floor;
   if (error <= 1.5 * floor) {
     result.remarks.push_back(fmt::format(
@@ -69,30 +87,44 @@ void add_remarks(const DesignProblem& problem, const DesignRays& rays, DesignRes
                     100.0 * (1.0 - result.in_window / result.efficiency),
                     "direct light passes the mirror; a wider or deeper mirror would catch it"));
   }
-  if (problem.limits.min_efficiency && result.efficiency < *problem.limits.min_efficiency) {
+  for (const LimitCheck& c : result.limits) {
+    if (c.held) continue;
     result.remarks.push_back(
-        fmt::format("min_efficiency {} is not reached: {:.3f}; the aperture and the "
-                    "reflectance {} set it",
-                    *problem.limits.min_efficiency, result.efficiency, problem.reflectance.at(1.0)));
-  }
-  if (problem.limits.max_height_mm) {
-    const double height = result.shape.height_mm();
-    if (height > *problem.limits.max_height_mm) {
-      result.remarks.push_back(fmt::format(
-          "max_height_mm {} is not held: {:.3f} mm; a smaller aperture or a longer focal length is "
-          "flatter",
-          *problem.limits.max_height_mm, height));
-    }
+        fmt::format("limit {} is not held: {:.4g} found, {:.4g} allowed", c.limit, c.found, c.allowed));
   }
 }
 
+/// All limits that are set, against the exported mesh and the judging light.
+std::vector<LimitCheck> checked_limits(const DesignProblem& problem, const DesignShape& shape,
+                                       const DesignRays& rays, std::uint64_t n) {
+  std::vector<LimitCheck> out;
+  const DesignLimits& limits = problem.limits;
+  if (limits.any_on_form()) {
+    const CadTolerance tolerance;
+    out =
+        check_limits(cad_mesh(shape.reflector(), tolerance), limits, tolerance.chord_mm, tolerance.slope_deg);
+  }
+  const LightLimits light(limits, problem.reflectance);
+  if (light.empty()) return out;
+  const LightLimits::Measured found = light.measure(shape, rays, n);
+  if (limits.glare) {
+    const double most = limits.glare->max_per_flux * rays.flux(), has = found.glare_per_flux * rays.flux();
+    out.push_back({"glare " + limits.glare->text, most, has, has <= most});
+  }
+  if (limits.min_efficiency) {
+    out.push_back({"min_efficiency", *limits.min_efficiency, found.efficiency,
+                   found.efficiency >= *limits.min_efficiency});
+  }
+  return out;
+}
+
 void judge(const DesignProblem& problem, const DesignOptions& options, const FitProblem& fit,
-           DesignResult& result, Progress& progress) {
+           std::uint64_t judge_rays, DesignResult& result, Progress& progress) {
   DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(),
                   options.seed + 0x9E3779B97F4A7C15ull);
-  rays.grow(options.judge_rays, progress);
+  rays.grow(judge_rays, progress);
   EvaluationOptions plain;
-  plain.rays = options.judge_rays;
+  plain.rays = judge_rays;
   plain.derivatives = false;
   const Eigen::VectorXd target = fit.target(fit.bins);
   const Evaluation e = evaluate(result.shape, problem.reflectance, rays, fit.bins, plain);
@@ -105,10 +137,11 @@ void judge(const DesignProblem& problem, const DesignOptions& options, const Fit
   result.absorbed = e.absorbed;
   result.back = e.back;
   result.lost = e.lost;
+  result.limits = checked_limits(problem, result.shape, rays, judge_rays);
   result.remarks = target_reach(rays, problem.start, fit.bins, target, fit.mode,
                                 problem.limits.min_efficiency.value_or(0.0))
                        .statements;
-  add_remarks(problem, rays, result);
+  add_remarks(rays, result);
 }
 
 }  // namespace
@@ -116,8 +149,8 @@ void judge(const DesignProblem& problem, const DesignOptions& options, const Fit
 FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& options, DesignRays& rays) {
   FitProblem fit{&rays, problem.reflectance, {}, target_window(problem), problem.target.mode};
   fit.seed = options.seed;
+  rays.grow(kFluxRays);
   if (problem.target.mode == TargetMode::shape) {
-    rays.grow(kFluxRays);
     EvaluationOptions plain;
     plain.rays = kFluxRays;
     plain.derivatives = false;
@@ -125,32 +158,28 @@ FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& option
     fit.flux_weight = kFluxWeight;
     fit.flux_reference = start.reflected + start.direct;
   }
-  if (problem.limits.max_height_mm) {
-    const double most = *problem.limits.max_height_mm;
-    fit.limits = [most](const DesignShape& shape, std::uint64_t, NormalEquations* equations) {
-      return height_limit(shape, most, equations);
-    };
-  }
+  LightLimits(problem.limits, problem.reflectance).check(problem.start, rays);
+  fit.limits = limits_cost(problem, rays);
   fit.target = target_flux(problem.target, problem.world_from_mirror, rays.flux());
   return fit;
 }
 
 DesignResult design(const DesignProblem& problem, const DesignOptions& options, Progress& progress,
                     const DesignObserver& observer) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point begin = Clock::now();
-  const double time_s = options.time_s.value_or(problem.time_s);
+  TimeBudget time(options.time_s.value_or(problem.time_s), options.judge_rays + options.rays_after);
   DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
   FitProblem fit_data = fit_problem(problem, options, rays);
   const std::vector<FitStage> stages = ladder(problem.start, fit_data.bins, options.most_rays, true);
   const std::string key = problem_key(problem, options);
   FitState state;
   if (!options.checkpoint.empty()) state = parse_checkpoint(options.checkpoint, key);
+  const std::uint64_t rays_before = state.total_rays;
+  std::uint64_t rays_so_far = rays_before;
   DesignResult result{problem.start};
   const auto stop = [&] {
     if (progress.stop_requested()) {
       result.end = DesignEnd::interrupted;
-    } else if (std::chrono::duration<double>(Clock::now() - begin).count() > time_s) {
+    } else if (time.spent(rays_so_far - rays_before)) {
       result.end = DesignEnd::time;
     }
     return result.end != DesignEnd::converged;
@@ -160,15 +189,24 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
       fit_data, problem.start, stages, problem.optimizer, state.search_costs,
       [&](const FitRecord& record, const DesignShape& best) {
         result.history.push_back(record);
+        rays_so_far = record.total_rays;
         if (observer) observer(record, best, checkpoint_text(state, key));
         return !stop();
       },
       progress);
+  const auto conclude = [&] {
+    std::uint64_t judge_rays = options.judge_rays;
+    if (result.end != DesignEnd::converged) {
+      judge_rays = time.affordable(judge_rays, options.rays_after, std::min(judge_rays, kFewestJudgeRays));
+    }
+    if (result.end == DesignEnd::interrupted) judge_rays = std::min(judge_rays, kFewestJudgeRays);
+    judge(problem, options, fit_data, judge_rays, result, progress);
+  };
   if (!ready) {
-    result.shape = fit_data.starts[0].shape;
+    result.shape = ShapeLimits(problem.limits, problem.start).nearest(fit_data.starts[0].shape);
     result.checkpoint = checkpoint_text(state, key);
     result.evaluations = static_cast<int>(state.search_costs.size());
-    judge(problem, options, fit_data, result, progress);
+    conclude();
     return result;
   }
   Fit fit = begun ? Fit(fit_data, stages, problem.start, state)
@@ -176,17 +214,16 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
   while (!fit.done()) {
     if (stop()) break;
     const FitRecord record = fit.step(progress);
+    rays_so_far = record.total_rays;
     result.history.push_back(record);
-    progress.update(
-        fmt::format("design: error {:.2f} %, noise {:.2f} %", 100.0 * record.error, 100.0 * record.floor),
-        static_cast<std::uint64_t>(record.evaluations), 0);
+    progress.update("design", static_cast<std::uint64_t>(record.evaluations), 0);
     if (observer) observer(record, fit.best(), checkpoint_text(fit.state(), key));
   }
-  result.shape = fit.best();
+  result.shape = ShapeLimits(problem.limits, problem.start).nearest(fit.best());
   result.checkpoint = checkpoint_text(fit.state(), key);
   result.evaluations = fit.state().evaluations;
   result.rays = fit.state().total_rays;
-  judge(problem, options, fit_data, result, progress);
+  conclude();
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lucerna/design/design_problem.h"
+#include "lucerna/design/limit_check.h"
 
 namespace lucerna {
 
@@ -19,8 +20,11 @@ struct DesignOptions {
   std::optional<double> time_s;
   /// Rays of an evaluation at the end of the ladder.
   std::uint64_t most_rays = std::uint64_t{1} << 20;
-  /// Rays of the re-trace that judges the result, other than those it was fitted with.
+  /// Rays of the re-trace that judges the result, other than those it was fitted with. Where time ran out or
+  /// the user asked to stop, fewer may be traced.
   std::uint64_t judge_rays = std::uint64_t{1} << 22;
+  /// Rays that the caller will trace after that; time is kept for them.
+  std::uint64_t rays_after = 0;
   /// State to go on from (`checkpoint_text`); empty: from the start.
   std::string checkpoint;
 };
@@ -43,6 +47,8 @@ struct DesignResult {
   double absorbed = 0.0, back = 0.0, lost = 0.0;
   int evaluations = 0;
   std::uint64_t rays = 0;
+  /// Every limit that was set, as found in the exported mesh and the judging light.
+  std::vector<LimitCheck> limits;
   /// What keeps the error from being smaller, in one sentence each.
   std::vector<std::string> remarks;
 };
@@ -59,7 +65,8 @@ FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& option
 /// with exact path derivatives on smooth bins, from coarse bins, knots and few rays to fine and many, with
 /// restarts where a start gets stuck (docs/algorithms/design.md). Progress phases "rays", "design" (in steps
 /// of unknown number). Stops early at `time_s` or when progress asks; the result is then the best so far,
-/// whole, with `end` saying so. Throws InputError on a checkpoint of another problem.
+/// whole, with `end` saying so. Throws InputError on a checkpoint of another problem, and where
+/// min_efficiency and the reflectance contradict each other.
 DesignResult design(const DesignProblem& problem, const DesignOptions& options,
                     Progress& progress = no_progress(), const DesignObserver& observer = {});
 
@@ -68,6 +75,8 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options,
 std::string checkpoint_text(const FitState& state, const std::string& key);
 /// Throws InputError if the text is no checkpoint, damaged, or of another key.
 FitState parse_checkpoint(const std::string& text, const std::string& key);
+/// How many evaluations were made when a checkpoint was written. Throws InputError as above.
+int checkpoint_evaluations(const std::string& text);
 
 /// The history as CSV.
 std::string history_csv(const std::vector<FitRecord>& history);

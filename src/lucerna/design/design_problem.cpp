@@ -3,75 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <sstream>
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/design/limits.h"
+#include "lucerna/design/window.h"
 #include "lucerna/reflector/trough_surface.h"
 #include "lucerna/trace/toml_reader.h"
 
 namespace lucerna {
 
 namespace {
-
-ShapeSymmetry read_symmetry(TomlReader& reader, bool revolution, const Frame& world_from_mirror) {
-  static const std::map<std::string, ShapeSymmetry, std::less<>> kNames{{"none", ShapeSymmetry::none},
-                                                                        {"c0-c180", ShapeSymmetry::mirror_y},
-                                                                        {"c90-c270", ShapeSymmetry::mirror_x},
-                                                                        {"both", ShapeSymmetry::both}};
-  const std::string name = reader.text("symmetry").value_or("none");
-  if (name == "rotational") {
-    if (!revolution) reader.fail("symmetry", "rotational needs family = \"revolution\"");
-    return ShapeSymmetry::none;
-  }
-  const auto found = kNames.find(name);
-  if (found == kNames.end()) {
-    reader.fail("symmetry",
-                fmt::format("found '{}', expected none, c0-c180, c90-c270, both or rotational", name));
-  }
-  ShapeSymmetry symmetry = found->second;
-  if (revolution || symmetry == ShapeSymmetry::none) return ShapeSymmetry::none;
-  const bool along_x = std::abs(world_from_mirror.ex().x) > 1.0 - 1e-9;
-  const bool along_y = std::abs(world_from_mirror.ex().y) > 1.0 - 1e-9;
-  if (!along_x && !along_y) {
-    reader.fail("symmetry", "needs a mirror whose x axis lies in C0-C180 or C90-C270 (turn_deg)");
-  }
-  if (along_y && symmetry == ShapeSymmetry::mirror_x) return ShapeSymmetry::mirror_y;
-  if (along_y && symmetry == ShapeSymmetry::mirror_y) return ShapeSymmetry::mirror_x;
-  return symmetry;
-}
-
-/// Limits that the fixed aperture alone decides are checked here and now.
-DesignLimits read_limits(std::optional<TomlReader> reader, const Aperture& aperture, bool revolution,
-                         const Frame& world_from_mirror) {
-  DesignLimits limits;
-  if (!reader) return limits;
-  limits.max_diameter_mm = reader->positive("max_diameter_mm");
-  limits.max_height_mm = reader->positive("max_height_mm");
-  limits.min_hole_diameter_mm = reader->positive("min_hole_diameter_mm");
-  limits.min_efficiency = reader->positive("min_efficiency");
-  limits.symmetry = read_symmetry(*reader, revolution, world_from_mirror);
-  reader->finish();
-  const double diameter = 2.0 * aperture.outer_radius_mm(), hole = 2.0 * aperture.hole_radius_mm();
-  if (limits.max_diameter_mm && diameter > *limits.max_diameter_mm) {
-    reader->fail("max_diameter_mm", fmt::format("{} mm contradicts the reflector's aperture, {} mm across",
-                                                *limits.max_diameter_mm, diameter));
-  }
-  if (limits.min_hole_diameter_mm && hole < *limits.min_hole_diameter_mm) {
-    reader->fail("min_hole_diameter_mm",
-                 fmt::format("{} mm contradicts the reflector's hole_diameter_mm, {} mm",
-                             *limits.min_hole_diameter_mm, hole));
-  }
-  if (limits.max_diameter_mm && limits.min_hole_diameter_mm &&
-      *limits.min_hole_diameter_mm >= *limits.max_diameter_mm) {
-    reader->fail("min_hole_diameter_mm", "contradicts max_diameter_mm: the hole would be the whole mirror");
-  }
-  if (limits.min_efficiency && *limits.min_efficiency > 1.0) {
-    reader->fail("min_efficiency", "found more than 1; it is a share");
-  }
-  return limits;
-}
 
 /// The paraboloid nearest to a profile: z - z(0) = r^2 / (4 f) in the least-squares sense.
 double nearest_focal(const Profile& profile, double radius) {
@@ -124,6 +67,44 @@ std::vector<int> read_intervals(TomlReader& reader) {
   return out;
 }
 
+toml::array point(const Vec3& p) { return toml::array{p.x, p.y, p.z}; }
+
+/// What every design watches, also when its project is read again: a far field, and a plane target's plane.
+void add_detectors(Project& project, const DesignTarget& target) {
+  Scene& scene = project.scene;
+  if (scene.far_fields.empty()) {
+    scene.far_fields.emplace_back();
+    scene.far_fields.back().name = "far";
+  }
+  if (project.table["detector"].as_array() == nullptr)
+    project.table.insert_or_assign("detector", toml::array{});
+  toml::array& tables = *project.table["detector"].as_array();
+  const auto is_far = [](const toml::node& n) {
+    const auto* t = n.as_table();
+    return t != nullptr && (*t)["kind"].value_or(std::string()) == "far-field";
+  };
+  if (std::none_of(tables.begin(), tables.end(), is_far)) {
+    const FarFieldDetector& far = scene.far_fields.front();
+    tables.push_back(toml::table{{"name", far.name},
+                                 {"kind", "far-field"},
+                                 {"c_step_deg", far.c_step_deg},
+                                 {"gamma_step_deg", far.gamma_step_deg}});
+  }
+  const auto is_target = [](const PlaneDetector& p) { return p.name == kTargetPlane; };
+  if (!target.plane || std::any_of(scene.planes.begin(), scene.planes.end(), is_target)) return;
+  const PlaneTarget& plane = *target.plane;
+  const int cells = WindowOptions().count;
+  const auto n = static_cast<std::size_t>(cells);
+  scene.planes.push_back({kTargetPlane, {plane.world_from_plane, plane.size_x_mm, plane.size_y_mm, n, n}});
+  tables.push_back(toml::table{{"name", kTargetPlane},
+                               {"kind", "plane"},
+                               {"position_mm", point(plane.world_from_plane.origin_mm())},
+                               {"normal", point(plane.world_from_plane.ez())},
+                               {"turn_deg", plane.turn_deg},
+                               {"size_mm", toml::array{plane.size_x_mm, plane.size_y_mm}},
+                               {"cells", toml::array{cells, cells}}});
+}
+
 }  // namespace
 
 DesignProblem design_problem(Project project, const std::filesystem::path& path) {
@@ -152,14 +133,30 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   const std::vector<int> intervals = read_intervals(design);
   const PlacedReflector placed = project.scene.reflectors[0];
   const bool revolution = dynamic_cast<const RevolutionSurface*>(placed.reflector.surface.get()) != nullptr;
-  const DesignLimits limits =
-      read_limits(design.table("limits"), placed.reflector.aperture, revolution, placed.world_from_reflector);
+  double source_flux = 0.0;
+  for (const PlacedSource& source : project.scene.sources) source_flux += source.total_flux();
+  DesignLimits limits;
+  if (auto table = design.table("limits")) {
+    limits = read_limits(std::move(*table), placed.reflector.aperture, revolution,
+                         placed.world_from_reflector, project.scene.bodies, source_flux);
+  }
   DesignTarget target = read_target(*target_reader, project.scene.sources.front().rays->flux_unit(),
                                     placed.world_from_reflector.origin_mm(), project.inputs);
   DesignShape start = start_shape(placed.reflector, intervals, design, limits.symmetry);
+  std::optional<ToleranceRanges> tolerances;
+  if (auto table = design.table("tolerances")) tolerances = read_tolerances(std::move(*table));
   design.finish();
-  return {std::move(project), std::move(target),           limits, std::move(start),
-          placed.reflectance, placed.world_from_reflector, time_s, how};
+  start = ShapeLimits(limits, start).nearest(start);
+  add_detectors(project, target);
+  return {std::move(project),
+          std::move(target),
+          std::move(limits),
+          std::move(start),
+          placed.reflectance,
+          placed.world_from_reflector,
+          time_s,
+          how,
+          tolerances};
 }
 
 TentBins target_window(const DesignProblem& problem) {

@@ -5,18 +5,14 @@
 #include <optional>
 #include <string>
 
+#include "lucerna/design/design_limits.h"
 #include "lucerna/design/fit.h"
 #include "lucerna/design/optimizer.h"
 #include "lucerna/design/target.h"
+#include "lucerna/design/tolerances.h"
 #include "lucerna/trace/project.h"
 
 namespace lucerna {
-
-/// What a design must not do: [design.limits] of a project.
-struct DesignLimits {
-  std::optional<double> max_diameter_mm, max_height_mm, min_hole_diameter_mm, min_efficiency;
-  ShapeSymmetry symmetry = ShapeSymmetry::none;
-};
 
 /// What is to be designed, checked: read from a project by `design_problem`.
 struct DesignProblem {
@@ -29,12 +25,18 @@ struct DesignProblem {
   Frame world_from_mirror;
   double time_s = 60.0;
   Optimizer optimizer;
+  /// What to try around the result; nothing: no [design.tolerances].
+  std::optional<ToleranceRanges> tolerances;
 };
+
+/// The name of the detector that watches a plane target's rectangle.
+inline constexpr const char* kTargetPlane = "target";
 
 /// Reads [target] and [design] of a project and its only [[reflector]] as a shape with free parameters: a
 /// paraboloid, a profile of revolution or of a trough (fitted by the family's spline) or a B-spline. Throws
 /// InputError with file, line, key, found and expected; also for limits that contradict each other or the
-/// mirror, naming the pair.
+/// mirror, naming the pair. The project gets a
+/// far field "far" if it has none, and a plane detector on a plane target.
 DesignProblem design_problem(Project project, const std::filesystem::path& path);
 
 /// The bins in which the problem's result is judged.

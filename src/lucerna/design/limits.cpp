@@ -1,80 +1,325 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/design/limits.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
-#include <vector>
+#include <type_traits>
+#include <utility>
+
+#include "lucerna/core/error.h"
+#include "lucerna/design/keep_out.h"
 
 namespace lucerna {
 
 namespace {
 
-constexpr double kMargin_mm = 0.02;
+constexpr double kHeightMargin_mm = 0.02, kSlopeMargin = 0.01, kCurvatureMargin = 0.02;
+/// How many margins inside a limit on heights its cost begins: what a surface may rise between two places.
+constexpr double kInside = 2.0;
+/// Places looked at in a knot interval: as a cost beside the light, and where a limit itself must be held.
+constexpr int kCoarse = 4, kFine = 12;
+/// Gauss-Newton steps on the limits alone; hinges settle in a few dozen.
+constexpr int kMostSteps = 200;
 
-struct Place {
-  double x, y;
-};
-
-/// Where the height is looked at: a grid, and the outline.
-std::vector<Place> places(const DesignShape& shape) {
+/// Places where the surface is looked at: a grid of `per_interval` to a knot interval, and the outline.
+template <class Place>
+std::vector<Place> places(const DesignShape& shape, int per_interval) {
   const Aperture& a = shape.aperture();
   std::vector<Place> out;
-  constexpr int kSteps = 12;
+  const double hole = a.hole_radius_mm();
   if (shape.is_revolution()) {
-    for (int i = 1; i <= 8 * kSteps; ++i) out.push_back({a.half_x_mm() * i / (8.0 * kSteps), 0.0});
+    const int n = std::max(48, per_interval * shape.intervals_x());
+    for (int i = 0; i <= n; ++i) out.push_back({hole + (a.half_x_mm() - hole) * i / n, 0.0});
     return out;
   }
-  for (int j = -kSteps; j <= kSteps; ++j) {
-    for (int i = -kSteps; i <= kSteps; ++i) {
-      const Place p{a.half_x_mm() * i / kSteps, a.half_y_mm() * j / kSteps};
+  const int nx = std::clamp(per_interval * shape.intervals_x(), 24, 160);
+  const int ny = std::clamp(per_interval * shape.intervals_y(), 24, 160);
+  for (int j = 0; j <= ny; ++j) {
+    for (int i = 0; i <= nx; ++i) {
+      const Place p{a.half_x_mm() * (2.0 * i / nx - 1.0), a.half_y_mm() * (2.0 * j / ny - 1.0)};
       if (a.contains(p.x, p.y)) out.push_back(p);
     }
   }
-  if (a.shape() == ApertureShape::circle) {
-    for (int i = 0; i < 72; ++i) {
-      const double angle = i * std::numbers::pi / 36.0;
-      out.push_back({a.half_x_mm() * std::cos(angle), a.half_x_mm() * std::sin(angle)});
+  const auto ring = [&](double r) {
+    for (int i = 0; i < 4 * nx; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / (4.0 * nx);
+      out.push_back({r * std::cos(angle), r * std::sin(angle)});
     }
-  }
+  };
+  if (a.shape() == ApertureShape::circle) ring(a.half_x_mm());
+  if (hole > 0.0) ring(hole);
   return out;
 }
 
-/// d z / d parameters at a place, times `sign`, added to `row`.
-void add_height_row(const DesignShape& design, const Place& p, double sign, Eigen::VectorXd& row) {
-  std::visit(
+/// A linear form of the parameters: the few coefficients that reach a place.
+class Row {
+ public:
+  explicit Row(const DesignShape& design) : design_(design) {}
+
+  /// Adds value * h + slope_x * h_x + slope_y * h_y at a place.
+  void add(double x, double y, double value, double slope_x, double slope_y) {
+    std::visit(
+        [&](const auto& shape) {
+          using Shape = std::decay_t<decltype(shape)>;
+          const auto local = shape.local(x, y);
+          std::array<double, Shape::kSupport> d;
+          shape.gradient(local, value, slope_x, slope_y, d.data());
+          for (int k = 0; k < Shape::kSupport; ++k)
+            put(coefficient(shape, local, k), d[static_cast<std::size_t>(k)]);
+        },
+        design_.family());
+  }
+  /// Adds a second derivative: `along` of the slopes' change from place to place.
+  void add_bend(double x, double y, double xx, double xy, double yy) {
+    const double e = 1e-4 * design_.aperture().outer_radius_mm(), per = 0.5 / e;
+    add(x + e, y, 0.0, per * xx, per * xy);
+    add(x - e, y, 0.0, -per * xx, -per * xy);
+    add(x, y + e, 0.0, per * xy, per * yy);
+    add(x, y - e, 0.0, -per * xy, -per * yy);
+  }
+
+  /// Adds the hinge `excess`^2, whose gradient this row is.
+  void add_to(NormalEquations& equations, double excess) const {
+    for (std::size_t i = 0; i < index_.size(); ++i) {
+      equations.gradient[index_[i]] += excess * value_[i];
+      for (std::size_t k = 0; k < index_.size(); ++k) {
+        if (index_[k] <= index_[i]) equations.hessian(index_[i], index_[k]) += value_[i] * value_[k];
+      }
+    }
+  }
+
+ private:
+  /// The k-th coefficient that counts at a place: of a row, or of four rows.
+  template <class Shape>
+  static int coefficient([[maybe_unused]] const Shape& shape, const typename Shape::Local& local, int k) {
+    if constexpr (Shape::kSupport == 4) {
+      return local.first[0] + k;
+    } else {
+      return (local.first[1] + k / 4) * shape.row_x().coefficients() + local.first[0] + k % 4;
+    }
+  }
+  void put(int coefficient, double value) {
+    const int parameter = design_.parameter_of()[static_cast<std::size_t>(coefficient)];
+    const auto found = std::find(index_.begin(), index_.end(), parameter);
+    if (found != index_.end()) {
+      value_[static_cast<std::size_t>(found - index_.begin())] += value;
+    } else {
+      index_.push_back(parameter);
+      value_.push_back(value);
+    }
+  }
+  const DesignShape& design_;
+  std::vector<int> index_;
+  std::vector<double> value_;
+};
+
+/// The stronger principal curvature of a graph at a place, and what its direction takes from the second
+/// derivatives.
+struct Curvature {
+  double value = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+};
+
+Curvature curvature_at(const DesignShape& design, double x, double y) {
+  return std::visit(
       [&](const auto& shape) {
-        using Shape = std::decay_t<decltype(shape)>;
-        const auto local = shape.local(p.x, p.y);
-        std::array<double, Shape::kSupport> value;
-        const std::array<double, Shape::kSupport> none{};
-        shape.gradient(local, sign, 0.0, 0.0, value.data());
-        std::vector<double> coefficients(shape.coefficients().size(), 0.0);
-        shape.add(local, 1.0, value.data(), 0.0, none.data(), coefficients.data());
-        for (std::size_t i = 0; i < coefficients.size(); ++i) {
-          row[design.parameter_of()[i]] += coefficients[i];
+        const auto l = shape.local(x, y);
+        const double w = std::sqrt(1.0 + l.hx * l.hx + l.hy * l.hy);
+        const double e = 1.0 + l.hx * l.hx, f = l.hx * l.hy, g = 1.0 + l.hy * l.hy, det = e * g - f * f;
+        const double a = l.hxx / w, b = l.hxy / w, c = l.hyy / w;
+        const double mean = (e * c - 2.0 * f * b + g * a) / (2.0 * det), gauss = (a * c - b * b) / det;
+        const double root = std::sqrt(std::max(0.0, mean * mean - gauss));
+        Curvature k;
+        k.value = mean >= 0.0 ? mean + root : mean - root;
+        double vx = -(b - k.value * f), vy = a - k.value * e;
+        if (std::abs(vx) + std::abs(vy) < 1e-12 * (1.0 + std::abs(k.value))) {
+          vx = c - k.value * g;
+          vy = -(b - k.value * f);
         }
+        if (std::abs(vx) + std::abs(vy) < 1e-12 * (1.0 + std::abs(k.value))) vx = 1.0;  // a sphere: any
+        const double norm = w * (e * vx * vx + 2.0 * f * vx * vy + g * vy * vy);
+        k.xx = vx * vx / norm;
+        k.xy = vx * vy / norm;
+        k.yy = vy * vy / norm;
+        return k;
       },
       design.family());
 }
 
 }  // namespace
 
-double height_limit(const DesignShape& shape, double max_height_mm, NormalEquations* equations) {
+ShapeLimits::ShapeLimits(const DesignLimits& limits, const DesignShape& start) {
+  const auto add = [&](Kind kind, double value, std::string text) {
+    limits_.push_back({kind, value, std::move(text), {}});
+  };
+  if (limits.max_height_mm) {
+    add(Kind::height, *limits.max_height_mm, fmt::format("max_height_mm = {}", *limits.max_height_mm));
+  }
+  if (limits.max_slope_deg) {
+    add(Kind::slope, std::tan(radians(*limits.max_slope_deg)),
+        fmt::format("max_slope_deg = {}", *limits.max_slope_deg));
+  }
+  if (limits.min_radius_mm) {
+    add(Kind::radius, *limits.min_radius_mm, fmt::format("min_radius_mm = {}", *limits.min_radius_mm));
+  }
+  for (const KeepOut& zone : limits.keep_out) limits_.push_back(keep_out(zone, start));
+}
+
+ShapeLimits::Limit ShapeLimits::keep_out(const KeepOut& zone, const DesignShape& start) const {
+  Limit limit{Kind::keep_out, zone.clearance_mm, zone.name, {}};
+  const std::vector<ZoneColumn> columns = zone_columns(zone, start.aperture(), start.is_revolution());
+  double above = 0.0;  // of the zone's middle, over the whole of it
+  for (const ZoneColumn& c : columns) above += start.at(c.x_mm, c.y_mm).z_mm - 0.5 * (c.low_mm + c.high_mm);
+  for (const ZoneColumn& c : columns) {
+    limit.walls.push_back({{c.x_mm, c.y_mm}, above > 0.0 ? c.high_mm : c.low_mm, above <= 0.0});
+  }
+  return limit;
+}
+
+std::vector<const ShapeLimits::Limit*> ShapeLimits::all() const {
+  std::vector<const Limit*> out;
+  for (const Limit& l : limits_) out.push_back(&l);
+  return out;
+}
+
+double ShapeLimits::cost(const DesignShape& shape, NormalEquations* equations) const {
+  return cost(shape, all(), kCoarse, equations);
+}
+
+double ShapeLimits::cost(const DesignShape& shape, std::span<const Limit* const> limits, int per_interval,
+                         NormalEquations* equations) const {
   double cost = 0.0;
-  const double vertex = shape.at(0.0, 0.0).z_mm, limit = max_height_mm - kMargin_mm;
-  for (const Place& p : places(shape)) {
-    const double excess = (shape.at(p.x, p.y).z_mm - vertex - limit) / kMargin_mm;
-    if (excess <= 0.0) continue;
+  const auto hinge = [&](double excess, const auto& fill) {
+    if (!(excess > 0.0)) return;
     cost += excess * excess;
-    if (equations == nullptr) continue;
-    Eigen::VectorXd row = Eigen::VectorXd::Zero(equations->gradient.size());
-    add_height_row(shape, p, 1.0 / kMargin_mm, row);
-    add_height_row(shape, {0.0, 0.0}, -1.0 / kMargin_mm, row);
-    equations->gradient += excess * row;
-    equations->hessian.selfadjointView<Eigen::Lower>().rankUpdate(row);
+    if (equations == nullptr) return;
+    Row row(shape);
+    fill(row);
+    row.add_to(*equations, excess);
+  };
+  const std::vector<Place> look = places<Place>(shape, per_interval);
+  for (const Limit* limit : limits) {
+    if (limit->kind == Kind::height) {  // both ways from the middle of lowest and highest
+      const auto [low, high] = std::minmax_element(
+          look.begin(), look.end(),
+          [&](const Place& p, const Place& q) { return shape.at(p.x, p.y).z_mm < shape.at(q.x, q.y).z_mm; });
+      const double middle = 0.5 * (shape.at(low->x, low->y).z_mm + shape.at(high->x, high->y).z_mm);
+      for (const Place& p : look) {
+        const double off = shape.at(p.x, p.y).z_mm - middle,
+                     sign = (off > 0.0 ? 1.0 : -1.0) / kHeightMargin_mm;
+        hinge(sign * off - 0.5 * limit->value / kHeightMargin_mm + kInside, [&](Row& row) {
+          row.add(p.x, p.y, sign, 0.0, 0.0);
+          row.add(low->x, low->y, -0.5 * sign, 0.0, 0.0);
+          row.add(high->x, high->y, -0.5 * sign, 0.0, 0.0);
+        });
+      }
+    }
+    if (limit->kind == Kind::slope) {
+      // In units of the angle's tangent, which grows without end: the margin grows with its square.
+      const double per = 1.0 / (kSlopeMargin * (1.0 + limit->value * limit->value));
+      for (const Place& p : look) {
+        const SurfacePoint s = shape.at(p.x, p.y);
+        const double steep = std::hypot(s.dzdx, s.dzdy);
+        hinge(per * (steep - limit->value) + 1.0,
+              [&](Row& row) { row.add(p.x, p.y, 0.0, per * s.dzdx / steep, per * s.dzdy / steep); });
+      }
+    }
+    if (limit->kind == Kind::radius) {
+      const double per = limit->value / kCurvatureMargin;
+      for (const Place& p : look) {
+        const Curvature k = curvature_at(shape, p.x, p.y);
+        const double sign = k.value >= 0.0 ? per : -per;
+        hinge(sign * k.value - 1.0 / kCurvatureMargin + 1.0,
+              [&](Row& row) { row.add_bend(p.x, p.y, sign * k.xx, sign * k.xy, sign * k.yy); });
+      }
+    }
+    for (const Wall& w : limit->walls) {
+      const double per = (w.below ? 1.0 : -1.0) / kHeightMargin_mm;
+      hinge(per * (shape.at(w.place.x, w.place.y).z_mm - w.z_mm) + kInside,
+            [&](Row& row) { row.add(w.place.x, w.place.y, per, 0.0, 0.0); });
+    }
   }
   return cost;
+}
+
+bool ShapeLimits::held(const DesignShape& shape) const { return held(shape, all()); }
+
+bool ShapeLimits::held(const DesignShape& shape, std::span<const Limit* const> limits) const {
+  const std::vector<Place> look = places<Place>(shape, kFine);
+  for (const Limit* limit : limits) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Place& p : look) {
+      const SurfacePoint s = shape.at(p.x, p.y);
+      low = std::min(low, s.z_mm);
+      high = std::max(high, s.z_mm);
+      if (limit->kind == Kind::slope && std::hypot(s.dzdx, s.dzdy) > limit->value) return false;
+      if (limit->kind == Kind::radius && std::abs(curvature_at(shape, p.x, p.y).value) * limit->value > 1.0) {
+        return false;
+      }
+    }
+    if (limit->kind == Kind::height && high - low > limit->value) return false;
+    for (const Wall& w : limit->walls) {
+      const double z = shape.at(w.place.x, w.place.y).z_mm;
+      if (w.below ? z > w.z_mm : z < w.z_mm) return false;
+    }
+  }
+  return true;
+}
+
+std::optional<DesignShape> ShapeLimits::solve(const DesignShape& shape,
+                                              std::span<const Limit* const> limits) const {
+  DesignShape now = shape;
+  const auto n = static_cast<Eigen::Index>(shape.parameter_count());
+  const auto equations_at = [&](const DesignShape& s) {
+    NormalEquations e{0.0, Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
+    e.cost = cost(s, limits, kFine, &e);
+    return e;
+  };
+  NormalEquations equations = equations_at(now);
+  double lambda = 1e-3;
+  for (int step = 0; step < kMostSteps && equations.cost > 1e-12 && lambda < 1e8; ++step) {
+    const DesignShape trial = now.with(now.parameters() + damped_step(equations, lambda));
+    NormalEquations next = equations_at(trial);
+    if (next.cost < equations.cost) {
+      now = trial;
+      equations = std::move(next);
+      lambda = std::max(1e-9, 0.3 * lambda);
+    } else {
+      lambda *= 10.0;
+    }
+  }
+  if (held(now, limits)) return now;
+  return std::nullopt;
+}
+
+DesignShape ShapeLimits::nearest(const DesignShape& shape) const {
+  if (held(shape)) return shape;
+  if (const auto found = solve(shape, all())) return *found;
+  for (const Limit& a : limits_) {
+    const Limit* one = &a;
+    if (!solve(shape, {&one, 1})) {
+      throw InputError(
+          fmt::format("design.limits: {} contradicts the reflector's aperture and knots: no mirror "
+                      "over it holds the limit",
+                      a.text));
+    }
+  }
+  for (std::size_t i = 0; i < limits_.size(); ++i) {
+    for (std::size_t k = i + 1; k < limits_.size(); ++k) {
+      const std::array<const Limit*, 2> pair{&limits_[i], &limits_[k]};
+      if (!solve(shape, pair)) {
+        throw InputError(fmt::format(
+            "design.limits: {} and {} contradict each other: no mirror of this aperture holds both",
+            pair[0]->text, pair[1]->text));
+      }
+    }
+  }
+  std::string names;
+  for (const Limit& l : limits_) names += (names.empty() ? "" : ", ") + l.text;
+  throw InputError(
+      fmt::format("design.limits: {} leave no mirror of this aperture, though any two of them do", names));
 }
 
 void add_flux_term(const Evaluation& e, double weight, double reference, NormalEquations& equations) {

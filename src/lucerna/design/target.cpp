@@ -69,7 +69,8 @@ PlaneTarget read_plane(TomlReader& reader, const std::filesystem::path& file, Ta
   if (!((*size)[0] > 0.0 && (*size)[1] > 0.0)) {
     reader.fail("size_mm", fmt::format("found [{}, {}], expected both above 0", (*size)[0], (*size)[1]));
   }
-  plane.world_from_plane = Frame::from_axis(*normal, radians(reader.number("turn_deg", 0.0)), *position);
+  plane.turn_deg = reader.number("turn_deg", 0.0);
+  plane.world_from_plane = Frame::from_axis(*normal, radians(plane.turn_deg), *position);
   plane.size_x_mm = (*size)[0];
   plane.size_y_mm = (*size)[1];
   if (plane.world_from_plane.inverse().point(luminaire_mm).z <= 0.0) {

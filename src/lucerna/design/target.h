@@ -21,6 +21,8 @@ namespace lucerna {
 struct PlaneTarget {
   /// Of the rectangle's centre; the light is to fall on the side of its +z.
   Frame world_from_plane;
+  /// What the frame was turned by about its normal, as the project said it.
+  double turn_deg = 0.0;
   double size_x_mm = 0.0, size_y_mm = 0.0;
   /// In lx (W/m2 where the sources are radiometric); in absolute mode to the letter, else up to a factor.
   IlluminanceMap map;
@@ -41,10 +43,10 @@ struct DesignTarget {
   std::optional<PlaneTarget> plane;
 };
 
-/// Reads [target]: `file` (IES, EULUMDAT), or kind = "plane" with `position_mm`, `normal`, `turn_deg`,
-/// `size_mm` and a `file` of illuminance (CSV or PNG; `white_lx` is a PNG's white in absolute mode), and
-/// `mode`. `unit` is the sources', `luminaire_mm` the mirror's place. The file is added to `inputs`. Throws
-/// InputError with file, line, key, found and expected.
+/// Reads [target]: `file` (IES, EULUMDAT), or kind = "plane" with `position_mm`, `normal`, `turn_deg`
+/// (as a plane detector has them), `size_mm` and a `file` of illuminance (CSV or PNG; `white_lx` is a PNG's
+/// white in absolute mode), and `mode`. `unit` is the sources', `luminaire_mm` the mirror's place. The file
+/// is added to `inputs`. Throws InputError with file, line, key, found and expected.
 DesignTarget read_target(TomlReader reader, FluxUnit unit, const Vec3& luminaire_mm,
                          std::vector<std::filesystem::path>& inputs);
 

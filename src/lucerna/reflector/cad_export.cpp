@@ -7,7 +7,9 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
+#include "lucerna/core/direction.h"
 #include "lucerna/core/error.h"
 
 namespace lucerna {
@@ -17,35 +19,55 @@ namespace {
 constexpr std::size_t kMostTriangles = std::size_t{1} << 22;
 static_assert(std::endian::native == std::endian::little, "STL is little-endian");
 
-/// Places of a grid of (nu + 1) x (nv + 1) points over an aperture.
+/// Places of a grid of (nu + 1) x (nv + 1) points over an aperture: spokes from the hole's rim or the axis to
+/// the outline, or rows and columns.
 struct Grid {
   const Reflector& reflector;
   std::size_t nu, nv;
-  bool polar;
+  bool spokes;
 
   Vec3 vertex(std::size_t i, std::size_t j) const {
     const Aperture& a = reflector.aperture;
+    const double share = static_cast<double>(i) / static_cast<double>(nu);
     double x, y;
-    if (polar) {
-      const double r0 = a.hole_radius_mm(),
-                   r = r0 + (a.half_x_mm() - r0) * static_cast<double>(i) / static_cast<double>(nu);
-      const double angle = 2.0 * std::numbers::pi * static_cast<double>(j % nv) / static_cast<double>(nv);
-      x = r * std::cos(angle);
-      y = r * std::sin(angle);
+    if (spokes) {
+      const auto [out_x, out_y] = outline(static_cast<double>(j % nv) / static_cast<double>(nv));
+      const double in = a.hole_radius_mm() / std::hypot(out_x, out_y);
+      x = out_x * (in + (1.0 - in) * share);
+      y = out_y * (in + (1.0 - in) * share);
     } else {
-      x = a.half_x_mm() * (2.0 * static_cast<double>(i) / static_cast<double>(nu) - 1.0);
+      x = a.half_x_mm() * (2.0 * share - 1.0);
       y = a.half_y_mm() * (2.0 * static_cast<double>(j) / static_cast<double>(nv) - 1.0);
     }
     return {x, y, reflector.surface->at(x, y).z_mm};
   }
-  /// A cell of a rectangle that reaches into the hole is left out.
-  bool in_hole(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
-    const double hole = reflector.aperture.hole_radius_mm();
-    if (polar || hole <= 0.0) return false;
-    for (const Vec3& p : {a, b, c, d}) {
-      if (std::hypot(p.x, p.y) < hole) return true;
+
+  /// Once around, t in [0, 1): by angle, or from corner to corner of a rectangle (at 0, 1/4, ...).
+  std::array<double, 2> outline(double t) const {
+    const Aperture& a = reflector.aperture;
+    if (a.shape() == ApertureShape::circle) {
+      const double angle = 2.0 * std::numbers::pi * t;
+      return {a.half_x_mm() * std::cos(angle), a.half_x_mm() * std::sin(angle)};
     }
-    return false;
+    const int side = static_cast<int>(4.0 * t);
+    const double along = 2.0 * (4.0 * t - side) - 1.0;
+    const double u = side == 0 ? 1.0 : (side == 1 ? -along : (side == 2 ? -1.0 : along));
+    const double v = side == 0 ? along : (side == 1 ? 1.0 : (side == 2 ? -along : -1.0));
+    return {u * a.half_x_mm(), v * a.half_y_mm()};
+  }
+
+  /// How far chords of the round rims are inside their circles.
+  double rim_sagitta() const {
+    const Aperture& a = reflector.aperture;
+    if (!spokes) return 0.0;
+    double widest = 0.0;  // angle between spokes
+    for (std::size_t j = 0; j < nv; ++j) {
+      const auto p = outline(static_cast<double>(j) / static_cast<double>(nv));
+      const auto q = outline(static_cast<double>((j + 1) % nv) / static_cast<double>(nv));
+      widest = std::max(widest, std::abs(std::atan2(p[0] * q[1] - p[1] * q[0], p[0] * q[0] + p[1] * q[1])));
+    }
+    const double r = a.shape() == ApertureShape::circle ? a.half_x_mm() : a.hole_radius_mm();
+    return r * (1.0 - std::cos(0.5 * widest));
   }
 };
 
@@ -54,21 +76,53 @@ double off_surface(const Reflector& reflector, const Vec3& p) {
   return std::abs(p.z - s.z_mm) / std::sqrt(1.0 + s.dzdx * s.dzdx + s.dzdy * s.dzdy);
 }
 
-/// The largest distance of edge middles from the surface, along u and along v (with the diagonals).
-std::array<double, 2> deviations(const Grid& grid) {
-  double u = 0.0, v = 0.0;
-  const auto middle = [&](const Vec3& a, const Vec3& b) {
-    return off_surface(grid.reflector, 0.5 * (a + b));
+/// Angle of a chord with the surface at its ends, whichever is more.
+double off_slope(const Reflector& reflector, const Vec3& a, const Vec3& b) {
+  const Vec3 chord = b - a;
+  const double l = length(chord);
+  if (!(l > 0.0)) return 0.0;
+  double worst = 0.0;
+  for (const Vec3& p : {a, b}) {
+    const SurfacePoint s = reflector.surface->at(p.x, p.y);
+    const Vec3 normal{-s.dzdx, -s.dzdy, 1.0};
+    worst = std::max(worst, std::abs(dot(chord, normal)) / (l * length(normal)));
+  }
+  return std::asin(std::min(1.0, worst));
+}
+
+/// How far a grid is from its tolerance, 1 = just held: the worse of both tolerances for edges along u and
+/// along v. Diagonals of twisted cells count for both.
+std::array<double, 2> excess(const Grid& grid, const CadTolerance& tolerance) {
+  double u = 0.0, v = grid.rim_sagitta() / tolerance.chord_mm;
+  // In the middle a triangle is off by up to 4/3 of what its edges are.
+  const double chord = 0.75 * tolerance.chord_mm;
+  // Two edges of a triangle, each half the angle off, keep its normal within the whole.
+  const double angle = 0.5 * radians(tolerance.slope_deg);
+  const auto worse = [&](const Vec3& a, const Vec3& b, double slope_share) {
+    return std::max(off_surface(grid.reflector, 0.5 * (a + b)) / chord,
+                    slope_share * off_slope(grid.reflector, a, b) / angle);
   };
   for (std::size_t j = 0; j < grid.nv; ++j) {
     for (std::size_t i = 0; i < grid.nu; ++i) {
       const Vec3 a = grid.vertex(i, j), b = grid.vertex(i + 1, j), d = grid.vertex(i, j + 1);
-      u = std::max(u, middle(a, b));
-      v = std::max({v, middle(a, d), middle(b, d)});
-      if (i + 1 == grid.nu) v = std::max(v, middle(b, grid.vertex(i + 1, j + 1)));
+      u = std::max(u, worse(a, b, 1.0));
+      v = std::max(v, worse(a, d, 1.0));
+      const double diagonal = worse(b, d, 0.5);
+      if (diagonal > 1.0) {
+        u = std::max(u, diagonal);
+        v = std::max(v, diagonal);
+      }
+      if (i + 1 == grid.nu) v = std::max(v, worse(b, grid.vertex(i + 1, j + 1), 1.0));
     }
   }
   return {u, v};
+}
+
+/// More pieces for an excess over the tolerance; a multiple of 8, so that corners stay corners.
+std::size_t finer(std::size_t n, double excess) {
+  if (excess <= 1.0) return n;
+  const double more = static_cast<double>(n) * std::clamp(std::sqrt(excess), 1.05, 2.0);
+  return std::max(n + 8, 8 * static_cast<std::size_t>(std::ceil(more / 8.0)));
 }
 
 void check_tolerance(const CadTolerance& tolerance) {
@@ -76,44 +130,72 @@ void check_tolerance(const CadTolerance& tolerance) {
     throw InputError(fmt::format("CAD: the chord tolerance is {} mm, expected a finite number above 0",
                                  tolerance.chord_mm));
   }
+  if (!(tolerance.slope_deg > 0.0 && tolerance.slope_deg < 90.0)) {
+    throw InputError(
+        fmt::format("CAD: the slope tolerance is {} degrees, expected 0 to 90", tolerance.slope_deg));
+  }
+}
+
+}  // namespace
+
+namespace {
+
+/// The grid that keeps a tolerance with `most` triangles at most; nothing if none does.
+std::optional<Grid> grid_for(const Reflector& reflector, const CadTolerance& tolerance, std::size_t most) {
+  const bool spokes =
+      reflector.aperture.shape() == ApertureShape::circle || reflector.aperture.hole_radius_mm() > 0.0;
+  Grid grid{reflector, 8, spokes ? std::size_t{32} : std::size_t{8}, spokes};
+  for (;;) {
+    const auto [u, v] = excess(grid, tolerance);
+    if (u <= 1.0 && v <= 1.0) return grid;
+    grid.nu = finer(grid.nu, u);
+    grid.nv = finer(grid.nv, v);
+    if (2 * grid.nu * grid.nv > most) return std::nullopt;
+  }
+}
+
+Mesh mesh_of(const Grid& grid) {
+  const Reflector& reflector = grid.reflector;
+  const bool spokes = grid.spokes;
+  Mesh mesh;
+  const std::size_t columns = spokes ? grid.nv : grid.nv + 1;
+  for (std::size_t i = 0; i <= grid.nu; ++i) {
+    for (std::size_t j = 0; j < columns; ++j) mesh.vertices_mm.push_back(grid.vertex(i, j));
+  }
+  const auto index = [&](std::size_t i, std::size_t j) {
+    // On the axis all angles are one point.
+    const std::size_t row = spokes && i == 0 && reflector.aperture.hole_radius_mm() == 0.0 ? 0 : j % columns;
+    return static_cast<std::uint32_t>(i * columns + row);
+  };
+  for (std::size_t i = 0; i < grid.nu; ++i) {
+    for (std::size_t j = 0; j < grid.nv; ++j) {
+      const std::uint32_t a = index(i, j), b = index(i + 1, j), c = index(i + 1, j + 1), d = index(i, j + 1);
+      if (a != d) mesh.triangles.push_back({a, b, d});
+      mesh.triangles.push_back({b, c, d});
+    }
+  }
+  return mesh;
 }
 
 }  // namespace
 
 Mesh cad_mesh(const Reflector& reflector, const CadTolerance& tolerance) {
   check_tolerance(tolerance);
-  const bool polar = reflector.aperture.shape() == ApertureShape::circle;
-  Grid grid{reflector, 8, polar ? std::size_t{32} : std::size_t{8}, polar};
-  for (;;) {
-    const auto [u, v] = deviations(grid);
-    if (u <= tolerance.chord_mm && v <= tolerance.chord_mm) break;
-    if (u > tolerance.chord_mm) grid.nu *= 2;
-    if (v > tolerance.chord_mm) grid.nv *= 2;
-    if (2 * grid.nu * grid.nv > kMostTriangles) {
-      throw InputError(fmt::format("CAD: {} mm needs more than {} triangles; expected a coarser tolerance",
-                                   tolerance.chord_mm, kMostTriangles));
-    }
+  const auto grid = grid_for(reflector, tolerance, kMostTriangles);
+  if (!grid) {
+    throw InputError(
+        fmt::format("CAD: {} mm and {} degrees need more than {} triangles; expected coarser tolerances",
+                    tolerance.chord_mm, tolerance.slope_deg, kMostTriangles));
   }
-  Mesh mesh;
-  const std::size_t columns = polar ? grid.nv : grid.nv + 1;
-  for (std::size_t i = 0; i <= grid.nu; ++i) {
-    for (std::size_t j = 0; j < columns; ++j) mesh.vertices_mm.push_back(grid.vertex(i, j));
+  return mesh_of(*grid);
+}
+
+Mesh cad_mesh_within(const Reflector& reflector, CadTolerance& tolerance) {
+  check_tolerance(tolerance);
+  for (; tolerance.slope_deg < 45.0; tolerance.chord_mm *= 2.0, tolerance.slope_deg *= 2.0) {
+    if (const auto grid = grid_for(reflector, tolerance, std::size_t{1} << 20)) return mesh_of(*grid);
   }
-  const auto index = [&](std::size_t i, std::size_t j) {
-    // On the axis all angles are one point.
-    const std::size_t row = polar && i == 0 && reflector.aperture.hole_radius_mm() == 0.0 ? 0 : j % columns;
-    return static_cast<std::uint32_t>(i * columns + row);
-  };
-  for (std::size_t i = 0; i < grid.nu; ++i) {
-    for (std::size_t j = 0; j < grid.nv; ++j) {
-      const std::uint32_t a = index(i, j), b = index(i + 1, j), c = index(i + 1, j + 1), d = index(i, j + 1);
-      const auto& v = mesh.vertices_mm;
-      if (grid.in_hole(v[a], v[b], v[c], v[d])) continue;
-      if (a != d) mesh.triangles.push_back({a, b, d});
-      mesh.triangles.push_back({b, c, d});
-    }
-  }
-  return mesh;
+  return cad_mesh(reflector, tolerance);
 }
 
 std::string stl_bytes(const Mesh& mesh) {
@@ -156,9 +238,11 @@ std::vector<std::array<double, 2>> cad_profile(const Reflector& reflector, const
       if (i == 0) continue;
       const auto& p = points[i - 1];
       const auto& q = points[i];
-      worst = std::max(worst, off_surface(reflector, {0.5 * (p[0] + q[0]), 0.0, 0.5 * (p[1] + q[1])}));
+      const Vec3 a{p[0], 0.0, p[1]}, b{q[0], 0.0, q[1]};
+      worst = std::max({worst, off_surface(reflector, 0.5 * (a + b)) / tolerance.chord_mm,
+                        off_slope(reflector, a, b) / radians(tolerance.slope_deg)});
     }
-    if (worst <= tolerance.chord_mm) return points;
+    if (worst <= 1.0) return points;
     if (n >= kMostTriangles) {
       throw InputError(fmt::format("CAD: {} mm needs more than {} points; expected a coarser tolerance",
                                    tolerance.chord_mm, kMostTriangles));

@@ -12,16 +12,22 @@ namespace lucerna {
 
 /// How far a file of flat pieces may be from the surface.
 struct CadTolerance {
-  /// Largest distance of a piece from the surface, mm; > 0.
+  /// Largest distance of a piece from the surface, and of a rim's chord from its circle, mm; > 0.
   double chord_mm = 0.01;
+  /// Largest angle between a piece and the surface at its corners, degrees; > 0. Half of what a beam would be
+  /// off. Profiles keep it too.
+  double slope_deg = 2.0;
 };
 
-/// A reflector as triangles, for STL and OBJ: a grid over the aperture (polar for a circle, from the hole's
-/// rim outwards; rectangles have theirs cut out where cells lie in it), counter-clockwise seen from the
-/// reflecting side, fine enough that no triangle's edge middles or centre are farther than the tolerance from
-/// the surface. Vertices are on the exact surface. Throws InputError if the tolerance is not above 0, or
-/// would need more than 4 M triangles; says what would do.
+/// A reflector as triangles, for STL and OBJ: a grid over the aperture (from the hole's rim outwards where
+/// there is one, and over circles; else of rows and columns), counter-clockwise seen from the reflecting
+/// side, fine enough for the tolerance everywhere. Vertices are on the exact surface. Throws InputError if a
+/// tolerance is not above 0, or would need more than 4 M triangles; says what would do.
 Mesh cad_mesh(const Reflector& reflector, const CadTolerance& tolerance = {});
+
+/// The same with a tolerance that is doubled until 1 M triangles do; it then says what is kept. For a surface
+/// that bends too sharply for any, the InputError of `cad_mesh`.
+Mesh cad_mesh_within(const Reflector& reflector, CadTolerance& tolerance);
 
 /// Binary STL (Stereolithography Interface Specification, 3D Systems 1989), normals towards the light.
 std::string stl_bytes(const Mesh& mesh);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "lucerna/core/direction.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/reflector/smooth_shape.h"
@@ -30,10 +31,10 @@ double distance(const Reflector& r, const Vec3& p) {
 
 TEST(CadExport, FilesReadBackWithinTheTolerance) {
   const test::TempDir folder;
-  for (const Aperture& aperture :
-       {Aperture::circle(50), Aperture::circle(50, 10), Aperture::rectangle(60, 40)}) {
+  for (const Aperture& aperture : {Aperture::circle(50), Aperture::circle(50, 10),
+                                   Aperture::rectangle(60, 40), Aperture::rectangle(60, 40, 10)}) {
     const Reflector reflector = wavy(aperture);
-    const Mesh mesh = cad_mesh(reflector, {.chord_mm = 0.02});
+    const Mesh mesh = cad_mesh(reflector, {.chord_mm = 0.02, .slope_deg = 60.0});
     write_file(folder / "m.stl", stl_bytes(mesh));
     write_file(folder / "m.obj", obj_text(mesh));
     for (const Mesh& read : {read_stl(folder / "m.stl"), read_obj(folder / "m.obj")}) {
@@ -53,15 +54,47 @@ TEST(CadExport, FilesReadBackWithinTheTolerance) {
       const double r = aperture.half_x_mm(), hole = aperture.hole_radius_mm();
       const double exact = aperture.shape() == ApertureShape::circle
                                ? std::numbers::pi * (r * r - hole * hole)
-                               : 4.0 * r * aperture.half_y_mm();
-      EXPECT_NEAR(area / exact, 1.0, 0.01);
+                               : 4.0 * r * aperture.half_y_mm() - std::numbers::pi * hole * hole;
+      EXPECT_NEAR(area / exact, 1.0, 0.002);
     }
   }
 }
 
+TEST(CadExport, PiecesKeepTheSlopeTolerance) {
+  for (const Aperture& aperture : {Aperture::circle(50, 10), Aperture::rectangle(60, 40)}) {
+    const Reflector reflector = wavy(aperture);
+    const Mesh mesh = cad_mesh(reflector, {.chord_mm = 1.0, .slope_deg = 3.0});
+    double worst = 0.0;
+    for (const auto& t : mesh.triangles) {
+      const Vec3 &a = mesh.vertices_mm[t[0]], &b = mesh.vertices_mm[t[1]], &c = mesh.vertices_mm[t[2]];
+      const Direction normal = Direction::from(cross(b - a, c - a));
+      for (const Vec3& p : {a, b, c}) {
+        const SurfacePoint s = reflector.surface->at(p.x, p.y);
+        worst = std::max(worst, angle_between(normal, Direction::from(Vec3{-s.dzdx, -s.dzdy, 1.0})));
+      }
+    }
+    EXPECT_LT(degrees(worst), 3.0);
+    EXPECT_GT(degrees(worst), 1.0);
+  }
+}
+
+TEST(CadExport, RimsKeepTheChordTolerance) {
+  const Mesh mesh = cad_mesh(wavy(Aperture::circle(50, 10)), {.chord_mm = 0.01, .slope_deg = 80.0});
+  double least = 1e9, widest = 0.0;
+  for (const auto& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 middle = 0.5 * (mesh.vertices_mm[t[k]] + mesh.vertices_mm[t[(k + 1) % 3]]);
+      least = std::min(least, std::hypot(middle.x, middle.y));
+      widest = std::max(widest, std::hypot(middle.x, middle.y));
+    }
+  }
+  EXPECT_GT(least, 4.99);
+  EXPECT_GT(widest, 24.99);
+}
+
 TEST(CadExport, ProfilesKeepTheTolerance) {
   const Reflector reflector = wavy(Aperture::circle(50, 10));
-  const auto profile = cad_profile(reflector, {.chord_mm = 0.005});
+  const auto profile = cad_profile(reflector, {.chord_mm = 0.005, .slope_deg = 60.0});
   EXPECT_EQ(profile.front()[0], 5.0);
   EXPECT_EQ(profile.back()[0], 25.0);
   for (std::size_t i = 1; i < profile.size(); ++i) {
@@ -85,6 +118,7 @@ TEST(CadExport, ProfilesKeepTheTolerance) {
 TEST(CadExport, RefusesSenselessTolerances) {
   EXPECT_THROW(cad_mesh(wavy(Aperture::circle(50)), {.chord_mm = 0.0}), InputError);
   EXPECT_THROW(cad_mesh(wavy(Aperture::circle(50)), {.chord_mm = 1e-9}), InputError);
+  EXPECT_THROW(cad_mesh(wavy(Aperture::circle(50)), {.slope_deg = 0.0}), InputError);
 }
 
 }  // namespace

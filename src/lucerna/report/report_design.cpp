@@ -59,17 +59,13 @@ std::string summary(const ResultFigures& result) {
 /// Remarks, and what result.json says of limits, whatever its shape.
 std::string limits_html(const ResultFigures& result) {
   std::string out;
-  if (result.has("/limits") && result.at("/limits").is_array() && !result.at("/limits").empty()) {
-    out += "<ul>\n";
-    for (std::size_t i = 0; i < result.at("/limits").size(); ++i)
-      out += fmt::format("<li>{}</li>\n", result.text(fmt::format("/limits/{}", i)));
-    out += "</ul>\n";
-  } else if (result.has("/limits") && result.at("/limits").is_object() && !result.at("/limits").empty()) {
-    HtmlTable table{"Limits", {"Limit", "Value"}, {}};
-    for (const auto& [name, value] : result.at("/limits").items()) {
-      std::string label = name;
-      std::ranges::replace(label, '_', ' ');
-      table.rows.push_back({html_escaped(label), result.text("/limits/" + pointer_word(name))});
+  if (result.has("/limits") && !result.at("/limits").empty()) {
+    HtmlTable table{"Limits", {"Limit", "Found", "Allowed", ""}, {}};
+    for (std::size_t i = 0; i < result.at("/limits").size(); ++i) {
+      const std::string key = fmt::format("/limits/{}", i);
+      table.rows.push_back({result.text(key + "/limit"), result.figure(key + "/found"),
+                            result.figure(key + "/allowed"),
+                            result.at(key + "/held").get<bool>() ? "held" : "<strong>not held</strong>"});
     }
     out += html_table(table);
   }

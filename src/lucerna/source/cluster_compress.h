@@ -29,12 +29,12 @@ struct ClusterOptions {
   /// models.
   double penalty_nats = 6.0;
   /// Price of a cluster in splits: what its removal may cost.
-  double cluster_price = 5.0;
+  double cluster_price = 2.5;
   /// Fewest rays that a leaf of the first octree may be filled with before it is split, and most leaves: for
   /// more rays leaves hold more.
   std::size_t min_rays_per_leaf = 64, max_leaves = 30'000;
   /// Rays that take part in the removal; the rest come back for the final distributions.
-  std::size_t removal_rays = std::size_t{1} << 21;
+  std::size_t removal_rays = std::size_t{1} << 22;
   /// Clusters that always stay: with fewer on a closed surface, parts of it lie on triangles that are no part
   /// of it.
   std::size_t least_clusters = 32;

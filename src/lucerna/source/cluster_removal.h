@@ -27,7 +27,7 @@ struct RemovalOptions {
   /// Price of a split of a directional distribution into four, in nats of log-likelihood.
   double penalty_nats = 6.0;
   /// Price of a cluster (its point, density and triangles) in splits.
-  double cluster_price = 5.0;
+  double cluster_price = 2.5;
   /// Clusters that always stay.
   std::size_t least_clusters = 32;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/trace/reflectance.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "lucerna/core/error.h"
@@ -22,6 +23,18 @@ Reflectance::Reflectance(std::vector<Entry> table) : table_(std::move(table)) {
     }
     before = e.incidence_deg;
   }
+}
+
+double Reflectance::greatest() const {
+  double most = 0.0;
+  for (const Entry& e : table_) most = std::max(most, e.value);
+  return most;
+}
+
+Reflectance Reflectance::shifted(double change) const {
+  std::vector<Entry> table = table_;
+  for (Entry& e : table) e.value = std::clamp(e.value + change, 0.0, 1.0);
+  return Reflectance(std::move(table));
 }
 
 }  // namespace lucerna

@@ -46,6 +46,10 @@ class Reflectance {
   double at(double cos_incidence) const {
     return reflectance_at(table_.data(), table_.size(), cos_incidence);
   }
+  /// The largest value at any angle.
+  double greatest() const;
+  /// The same over the angle with `change` added to every value, within [0, 1].
+  Reflectance shifted(double change) const;
   /// True if it does not depend on the angle.
   bool is_constant() const { return table_.size() == 1; }
   const std::vector<Entry>& table() const { return table_; }

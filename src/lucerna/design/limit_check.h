@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lucerna/design/design_limits.h"
+
+namespace lucerna {
+
+/// One limit and what was found.
+struct LimitCheck {
+  std::string limit;
+  double allowed = 0.0, found = 0.0;
+  bool held = true;
+};
+
+/// Whether a mirror as exported (a mesh in the mirror's frame, as `cad_mesh` and an STL file have it) holds
+/// the limits on its form: from its triangles alone, knowing nothing of splines. `tolerance` is what the mesh
+/// was made with: within it a limit counts as held. Curvature comes from the angle between neighbouring
+/// triangles, within a tenth. Lengths are found to the tolerance; the distance to a keep-out zone only where
+/// it is less than the clearance and 1 mm (else the entry says that sum), and 0 where the mirror cuts it.
+std::vector<LimitCheck> check_limits(const Mesh& mirror, const DesignLimits& limits, double chord_mm,
+                                     double slope_deg);
+
+}  // namespace lucerna

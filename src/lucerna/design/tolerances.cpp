@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/tolerances.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "lucerna/core/error.h"
+#include "lucerna/core/random.h"
+#include "lucerna/photometry/beam.h"
+#include "lucerna/photometry/binned_intensity.h"
+#include "lucerna/trace/trace.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Fine enough for beams of a few degrees.
+FarFieldDetector watch() {
+  FarFieldDetector d;
+  d.name = "tolerances";
+  d.c_step_deg = 15.0;
+  d.gamma_step_deg = 1.0;
+  return d;
+}
+
+std::vector<double> steps(std::size_t count, double step_deg) {
+  std::vector<double> out(count);
+  for (std::size_t i = 0; i < count; ++i) out[i] = step_deg * static_cast<double>(i);
+  return out;
+}
+
+ToleranceFigures figures_of(const TraceResult& result) {
+  const FarField field = far_field(result, 0);
+  const auto c = steps(field.c_count, field.c_step_deg),
+             gamma = steps(field.gamma_count, field.gamma_step_deg);
+  const BeamFigures beam =
+      beam_figures(intensity_from_bins(c, gamma, field.flux, {}, field.unit).distribution);
+  const Ledger l = ledger(result);
+  ToleranceFigures f;
+  f.efficiency = (l.out_direct.mean + l.out_reflected.mean) / l.emitted;
+  f.peak = beam.peak.cd;
+  f.centre = beam.centre_cd;
+  for (const auto& plane : beam.planes) {
+    if (plane.c_deg == 0.0) f.beam_c0_deg = plane.beam_of_maximum;
+    if (plane.c_deg == 90.0) f.beam_c90_deg = plane.beam_of_maximum;
+  }
+  return f;
+}
+
+ToleranceSpread spread_of(const std::string& name, const ToleranceSweep& sweep,
+                          const std::function<double(const ToleranceFigures&)>& figure) {
+  ToleranceSpread s;
+  s.figure = name;
+  s.nominal = figure(sweep.figures.front());
+  s.least = std::numeric_limits<double>::infinity();
+  s.greatest = -s.least;
+  double sum = 0.0, squares = 0.0;
+  int n = 0;
+  for (std::size_t i = 0; i < sweep.cases.size(); ++i) {
+    if (sweep.cases[i].name.rfind("combined", 0) != 0) continue;
+    const double x = figure(sweep.figures[i]);
+    sum += x;
+    squares += x * x;
+    s.least = std::min(s.least, x);
+    s.greatest = std::max(s.greatest, x);
+    ++n;
+  }
+  s.mean = sum / n;
+  s.standard_deviation = n > 1 ? std::sqrt(std::max(0.0, (squares - n * s.mean * s.mean) / (n - 1))) : 0.0;
+  return s;
+}
+
+Vec3 middle(const Scene& scene) {
+  Vec3 sum;
+  double flux = 0.0;
+  for (const PlacedSource& s : scene.sources) {
+    sum += s.total_flux() * s.world_from_source.origin_mm();
+    flux += s.total_flux();
+  }
+  return sum / flux;
+}
+
+}  // namespace
+
+ToleranceRanges read_tolerances(TomlReader reader) {
+  ToleranceRanges r;
+  const auto range = [&](const char* key, double& value) {
+    value = reader.number(key, value);
+    if (!(value >= 0.0)) reader.fail(key, fmt::format("found {}, expected 0 or more", value));
+  };
+  range("source_shift_mm", r.source_shift_mm);
+  range("source_tilt_deg", r.source_tilt_deg);
+  range("slope_error_mrad", r.slope_error_mrad);
+  range("reflectance", r.reflectance);
+  const double samples = reader.number("samples", r.samples);
+  if (!(samples >= 2.0 && samples <= 1000.0 && samples == std::floor(samples))) {
+    reader.fail("samples", fmt::format("found {}, expected a whole number from 2 to 1000", samples));
+  }
+  r.samples = static_cast<int>(samples);
+  const double rays = reader.number("rays", static_cast<double>(r.rays));
+  if (!(rays >= 1e4 && rays <= 1e9)) reader.fail("rays", fmt::format("found {}, expected 1e4 to 1e9", rays));
+  r.rays = static_cast<std::uint64_t>(rays);
+  reader.finish();
+  return r;
+}
+
+std::vector<ToleranceCase> tolerance_cases(const ToleranceRanges& ranges, std::uint64_t seed) {
+  std::vector<ToleranceCase> cases{{"nominal", {}}};
+  const auto both_ways = [&](const std::string& name, double size, const auto& set) {
+    for (const double sign : {1.0, -1.0}) {
+      ToleranceCase c{name + (sign > 0.0 ? "+" : "-"), {}};
+      set(c, sign * size);
+      cases.push_back(std::move(c));
+    }
+  };
+  both_ways("shift_x", ranges.source_shift_mm, [](ToleranceCase& c, double x) { c.shift_mm.x = x; });
+  both_ways("shift_y", ranges.source_shift_mm, [](ToleranceCase& c, double x) { c.shift_mm.y = x; });
+  both_ways("shift_z", ranges.source_shift_mm, [](ToleranceCase& c, double x) { c.shift_mm.z = x; });
+  both_ways("tilt_x", ranges.source_tilt_deg, [](ToleranceCase& c, double x) { c.tilt_x_deg = x; });
+  both_ways("tilt_y", ranges.source_tilt_deg, [](ToleranceCase& c, double x) { c.tilt_y_deg = x; });
+  both_ways("reflectance", ranges.reflectance, [](ToleranceCase& c, double x) { c.reflectance = x; });
+  ToleranceCase slope{"slope_error+", {}};
+  slope.slope_error_mrad = ranges.slope_error_mrad;
+  cases.push_back(slope);
+  for (int i = 1; i <= ranges.samples; ++i) {
+    Rng rng(seed, static_cast<std::uint64_t>(i));
+    const auto even = [&](double size) { return size * (2.0 * rng.uniform() - 1.0); };
+    ToleranceCase c{fmt::format("combined_{}", i), {}};
+    c.shift_mm.x = even(ranges.source_shift_mm);
+    c.shift_mm.y = even(ranges.source_shift_mm);
+    c.shift_mm.z = even(ranges.source_shift_mm);
+    c.tilt_x_deg = even(ranges.source_tilt_deg);
+    c.tilt_y_deg = even(ranges.source_tilt_deg);
+    c.slope_error_mrad = ranges.slope_error_mrad * rng.uniform();
+    c.reflectance = even(ranges.reflectance);
+    cases.push_back(std::move(c));
+  }
+  return cases;
+}
+
+Scene changed(const Scene& scene, const ToleranceCase& change) {
+  Scene out = scene;
+  const Vec3 centre = middle(scene);
+  const Frame turn = Frame::rotation(Direction::from(Vec3{0, 1, 0}), radians(change.tilt_y_deg)) *
+                     Frame::rotation(Direction::from(Vec3{1, 0, 0}), radians(change.tilt_x_deg));
+  const Frame about(turn.ex(), turn.ey(), turn.ez(), centre + change.shift_mm - turn.vector(centre));
+  for (PlacedSource& s : out.sources) s.world_from_source = about * s.world_from_source;
+  for (PlacedReflector& r : out.reflectors) {
+    r.slope_error_mrad = std::hypot(r.slope_error_mrad, change.slope_error_mrad);
+    if (change.reflectance != 0.0) r.reflectance = r.reflectance.shifted(change.reflectance);
+  }
+  return out;
+}
+
+ToleranceSweep tolerance_sweep(const Scene& scene, const ToleranceRanges& ranges, std::uint64_t seed,
+                               Progress& progress) {
+  ToleranceSweep sweep;
+  sweep.ranges = ranges;
+  sweep.cases = tolerance_cases(ranges, seed);
+  TraceOptions options;
+  options.seed = seed;
+  options.last_ray = ranges.rays;
+  Scene plain = scene;
+  plain.far_fields = {watch()};
+  plain.planes.clear();
+  plain.luminances.clear();
+  plain.ray_detectors.clear();
+  for (const ToleranceCase& c : sweep.cases) {
+    if (progress.stop_requested()) throw Interrupted();
+    sweep.figures.push_back(figures_of(trace(changed(plain, c), options)));
+    progress.update("tolerances", sweep.figures.size(), sweep.cases.size());
+  }
+  const auto angle = [](const std::optional<double>& a) { return a.value_or(0.0); };
+  sweep.spread = {
+      spread_of("efficiency", sweep, [](const ToleranceFigures& f) { return f.efficiency; }),
+      spread_of("peak", sweep, [](const ToleranceFigures& f) { return f.peak; }),
+      spread_of("centre", sweep, [](const ToleranceFigures& f) { return f.centre; }),
+      spread_of("beam_c0_deg", sweep, [&](const ToleranceFigures& f) { return angle(f.beam_c0_deg); }),
+      spread_of("beam_c90_deg", sweep, [&](const ToleranceFigures& f) { return angle(f.beam_c90_deg); }),
+  };
+  return sweep;
+}
+
+std::string tolerances_csv(const ToleranceSweep& sweep) {
+  std::string csv =
+      "case,shift_x_mm,shift_y_mm,shift_z_mm,tilt_x_deg,tilt_y_deg,slope_error_mrad,reflectance,efficiency,"
+      "peak,"
+      "centre,beam_c0_deg,beam_c90_deg\n";
+  const auto angle = [](const std::optional<double>& a) {
+    return a ? fmt::format("{:.4g}", *a) : std::string();
+  };
+  for (std::size_t i = 0; i < sweep.cases.size(); ++i) {
+    const ToleranceCase& c = sweep.cases[i];
+    const ToleranceFigures& f = sweep.figures[i];
+    csv += fmt::format("{},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.6g},{:.6g},{:.6g},{},{}\n",
+                       c.name, c.shift_mm.x, c.shift_mm.y, c.shift_mm.z, c.tilt_x_deg, c.tilt_y_deg,
+                       c.slope_error_mrad, c.reflectance, f.efficiency, f.peak, f.centre,
+                       angle(f.beam_c0_deg), angle(f.beam_c90_deg));
+  }
+  return csv;
+}
+
+}  // namespace lucerna

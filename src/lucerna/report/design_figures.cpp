@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/report/design_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lucerna {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+Json number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
+
+double source_flux(const DesignProblem& problem) {
+  double flux = 0.0;
+  for (const PlacedSource& s : problem.project.scene.sources) flux += s.total_flux();
+  return flux;
+}
+
+PlaneSummary summary_of(const std::vector<double>& values, double factor) {
+  PlaneSummary s{0.0, std::numeric_limits<double>::infinity(), 0.0};
+  for (const double v : values) {
+    s.mean += factor * v / static_cast<double>(values.size());
+    s.least = std::min(s.least, factor * v);
+    s.greatest = std::max(s.greatest, factor * v);
+  }
+  return s;
+}
+
+const BeamFigures::Plane* plane_at(const BeamFigures& beam, double c_deg) {
+  for (const auto& plane : beam.planes) {
+    if (plane.c_deg == c_deg) return &plane;
+  }
+  return nullptr;
+}
+
+Json beam_json(const BeamFigures& beam) {
+  return {
+      {"peak", {{"intensity", beam.peak.cd}, {"c_deg", beam.peak.c_deg}, {"gamma_deg", beam.peak.gamma_deg}}},
+      {"centre", beam.centre_cd},
+      {"planes", beam_planes_json(beam)}};
+}
+
+Json plane_json(const PlaneSummary& s) {
+  return {{"mean", s.mean},
+          {"min", s.least},
+          {"max", s.greatest},
+          {"uniformity", s.mean > 0.0 ? Json(s.least / s.mean) : Json()}};
+}
+
+Json tolerances_json(const ToleranceSweep& sweep) {
+  const ToleranceRanges& r = sweep.ranges;
+  Json out{{"source_shift_mm", r.source_shift_mm},
+           {"source_tilt_deg", r.source_tilt_deg},
+           {"slope_error_mrad", r.slope_error_mrad},
+           {"reflectance", r.reflectance},
+           {"samples", r.samples},
+           {"rays", r.rays}};
+  out["spread"] = Json::object();
+  for (const ToleranceSpread& s : sweep.spread) {
+    out["spread"][s.figure] = {{"nominal", s.nominal},
+                               {"mean", s.mean},
+                               {"standard_deviation", s.standard_deviation},
+                               {"min", s.least},
+                               {"max", s.greatest}};
+  }
+  out["cases"] = Json::array();
+  for (std::size_t i = 0; i < sweep.cases.size(); ++i) {
+    const ToleranceCase& c = sweep.cases[i];
+    const ToleranceFigures& f = sweep.figures[i];
+    out["cases"].push_back({{"name", c.name},
+                            {"shift_mm", {c.shift_mm.x, c.shift_mm.y, c.shift_mm.z}},
+                            {"tilt_deg", {c.tilt_x_deg, c.tilt_y_deg}},
+                            {"slope_error_mrad", c.slope_error_mrad},
+                            {"reflectance", c.reflectance},
+                            {"efficiency", f.efficiency},
+                            {"peak", f.peak},
+                            {"centre", f.centre},
+                            {"beam_c0_deg", number(f.beam_c0_deg)},
+                            {"beam_c90_deg", number(f.beam_c90_deg)}});
+  }
+  return out;
+}
+
+std::string angle(const std::optional<double>& a) {
+  return a ? fmt::format("{:.1f} deg", *a) : std::string("-");
+}
+
+/// Lines of two columns.
+struct Table {
+  std::vector<std::string> lines;
+  void row(const std::string& what, const std::string& target, const std::string& result) {
+    lines.push_back(fmt::format("  {:<30}{:>18}{:>18}", what, target, result));
+  }
+};
+
+void far_field_rows(const DesignFigures& f, Table& table) {
+  if (!f.target_beam || f.trace.far_fields.empty()) return;
+  const BeamFigures &want = *f.target_beam, &have = f.trace.far_fields.front().beam;
+  const char* unit = f.trace.ledger.unit == FluxUnit::lumen ? "cd" : "W/sr";
+  const auto amount = [&](double x) { return fmt::format("{:.5g} {}", x, unit); };
+  table.row("peak", amount(want.peak.cd), amount(have.peak.cd));
+  const auto place = [](const PeakIntensity& p) {
+    return fmt::format("C {:g}, {:g} deg", p.c_deg, p.gamma_deg);
+  };
+  table.row("peak at", place(want.peak), place(have.peak));
+  table.row("on the axis", amount(want.centre_cd), amount(have.centre_cd));
+  for (const double c : {0.0, 90.0}) {
+    const auto *a = plane_at(want, c), *b = plane_at(have, c);
+    if (a == nullptr || b == nullptr) continue;
+    table.row(fmt::format("beam angle C{:g}-C{:g}", c, c + 180.0), angle(a->beam_of_maximum),
+              angle(b->beam_of_maximum));
+    table.row(fmt::format("field angle C{:g}-C{:g}", c, c + 180.0), angle(a->field_of_maximum),
+              angle(b->field_of_maximum));
+  }
+}
+
+void plane_rows(const DesignFigures& f, Table& table) {
+  if (!f.target_plane || !f.result_plane) return;
+  const char* unit = f.trace.ledger.unit == FluxUnit::lumen ? "lx" : "W/m2";
+  const auto amount = [&](double x) { return fmt::format("{:.5g} {}", x, unit); };
+  const PlaneSummary &want = *f.target_plane, &have = *f.result_plane;
+  table.row("mean illuminance", amount(want.mean), amount(have.mean));
+  table.row("least", amount(want.least), amount(have.least));
+  table.row("greatest", amount(want.greatest), amount(have.greatest));
+  table.row("uniformity (least / mean)", fmt::format("{:.3f}", want.least / want.mean),
+            fmt::format("{:.3f}", have.mean > 0.0 ? have.least / have.mean : 0.0));
+}
+
+void tolerance_rows(const ToleranceSweep& sweep, std::vector<std::string>& lines) {
+  const ToleranceRanges& r = sweep.ranges;
+  lines.push_back(
+      fmt::format("  tolerances: source +-{:g} mm, +-{:g} deg; slope error to {:g} mrad; reflectance +-{:g}; "
+                  "{} combined cases",
+                  r.source_shift_mm, r.source_tilt_deg, r.slope_error_mrad, r.reflectance, r.samples));
+  lines.push_back(
+      fmt::format("  {:<22}{:>12}{:>12}{:>12}{:>12}", "", "nominal", "least", "greatest", "std. dev."));
+  for (const ToleranceSpread& s : sweep.spread) {
+    lines.push_back(fmt::format("  {:<22}{:>12.5g}{:>12.5g}{:>12.5g}{:>12.3g}", s.figure, s.nominal, s.least,
+                                s.greatest, s.standard_deviation));
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(DesignEnd end) {
+  switch (end) {
+    case DesignEnd::converged:
+      return "converged";
+    case DesignEnd::time:
+      return "time";
+    case DesignEnd::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+DesignFigures design_figures(const DesignProblem& problem, const DesignResult& result,
+                             const TraceResult& traced) {
+  DesignFigures f;
+  f.trace = trace_figures(traced);
+  const DesignTarget& target = problem.target;
+  if (target.mode == TargetMode::shape && result.error.scale > 0.0) {
+    f.target_factor = source_flux(problem) / result.error.scale;
+  }
+  if (target.plane) {
+    f.target_plane = summary_of(target.plane->map.value, f.target_factor);
+    for (const PlaneFigures& p : f.trace.planes) {
+      if (p.image.name == kTargetPlane) f.result_plane = summary_of(p.image.value, 1.0);
+    }
+    return f;
+  }
+  IntensityDistribution wanted = target.distribution;
+  scale(wanted, f.target_factor);
+  f.target_beam = beam_figures(wanted);
+  if (f.trace.far_fields.empty()) return f;
+  const BinnedIntensity& have = f.trace.far_fields.front().intensity;
+  wanted.unit = have.distribution.unit;  // by shape alone, cd and W/sr may be compared
+  CompareOptions options;
+  options.test_error_cd = have.standard_error_cd;
+  options.align = false;
+  f.comparison = compare_distributions(wanted, have.distribution, options);
+  return f;
+}
+
+Json design_json(const DesignProblem& problem, const DesignResult& result, const DesignFigures& f) {
+  Json json;
+  json["relative_rms"] = result.error.relative_rms;
+  json["floor"] = result.error.floor;
+  json["start_relative_rms"] = result.start_error.relative_rms;
+  json["bergen_fit"] = f.comparison ? Json(f.comparison->bergen_fit) : Json();
+  json["wasserstein_deg"] = f.comparison ? Json(f.comparison->wasserstein_deg) : Json();
+  json["target"] = {{"file", problem.target.file},
+                    {"mode", problem.target.mode == TargetMode::shape ? "shape" : "absolute"},
+                    {"factor", f.target_factor}};
+  if (f.target_beam) json["target"].update(beam_json(*f.target_beam));
+  if (f.target_plane) json["target"]["plane"] = plane_json(*f.target_plane);
+  if (!f.trace.far_fields.empty()) json.update(beam_json(f.trace.far_fields.front().beam));
+  if (f.result_plane) json["plane"] = plane_json(*f.result_plane);
+  json["scale"] = result.error.scale;
+  json["efficiency"] = result.efficiency;
+  json["in_window"] = result.in_window;
+  json["losses"] = {{"mirror", result.absorbed}, {"mirror_back", result.back}, {"lost", result.lost}};
+  json["evaluations"] = result.evaluations;
+  json["rays"] = result.rays;
+  json["parameters"] = result.shape.parameter_count();
+  json["height_mm"] = result.shape.height_mm();
+  json["limits"] = Json::array();
+  for (const LimitCheck& c : result.limits) {
+    json["limits"].push_back(
+        {{"limit", c.limit}, {"allowed", c.allowed}, {"found", c.found}, {"held", c.held}});
+  }
+  if (f.tolerances) json["tolerances"] = tolerances_json(*f.tolerances);
+  json["end"] = std::string(to_string(result.end));
+  json["remarks"] = result.remarks;
+  return json;
+}
+
+std::vector<std::string> design_summary(const DesignProblem& problem, const DesignResult& result,
+                                        const DesignFigures& f) {
+  Table table;
+  table.row("",
+            problem.target.mode == TargetMode::absolute ? "target"
+                                                        : fmt::format("target x {:.4g}", f.target_factor),
+            "result");
+  far_field_rows(f, table);
+  plane_rows(f, table);
+  std::vector<std::string>& lines = table.lines;
+  lines.push_back(fmt::format("  difference: relative RMS {:.2f} % (start {:.2f} %, noise {:.2f} %)",
+                              100.0 * result.error.relative_rms, 100.0 * result.start_error.relative_rms,
+                              100.0 * result.error.floor));
+  if (f.comparison) {
+    lines.push_back(fmt::format("  all directions: Bergen fit {:.1f} of 100, Wasserstein {:.2f} deg",
+                                f.comparison->bergen_fit, f.comparison->wasserstein_deg));
+  }
+  lines.push_back(fmt::format("  efficiency {:.1f} %: {:.1f} % in the target's window, {:.1f} % beside it",
+                              100.0 * result.efficiency, 100.0 * result.in_window,
+                              100.0 * (result.efficiency - result.in_window)));
+  lines.push_back(fmt::format("  losses: mirror {:.1f} %, its back {:.1f} %, lost rays {:.2g} %",
+                              100.0 * result.absorbed, 100.0 * result.back, 100.0 * result.lost));
+  for (const LimitCheck& c : result.limits) {
+    lines.push_back(fmt::format("  limit {}: {:.6g} found, {:.6g} allowed: {}", c.limit, c.found, c.allowed,
+                                c.held ? "held" : "NOT HELD"));
+  }
+  if (f.tolerances) tolerance_rows(*f.tolerances, lines);
+  for (const std::string& remark : result.remarks) lines.push_back("  " + remark);
+  return lines;
+}
+
+}  // namespace lucerna

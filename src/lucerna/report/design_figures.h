@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lucerna/design/design.h"
+#include "lucerna/design/tolerances.h"
+#include "lucerna/photometry/compare_distributions.h"
+#include "lucerna/report/trace_figures.h"
+
+namespace lucerna {
+
+/// Illuminance figures of a rectangle.
+struct PlaneSummary {
+  double mean = 0.0, least = 0.0, greatest = 0.0;
+};
+
+/// All figures of a finished design, worked out once for text, JSON and files.
+struct DesignFigures {
+  /// Of the trace of the finished project.
+  TraceFigures trace;
+  /// What the target was multiplied by to stand beside the result: 1 in absolute mode; in shape mode what
+  /// makes them differ least.
+  double target_factor = 1.0;
+  /// Target (multiplied) against the traced far field; for far-field targets.
+  std::optional<BeamFigures> target_beam;
+  std::optional<DistributionComparison> comparison;
+  /// For plane targets: on their rectangle, wanted (multiplied) and traced.
+  std::optional<PlaneSummary> target_plane, result_plane;
+  std::optional<ToleranceSweep> tolerances;
+};
+
+/// `traced` is a trace of `with_shape(problem, result.shape)`. About a second for a far-field target.
+DesignFigures design_figures(const DesignProblem& problem, const DesignResult& result,
+                             const TraceResult& traced);
+
+/// What design adds to result.json (design.md section 3). What is not known is null.
+nlohmann::ordered_json design_json(const DesignProblem& problem, const DesignResult& result,
+                                   const DesignFigures& figures);
+
+/// "converged", "time" or "interrupted".
+std::string_view to_string(DesignEnd end);
+
+/// The table of target against result, losses, limits and tolerances for people, one line an entry.
+std::vector<std::string> design_summary(const DesignProblem& problem, const DesignResult& result,
+                                        const DesignFigures& figures);
+
+}  // namespace lucerna
