@@ -13,12 +13,13 @@ namespace lucerna {
 
 std::string why_not_on_accelerators(const Scene& scene) {
   // Whoever adds something to a scene meets a compiler error here, and says whether the kernels know it.
-  [[maybe_unused]] const auto& [sources, reflectors, far_fields, planes, luminances, ray_detectors, bodies] =
-      scene;
+  [[maybe_unused]] const auto& [sources, reflectors, far_fields, planes, luminances, ray_detectors, bodies,
+                                glasses] = scene;
   if (!bodies.empty()) return "bodies are traced on the CPU only";
   for (const FarFieldDetector& detector : far_fields) {
     if (detector.tent) return "tent bins are dealt on the CPU only";
   }
+  if (!glasses.empty()) return "cover glasses are traced on the CPU only";
   for (const PlacedReflector& placed : reflectors) {
     [[maybe_unused]] const auto& [reflector, frame, reflectance, slope_error_mrad] = placed;
     [[maybe_unused]] const auto& [surface, aperture] = reflector;

@@ -26,15 +26,17 @@ std::shared_ptr<const Mesh> read_mesh_file(TomlReader& reader, Project& project)
   return mesh;
 }
 
-std::string read_cause(TomlReader& reader, const Scene& scene) {
+std::string read_cause(TomlReader& reader, const Scene& scene, const std::string& otherwise) {
   if (auto name = reader.text("name")) {
     if (name->empty()) reader.fail("name", "found an empty name");
     return *name;
   }
   const auto file = reader.file("file");
-  const std::string stem = file ? file->stem().string() : "body";
+  const std::string stem = file ? file->stem().string() : otherwise;
   const auto taken = [&](const std::string& name) {
     return name == "mirror" || name == "mirror_back" ||
+           std::any_of(scene.glasses.begin(), scene.glasses.end(),
+                       [&](const CoverGlass& g) { return g.name == name; }) ||
            std::any_of(scene.bodies.begin(), scene.bodies.end(),
                        [&](const Body& b) { return b.name == name; });
   };
@@ -43,13 +45,34 @@ std::string read_cause(TomlReader& reader, const Scene& scene) {
   return name;
 }
 
+namespace {
+
+CoverGlass read_glass(TomlReader& reader, const Scene& scene) {
+  if (reader.has("file")) reader.fail("file", "belongs to bodies of triangles; a glass is flat");
+  CoverGlass glass;
+  glass.name = read_cause(reader, scene, glass.name);
+  glass.world_from_glass = read_placement(reader);
+  glass.aperture = read_aperture(reader, std::nullopt);
+  glass.thickness_mm = reader.positive("thickness_mm").value_or(glass.thickness_mm);
+  glass.refractive_index = reader.number("refractive_index", glass.refractive_index);
+  glass.absorption_per_mm = reader.number("absorption_per_mm", glass.absorption_per_mm);
+  at_key(reader, "role", [&] { check(glass); });
+  return glass;
+}
+
+}  // namespace
+
 void read_body(TomlReader reader, Project& project) {
-  Body body;
-  body.name = read_cause(reader, project.scene);
-  body.world_from_body = read_placement(reader);
   const std::string role = reader.text("role").value_or("absorber");
-  if (role != "absorber" && role != "mirror" && role != "lamp")
-    reader.fail("role", fmt::format("found '{}', expected absorber, mirror or lamp", role));
+  if (role != "absorber" && role != "mirror" && role != "lamp" && role != "glass")
+    reader.fail("role", fmt::format("found '{}', expected absorber, mirror, lamp or glass", role));
+  if (role == "glass") {
+    project.scene.glasses.push_back(read_glass(reader, project.scene));
+    return reader.finish();
+  }
+  Body body;
+  body.name = read_cause(reader, project.scene, "body");
+  body.world_from_body = read_placement(reader);
   body.only_returning_light = role == "lamp";
   if (role == "mirror") {
     body.reflectance = reader.has("reflectance") ? read_reflectance(reader) : Reflectance(1.0);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -39,10 +40,13 @@ std::shared_ptr<const Mesh> read_mesh_file(TomlReader& reader, Project& project)
 Reflectance read_reflectance(TomlReader& reader);
 
 /// The cause of loss that a body is: `name`, by default its file's name without the ending
-/// (-2, -3, ... where that is taken).
-std::string read_cause(TomlReader& reader, const Scene& scene);
+/// (-2, -3, ... where that is taken); `otherwise` if it has no file.
+std::string read_cause(TomlReader& reader, const Scene& scene, const std::string& otherwise);
 
-/// One [[body]], added to the scene.
+/// `aperture`, `diameter_mm` or `size_mm`, `hole_diameter_mm`.
+Aperture read_aperture(TomlReader& reader, std::optional<double> default_diameter_mm);
+
+/// One [[body]], added to the scene: a mesh, or a cover glass.
 void read_body(TomlReader reader, Project& project);
 
 /// One [[reflector]], added to the scene; a mesh becomes a body.

@@ -13,8 +13,6 @@
 
 namespace lucerna::project_parts {
 
-namespace {
-
 Aperture read_aperture(TomlReader& reader, std::optional<double> default_diameter_mm) {
   const std::string shape = reader.text("aperture").value_or("circle");
   const auto diameter = reader.positive("diameter_mm");
@@ -33,6 +31,8 @@ Aperture read_aperture(TomlReader& reader, std::optional<double> default_diamete
   }
   reader.fail("aperture", fmt::format("found '{}', expected circle or rectangle", shape));
 }
+
+namespace {
 
 /// The aperture of a height map: all of it, or a circle within it.
 Aperture read_map_aperture(TomlReader& reader, double half_x_mm, double half_y_mm) {
@@ -157,7 +157,7 @@ Reflector read_heightmap(TomlReader& reader, Project& project) {
 /// A mesh as a mirror: no height field, so it reflects on both sides.
 void read_mesh_mirror(TomlReader& reader, Project& project) {
   Body body;
-  body.name = read_cause(reader, project.scene);
+  body.name = read_cause(reader, project.scene, "body");
   body.world_from_body = read_placement(reader);
   body.reflectance = reader.has("reflectance") ? read_reflectance(reader) : Reflectance(1.0);
   const bool smooth = reader.flag("smooth_normals").value_or(false);

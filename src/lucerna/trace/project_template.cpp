@@ -127,6 +127,15 @@ slope_error_mrad = 0.0        # Gaussian tilt of the normal, standard deviation 
 #file = "bulb.stl"
 #role = "lamp"
 
+# A flat cover glass: fills z = 0 .. thickness_mm of its own frame; Fresnel's losses and absorption.
+#[[body]]
+#role = "glass"
+#diameter_mm = 110.0
+#thickness_mm = 3.0
+#refractive_index = 1.52
+#absorption_per_mm = 0.002
+#position_mm = [0, 0, -20]
+
 # ---- detectors: any number at once; the name names the files ----
 [[detector]]
 name = "far"

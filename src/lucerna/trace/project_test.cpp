@@ -142,6 +142,24 @@ TEST(Project, BodiesHaveRolesPlacesAndNames) {
   EXPECT_NE(project_text(p).find((dir / "sheet.obj").string()), std::string::npos);
 }
 
+TEST(Project, CoverGlassIsABodyWithoutAFile) {
+  const test::TempDir dir;
+  const Project p = read_with_files(
+      "[[body]]\nrole = 'glass'\naperture = 'rectangle'\nsize_mm = [80, 60]\nthickness_mm = 4\n"
+      "refractive_index = 1.6\nabsorption_per_mm = 0.01\nposition_mm = [0, 0, -20]\n"
+      "[[body]]\nrole = 'glass'\ndiameter_mm = 50\nposition_mm = [0, 0, -30]\n",
+      dir);
+  const std::vector<CoverGlass>& g = p.scene.glasses;
+  ASSERT_EQ(g.size(), 2u);
+  EXPECT_EQ(g[0].name, "glass");
+  EXPECT_EQ(g[0].thickness_mm, 4.0);
+  EXPECT_EQ(g[0].refractive_index, 1.6);
+  EXPECT_EQ(g[0].absorption_per_mm, 0.01);
+  EXPECT_EQ(g[0].world_from_glass.origin_mm(), (Vec3{0, 0, -20}));
+  EXPECT_EQ(g[1].name, "glass-2");
+  EXPECT_EQ(g[1].refractive_index, CoverGlass{}.refractive_index);
+}
+
 TEST(Project, HeightMapsAreScaledPlacedAndClipped) {
   const test::TempDir dir;
   const std::string map =
@@ -243,6 +261,9 @@ TEST(Project, BadBodiesMapsAndDetectorsNameTheirKey) {
   expect("[[body]]\n", "line 5: body[0].file: is missing");
   expect("[[body]]\nfile = 'sheet.obj'\n", "the mesh is open: 3 edges");
   expect("[[body]]\nfile = 't.obj'\nrole = 'shade'\n", "found 'shade', expected absorber");
+  expect("[[body]]\nrole = 'glass'\n", "diameter_mm");
+  expect("[[body]]\nrole = 'glass'\ndiameter_mm = 9\nrefractive_index = 0.5\n", "0.5");
+  expect("[[body]]\nrole = 'glass'\nfile = 't.obj'\ndiameter_mm = 9\n", "file");
   expect("[[body]]\nfile = 't.obj'\nreflectance = 0.5\n", "belongs to role = \"mirror\"");
   expect("[[body]]\nfile = 't.obj'\nrole = 'mirror'\nreflectance = -0.1\n", "outside 0..1");
   expect("[[body]]\nfile = 't.obj'\nrol = 'mirror'\n", "nearest known one is 'role'");

@@ -67,21 +67,41 @@ class ReferenceEngine final : public TraceEngine {
     ++tally.lost_rays[static_cast<std::size_t>(cause)];
   }
 
+  /// Counts what a surface keeps of `energy` when it passes `kept` on, and returns it.
+  static std::int64_t absorb(std::int64_t energy, double kept, std::size_t cause, Tally& tally) {
+    const std::int64_t absorbed = energy - std::llround(static_cast<double>(energy) * kept);
+    tally.absorbed[cause] += absorbed;
+    return absorbed;
+  }
+
   void trace_ray(Ray ray, std::int64_t energy, ReflectionKey key, TraceScratch& scratch, Tally& tally) const {
     ++tally.rays;
     tally.emitted += energy;
-    for (int bounce = 0;; ++bounce) {
+    // `bounce` counts reflections, key.bounce all that the ray meets.
+    for (int bounce = 0;; ++key.bounce) {
       if (!is_finite(ray.origin_mm) || !is_finite(ray.direction))
         return lose(LostCause::not_finite, energy, tally);
       const Nearest n = nearest(ray);
-      if (const auto hit = bodies().first_hit(ray, n.hit.t_mm, bounce > 0)) {
+      const auto body = bodies().first_hit(ray, n.hit.t_mm, bounce > 0);
+      if (const auto plate = glasses().first_hit(ray, body ? body->t_mm : n.hit.t_mm)) {
+        const GlassPassage passage = glasses().pass(ray, *plate, key);
+        if (!passage.transmitted && passage.kept > 0.0) {
+          if (bounce == max_bounces_) return lose(LostCause::bounce_limit, energy, tally);
+          ++bounce;
+          ++tally.reflections;
+        }
+        energy -= absorb(energy, passage.kept, glass_cause(plate->glass), tally);
+        if (energy == 0) return;
+        ray = passage.ray;
+        continue;
+      }
+      if (const auto& hit = body) {
         if (bounce == max_bounces_) return lose(LostCause::bounce_limit, energy, tally);
         const double cosine = -dot(ray.direction, hit->normal);
-        const std::int64_t kept =
-            std::llround(static_cast<double>(energy) * scene_.bodies[hit->body].reflectance.at(cosine));
-        tally.absorbed[kMirrorLosses + hit->body] += energy - kept;
-        energy = kept;
+        energy -=
+            absorb(energy, scene_.bodies[hit->body].reflectance.at(cosine), kMirrorLosses + hit->body, tally);
         if (energy == 0) return;
+        ++bounce;
         ++tally.reflections;
         ray = {ray.at(hit->t_mm), Direction::from(reflect(ray.direction, hit->normal))};
         continue;
@@ -100,12 +120,10 @@ class ReferenceEngine final : public TraceEngine {
       }
       if (bounce == max_bounces_) return lose(LostCause::bounce_limit, energy, tally);
       const double cosine = -dot(n.local.direction, n.hit.normal);
-      const auto kept = static_cast<std::int64_t>(
-          std::llround(static_cast<double>(energy) * n.mirror->reflectance.at(cosine)));
-      tally.absorbed[static_cast<std::size_t>(MirrorLoss::face)] += energy - kept;
-      energy = kept;
+      energy -=
+          absorb(energy, n.mirror->reflectance.at(cosine), static_cast<std::size_t>(MirrorLoss::face), tally);
+      ++bounce;
       ++tally.reflections;
-      key.bounce = bounce;
       const double slope = n.mirror->slope_error_rad;
       const Direction normal = slope > 0.0 ? tilted_normal(n.hit.normal, slope, key) : n.hit.normal;
       const Direction out = Direction::from(reflect(n.local.direction, normal));

@@ -52,6 +52,11 @@ void check(const Scene& scene) {
     if (!causes.insert(b.name).second)
       throw InputError(fmt::format("two causes of loss are named '{}'", b.name));
   }
+  for (const CoverGlass& g : scene.glasses) {
+    check(g);
+    if (!causes.insert(g.name).second)
+      throw InputError(fmt::format("two causes of loss are named '{}'", g.name));
+  }
   std::set<std::string> names;
   const auto add_name = [&](const std::string& name) {
     if (!names.insert(name).second) throw InputError(fmt::format("two detectors are named '{}'", name));

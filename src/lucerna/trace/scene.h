@@ -10,6 +10,7 @@
 #include "lucerna/reflector/reflector.h"
 #include "lucerna/source/ray_source.h"
 #include "lucerna/trace/body.h"
+#include "lucerna/trace/cover_glass.h"
 #include "lucerna/trace/far_field.h"
 #include "lucerna/trace/plane_detector.h"
 #include "lucerna/trace/reflectance.h"
@@ -46,6 +47,7 @@ struct Scene {
   /// With any of these all rays that leave are kept, as TraceResult::out_rays: 28 bytes a ray.
   std::vector<RayDetector> ray_detectors;
   std::vector<Body> bodies;
+  std::vector<CoverGlass> glasses;
 };
 
 /// Share of a source's rays (of its first 4096) that start behind a mirror: within its aperture, on the side

@@ -23,9 +23,9 @@ struct Tally {
   std::uint64_t rays = 0;
   std::uint64_t reflections = 0;
   std::int64_t emitted = 0;
-  /// What left without and after meeting a mirror.
+  /// What left without and after being reflected (a cover glass that lets light through does not count).
   std::int64_t out_direct = 0, out_reflected = 0;
-  /// By cause: kMirrorLosses, then one per body.
+  /// By cause: kMirrorLosses, then one per body, then one per cover glass.
   std::vector<std::int64_t> absorbed;
   /// By cause: kLostCauses; and how many rays that were.
   std::vector<std::int64_t> lost;

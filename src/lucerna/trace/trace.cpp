@@ -84,6 +84,7 @@ TraceResult empty_result(const Scene& scene, const RayNumbering& numbering, cons
   for (const PlacedSource& s : scene.sources) result.flux += s.total_flux();
   result.far_fields = scene.far_fields;
   for (const Body& b : scene.bodies) result.body_names.push_back(b.name);
+  for (const CoverGlass& g : scene.glasses) result.body_names.push_back(g.name);
   result.planes = scene.planes;
   result.luminances = scene.luminances;
   result.ray_detectors = scene.ray_detectors;

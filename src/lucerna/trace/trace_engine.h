@@ -24,8 +24,10 @@ struct TraceScratch {
 /// rays through it. Shared by all threads, never changed.
 class TraceEngine {
  public:
-  explicit TraceEngine(const Scene& scene) : bodies_(scene.bodies), keep_rays_(!scene.ray_detectors.empty()) {
+  explicit TraceEngine(const Scene& scene)
+      : bodies_(scene.bodies), glasses_(scene.glasses), keep_rays_(!scene.ray_detectors.empty()) {
     body_count_ = scene.bodies.size();
+    glass_count_ = scene.glasses.size();
     for (const FarFieldDetector& d : scene.far_fields) far_fields_.emplace_back(d);
     for (const PlaneDetector& d : scene.planes) planes_.emplace_back(d);
     for (const LuminanceDetector& d : scene.luminances) planes_.emplace_back(d);
@@ -41,7 +43,7 @@ class TraceEngine {
   /// A tally with room for all causes and detectors.
   Tally empty_tally() const {
     Tally t;
-    t.absorbed.resize(kMirrorLosses + body_count_);
+    t.absorbed.resize(kMirrorLosses + body_count_ + glass_count_);
     t.lost.resize(kLostCauses);
     t.lost_rays.resize(kLostCauses);
     for (const FarFieldGrid& grid : far_fields_) t.bins.emplace_back(grid.size());
@@ -72,11 +74,15 @@ class TraceEngine {
   }
 
   const BodyTracer& bodies() const { return bodies_; }
+  const GlassTracer& glasses() const { return glasses_; }
+  /// Where Tally::absorbed counts what glass `i` keeps.
+  std::size_t glass_cause(std::size_t i) const { return kMirrorLosses + body_count_ + i; }
   const std::vector<FarFieldGrid>& far_fields() const { return far_fields_; }
 
  private:
   BodyTracer bodies_;
-  std::size_t body_count_ = 0;
+  GlassTracer glasses_;
+  std::size_t body_count_ = 0, glass_count_ = 0;
   std::vector<FarFieldGrid> far_fields_;
   std::vector<PlaneBins> planes_;
   bool keep_rays_;

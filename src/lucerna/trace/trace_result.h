@@ -42,7 +42,7 @@ struct TraceResult {
   std::vector<PlaneDetector> planes;
   std::vector<LuminanceDetector> luminances;
   std::vector<RayDetector> ray_detectors;
-  /// Causes of absorption after the mirrors'.
+  /// Causes of absorption after the mirrors': bodies, then cover glasses.
   std::vector<std::string> body_names;
   /// kReplicates tallies.
   std::vector<Tally> replicates;
@@ -59,7 +59,7 @@ struct Ledger {
   /// Exactly the flux of the sources.
   double emitted = 0.0;
   Estimate out_direct, out_reflected;
-  /// By cause: "mirror" (what its face kept), "mirror_back", then the bodies.
+  /// By cause: "mirror" (what its face kept), "mirror_back", then the bodies, then the cover glasses.
   std::vector<std::pair<std::string, Estimate>> absorbed;
   /// By cause: "bounce_limit", "not_finite"; rays beside it.
   std::vector<std::pair<std::string, Estimate>> lost;

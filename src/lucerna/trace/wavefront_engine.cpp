@@ -46,6 +46,7 @@ class WavefrontEngine final : public TraceEngine {
     Batch batch;
     const std::size_t n =
         emit(rays, source.world_from_source, numbering_.ray_flux(run.source), batch.rays, tally);
+    if (!glasses().empty()) batch.reflections.fill(0);
     follow(batch, n, run, scratch, tally);
   }
 
@@ -67,6 +68,11 @@ class WavefrontEngine final : public TraceEngine {
     alignas(64) float cosine[kBatch];
     /// First hits with bodies, where those come before all mirrors.
     std::array<std::optional<BodyHit>, kBatch> body;
+    /// The same of cover glasses, where those come before all else.
+    std::array<std::optional<GlassHit>, kBatch> glass;
+    /// By number, how often each ray was reflected; kept only if there are cover glasses: else it is the same
+    /// for all rays still on their way.
+    std::array<int, kBatch> reflections;
   };
   struct Meeting {
     LocalRays rays;
@@ -115,14 +121,17 @@ class WavefrontEngine final : public TraceEngine {
     for (int bounce = 0; n > 0; ++bounce) {
       const std::size_t left_before = batch.out_count;
       meet(batch.rays, n, meetings);
-      if (!bodies().empty()) meet_bodies(batch, n, bounce > 0, meetings);
+      if (!bodies().empty()) meet_bodies(batch, n, bounce, meetings);
+      if (!glasses().empty()) meet_glasses(batch, n, meetings);
       for (std::size_t m = 0; m < mirrors_.size(); ++m) {
         if (mirrors_[m].slope_error_rad > 0.0)
           tilt(mirrors_[m].slope_error_rad, batch.rays, n, run, bounce, meetings[m].hits);
       }
-      n = sort_out(batch, n, meetings, bounce, tally);
-      std::int64_t& out = bounce == 0 ? tally.out_direct : tally.out_reflected;
-      for (std::size_t i = left_before; i < batch.out_count; ++i) out += units(batch.out.flux[i]);
+      n = sort_out(batch, n, meetings, {run.sequence_seed, run.first, bounce}, tally);
+      for (std::size_t i = left_before; i < batch.out_count; ++i) {
+        const bool direct = reflections(batch, batch.out, i, bounce) == 0;
+        (direct ? tally.out_direct : tally.out_reflected) += units(batch.out.flux[i]);
+      }
     }
     detect(batch.out, batch.out_count, scratch, tally);
   }
@@ -185,16 +194,79 @@ class WavefrontEngine final : public TraceEngine {
   }
 
   /// First hits with bodies; mirrors behind them become misses.
-  void meet_bodies(Batch& batch, std::size_t n, bool returning, std::vector<Meeting>& meetings) const {
+  void meet_bodies(Batch& batch, std::size_t n, int bounce, std::vector<Meeting>& meetings) const {
     for (std::size_t i = 0; i < n; ++i) {
       double nearest = std::numeric_limits<float>::max();
       for (const Meeting& m : meetings) {
         if (m.hits.state[i] != kMiss) nearest = std::min(nearest, static_cast<double>(m.hits.t[i]));
       }
+      const bool returning = reflections(batch, batch.rays, i, bounce) > 0;
       batch.body[i] = bodies().first_hit(ray_of(batch.rays, i), nearest, returning);
       if (!batch.body[i]) continue;
       for (Meeting& m : meetings) m.hits.state[i] = kMiss;
     }
+  }
+
+  /// First hits with cover glasses; mirrors and bodies behind them become misses.
+  void meet_glasses(Batch& batch, std::size_t n, std::vector<Meeting>& meetings) const {
+    for (std::size_t i = 0; i < n; ++i) {
+      double nearest = std::numeric_limits<float>::max();
+      for (const Meeting& m : meetings) {
+        if (m.hits.state[i] != kMiss) nearest = std::min(nearest, static_cast<double>(m.hits.t[i]));
+      }
+      if (!bodies().empty() && batch.body[i]) nearest = std::min(nearest, batch.body[i]->t_mm);
+      batch.glass[i] = glasses().first_hit(ray_of(batch.rays, i), nearest);
+      if (!batch.glass[i]) continue;
+      batch.body[i].reset();
+      for (Meeting& m : meetings) m.hits.state[i] = kMiss;
+    }
+  }
+
+  /// How often ray `i` of `rays` was reflected before step `bounce`.
+  int reflections(const Batch& batch, const WorldRays& rays, std::size_t i, int bounce) const {
+    return glasses().empty() ? bounce : batch.reflections[static_cast<std::size_t>(rays.number[i])];
+  }
+
+  /// Counts a reflection of ray `i`; false if it would be one too many, and the ray is lost.
+  bool may_reflect(Batch& batch, std::size_t i, int bounce, Tally& tally) const {
+    if (reflections(batch, batch.rays, i, bounce) == max_bounces_) {
+      lose(LostCause::bounce_limit, batch.rays.flux[i], tally);
+      return false;
+    }
+    if (!glasses().empty()) ++batch.reflections[static_cast<std::size_t>(batch.rays.number[i])];
+    return true;
+  }
+
+  /// Takes `1 - kept` off the flux of a ray.
+  static void absorb(float& flux, double kept, std::size_t cause, Tally& tally) {
+    const std::int64_t before = units(flux);
+    flux = static_cast<float>(static_cast<double>(flux) * kept);
+    tally.absorbed[cause] += before - units(flux);
+  }
+
+  static void put(WorldRays& rays, std::size_t i, const Ray& ray) {
+    rays.x[i] = static_cast<float>(ray.origin_mm.x);
+    rays.y[i] = static_cast<float>(ray.origin_mm.y);
+    rays.z[i] = static_cast<float>(ray.origin_mm.z);
+    rays.dx[i] = static_cast<float>(ray.direction.x());
+    rays.dy[i] = static_cast<float>(ray.direction.y());
+    rays.dz[i] = static_cast<float>(ray.direction.z());
+  }
+
+  /// Sends ray `i` through the cover glass it met; returns what sort_out notes of it.
+  std::int32_t leave_glass(Batch& batch, std::size_t i, ReflectionKey key, Tally& tally) const {
+    WorldRays& rays = batch.rays;
+    const GlassHit& hit = *batch.glass[i];
+    const int bounce = key.bounce;
+    key.ray += static_cast<std::uint64_t>(rays.number[i]);
+    const GlassPassage passage = glasses().pass(ray_of(rays, i), hit, key);
+    const bool reflected = passage.kept > 0.0 && !passage.transmitted;
+    if (reflected && !may_reflect(batch, i, bounce, tally)) return kGone;
+    absorb(rays.flux[i], passage.kept, glass_cause(hit.glass), tally);
+    if (passage.kept == 0.0) return kGone;
+    if (reflected) ++tally.reflections;
+    put(rays, i, passage.ray);
+    return kOnBody;
   }
 
   static Ray ray_of(const WorldRays& rays, std::size_t i) {
@@ -202,34 +274,24 @@ class WavefrontEngine final : public TraceEngine {
   }
 
   /// Absorbs or reflects ray `i` where it met a body; returns what sort_out notes of it.
-  std::int32_t leave_body(WorldRays& rays, std::size_t i, const BodyHit& hit, int bounce,
-                          Tally& tally) const {
-    if (bounce == max_bounces_) {
-      lose(LostCause::bounce_limit, rays.flux[i], tally);
-      return kGone;
-    }
+  std::int32_t leave_body(Batch& batch, std::size_t i, int bounce, Tally& tally) const {
+    WorldRays& rays = batch.rays;
+    const BodyHit& hit = *batch.body[i];
+    if (!may_reflect(batch, i, bounce, tally)) return kGone;
     const Ray ray = ray_of(rays, i);
     const double kept = scene_.bodies[hit.body].reflectance.at(-dot(ray.direction, hit.normal));
-    const std::int64_t before = units(rays.flux[i]);
-    rays.flux[i] = static_cast<float>(static_cast<double>(rays.flux[i]) * kept);
-    tally.absorbed[kMirrorLosses + hit.body] += before - units(rays.flux[i]);
+    absorb(rays.flux[i], kept, kMirrorLosses + hit.body, tally);
     if (kept == 0.0) return kGone;
     ++tally.reflections;
-    const Vec3 p = ray.at(hit.t_mm);
-    const Direction d = Direction::from(reflect(ray.direction, hit.normal));
-    rays.x[i] = static_cast<float>(p.x);
-    rays.y[i] = static_cast<float>(p.y);
-    rays.z[i] = static_cast<float>(p.z);
-    rays.dx[i] = static_cast<float>(d.x());
-    rays.dy[i] = static_cast<float>(d.y());
-    rays.dz[i] = static_cast<float>(d.z());
+    put(rays, i, {ray.at(hit.t_mm), Direction::from(reflect(ray.direction, hit.normal))});
     return kOnBody;
   }
 
   /// Reflects what was reflected, moves what leaves to `out`, and closes the gaps; returns how many rays
   /// stay.
-  std::size_t sort_out(Batch& batch, std::size_t n, const std::vector<Meeting>& meetings, int bounce,
-                       Tally& tally) const {
+  std::size_t sort_out(Batch& batch, std::size_t n, const std::vector<Meeting>& meetings,
+                       const ReflectionKey& first, Tally& tally) const {
+    const int bounce = first.bounce;
     WorldRays& rays = batch.rays;
     alignas(64) std::int32_t mirror[kBatch];
     for (std::size_t i = 0; i < n; ++i) mirror[i] = kLeaves;
@@ -241,24 +303,24 @@ class WavefrontEngine final : public TraceEngine {
       for (std::size_t i = 0; i < n; ++i) {
         if (hits.state[i] == kMiss) continue;
         mirror[i] = static_cast<std::int32_t>(m);
-        const std::int64_t before = units(rays.flux[i]);
         if (hits.state[i] == kBack) {
-          tally.absorbed[static_cast<std::size_t>(MirrorLoss::back)] += before;
+          tally.absorbed[static_cast<std::size_t>(MirrorLoss::back)] += units(rays.flux[i]);
           mirror[i] = kGone;
-        } else if (bounce == max_bounces_) {
-          lose(LostCause::bounce_limit, rays.flux[i], tally);
+        } else if (!may_reflect(batch, i, bounce, tally)) {
           mirror[i] = kGone;
         } else {
           const double kept =
               constant ? at_any_angle : mirrors_[m].reflectance->at(static_cast<double>(batch.cosine[i]));
-          rays.flux[i] = static_cast<float>(static_cast<double>(rays.flux[i]) * kept);
-          tally.absorbed[static_cast<std::size_t>(MirrorLoss::face)] += before - units(rays.flux[i]);
+          absorb(rays.flux[i], kept, static_cast<std::size_t>(MirrorLoss::face), tally);
           ++tally.reflections;
         }
       }
     }
     for (std::size_t i = 0; !bodies().empty() && i < n; ++i) {
-      if (batch.body[i]) mirror[i] = leave_body(rays, i, *batch.body[i], bounce, tally);
+      if (batch.body[i]) mirror[i] = leave_body(batch, i, bounce, tally);
+    }
+    for (std::size_t i = 0; !glasses().empty() && i < n; ++i) {
+      if (batch.glass[i]) mirror[i] = leave_glass(batch, i, first, tally);
     }
     std::size_t stay = 0;
     for (std::size_t i = 0; i < n; ++i) {
