@@ -22,10 +22,13 @@ struct DesignArguments {
   bool resume = false, tolerances = false;
 };
 
-DesignOptions design_options(const DesignArguments& a, const DesignProblem& problem) {
-  if (trace_device(a.device) == TraceDevice::cuda) {
+void check_device(const std::string& device) {
+  if (trace_device(device) == TraceDevice::cuda) {
     throw InputError("--device cuda: designs are made on the CPU only; lucerna trace can use a device");
   }
+}
+
+DesignOptions design_options(const DesignArguments& a, const DesignProblem& problem) {
   DesignOptions options;
   options.seed = parse_count(a.seed);
   if (!a.time.empty()) options.time_s = parse_number(a.time);
@@ -86,6 +89,7 @@ DesignFigures finish(const DesignProblem& problem, const DesignResult& result, c
 
 void run_design(const DesignArguments& a, Session& session, int& exit_code) {
   session.start();
+  check_device(a.device);
   DesignProblem problem = session.timed(
       "read", [&] { return design_problem(read_project(a.project, session.progress()), a.project); });
   if (a.tolerances && !problem.tolerances) problem.tolerances = ToleranceRanges{};

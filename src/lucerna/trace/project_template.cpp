@@ -193,6 +193,8 @@ bins = "hard"                 # tent: a ray counts for its four neighbours; smoo
 #max_height_mm = 60.0
 #symmetry = "none"
 #min_efficiency = 0.6
+#[design.tolerances]
+#source_shift_mm = 0.2
 
 # Or: the illuminance on a plane, as a .csv (lx) or a .png (white_lx is the illuminance of its white).
 #[target]
