@@ -135,6 +135,7 @@ std::string html_table(const HtmlTable& table) {
     return column > 0 && std::ranges::all_of(table.rows, figure) ? " class=\"n\"" : "";
   };
   for (std::size_t i = 0; i < table.head.size(); ++i) {
+    LUCERNA_CHECK(!table.head[i].empty(), "column {} of table '{}' has no name to read out", i, label);
     out += fmt::format("<th scope=\"col\"{}>{}</th>", side(i), table.head[i]);
   }
   out += "</tr></thead>\n<tbody>\n";

@@ -60,7 +60,7 @@ std::string summary(const ResultFigures& result) {
 std::string limits_html(const ResultFigures& result) {
   std::string out;
   if (result.has("/limits") && !result.at("/limits").empty()) {
-    HtmlTable table{"Limits", {"Limit", "Found", "Allowed", ""}, {}};
+    HtmlTable table{"Limits", {"Limit", "Found", "Allowed", "Verdict"}, {}};
     for (std::size_t i = 0; i < result.at("/limits").size(); ++i) {
       const std::string key = fmt::format("/limits/{}", i);
       table.rows.push_back({result.text(key + "/limit"), result.figure(key + "/found"),
