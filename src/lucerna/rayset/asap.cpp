@@ -136,10 +136,7 @@ class AsapWriter final : public RayWriter {
     if (std::ranges::find(kUnits, options.length_unit, &Unit::name) == kUnits.end()) {
       throw UsageError(fmt::format("asap: lengths in mm, cm, m or inch, not {}", options.length_unit));
     }
-    RecordLayout layout;
-    layout.scale_lengths(*mm_per(options.length_unit));
-    layout.extra.assign(header.columns.size(), RecordColumn{});
-    return layout;
+    return written_layout(header, options.length_unit);
   }
 
   RecordWriter writer_;

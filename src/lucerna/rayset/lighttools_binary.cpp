@@ -172,14 +172,7 @@ class LightToolsBinaryWriter final : public RayWriter {
       throw UsageError(fmt::format("lighttools: lengths in {}, not {}",
                                    fmt::join(std::span(kUnits).subspan(1), ", "), options.length_unit));
     }
-    RecordLayout layout;
-    layout.scale_lengths(*mm_per(options.length_unit));
-    layout.extra.assign(header.columns.size(), RecordColumn{});
-    if (const auto wavelength = find_column(header.columns, ColumnKind::wavelength_nm)) {
-      layout.floats = 8;
-      layout.extra[*wavelength].at = 7;
-    }
-    return layout;
+    return written_layout(header, options.length_unit, 1.0);
   }
 
   RecordWriter writer_;

@@ -176,6 +176,19 @@ std::optional<double> mm_per(std::string_view unit) {
   return found->second;
 }
 
+RecordLayout written_layout(const RaySetHeader& header, std::string_view length_unit,
+                            double wavelength_scale) {
+  RecordLayout layout;
+  layout.scale_lengths(*mm_per(length_unit));
+  layout.extra.assign(header.columns.size(), RecordColumn{});
+  const auto wavelength = find_column(header.columns, ColumnKind::wavelength_nm);
+  if (wavelength && wavelength_scale > 0.0) {
+    layout.floats = 8;
+    layout.extra[*wavelength] = {.at = 7, .scale = wavelength_scale};
+  }
+  return layout;
+}
+
 std::vector<float> peek_records(const InputFile& file, std::uint64_t first_byte, std::size_t floats,
                                 std::uint64_t count) {
   const std::uint64_t room = file.size() > first_byte ? (file.size() - first_byte) / (4 * floats) : 0;

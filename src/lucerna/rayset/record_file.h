@@ -47,6 +47,12 @@ struct RecordLayout {
 /// none of them.
 std::optional<double> mm_per(std::string_view unit);
 
+/// The layout to write a block of `header` in: place, direction and flux, lengths in `length_unit` (one that
+/// mm_per knows); with a `wavelength_scale` above 0 wavelengths follow, in nm divided by it, if the header
+/// has them.
+RecordLayout written_layout(const RaySetHeader& header, std::string_view length_unit,
+                            double wavelength_scale = 0.0);
+
 /// All that a format's opener finds out before the first ray.
 struct RayFileFacts {
   RaySetHeader header;

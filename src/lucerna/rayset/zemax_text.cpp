@@ -85,17 +85,8 @@ class ZemaxTextWriter final : public RayWriter {
  private:
   RecordLayout layout_for(const RaySetHeader& header, const WriteOptions& options) {
     zemax::unit_code(options.length_unit);
-    const auto wavelength = find_column(header.columns, ColumnKind::wavelength_nm);
-    spectral_ = wavelength && header.flux_unit == FluxUnit::watt;
-    RecordLayout layout;
-    layout.scale_lengths(*mm_per(options.length_unit));
-    layout.extra.assign(header.columns.size(), RecordColumn{});
-    if (spectral_) {
-      layout.floats = 8;
-      layout.extra[*wavelength].at = 7;
-      layout.extra[*wavelength].scale = 1000.0;
-    }
-    return layout;
+    spectral_ = zemax::is_spectral(header);
+    return written_layout(header, options.length_unit, spectral_ ? zemax::kNmPerWavelength : 0.0);
   }
 
   bool spectral_ = false;
