@@ -13,6 +13,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
+#include "lucerna/core/number_table.h"
 #include "lucerna/core/pgm.h"
 #include "lucerna/core/png.h"
 
@@ -22,44 +23,6 @@ namespace {
 
 constexpr std::uint64_t kMostBytes = std::uint64_t{2} << 30;
 constexpr std::size_t kMostHeights = std::size_t{1} << 24;
-
-HeightMap read_table(const std::filesystem::path& path) {
-  const std::string text = read_file(path, kMostBytes);
-  const std::string file = path.string();
-  HeightMap map;
-  std::size_t number = 0;
-  for (std::string_view rest = text; !rest.empty();) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    std::string_view line = rest.substr(0, end);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-    ++number;
-    line = line.substr(0, line.find('#'));
-    std::size_t found = 0;
-    while (true) {
-      line.remove_prefix(std::min(line.find_first_not_of(" \t\r,;"), line.size()));
-      if (line.empty()) break;
-      const std::string_view word = line.substr(0, line.find_first_of(" \t\r,;"));
-      line.remove_prefix(word.size());
-      double z = 0.0;
-      const char* const begin = word.data() + (word.front() == '+' ? 1 : 0);
-      const auto [stop, error] = std::from_chars(begin, word.data() + word.size(), z);
-      ++found;
-      if (error != std::errc() || stop != word.data() + word.size() || !std::isfinite(z)) {
-        throw_input_error(file, fmt::format("line {}, column {}", number, found),
-                          "found '{}', expected a finite number", word.substr(0, 40));
-      }
-      map.z.push_back(z);
-    }
-    if (found == 0) continue;
-    if (map.ny == 0) map.nx = found;
-    if (found != map.nx) {
-      throw_input_error(file, fmt::format("line {}", number),
-                        "found {} numbers, expected {} as in the first row", found, map.nx);
-    }
-    ++map.ny;
-  }
-  return map;
-}
 
 /// What a NumPy header says: {'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }.
 struct NpyHeader {
@@ -184,7 +147,8 @@ HeightMap read_height_map(const std::filesystem::path& path, FirstRow first_row)
   for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
   HeightMap map;
   if (ending == ".csv" || ending == ".txt") {
-    map = read_table(path);
+    NumberTable table = read_number_table(path);
+    map = {table.columns, table.rows, std::move(table.numbers), std::nullopt};
   } else if (ending == ".npy") {
     map = NpyReader(path).read();
   } else if (ending == ".pgm") {
