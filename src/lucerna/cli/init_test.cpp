@@ -87,7 +87,7 @@ TEST_F(InitCli, EveryBlockReadsOnceItIsUncommented) {
     EXPECT_NO_THROW(design_problem(project, dir / "q.toml"));
   }
   EXPECT_EQ(sources, 2u);
-  EXPECT_EQ(reflectors, 6u) << "one of every family and one profile";
+  EXPECT_EQ(reflectors, 8u) << "one of every family, one profile, two that are no function of r";
   EXPECT_EQ(bodies, 4u) << "every role";
   EXPECT_EQ(detectors, 4u) << "every kind";
   EXPECT_EQ(designs, 2u);

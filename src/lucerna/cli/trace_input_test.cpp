@@ -70,6 +70,25 @@ TEST_F(TraceInputCli, FilesThatAreNoMirrors) {
   refuse_file("[[reflector]]\nfamily = 'mesh'\nfile = 'none.stl'\n", "none.stl");
 }
 
+TEST_F(TraceInputCli, ProfilesThatAreNoCurve) {
+  const std::string curve = "family = 'revolution'\nfile = 'curve.csv'\n";
+  const auto refuse_curve = [&](const std::string& csv, const std::string& part) {
+    write_file(dir / "curve.csv", csv);
+    write_file(dir / "p.toml", std::string(kLamp) + "[[reflector]]\n" + curve);
+    const auto run = run_lucerna(dir.path(), "trace p.toml -o out");
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
+  };
+  refuse_curve("r_mm,z_mm\n0,0\n10,x\n", "curve.csv: line 3, column 2: found 'x'");
+  refuse_curve("0,0,0\n10,5,5\n", "curve.csv: has 3 columns, expected two");
+  refuse_curve("r,z\n", "curve.csv: has 0 columns, expected two");
+  refuse_curve("0,0\n20,10\n20,30\n5,20\n10,5\n30,2\n",
+               "reflector[0].file: reflector: the profile crosses itself");
+  refuse_curve("5,0\n-1,10\n2,10\n", "point 2 is [-1, 10], expected finite numbers with r >= 0");
+  refuse_curve("5,0\n5,0\n5,10\n", "points 1 and 2 are the same");
+}
+
 TEST_F(TraceInputCli, SourcesInTheMirror) {
   refuse(std::string(kLamp) + "position_mm = [0, 0, 14]\n" + kBowl,
          "the source reaches through the mirror; expected a hole_diameter_mm");

@@ -6,12 +6,17 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/reflector/reflector.h"
 
 namespace lucerna {
 
 FacetedSurface::FacetedSurface(std::shared_ptr<const HeightSurface> base, double pitch_mm,
                                double pillow_radius_mm)
     : base_(std::move(base)), pitch_mm_(pitch_mm), curvature_(-1.0 / pillow_radius_mm) {
+  if (dynamic_cast<const CurveSheet*>(base_.get()) != nullptr) {
+    throw InputError(
+        "facets: the base turns back towards the axis or is vertical; expected a profile with ascending r");
+  }
   if (!(pitch_mm > 0.0 && std::isfinite(pitch_mm))) {
     throw InputError(fmt::format("facets: the pitch is {} mm, expected a finite number above 0", pitch_mm));
   }
@@ -19,6 +24,11 @@ FacetedSurface::FacetedSurface(std::shared_ptr<const HeightSurface> base, double
     throw InputError(
         fmt::format("facets: the pillows' radius is {} mm, expected any number but 0", pillow_radius_mm));
   }
+}
+
+Facet FacetedSurface::facet(std::int32_t i, std::int32_t j) const {
+  const SurfacePoint c = base_->at((i + 0.5) * pitch_mm_, (j + 0.5) * pitch_mm_);
+  return {c.z_mm, c.dzdx, c.dzdy};
 }
 
 SurfacePoint FacetedSurface::at(double x_mm, double y_mm) const {

@@ -8,6 +8,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/reflector/aperture.h"
+#include "lucerna/reflector/cubic_spline.h"
 
 namespace lucerna {
 
@@ -52,7 +53,7 @@ ConicProfile ConicProfile::ellipse(double focal_mm, double focal2_mm, double r_m
   if (!(r_max_mm < equator_mm)) {
     throw InputError(fmt::format(
         "reflector: the ellipse reaches radius {} mm at its equator, the aperture asks for {} mm; "
-        "expected an aperture inside the equator",
+        "expected an aperture inside the equator, or mouth_diameter_mm for a mirror that goes past it",
         equator_mm, r_max_mm));
   }
   const double eccentricity = (focal2_mm - focal_mm) / (focal2_mm + focal_mm);
@@ -80,49 +81,6 @@ ProfilePoint ConicProfile::at(double r_mm) const {
 
 HeightRange ConicProfile::range(double r0_mm, double r1_mm) const { return {at(r0_mm).z_mm, at(r1_mm).z_mm}; }
 
-namespace {
-
-/// Slopes of the C2 spline at its knots; `h` lengths and `delta` secant slopes of the pieces (at least two
-/// pieces).
-std::vector<double> spline_slopes(const std::vector<double>& h, const std::vector<double>& delta,
-                                  bool flat_start) {
-  const std::size_t m = h.size();
-  std::vector<double> lower(m + 1, 0.0), diagonal(m + 1, 1.0), upper(m + 1, 0.0), right(m + 1, 0.0);
-  if (!flat_start) {
-    diagonal[0] = h[1];
-    upper[0] = h[0] + h[1];
-    right[0] = ((h[0] + 2.0 * upper[0]) * h[1] * delta[0] + h[0] * h[0] * delta[1]) / upper[0];
-  }
-  for (std::size_t i = 1; i < m; ++i) {
-    lower[i] = h[i];
-    diagonal[i] = 2.0 * (h[i - 1] + h[i]);
-    upper[i] = h[i - 1];
-    right[i] = 3.0 * (h[i] * delta[i - 1] + h[i - 1] * delta[i]);
-  }
-  lower[m] = h[m - 1] + h[m - 2];
-  diagonal[m] = h[m - 2];
-  right[m] =
-      (h[m - 1] * h[m - 1] * delta[m - 2] + (2.0 * lower[m] + h[m - 1]) * h[m - 2] * delta[m - 1]) / lower[m];
-  if (!flat_start &&
-      m == 2) {  // one parabola through three points: the two not-a-knot conditions are the same
-    diagonal[0] = upper[0] = 1.0;
-    right[0] = 2.0 * delta[0];
-    lower[m] = diagonal[m] = 1.0;
-    right[m] = 2.0 * delta[1];
-  }
-  for (std::size_t i = 1; i <= m; ++i) {
-    const double w = lower[i] / diagonal[i - 1];
-    diagonal[i] -= w * upper[i - 1];
-    right[i] -= w * right[i - 1];
-  }
-  std::vector<double> slope(m + 1);
-  slope[m] = right[m] / diagonal[m];
-  for (std::size_t i = m; i-- > 0;) slope[i] = (right[i] - upper[i] * slope[i + 1]) / diagonal[i];
-  return slope;
-}
-
-}  // namespace
-
 SplineProfile::SplineProfile(const std::vector<ProfileKnot>& knots) {
   if (knots.size() < 2) {
     throw InputError(
@@ -148,7 +106,7 @@ SplineProfile::SplineProfile(const std::vector<ProfileKnot>& knots) {
   if (m == 1) {
     s = flat_start ? std::vector{0.0, 2.0 * delta[0]} : std::vector{delta[0], delta[0]};
   } else {
-    s = spline_slopes(h, delta, flat_start);
+    s = spline_slopes(h, delta, flat_start ? SplineEnd::flat : SplineEnd::not_a_knot, SplineEnd::not_a_knot);
   }
   for (std::size_t i = 0; i < m; ++i) {
     pieces_.push_back({knots[i].r_mm, knots[i].z_mm, s[i], (3.0 * delta[i] - 2.0 * s[i] - s[i + 1]) / h[i],

@@ -69,11 +69,34 @@ struct Extent {
   double radius() const { return std::max(1e-3, 0.5 * length(high - low)); }
 };
 
+/// Points of a mirror's mesh, gathered ring after ring.
+struct MirrorMesh {
+  std::vector<double> position, normal, slope, curvature;
+
+  void add(const Frame& frame, const Vec3& at, const Vec3& n, double mean_curvature_per_mm, Extent& extent) {
+    const Vec3 world = frame.point(at);
+    extent.add(world);
+    append(position, world);
+    append(normal, frame.vector(n));
+    slope.push_back(degrees(std::atan2(std::hypot(n.x, n.y), n.z)));
+    curvature.push_back(mean_curvature_per_mm);
+  }
+  Json json(const std::string& name, std::size_t rings, std::size_t spokes) const {
+    return {{"name", name},
+            {"rings", rings},
+            {"spokes", spokes},
+            {"position", base64_floats(position)},
+            {"normal", base64_floats(normal)},
+            {"slope_deg", base64_floats(slope)},
+            {"curvature_per_mm", base64_floats(curvature)}};
+  }
+};
+
 Json mirror_json(const PlacedReflector& placed, std::size_t index, Extent& extent) {
   const Aperture& aperture = placed.reflector.aperture;
   const HeightSurface& surface = *placed.reflector.surface;
   const double step = 1e-4 * aperture.outer_radius_mm();
-  std::vector<double> position, normal, slope, curvature;
+  MirrorMesh mesh;
   const std::vector<double> phi = azimuths(aperture);
   for (std::size_t ring = 0; ring <= kRings; ++ring) {
     const double t = static_cast<double>(ring) / kRings;
@@ -81,24 +104,52 @@ Json mirror_json(const PlacedReflector& placed, std::size_t index, Extent& exten
       const double r = aperture.hole_radius_mm() + t * (rim_mm(aperture, angle) - aperture.hole_radius_mm());
       const double x = r * std::cos(angle), y = r * std::sin(angle);
       const SurfacePoint at = surface.at(x, y);
-      const Vec3 world = placed.world_from_reflector.point({x, y, at.z_mm});
-      extent.add(world);
-      append(position, world);
-      append(normal, placed.world_from_reflector.direction(Direction::from({-at.dzdx, -at.dzdy, 1.0})).vec());
-      slope.push_back(degrees(std::atan(std::hypot(at.dzdx, at.dzdy))));
       // Beyond its rims the surface goes on straight: differences are taken just inside them.
       const double inside =
           std::clamp(r, aperture.hole_radius_mm() + 2.0 * step, rim_mm(aperture, angle) - 2.0 * step);
-      curvature.push_back(mean_curvature(surface, inside * std::cos(angle), inside * std::sin(angle), step));
+      mesh.add(placed.world_from_reflector, {x, y, at.z_mm}, Direction::from({-at.dzdx, -at.dzdy, 1.0}).vec(),
+               mean_curvature(surface, inside * std::cos(angle), inside * std::sin(angle), step), extent);
     }
   }
-  return {{"name", fmt::format("mirror {}", index + 1)},
-          {"rings", kRings + 1},
-          {"spokes", kSpokes},
-          {"position", base64_floats(position)},
-          {"normal", base64_floats(normal)},
-          {"slope_deg", base64_floats(slope)},
-          {"curvature_per_mm", base64_floats(curvature)}};
+  return mesh.json(fmt::format("mirror {}", index + 1), kRings + 1, kSpokes);
+}
+
+/// Curvature of the profile in its own plane, positive where it is hollow on the reflecting side.
+double profile_curvature(const SweptCurve& curve, double u) {
+  constexpr double kStep = 1e-5;
+  const SweptCurve::Point a = curve.at(std::max(0.0, u - kStep)), b = curve.at(std::min(1.0, u + kStep));
+  const SweptCurve::Point n = curve.at(u);
+  const double length = std::hypot(b.r_mm - a.r_mm, b.z_mm - a.z_mm);
+  // The tangent is the normal, turned by a right angle.
+  return ((b.normal_z - a.normal_z) * n.normal_r - (b.normal_r - a.normal_r) * n.normal_z) / length;
+}
+
+/// A swept curve with all its sheets: rings along the profile; of a trough each side of x by itself, its
+/// spokes going along y and back. A rectangle that cuts a surface of revolution is not drawn.
+void add_swept_curve(const PlacedReflector& placed, std::size_t index, Extent& extent, Json& mirrors) {
+  constexpr std::size_t kCurveRings = 96;
+  const SweptCurve& curve = *placed.reflector.curve;
+  const bool trough = curve.sweep() == Sweep::trough;
+  const double half_y = placed.reflector.aperture.half_y_mm();
+  for (const double side : trough ? std::vector{1.0, -1.0} : std::vector{1.0}) {
+    MirrorMesh mesh;
+    for (std::size_t ring = 0; ring <= kCurveRings; ++ring) {
+      const double u = static_cast<double>(ring) / kCurveRings;
+      const SweptCurve::Point p = curve.at(u);
+      const double along = profile_curvature(curve, u);
+      const double across = trough ? 0.0 : (p.r_mm > 0.0 ? -p.normal_r / p.r_mm : along);
+      for (std::size_t spoke = 0; spoke < kSpokes; ++spoke) {
+        const double t = static_cast<double>(spoke) / kSpokes, phi = 2.0 * std::numbers::pi * t;
+        const double c = trough ? side : std::cos(phi), s = trough ? 0.0 : std::sin(phi);
+        const double y = trough ? half_y * (1.0 - 4.0 * std::abs(t - 0.5)) : p.r_mm * s;
+        mesh.add(placed.world_from_reflector, {p.r_mm * c, y, p.z_mm},
+                 {p.normal_r * c, p.normal_r * s, p.normal_z}, 0.5 * (along + across), extent);
+      }
+    }
+    const std::string name = fmt::format("mirror {}", index + 1);
+    mirrors.push_back(
+        mesh.json(trough ? name + (side > 0.0 ? " (+x)" : " (-x)") : name, kCurveRings + 1, kSpokes));
+  }
 }
 
 /// The mesh with all vertices of a cell of a grid joined, `cells` to the longest side of its box; triangles
@@ -181,7 +232,11 @@ Json scene3d_json(const Scene& scene, const Scene3dOptions& options) {
   Extent extent;
   Json mirrors = Json::array();
   for (std::size_t i = 0; i < scene.reflectors.size(); ++i) {
-    mirrors.push_back(mirror_json(scene.reflectors[i], i, extent));
+    if (scene.reflectors[i].reflector.curve) {
+      add_swept_curve(scene.reflectors[i], i, extent, mirrors);
+    } else {
+      mirrors.push_back(mirror_json(scene.reflectors[i], i, extent));
+    }
   }
   Json bodies = Json::array();
   for (const Body& body : scene.bodies) bodies.push_back(body_json(body, extent));

@@ -48,6 +48,41 @@ TEST(Scene3d, MeshLiesOnTheMirrorWithItsSlopeAndCurvature) {
   }
 }
 
+// A sphere that closes in again, and a round trough: all of it is drawn, with its curvature.
+TEST(Scene3d, SweptCurvesHaveAllTheirSheets) {
+  const auto sphere = scene3d_json(scene_with(deep_ellipse_reflector(20.0, 20.0, 16.0, 6.0)));
+  const auto& mirror = sphere["mirrors"][0];
+  auto position = floats(mirror["position"]), curvature = floats(mirror["curvature_per_mm"]);
+  ASSERT_EQ(position.size(), 3 * mirror["rings"].get<std::size_t>() * mirror["spokes"].get<std::size_t>());
+  float low = 1e9f, high = -1e9f;
+  for (std::size_t i = 0; i < curvature.size(); ++i) {
+    const float x = position[3 * i], y = position[3 * i + 1], z = position[3 * i + 2];
+    EXPECT_NEAR(std::hypot(x, y, z), 20.0f, 1e-4f) << "placed with its centre at the origin";
+    EXPECT_NEAR(curvature[i], 0.05f, 1e-4f);
+    low = std::min(low, z);
+    high = std::max(high, z);
+  }
+  EXPECT_NEAR(high, std::sqrt(400.0f - 9.0f), 1e-3f) << "the hole";
+  EXPECT_NEAR(low, -std::sqrt(400.0f - 64.0f), 1e-3f) << "the mouth, below the equator";
+
+  std::vector<ProfileKnot> arc;
+  for (int i = 0; i <= 64; ++i) {
+    const double a = radians(150.0) * i / 64;
+    arc.push_back({20.0 * std::sin(a), 20.0 * (1.0 - std::cos(a))});
+  }
+  const auto trough = scene3d_json(scene_with(profile_trough(arc, Aperture::rectangle(20.0, 60.0))));
+  ASSERT_EQ(trough["mirrors"].size(), 2u);
+  for (std::size_t side = 0; side < 2; ++side) {
+    position = floats(trough["mirrors"][side]["position"]);
+    curvature = floats(trough["mirrors"][side]["curvature_per_mm"]);
+    for (std::size_t i = 0; i < curvature.size(); ++i) {
+      EXPECT_NEAR(std::hypot(position[3 * i], position[3 * i + 2]), 20.0f, 1e-3f);
+      EXPECT_LE(std::abs(position[3 * i + 1]), 30.001f);
+      EXPECT_NEAR(curvature[i], 0.025f, 2e-4f);
+    }
+  }
+}
+
 TEST(Scene3d, RectanglesKeepTheirCorners) {
   const auto json = scene3d_json(
       scene_with(conic_reflector(ConicPreset::parabola, 20.0, 0.0, Aperture::rectangle(60.0, 20.0))));

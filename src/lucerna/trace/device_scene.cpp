@@ -7,6 +7,7 @@
 #include "lucerna/core/error.h"
 #include "lucerna/source/adaptive_model.h"
 #include "lucerna/source/cluster_model.h"
+#include "lucerna/trace/facet_mirror.h"
 #include "lucerna/trace/field_view.h"
 
 namespace lucerna {
@@ -22,7 +23,9 @@ std::string why_not_on_accelerators(const Scene& scene) {
   if (!glasses.empty()) return "cover glasses are traced on the CPU only";
   for (const PlacedReflector& placed : reflectors) {
     [[maybe_unused]] const auto& [reflector, frame, reflectance, slope_error_mrad] = placed;
-    [[maybe_unused]] const auto& [surface, aperture] = reflector;
+    [[maybe_unused]] const auto& [surface, aperture, curve] = reflector;
+    if (curve) return "profiles that are no function of the radius are traced on the CPU only";
+    if (faceted(reflector) != nullptr) return "facets are traced on the CPU only";
   }
   return "";
 }

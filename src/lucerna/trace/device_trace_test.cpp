@@ -8,12 +8,14 @@
 #include <limits>
 
 #include "lucerna/core/error.h"
+#include "lucerna/reflector/faceted_surface.h"
 #include "lucerna/source/adaptive_model.h"
 #include "lucerna/source/cluster_compress.h"
 #include "lucerna/source/emitter.h"
 #include "lucerna/source/ray_set_source.h"
 #include "lucerna/trace/device_scene.h"
 #include "tests/support/device_scenes.h"
+#include "tests/support/random_rays.h"
 
 namespace lucerna {
 namespace {
@@ -227,6 +229,18 @@ TEST(DeviceTrace, BodiesAreRefusedInOneLine) {
   EXPECT_THROW(trace_on(emulated(), scene, kScalar), InputError);
   EXPECT_FALSE(why_not_on_accelerators(scene).empty());
   EXPECT_TRUE(why_not_on_accelerators(scene_of(cylinder())).empty());
+}
+
+TEST(DeviceTrace, MirrorsThatAreNoHeightFieldAreRefusedInOneLine) {
+  Scene scene = scene_of(cylinder());
+  scene.reflectors[0].reflector = deep_ellipse_reflector(10.0, 90.0, 40.0);
+  const std::string fault = test::message_of<InputError>([&] { trace_on(emulated(), scene, kScalar); });
+  EXPECT_NE(fault.find("profiles that are no function of the radius are traced on the CPU only"),
+            std::string::npos)
+      << fault;
+  const Reflector base = conic_reflector(ConicPreset::parabola, 12.0, 0.0, Aperture::circle(60.0));
+  scene.reflectors[0].reflector = {std::make_shared<FacetedSurface>(base.surface, 6.0, 20.0), base.aperture};
+  EXPECT_NE(why_not_on_accelerators(scene).find("facets are traced on the CPU only"), std::string::npos);
 }
 
 TEST(DeviceTrace, CudaWithoutADeviceIsAnErrorAndAutomaticTracesOnTheCpu) {

@@ -40,6 +40,7 @@ struct LaneRays {
 struct LaneHits {
   Float t, gx, gy;
   Int state;
+  Float gz = 1.0f;  ///< always, of height fields
 };
 
 /// kLanes rays on their way through one field.
@@ -402,6 +403,7 @@ inline void intersect(const FieldView& field, const LocalRays& rays, size_t n, L
     store(hits.t + i, hit.t);
     store(hits.gx + i, hit.gx);
     store(hits.gy + i, hit.gy);
+    store(hits.gz + i, hit.gz);
     store(hits.state + i, hit.state);
   }
 }
@@ -433,10 +435,11 @@ inline void to_local(const FrameView& k, const WorldRays& in, size_t n, int32_t 
 
 /// Rays reflected where they hit, in the mirror's frame still; also the cosine of incidence.
 LUCERNA_HD inline LaneRays reflected(const LaneRays& ray, const LaneHits& hit, Float& cosine) {
-  const Float across = ray.dz - hit.gx * ray.dx - hit.gy * ray.dy;   // d . n times the length of n
-  const Float n2 = Float(1.0f) + hit.gx * hit.gx + hit.gy * hit.gy;  // n = (-gx, -gy, 1)
+  // d . n times the length of n = (-gx, -gy, gz).
+  const Float across = hit.gz * ray.dz - hit.gx * ray.dx - hit.gy * ray.dy;
+  const Float n2 = hit.gz * hit.gz + hit.gx * hit.gx + hit.gy * hit.gy;
   const Float twice = 2.0f * across / n2;
-  const Float rx = fma(twice, hit.gx, ray.dx), ry = fma(twice, hit.gy, ray.dy), rz = ray.dz - twice;
+  const Float rx = fma(twice, hit.gx, ray.dx), ry = fma(twice, hit.gy, ray.dy), rz = ray.dz - twice * hit.gz;
   const Float unit = Float(1.0f) / sqrt(rx * rx + ry * ry + rz * rz);
   cosine = abs(across) / sqrt(n2);
   return {fma(hit.t, ray.dx, ray.x),
@@ -451,7 +454,8 @@ LUCERNA_HD inline LaneRays reflected(const LaneRays& ray, const LaneHits& hit, F
 inline void reflect_rays(const FrameView& k, const LocalRays& rays, const LocalHits& hits, size_t n,
                          WorldRays& out, float* cosine) {
   for (size_t i = 0; i < n; i += static_cast<size_t>(kLanes)) {
-    const LaneHits hit{load(hits.t + i), load(hits.gx + i), load(hits.gy + i), load(hits.state + i)};
+    const LaneHits hit{load(hits.t + i), load(hits.gx + i), load(hits.gy + i), load(hits.state + i),
+                       load(hits.gz + i)};
     const Mask m = hit.state == Int(kFront);
     Float c;
     const LaneRays r = in_frame(k, reflected(load_rays(rays, i), hit, c));

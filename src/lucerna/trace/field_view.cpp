@@ -31,8 +31,8 @@ FieldView view_of(const HeightField& field) {
   v.high = static_cast<float>(field.band().high_mm);
   // Heights of ray and quadric are sums of a few float32 terms of this size; their rounding is about an ulp
   // each.
-  const double extent = std::max(std::abs(field.region().x0_mm), std::abs(field.region().y0_mm));
-  const double height = std::abs(q.at(extent, extent).z_mm) + std::abs(q.at(-extent, extent).z_mm);
+  const double x = std::abs(field.region().x0_mm), y = std::abs(field.region().y0_mm);
+  const double extent = std::min(x, y), height = std::abs(q.at(x, y).z_mm) + std::abs(q.at(-x, y).z_mm);
   v.slack = static_cast<float>(4e-7 * (extent + height));
   v.round = field.aperture().shape() == ApertureShape::circle;
   v.half_x = static_cast<float>(field.aperture().half_x_mm());

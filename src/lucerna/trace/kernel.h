@@ -41,8 +41,9 @@ enum : int32_t { kMiss = 0, kFront = 1, kBack = 2 };
 /// Where they meet it.
 struct LocalHits {
   alignas(64) float t[kBatch];
-  alignas(64) float gx[kBatch], gy[kBatch];  ///< gradient of the surface there
-  alignas(64) int32_t state[kBatch];         ///< kMiss, kFront, kBack
+  /// A normal there of any length, towards the front: (-gx, -gy, gz). A height field's is its gradient and 1.
+  alignas(64) float gx[kBatch], gy[kBatch], gz[kBatch];
+  alignas(64) int32_t state[kBatch];  ///< kMiss, kFront, kBack
 };
 
 /// Rays in the luminaire frame, with what they carry.

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "lucerna/core/number_table.h"
 #include "lucerna/reflector/faceted_surface.h"
 #include "lucerna/reflector/height_map.h"
 #include "lucerna/reflector/smooth_shape.h"
@@ -53,6 +54,20 @@ Aperture read_map_aperture(TomlReader& reader, double half_x_mm, double half_y_m
   return at_key(reader, "hole_diameter_mm", [&] { return Aperture::circle(diameter.value_or(most), hole); });
 }
 
+/// An ellipsoid past its equator, closed in to a mouth.
+Reflector read_deep_ellipse(TomlReader& reader, double focal_mm, double focal2_mm, double mouth_mm,
+                            bool trough) {
+  if (trough) reader.fail("mouth_diameter_mm", "belongs to family = \"revolution\"");
+  for (const char* key : {"diameter_mm", "size_mm"}) {
+    if (reader.has(key)) reader.fail(key, "the mirror ends at mouth_diameter_mm; expected one of both");
+  }
+  const std::string shape = reader.text("aperture").value_or("circle");
+  if (shape != "circle") reader.fail("aperture", fmt::format("found '{}', a mouth is a circle", shape));
+  const double hole = reader.number("hole_diameter_mm", 0.0);
+  return at_key(reader, "mouth_diameter_mm",
+                [&] { return deep_ellipse_reflector(focal_mm, focal2_mm, mouth_mm, hole); });
+}
+
 Reflector read_conic(TomlReader& reader, const std::string& preset, bool trough) {
   static const std::map<std::string, ConicPreset, std::less<>> kPresets{
       {"parabola", ConicPreset::parabola},
@@ -66,6 +81,12 @@ Reflector read_conic(TomlReader& reader, const std::string& preset, bool trough)
   if (!focal) reader.fail("focal_mm", "is missing");
   if (found->second == ConicPreset::parabola && focal2) reader.fail("focal2_mm", "a parabola has one focus");
   if (found->second != ConicPreset::parabola && !focal2) reader.fail("focal2_mm", "is missing");
+  if (const auto mouth = reader.positive("mouth_diameter_mm")) {
+    if (found->second != ConicPreset::ellipse) {
+      reader.fail("mouth_diameter_mm", fmt::format("a {} does not close in again", preset));
+    }
+    return read_deep_ellipse(reader, *focal, *focal2, *mouth, trough);
+  }
   const Aperture aperture = read_aperture(reader, std::nullopt);
   return at_key(reader, "preset", [&] {
     const auto make = trough ? conic_trough : conic_reflector;
@@ -73,27 +94,59 @@ Reflector read_conic(TomlReader& reader, const std::string& preset, bool trough)
   });
 }
 
+/// The profile of `file`: lines of r, z; the first may be names.
+std::vector<ProfileKnot> read_profile_file(const std::filesystem::path& path) {
+  const NumberTable table = read_number_table(path, TableHeader::optional);
+  if (table.columns != 2) {
+    throw_input_error(path.string(), "", "has {} columns, expected two: r and z in mm", table.columns);
+  }
+  std::vector<ProfileKnot> knots;
+  for (std::size_t i = 0; i < table.rows; ++i)
+    knots.push_back({table.numbers[2 * i], table.numbers[2 * i + 1]});
+  return knots;
+}
+
 /// The families that a profile makes, turned about z or drawn along y.
-Reflector read_profile_family(TomlReader& reader, bool trough) {
+Reflector read_profile_family(TomlReader& reader, bool trough, Project& project) {
   const auto preset = reader.text("preset");
   const auto profile = reader.pairs("profile_mm");
+  const auto file = reader.file("file");
   if (preset && profile) reader.fail("profile_mm", "a reflector has either a preset or a profile");
+  if (file && (preset || profile)) {
+    reader.fail("file", fmt::format("the reflector has a {} too; expected one of both",
+                                    preset ? "preset" : "profile_mm"));
+  }
   if (preset) return read_conic(reader, *preset, trough);
-  if (!profile) reader.fail("preset", "is missing: the reflector needs a preset or a profile_mm");
-  if (profile->empty()) reader.fail("profile_mm", "found no points, expected at least two");
+  if (!profile && !file) {
+    reader.fail("preset",
+                "is missing: the reflector needs a preset or a profile_mm or a file with a profile");
+  }
+  const char* const key = file ? "file" : "profile_mm";
   std::vector<ProfileKnot> knots;
-  for (const auto& [r, z] : *profile) knots.push_back({r, z});
-  const Aperture aperture = read_aperture(reader, 2.0 * knots.back().r_mm);
-  return at_key(reader, "profile_mm",
-                [&] { return (trough ? profile_trough : profile_reflector)(knots, aperture); });
+  if (file) {
+    project.inputs.push_back(*file);
+    knots = read_profile_file(*file);
+  } else {
+    for (const auto& [r, z] : *profile) knots.push_back({r, z});
+  }
+  if (knots.empty()) reader.fail(key, "found no points, expected at least two");
+  std::optional<double> mouth = 2.0 * knots.back().r_mm;
+  if (!(*mouth > 0.0)) mouth = std::nullopt;
+  const Aperture aperture = read_aperture(reader, mouth);
+  return at_key(reader, key, [&] { return (trough ? profile_trough : profile_reflector)(knots, aperture); });
 }
 
 /// Facets on a base of revolution: flat, or pillows of a radius of curvature.
-Reflector read_faceted(TomlReader& reader) {
+Reflector read_faceted(TomlReader& reader, Project& project) {
   const auto pitch = reader.positive("pitch_mm");
   if (!pitch) reader.fail("pitch_mm", "is missing: the side of a facet");
   const double radius = reader.number("pillow_radius_mm", std::numeric_limits<double>::infinity());
-  Reflector base = read_profile_family(reader, false);
+  Reflector base = read_profile_family(reader, false, project);
+  if (base.curve) {
+    reader.fail("family",
+                "facets need a base that is a function of the radius; this one is vertical or turns back "
+                "towards the axis");
+  }
   return at_key(reader, "pillow_radius_mm", [&] {
     return Reflector{std::make_shared<FacetedSurface>(base.surface, *pitch, radius), base.aperture};
   });
@@ -169,9 +222,9 @@ void read_mesh_mirror(TomlReader& reader, Project& project) {
 }
 
 Reflector read_family(TomlReader& reader, const std::string& family, Project& project) {
-  if (family == "revolution") return read_profile_family(reader, false);
-  if (family == "trough") return read_profile_family(reader, true);
-  if (family == "faceted") return read_faceted(reader);
+  if (family == "revolution") return read_profile_family(reader, false, project);
+  if (family == "trough") return read_profile_family(reader, true, project);
+  if (family == "faceted") return read_faceted(reader, project);
   if (family == "bspline") return read_bspline(reader);
   if (family == "heightmap") return read_heightmap(reader, project);
   reader.fail(

@@ -46,13 +46,32 @@ turn_deg = 0.0
 reflectance = 0.92
 slope_error_mrad = 0.0        # Gaussian tilt of the normal, standard deviation about each of two axes
 
-# A profile as points [r, z], a spline through them; reflectance over the angle of incidence.
+# A profile as points [r, z] from the vertex to the rim, a spline through them; reflectance over the angle of incidence.
 #[[reflector]]
 #family = "revolution"
 #profile_mm = [[0, 0], [20, 6], [40, 24]]
 #position_mm = [200, 0, 15]
 #axis = "-z"
 #reflectance = [[0, 0.92], [60, 0.90], [85, 0.95]]
+
+# A profile that is no function of r, vertex first: deep concentrators, mirrors that close in again. Or file = "profile.csv"
+# with lines r,z.
+#[[reflector]]
+#family = "revolution"
+#profile_mm = [[0, 0], [18, 12], [20, 30], [14, 44]]
+#position_mm = [250, 0, 10]
+#axis = "-z"
+
+# An ellipsoid past its equator (36 mm wide here), from the hole about its vertex to the mouth.
+#[[reflector]]
+#family = "revolution"
+#preset = "ellipse"
+#focal_mm = 5.0
+#focal2_mm = 65.0
+#mouth_diameter_mm = 30.0
+#hole_diameter_mm = 4.0
+#position_mm = [-100, 0, 5]
+#axis = "-z"
 
 # An ellipse drawn along y.
 #[[reflector]]

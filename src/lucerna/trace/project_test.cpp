@@ -85,6 +85,49 @@ TEST(Project, FamiliesBuildTheirMirrors) {
   EXPECT_EQ(spline.scene.reflectors[0].reflector.aperture.half_x_mm(), 40.0);
 }
 
+// Mirrors that are no height field: an ellipsoid past its equator, a profile that closes in again, by points
+// or from a file.
+TEST(Project, ProfilesThatAreNoFunctionOfTheRadiusAreCurves) {
+  const auto mirror = [](const std::string& keys) {
+    return read(reflector("family = 'revolution'\n" + keys)).scene.reflectors[0].reflector;
+  };
+  const std::string ellipse = "preset = 'ellipse'\nfocal_mm = 5\nfocal2_mm = 65\n";
+  const Reflector deep = mirror(ellipse + "mouth_diameter_mm = 30\nhole_diameter_mm = 4\n");
+  ASSERT_NE(deep.curve, nullptr);
+  EXPECT_EQ(deep.curve->last().r_mm, 15.0);
+  EXPECT_GT(deep.curve->last().z_mm, 35.0) << "past the equator";
+  EXPECT_EQ(deep.curve->first().r_mm, 2.0);
+  EXPECT_EQ(mirror(ellipse + "diameter_mm = 30\n").curve, nullptr);
+  const Reflector points = mirror("profile_mm = [[0, 0], [18, 12], [20, 30], [14, 44]]\n");
+  ASSERT_NE(points.curve, nullptr);
+  EXPECT_GT(points.aperture.half_x_mm(), 19.9) << "the bulge behind the mouth belongs to the mirror";
+
+  const test::TempDir dir;
+  write_file(dir / "curve.csv", "r_mm,z_mm\n0,0\n18,12\n20,30\n14,44\n");
+  write_file(dir / "p.toml", reflector("family = 'revolution'\nfile = 'curve.csv'\n"));
+  const Project project = read_project(dir / "p.toml");
+  const Reflector from_file = project.scene.reflectors[0].reflector;
+  ASSERT_NE(from_file.curve, nullptr);
+  EXPECT_EQ(from_file.curve->at(0.7).r_mm, points.curve->at(0.7).r_mm);
+  EXPECT_EQ(project.inputs.size(), 2u);
+  EXPECT_NE(project_text(project).find((dir / "curve.csv").string()), std::string::npos);
+
+  const auto expect = [](const std::string& keys, const std::string& part) {
+    const std::string found = message(reflector("family = 'revolution'\n" + keys));
+    EXPECT_NE(found.find(part), std::string::npos) << found;
+  };
+  expect(ellipse + "mouth_diameter_mm = 40\n",
+         "reflector[0].mouth_diameter_mm: reflector: an ellipse with an "
+         "equator of 36.0555 mm");
+  expect(ellipse + "mouth_diameter_mm = 30\nhole_diameter_mm = 37\n", "a hole of 37 mm");
+  expect(ellipse + "mouth_diameter_mm = 30\ndiameter_mm = 50\n", "reflector[0].diameter_mm: the mirror ends");
+  expect(ellipse + "mouth_diameter_mm = 30\naperture = 'rectangle'\n", "a mouth is a circle");
+  expect("preset = 'parabola'\nfocal_mm = 5\nmouth_diameter_mm = 30\n", "a parabola does not close in again");
+  expect(ellipse + "diameter_mm = 40\n", "or mouth_diameter_mm for a mirror that goes past it");
+  expect("file = 'none.csv'\n", "none.csv");
+  expect("file = 'none.csv'\nprofile_mm = [[0, 0], [9, 9]]\n", "the reflector has a profile_mm too");
+}
+
 TEST(Project, TroughsFacetsAndTheirSurfacesAreRead) {
   const std::string parabola = "preset = 'parabola'\nfocal_mm = 10\ndiameter_mm = 80\n";
   const auto mirror = [&](const std::string& keys) {
@@ -243,7 +286,16 @@ TEST(Project, BadMirrorsNameTheirKey) {
          "reflector[0].reflectance");
   expect(reflector(parabola + "focal_mm = 10\nfocal2_mm = 10\ndiameter_mm = 80\n"),
          "a parabola has one focus");
-  expect(reflector("family = 'revolution'\nprofile_mm = [[0, 0], [20, 10], [15, 40]]\n"), "profile_mm");
+  expect(reflector(
+             "family = 'revolution'\nprofile_mm = [[0, 0], [20, 10], [20, 30], [5, 20], [10, 5], [30, 2]]\n"),
+         "reflector[0].profile_mm: reflector: the profile crosses itself: between points");
+  expect(reflector("family = 'revolution'\nprofile_mm = [[20, 9], [10, 3], [0, 0]]\ndiameter_mm = 40\n"),
+         "from the rim to the axis");
+  expect(reflector("family = 'revolution'\nprofile_mm = [[0, 0], [18, 12], [20, 30], [14, 44]]\n"
+                   "diameter_mm = 35\n"),
+         "would cut it twice; expected the mouth's 28 mm");
+  expect(reflector("family = 'faceted'\npitch_mm = 4\nprofile_mm = [[0, 0], [18, 12], [14, 44]]\n"),
+         "reflector[0].family: facets need a base that is a function of the radius");
   expect(reflector("family = 'revolution'\n"), "needs a preset or a profile_mm");
   expect(std::string(kSource) + "surface = 'sphere'\n", "surface");
   expect(std::string(kSource) + "surface = 'sphere'\nsurface_mm = 1.0\n", "outside its sphere surface");

@@ -121,14 +121,40 @@ class Walk {
 
 }  // namespace
 
-ReferenceTracer::ReferenceTracer(const Reflector& reflector, int levels)
-    : reflector_(reflector),
-      mipmap_(reflector, levels),
-      offset_mm_(1e-11 *
-                 (1.0 + reflector.aperture.outer_radius_mm() + std::abs(mipmap_.cell(0, 0, 0).high_mm))) {}
+ReferenceTracer::ReferenceTracer(const Reflector& reflector, int levels) : reflector_(reflector) {
+  double high = 0.0;
+  if (reflector.curve) {
+    curve_ = view_of(*reflector.curve, reflector.aperture);
+    high = reflector.curve->heights().high_mm;
+  } else if (const FacetedSurface* surface = faceted(reflector)) {
+    facets_.emplace(*surface, reflector.aperture);
+    high = facets_->view().high;
+  } else {
+    mipmap_.emplace(reflector, levels);
+    high = mipmap_->cell(0, 0, 0).high_mm;
+  }
+  offset_mm_ = 1e-11 * (1.0 + reflector.aperture.outer_radius_mm() + std::abs(high));
+}
+
+std::optional<MirrorHit> ReferenceTracer::first_hit_with_curve(const Ray& ray) const {
+  const CurveHit hit = CurveWalk(curve_, ray.origin_mm, ray.direction.vec(), 0.0).run();
+  if (!hit.met) return std::nullopt;
+  const Vec3 off = (hit.front ? offset_mm_ : -offset_mm_) * hit.normal;
+  return MirrorHit{hit.t, ray.at(hit.t) + off, Direction::from_unit(hit.normal), hit.front};
+}
+
+std::optional<MirrorHit> ReferenceTracer::first_hit_with_facets(const Ray& ray) const {
+  const FacetHit hit = meet_facets(facets_->view(), ray.origin_mm, ray.direction.vec(), 0.0);
+  if (!hit.met) return std::nullopt;
+  const Direction normal = Direction::from({-hit.dzdx, -hit.dzdy, 1.0});
+  const Vec3 off = (hit.front ? offset_mm_ : -offset_mm_) * normal.vec();
+  return MirrorHit{hit.t, ray.at(hit.t) + off, normal, hit.front};
+}
 
 std::optional<MirrorHit> ReferenceTracer::first_hit(const Ray& ray) const {
-  const auto found = Walk(reflector_, mipmap_, ray).run();
+  if (reflector_.curve) return first_hit_with_curve(ray);
+  if (facets_) return first_hit_with_facets(ray);
+  const auto found = Walk(reflector_, *mipmap_, ray).run();
   if (!found) return std::nullopt;
   const Vec3 p = ray.at(found->t);
   const SurfacePoint& s = found->surface;

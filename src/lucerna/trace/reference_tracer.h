@@ -5,6 +5,8 @@
 
 #include "lucerna/core/direction.h"
 #include "lucerna/reflector/height_mipmap.h"
+#include "lucerna/trace/curve_view.h"
+#include "lucerna/trace/facet_mirror.h"
 
 namespace lucerna {
 
@@ -24,7 +26,8 @@ struct MirrorHit {
 /// The plain tracer that faster ones are checked against: a maximum-mipmap quadtree walked from the ray's
 /// start, each hit refined on the exact surface to rounding, normals exact, all in double. A sign change of
 /// (height of the ray - height of the surface) between shared cell borders cannot fall between cells, so the
-/// surface is watertight; within a cell up to two crossings are found. Immutable and thread safe.
+/// surface is watertight; within a cell up to two crossings are found. Swept curves (Reflector::curve) and
+/// facets go to kernels of their own instead. Immutable and thread safe.
 class ReferenceTracer {
  public:
   /// 2^levels cells a side; a hit does not depend on it but where a ray grazes the surface twice within one
@@ -36,8 +39,13 @@ class ReferenceTracer {
   std::optional<MirrorHit> first_hit(const Ray& ray) const;
 
  private:
+  std::optional<MirrorHit> first_hit_with_curve(const Ray& ray) const;
+  std::optional<MirrorHit> first_hit_with_facets(const Ray& ray) const;
+
   Reflector reflector_;
-  HeightMipmap mipmap_;
+  std::optional<HeightMipmap> mipmap_;  ///< of height fields
+  CurveView curve_{};                   ///< of swept curves; points into reflector_.curve
+  std::optional<FacetMirror> facets_;   ///< of faceted surfaces
   double offset_mm_;
 };
 

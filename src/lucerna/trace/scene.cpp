@@ -9,6 +9,19 @@
 
 namespace lucerna {
 
+namespace {
+
+bool is_behind(const Reflector& mirror, const Vec3& p) {
+  if (mirror.curve) {
+    // There may be nothing over this place: the narrow end of a concentrator is open.
+    const double r = mirror.curve->sweep() == Sweep::trough ? std::abs(p.x) : std::hypot(p.x, p.y);
+    if (r < mirror.curve->r_min_mm() || r > mirror.curve->r_max_mm()) return false;
+  }
+  return mirror.aperture.contains(p.x, p.y) && p.z < mirror.surface->at(p.x, p.y).z_mm;
+}
+
+}  // namespace
+
 double share_behind(const PlacedSource& source, const PlacedReflector& mirror) {
   RayBlock rays;
   rays.resize(
@@ -19,8 +32,7 @@ double share_behind(const PlacedSource& source, const PlacedReflector& mirror) {
   std::size_t behind = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Vec3 p = mirror_from_source.point(rays.origin_mm(i));
-    if (mirror.reflector.aperture.contains(p.x, p.y) && p.z < mirror.reflector.surface->at(p.x, p.y).z_mm)
-      ++behind;
+    if (is_behind(mirror.reflector, p)) ++behind;
   }
   return static_cast<double>(behind) / static_cast<double>(rays.size());
 }

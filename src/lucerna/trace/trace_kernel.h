@@ -108,11 +108,12 @@ LUCERNA_HD inline FirstHit first_hit(const LaunchView& v, const LaneRays& ray, s
 }
 
 LUCERNA_HD inline void tilt(double slope_error_rad, const ReflectionKey& key, LaneHits& hit) {
-  const Direction normal =
-      Direction::from({-static_cast<double>(hit.gx.v), -static_cast<double>(hit.gy.v), 1.0});
+  const Direction normal = Direction::from(
+      {-static_cast<double>(hit.gx.v), -static_cast<double>(hit.gy.v), static_cast<double>(hit.gz.v)});
   const Vec3 t = tilted_normal(normal, slope_error_rad, key);
-  hit.gx = static_cast<float>(-t.x / t.z);
-  hit.gy = static_cast<float>(-t.y / t.z);
+  hit.gx = static_cast<float>(-t.x);
+  hit.gy = static_cast<float>(-t.y);
+  hit.gz = static_cast<float>(t.z);
 }
 
 LUCERNA_HD inline bool all_finite(const LaneRays& r) {

@@ -8,6 +8,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/reflector/height_field.h"
+#include "lucerna/trace/exact_mirrors.h"
 #include "lucerna/trace/field_view.h"
 #include "lucerna/trace/slope_error.h"
 #include "lucerna/trace/trace_engine.h"
@@ -27,12 +28,21 @@ class WavefrontEngine final : public TraceEngine {
         max_bounces_(options.max_bounces),
         kind_(options.sequence),
         kernels_(options.isa.empty() ? best_kernels() : kernels_named(options.isa.c_str())) {
-    for (const PlacedReflector& r : scene.reflectors) fields_.emplace_back(r.reflector, options.cells);
+    for (const PlacedReflector& r : scene.reflectors) {
+      const FacetedSurface* const facets = faceted(r.reflector);
+      facets_.push_back(facets ? std::make_unique<const FacetMirror>(*facets, r.reflector.aperture)
+                               : nullptr);
+      fields_.push_back(facets || r.reflector.curve
+                            ? nullptr
+                            : std::make_unique<const HeightField>(r.reflector, options.cells));
+    }
     for (std::size_t i = 0; i < scene.reflectors.size(); ++i) {
       const PlacedReflector& r = scene.reflectors[i];
-      mirrors_.push_back({view_of(fields_[i]), view_of(r.world_from_reflector),
-                          view_of(r.world_from_reflector.inverse()), &r.reflectance,
-                          1e-3 * r.slope_error_mrad});
+      mirrors_.push_back({fields_[i] ? view_of(*fields_[i]) : FieldView{},
+                          facets_[i] ? facets_[i]->view() : FacetView{},
+                          r.reflector.curve ? view_of(*r.reflector.curve, r.reflector.aperture) : CurveView{},
+                          view_of(r.world_from_reflector), view_of(r.world_from_reflector.inverse()),
+                          &r.reflectance, 1e-3 * r.slope_error_mrad});
     }
   }
 
@@ -53,6 +63,9 @@ class WavefrontEngine final : public TraceEngine {
  private:
   struct Mirror {
     FieldView field;
+    // In the field's place, if they have any:
+    FacetView facets;
+    CurveView curve;
     FrameView world_from_mirror, mirror_from_world;
     const Reflectance* reflectance;
     double slope_error_rad;
@@ -168,10 +181,12 @@ class WavefrontEngine final : public TraceEngine {
       if (hits.state[i] != kFront) continue;
       const ReflectionKey key{run.sequence_seed, run.first + static_cast<std::uint64_t>(rays.number[i]),
                               bounce};
-      const Vec3 normal{-static_cast<double>(hits.gx[i]), -static_cast<double>(hits.gy[i]), 1.0};
+      const Vec3 normal{-static_cast<double>(hits.gx[i]), -static_cast<double>(hits.gy[i]),
+                        static_cast<double>(hits.gz[i])};
       const Vec3 t = tilted_normal(Direction::from(normal), slope_error_rad, key);
-      hits.gx[i] = static_cast<float>(-t.x / t.z);
-      hits.gy[i] = static_cast<float>(-t.y / t.z);
+      hits.gx[i] = static_cast<float>(-t.x);
+      hits.gy[i] = static_cast<float>(-t.y);
+      hits.gz[i] = static_cast<float>(t.z);
     }
   }
 
@@ -180,7 +195,13 @@ class WavefrontEngine final : public TraceEngine {
     for (std::size_t m = 0; m < mirrors_.size(); ++m) {
       kernels_.to_local(mirrors_[m].mirror_from_world, rays, n, static_cast<std::int32_t>(m),
                         meetings[m].rays);
-      kernels_.intersect(mirrors_[m].field, meetings[m].rays, n, meetings[m].hits);
+      if (mirrors_[m].curve.node_count > 0) {
+        meet_curve(mirrors_[m].curve, meetings[m].rays, n, meetings[m].hits);
+      } else if (mirrors_[m].facets.columns > 0) {
+        meet_facets(mirrors_[m].facets, meetings[m].rays, n, meetings[m].hits);
+      } else {
+        kernels_.intersect(mirrors_[m].field, meetings[m].rays, n, meetings[m].hits);
+      }
     }
     for (std::size_t m = 1; m < mirrors_.size(); ++m) {
       for (std::size_t i = 0; i < n; ++i) {
@@ -345,7 +366,9 @@ class WavefrontEngine final : public TraceEngine {
   int max_bounces_;
   SequenceKind kind_;
   const Kernels& kernels_;
-  std::vector<HeightField> fields_;
+  // Null where the mirror is of another kind.
+  std::vector<std::unique_ptr<const HeightField>> fields_;
+  std::vector<std::unique_ptr<const FacetMirror>> facets_;
   std::vector<Mirror> mirrors_;
 };
 
