@@ -13,9 +13,13 @@ namespace {
 inline constexpr float kFar = 1e18f;
 
 /// A component that is nearly 0 counts as a tiny positive one; its sign is the reciprocal's everywhere.
-LUCERNA_HD inline Float reciprocal_of(Float d) {
-  const Float tiny = 1e-20f;
-  return Float(1.0f) / select(abs(d) < tiny, tiny, d);
+inline constexpr float kNoDirection = 1e-20f;
+
+/// 1 / d. A ray that runs along a grid line belongs to the cells towards the middle of the grid, `inward` of
+/// it: so it is in the grid on its borders too.
+LUCERNA_HD inline Float reciprocal_of(Float d, Float inward) {
+  const Float none = select(inward < Float(0.0f), Float(0.0f) - kNoDirection, kNoDirection);
+  return Float(1.0f) / select(abs(d) < Float(kNoDirection), none, d);
 }
 
 /// Both roots of a t^2 + b t + c = 0 with a < 0, in order; none where the discriminant is below 0.
@@ -75,10 +79,13 @@ class Packet {
   LUCERNA_HD Float half() const { return 0.5f * (f_.high - f_.low); }
 
   LUCERNA_HD void prepare(Mask lanes) {
-    idx_ = reciprocal_of(dx_);
-    idy_ = reciprocal_of(dy_);
-    const Float ax = (Float(f_.x0) - ox_) * idx_, bx = (Float(f_.x1) - ox_) * idx_;
-    const Float ay = (Float(f_.y0) - oy_) * idy_, by = (Float(f_.y1) - oy_) * idy_;
+    idx_ = reciprocal_of(dx_, 0.5f * (f_.x0 + f_.x1) - ox_);
+    idy_ = reciprocal_of(dy_, 0.5f * (f_.y0 + f_.y1) - oy_);
+    // Along a border 0 times infinity would be anything.
+    const Float mx = select(abs(dx_) < Float(kNoDirection), 1e-6f * (f_.x1 - f_.x0), 0.0f);
+    const Float my = select(abs(dy_) < Float(kNoDirection), 1e-6f * (f_.y1 - f_.y0), 0.0f);
+    const Float ax = (Float(f_.x0) - mx - ox_) * idx_, bx = (Float(f_.x1) + mx - ox_) * idx_;
+    const Float ay = (Float(f_.y0) - my - oy_) * idy_, by = (Float(f_.y1) + my - oy_) * idy_;
     const Float t0 = max(max(min(ax, bx), min(ay, by)), 0.0f);
     // A little past the region, so that its last border is crossed like any other.
     const Float t1 = fma(min(min(max(ax, bx), max(ay, by)), kFar), 1.00001f, 1e-4f);
@@ -197,7 +204,18 @@ class Packet {
     leaf_ = leaf_ | down;
     node_ = node_ & ~down;
     level_ = select(enter & ~down, level_ - Int(1), level_);
+    // Where there is no mirror the ray may have gone through the surface unseen.
+    const Mask unseen = skip & (e < Float(0.0f));
+    if (any(unseen)) look_at_side(unseen, te);
     if (any(skip)) skip_node(skip, nx, ny, tx, ty, te);
+  }
+
+  /// On which side of the surface the lanes of `m` are at t.
+  LUCERNA_HD void look_at_side(Mask m, Float t) {
+    Int ix, iy;
+    cell_at(t, ix, iy);
+    side_ = select(m, select(surface(t, ix, iy).z <= over(t), 1.0f, -1.0f), side_);
+    set_end(m);
   }
 
   /// On to the square behind this one, a level up where that has another parent.
@@ -250,7 +268,10 @@ class Packet {
     const Mask border = leaf_ & ~ends;
     if (any(border)) {
       const Float f = side_ * (over(segment) - border_height(segment, by_x, gx, gy));
-      cross = cross | (border & (f < Float(0.0f) - f_.slack));
+      // A border lets a ray be under the surface by the slack, and so does a hit behind it: where a reflected
+      // ray starts, twice as much is let through, or it would meet its start for ever.
+      const Mask starts = on_mirror_ & (segment < Float(512.0f * f_.slack));
+      cross = cross | (border & (f < Float(0.0f) - select(starts, 2.0f * f_.slack, f_.slack)));
     }
     const Mask over_now = ends & ~cross;
     const Mask go = border & ~cross;
