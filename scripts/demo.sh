@@ -43,7 +43,6 @@ kind = "far-field"
 [target]
 file = "oval-beam.ldt"
 [design]
-intervals = [8, 8]
 [design.limits]
 symmetry = "both"
 max_height_mm = 35.0

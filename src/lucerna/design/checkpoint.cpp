@@ -11,7 +11,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr const char* kMagic = "lucerna-design-checkpoint-2";
+constexpr const char* kMagic = "lucerna-design-checkpoint-3";
 /// More numbers than any design has; keeps a damaged count from asking for memory.
 constexpr std::size_t kMostNumbers = 1 << 20;
 
@@ -44,6 +44,16 @@ class Reader {
     for (std::size_t i = 0; i < n; ++i) v.push_back(value<double>());
     return v;
   }
+  FitMark mark(const char* name) {
+    expect(name);
+    FitMark m;
+    m.cost = value<double>();
+    m.over_noise = value<double>();
+    m.intervals_x = value<int>();
+    m.intervals_y = value<int>();
+    m.parameters = numbers("of");
+    return m;
+  }
 
  private:
   template <class T>
@@ -66,17 +76,23 @@ void put(std::string& text, const char* name, const std::vector<double>& v) {
   text += '\n';
 }
 
+void put(std::string& text, const char* name, const FitMark& m) {
+  text += fmt::format("{} {} {} {} {} ", name, m.cost, m.over_noise, m.intervals_x, m.intervals_y);
+  put(text, "of", m.parameters);
+}
+
 }  // namespace
 
 std::string checkpoint_text(const FitState& s, const std::string& key) {
   std::string text = fmt::format(
       "{}\nkey {}\nintervals_x {}\nintervals_y {}\nstage {}\nstep {}\nlambda {}\nevaluations {}\n"
-      "total_rays {}\nstarts {}\ngate_cost {}\ngate_intervals_x {}\ngate_intervals_y {}\n",
+      "total_rays {}\nover_noise {}\nstarts {}\nfruitless {}\n",
       kMagic, key, s.intervals_x, s.intervals_y, s.stage, s.step, s.lambda, s.evaluations, s.total_rays,
-      s.starts, s.gate_cost, s.gate_intervals_x, s.gate_intervals_y);
+      s.over_noise, s.starts, s.fruitless);
   put(text, "parameters", s.parameters);
   put(text, "costs", s.costs);
-  put(text, "gate_parameters", s.gate_parameters);
+  put(text, "gate", s.gate);
+  put(text, "best", s.best);
   put(text, "search_costs", s.search_costs);
   return text + "end\n";
 }
@@ -96,13 +112,13 @@ FitState parse_checkpoint(const std::string& text, const std::string& key) {
   s.lambda = in.number<double>("lambda");
   s.evaluations = in.number<int>("evaluations");
   s.total_rays = in.number<std::uint64_t>("total_rays");
+  s.over_noise = in.number<double>("over_noise");
   s.starts = in.number<int>("starts");
-  s.gate_cost = in.number<double>("gate_cost");
-  s.gate_intervals_x = in.number<int>("gate_intervals_x");
-  s.gate_intervals_y = in.number<int>("gate_intervals_y");
+  s.fruitless = in.number<int>("fruitless");
   s.parameters = in.numbers("parameters");
   s.costs = in.numbers("costs");
-  s.gate_parameters = in.numbers("gate_parameters");
+  s.gate = in.mark("gate");
+  s.best = in.mark("best");
   s.search_costs = in.numbers("search_costs");
   in.expect("end");
   return s;

@@ -149,6 +149,7 @@ void judge(const DesignProblem& problem, const DesignOptions& options, const Fit
 FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& options, DesignRays& rays) {
   FitProblem fit{&rays, problem.reflectance, {}, target_window(problem), problem.target.mode};
   fit.seed = options.seed;
+  fit.fruitless = problem.attempts;
   rays.grow(kFluxRays);
   if (problem.target.mode == TargetMode::shape) {
     EvaluationOptions plain;
@@ -169,7 +170,8 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
   TimeBudget time(options.time_s.value_or(problem.time_s), options.judge_rays + options.rays_after);
   DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
   FitProblem fit_data = fit_problem(problem, options, rays);
-  const std::vector<FitStage> stages = ladder(problem.start, fit_data.bins, options.most_rays, true);
+  const std::vector<FitStage> stages =
+      ladder(problem.start, fit_data.bins, {options.most_rays, true, problem.growth});
   const std::string key = problem_key(problem, options);
   FitState state;
   if (!options.checkpoint.empty()) state = parse_checkpoint(options.checkpoint, key);
@@ -221,9 +223,14 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
   }
   result.shape = ShapeLimits(problem.limits, problem.start).nearest(fit.best());
   result.checkpoint = checkpoint_text(fit.state(), key);
+  const bool at_noise = fit.at_noise();
   result.evaluations = fit.state().evaluations;
   result.rays = fit.state().total_rays;
   conclude();
+  if (result.end == DesignEnd::converged && !at_noise) {
+    result.remarks.push_back(fmt::format(
+        "ended before its time: {} further attempts in turn brought nothing better", fit.state().fruitless));
+  }
   return result;
 }
 

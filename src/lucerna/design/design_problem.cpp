@@ -67,6 +67,29 @@ std::vector<int> read_intervals(TomlReader& reader) {
   return out;
 }
 
+/// Attempts in turn that may bring nothing: a mirror of revolution has few parameters, cheap evaluations and
+/// many basins.
+constexpr int kAttempts = 6, kAttemptsOfRevolution = 12;
+
+std::optional<int> read_attempts(TomlReader& reader) {
+  const std::optional<double> n = reader.number("attempts");
+  if (!n) return std::nullopt;
+  if (!(*n >= 0.0 && *n <= 1000.0 && *n == std::floor(*n))) {
+    reader.fail("attempts", fmt::format("found {}, expected a whole number from 0 to 1000", *n));
+  }
+  return static_cast<int>(*n);
+}
+
+/// How often the knots may be doubled: bins hold about four numbers for each parameter then.
+int doublings(const DesignShape& shape, int bins, bool told) {
+  if (told || shape.is_revolution()) return 0;
+  const int across = std::max(shape.intervals_x(), shape.intervals_y());
+  const double share = shape.symmetry() == ShapeSymmetry::both ? 0.25 : 1.0;
+  int n = 0;
+  while (share * std::pow((across << (n + 1)) + 3, 2) <= 0.25 * bins * bins) ++n;
+  return n;
+}
+
 toml::array point(const Vec3& p) { return toml::array{p.x, p.y, p.z}; }
 
 /// What every design watches, also when its project is read again: a far field, and a plane target's plane.
@@ -131,8 +154,10 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   }
   const double time_s = design.positive("time_s").value_or(60.0);
   const std::vector<int> intervals = read_intervals(design);
+  const std::optional<int> told = read_attempts(design);
   const PlacedReflector placed = project.scene.reflectors[0];
   const bool revolution = dynamic_cast<const RevolutionSurface*>(placed.reflector.surface.get()) != nullptr;
+  const int attempts = told.value_or(revolution ? kAttemptsOfRevolution : kAttempts);
   double source_flux = 0.0;
   for (const PlacedSource& source : project.scene.sources) source_flux += source.total_flux();
   DesignLimits limits;
@@ -147,6 +172,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   if (auto table = design.table("tolerances")) tolerances = read_tolerances(std::move(*table));
   design.finish();
   start = ShapeLimits(limits, start).nearest(start);
+  const int growth = doublings(start, WindowOptions().count, !intervals.empty());
   add_detectors(project, target);
   return {std::move(project),
           std::move(target),
@@ -156,6 +182,8 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
           placed.world_from_reflector,
           time_s,
           how,
+          attempts,
+          growth,
           tolerances};
 }
 

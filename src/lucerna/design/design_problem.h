@@ -25,6 +25,10 @@ struct DesignProblem {
   Frame world_from_mirror;
   double time_s = 60.0;
   Optimizer optimizer;
+  /// After how many attempts in turn that bring nothing better a design ends above the noise.
+  int attempts = 6;
+  /// How often the knots may be doubled beyond `start`'s: 0 where the project says how many there are to be.
+  int growth = 0;
   /// What to try around the result; nothing: no [design.tolerances].
   std::optional<ToleranceRanges> tolerances;
 };

@@ -81,7 +81,7 @@ DesignProblem problem(
     const std::filesystem::path& folder, const std::string& design = "",
     const std::string& shape = "family = \"revolution\"\npreset = \"parabola\"\nfocal_mm = 8\n") {
   write_file(folder / "project.toml",
-             kSource + mirror(shape) + "[target]\nfile = \"target.ies\"\n[design]\n" + design);
+             kSource + mirror(shape) + "[target]\nfile = \"target.ies\"\n[design]\nattempts = 1\n" + design);
   return design_problem(read_project(folder / "project.toml"), folder / "project.toml");
 }
 

@@ -7,6 +7,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/design/limits.h"
+#include "lucerna/design/roughness.h"
 #include "lucerna/design/window.h"
 
 namespace lucerna {
@@ -18,6 +19,16 @@ constexpr double kRimShare = 0.02;
 
 /// A start is good when its error is at most this many times the noise: above it something is left to gain.
 constexpr double kGateFloors = 1.5;
+
+/// The fit is at its end where its squared error is at most the noise's and this share more, or twice the
+/// scatter of the noise's own estimate if that is more (48 rings tell it to 20 % only).
+constexpr double kEndShare = 0.1;
+
+/// What an attempt has to make of the best error not to have been fruitless.
+constexpr double kGain = 0.97;
+
+/// Knots (per direction) that a zero-etendue solution begins with: more only follow its facets.
+constexpr int kKnotsOfStarts = 4;
 
 /// Longest change of a height in one step, over the mirror's radius: the model of a step is not good for
 /// more.
@@ -35,7 +46,7 @@ Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignSh
   LUCERNA_CHECK(!stages_.empty(), "a fit without stages");
   if (problem_.starts.empty()) problem_.starts = {{shape, true, 0.0}};
   state_.search_costs = std::move(search_costs);
-  begin_with(problem_.starts[0]);
+  begin_with(problem_.starts[0].shape, stage_of(problem_.starts[0]));
 }
 
 Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignShape& family,
@@ -43,30 +54,34 @@ Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignSh
     : problem_(problem),
       stages_(std::move(stages)),
       family_(family),
-      shape_(family.refined(state.intervals_x, state.intervals_y).with(to_eigen(state.parameters))),
+      shape_(family_.refined(state.intervals_x, state.intervals_y).with(to_eigen(state.parameters))),
       state_(state),
       bins_(problem.bins) {
   if (problem_.starts.empty()) problem_.starts = {{family, true, 0.0}};
 }
 
-std::size_t Fit::first_stage(bool few_knots) const {
-  if (few_knots) return 0;
+std::size_t Fit::first_stage(int least_intervals) const {
   std::size_t stage = 0;
-  const FitStage& last = stages_.back();
-  while (stages_[stage].intervals_x != last.intervals_x || stages_[stage].intervals_y != last.intervals_y) {
+  while (stage + 1 < stages_.size() && !stages_[stage].gate && stages_[stage].intervals_x < least_intervals) {
     ++stage;
   }
   return stage;
 }
 
-void Fit::begin_with(const FitStart& start) {
-  const std::size_t stage = first_stage(start.few_knots);
-  shape_ = start.shape.refined(stages_[stage].intervals_x, stages_[stage].intervals_y);
+std::size_t Fit::stage_of(const FitStart& start) const {
+  return start.few_knots ? 0 : first_stage(kKnotsOfStarts);
+}
+
+void Fit::begin_with(const DesignShape& start, std::size_t stage) {
+  shape_ = start.refined(stages_[stage].intervals_x, stages_[stage].intervals_y);
   state_.stage = static_cast<int>(stage);
+  state_.step = 0;
+  state_.costs.clear();
   state_.lambda = FitState{}.lambda;
   state_.parameters.assign(shape_.parameters().begin(), shape_.parameters().end());
   state_.intervals_x = shape_.intervals_x();
   state_.intervals_y = shape_.intervals_y();
+  ready_ = false;
 }
 
 Evaluation Fit::evaluate_at(const DesignShape& shape) {
@@ -80,11 +95,13 @@ Evaluation Fit::evaluate_at(const DesignShape& shape) {
 void Fit::begin_stage(Progress& progress) {
   const FitStage& s = stage();
   problem_.rays->grow(s.rays, progress);
-  if (s.intervals_x != shape_.intervals_x() || s.intervals_y != shape_.intervals_y()) {
+  const bool other = s.intervals_x != shape_.intervals_x() || s.intervals_y != shape_.intervals_y();
+  // A stage that is taken up again in its middle has its knots already.
+  if (other && state_.step == 0 && (!s.grow || state_.over_noise > kGateFloors)) {
     shape_ = shape_.refined(s.intervals_x, s.intervals_y);
   }
-  state_.intervals_x = s.intervals_x;
-  state_.intervals_y = s.intervals_y;
+  state_.intervals_x = shape_.intervals_x();
+  state_.intervals_y = shape_.intervals_y();
   state_.parameters.assign(shape_.parameters().begin(), shape_.parameters().end());
   bins_ = rebinned(problem_.bins, s.widen, s.bins);
   target_ = problem_.target(bins_);
@@ -101,54 +118,93 @@ bool Fit::stalled() const {
 
 void Fit::finish_stage() {
   const bool gate = stage().gate;
+  const double floor = bin_error(now_, target_, bins_, problem_.mode).floor;
+  state_.over_noise = std::sqrt(equations_.cost) / std::max(floor, 1e-12);
   ++state_.stage;
   state_.step = 0;
   state_.costs.clear();
   state_.lambda = std::clamp(state_.lambda, 1e-4, 1e-2);
   ready_ = false;
   if (gate) pass_gate();
+  if (done()) pass_end();
+}
+
+FitMark Fit::mark() const {
+  return {equations_.cost, state_.over_noise, state_.intervals_x, state_.intervals_y, state_.parameters};
+}
+
+DesignShape Fit::shape_of(const FitMark& mark) const {
+  return family_.refined(mark.intervals_x, mark.intervals_y).with(to_eigen(mark.parameters));
 }
 
 void Fit::pass_gate() {
-  const int x = state_.intervals_x, y = state_.intervals_y;
-  if (state_.starts == 0 || equations_.cost < state_.gate_cost) {
-    state_.gate_cost = equations_.cost;
-    state_.gate_parameters = state_.parameters;
-    state_.gate_intervals_x = x;
-    state_.gate_intervals_y = y;
+  const bool better = !state_.gate.exists() || equations_.cost < state_.gate.cost;
+  if (better) state_.gate = mark();
+  const auto begun = static_cast<std::size_t>(++state_.starts);
+  if (state_.best.exists()) {
+    if (better) return;
+    ++state_.fruitless;
+    return begin_again();
   }
-  const double floor = bin_error(now_, target_, bins_, problem_.mode).floor;
-  ++state_.starts;
-  const int most = 1 + std::max(problem_.restarts, static_cast<int>(problem_.starts.size()) - 1);
-  if (state_.gate_cost <= kGateFloors * kGateFloors * floor * floor || state_.starts >= most) {
-    shape_ = family_.refined(state_.gate_intervals_x, state_.gate_intervals_y)
-                 .with(to_eigen(state_.gate_parameters));
-    state_.parameters = state_.gate_parameters;
+  if (state_.gate.over_noise > kGateFloors && begun < problem_.starts.size()) {
+    return begin_with(problem_.starts[begun].shape, stage_of(problem_.starts[begun]));
+  }
+  shape_ = shape_of(state_.gate);
+  state_.parameters = state_.gate.parameters;
+  state_.intervals_x = state_.gate.intervals_x;
+  state_.intervals_y = state_.gate.intervals_y;
+  state_.over_noise = state_.gate.over_noise;
+}
+
+void Fit::pass_end() {
+  const FitMark now = mark();
+  const bool first = !state_.best.exists();
+  const bool gained = first || now.cost < kGain * kGain * state_.best.cost;
+  state_.fruitless = gained ? 0 : state_.fruitless + 1;
+  if (first || now.cost < state_.best.cost) state_.best = now;
+  begin_again();
+}
+
+/// Another attempt, or the end: by turns from the starts and from the best so far, whose basin may have a
+/// better neighbour.
+void Fit::begin_again() {
+  if (at_noise() || state_.fruitless >= problem_.fruitless) {
+    shape_ = shape_of(state_.best);
+    state_.parameters = state_.best.parameters;
+    state_.intervals_x = state_.best.intervals_x;
+    state_.intervals_y = state_.best.intervals_y;
+    state_.stage = static_cast<int>(stages_.size());
     return;
   }
-  const auto begun = static_cast<std::size_t>(state_.starts);
-  if (begun < problem_.starts.size()) return begin_with(problem_.starts[begun]);
-  // By turns a little away from the best, whose basin may have a better neighbour, and from the first start.
-  const bool from_best = (begun - problem_.starts.size()) % 2 == 0;
-  FitStart next = problem_.starts[0];
-  if (from_best) next = {family_.refined(x, y).with(to_eigen(state_.gate_parameters)), false, 0.0};
-  begin_with(next);
-  Rng rng(problem_.seed, static_cast<std::uint64_t>(state_.starts));
+  const int attempt = state_.starts;
+  const std::size_t n = problem_.starts.size();
+  if (attempt % 3 == 2) {
+    begin_with(shape_of(state_.best), first_stage(stages_.back().intervals_x));
+  } else {
+    begin_with(problem_.starts[static_cast<std::size_t>(attempt) % n].shape, 0);
+  }
+  Rng rng(problem_.seed, static_cast<std::uint64_t>(attempt));
   const double size = problem_.shake * shape_.aperture().outer_radius_mm();
   for (double& p : state_.parameters) p += size * (2.0 * rng.uniform() - 1.0);
   shape_ = shape_.with(to_eigen(state_.parameters));
 }
 
+bool Fit::at_noise() const {
+  const double scatter = std::sqrt(2.0 / static_cast<double>(problem_.bins.size()));
+  const double over = state_.best.over_noise;
+  return state_.best.exists() && over * over <= 1.0 + std::max(kEndShare, 2.0 * scatter);
+}
+
 DesignShape Fit::best() const {
-  const bool trying_again = state_.starts > 0 && std::any_of(stages_.begin() + state_.stage, stages_.end(),
-                                                             [](const FitStage& s) { return s.gate; });
-  if (!trying_again) return shape_;
-  return family_.refined(state_.gate_intervals_x, state_.gate_intervals_y)
-      .with(to_eigen(state_.gate_parameters));
+  if (state_.best.exists()) return shape_of(state_.best);
+  const bool exploring =
+      std::any_of(stages_.begin() + state_.stage, stages_.end(), [](const FitStage& s) { return s.gate; });
+  return state_.gate.exists() && exploring ? shape_of(state_.gate) : shape_;
 }
 
 NormalEquations Fit::equations_at(const DesignShape& shape, const Evaluation& e) const {
   NormalEquations equations = normal_equations(e, target_, bins_, problem_.mode);
+  equations.cost += roughness(shape, stage().smoothing, &equations);
   if (problem_.limits) equations.cost += problem_.limits(shape, stage().rays, &equations);
   if (problem_.flux_weight > 0.0) {
     add_flux_term(e, problem_.flux_weight, problem_.flux_reference, equations);
@@ -207,8 +263,9 @@ FitRecord Fit::step(Progress& progress) {
   record.error = error.relative_rms;
   record.floor = error.floor;
   record.efficiency = now_.reflected + now_.direct;
-  // At the noise of its own rays a stage has nothing left to learn.
-  const bool at_noise = equations_.cost <= error.floor * error.floor;
+  // At the noise of its own rays a stage has nothing left to learn that more rays would not teach better.
+  const bool last = state_.stage + 1 == static_cast<int>(stages_.size());
+  const bool at_noise = !last && equations_.cost <= error.floor * error.floor;
   if (state_.step >= stage().most_steps || state_.lambda > 1e4 || at_noise || stalled()) finish_stage();
   return record;
 }

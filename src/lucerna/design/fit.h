@@ -37,11 +37,11 @@ struct FitProblem {
   std::function<double(const DesignShape&, std::uint64_t rays, NormalEquations* equations)> limits;
   /// Shapes to begin with, the most promising first; empty: the shape that the fit is made with.
   std::vector<FitStart> starts;
-  /// How often the fit begins again where a start ends well above the noise: with the next of `starts`, then
-  /// by turns with the best so far and the first one, shaken.
-  int restarts = 4;
+  /// While the result is above the noise the fit begins again, with `starts` and the best so far by turns,
+  /// shaken; so many attempts in turn that bring nothing end it.
+  int fruitless = 6;
   /// Size of the shakes, over the mirror's outer radius.
-  double shake = 0.015;
+  double shake = 0.02;
   std::uint64_t seed = 1;
 };
 
@@ -55,9 +55,12 @@ struct FitStage {
   int most_steps = 30;
   /// The stage ends when the last two accepted steps gained less than this share of the error.
   double least_gain = 0.03;
-  /// Where this stage ends well above the noise, the fit begins again, as often as FitProblem::restarts says,
-  /// and goes on with the best.
+  /// Weight of `roughness` in the cost.
+  double smoothing = 0.0;
+  /// Starts are compared here: only the best goes on, later attempts only where they beat it.
   bool gate = false;
+  /// The knots are taken only where the stage before ended above the noise; else those of before stay.
+  bool grow = false;
 };
 
 /// One line of a design's history.
@@ -72,6 +75,14 @@ struct FitRecord {
   double efficiency = 0.0;
 };
 
+/// A shape that a fit keeps, with its cost; without parameters: none yet.
+struct FitMark {
+  double cost = 0.0, over_noise = 0.0;
+  int intervals_x = 1, intervals_y = 1;
+  std::vector<double> parameters;
+  bool exists() const { return !parameters.empty(); }
+};
+
 /// All that a fit's next step depends on; a checkpoint holds exactly this.
 struct FitState {
   std::vector<double> parameters;
@@ -82,11 +93,12 @@ struct FitState {
   std::vector<double> costs;
   int evaluations = 0;
   std::uint64_t total_rays = 0;
-  /// Starts so far, the best cost at the gate and the shape that had it.
-  int starts = 0;
-  double gate_cost = 0.0;
-  std::vector<double> gate_parameters;
-  int gate_intervals_x = 1, gate_intervals_y = 1;
+  /// Error over noise where the last stage ended.
+  double over_noise = 0.0;
+  /// Starts and attempts so far that came to the gate; of these in turn, how many brought nothing.
+  int starts = 0, fruitless = 0;
+  /// The best at the gate, and at the end of the ladder.
+  FitMark gate, best;
   /// What a global search before the fit has paid for so far (optimizer.h).
   std::vector<double> search_costs;
 };
@@ -107,8 +119,10 @@ class Fit {
   FitRecord step(Progress& progress = no_progress());
 
   const DesignShape& shape() const { return shape_; }
-  /// The best so far: the shape, or, while another start is tried, the best that came to the gate.
+  /// The best so far: of those that came to the end, else to the gate, else the shape now.
   DesignShape best() const;
+  /// Whether the best is as good as the noise of the last stage's rays lets one see.
+  bool at_noise() const;
   const FitState& state() const { return state_; }
   double error() const;
 
@@ -116,9 +130,14 @@ class Fit {
   void begin_stage(Progress& progress);
   void finish_stage();
   void pass_gate();
+  void pass_end();
+  void begin_again();
+  FitMark mark() const;
+  DesignShape shape_of(const FitMark& mark) const;
   NormalEquations equations_at(const DesignShape& shape, const Evaluation& e) const;
-  std::size_t first_stage(bool few_knots) const;
-  void begin_with(const FitStart& start);
+  std::size_t first_stage(int least_intervals) const;
+  void begin_with(const DesignShape& start, std::size_t stage);
+  std::size_t stage_of(const FitStart& start) const;
   const FitStage& stage() const { return stages_[static_cast<std::size_t>(state_.stage)]; }
   Evaluation evaluate_at(const DesignShape& shape);
   bool stalled() const;
@@ -135,7 +154,18 @@ class Fit {
   NormalEquations equations_;
 };
 
-/// Stages for a shape that ends with the given knots: `rays` at the end, bins up to the problem's.
-std::vector<FitStage> ladder(const DesignShape& shape, const TentBins& bins, std::uint64_t rays, bool far);
+/// How a ladder of stages is made.
+struct LadderOptions {
+  /// Rays of the last stage.
+  std::uint64_t rays = std::uint64_t{1} << 20;
+  /// Begins with few knots in coarse bins; else the start is known to be near.
+  bool far = true;
+  /// How often the knots may be doubled beyond the shape's own where the light asks for it.
+  int growth = 0;
+};
+
+/// Stages for a shape: knots up to its own (and beyond, with growth), bins up to the problem's, always enough
+/// bins to tell all parameters apart.
+std::vector<FitStage> ladder(const DesignShape& shape, const TentBins& bins, const LadderOptions& options);
 
 }  // namespace lucerna

@@ -1,48 +1,106 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "lucerna/design/fit.h"
 
 namespace lucerna {
 
-std::vector<FitStage> ladder(const DesignShape& shape, const TentBins& bins, std::uint64_t rays, bool far) {
+namespace {
+
+/// Weight of roughness in the first stages, where slopes are measured in half widths of the window: enough
+/// against folds that coarse bins do not see, too little to hold the light back.
+constexpr double kSmoothing = 0.03;
+
+/// Half the window's angle (its sine, for squares of direction cosines).
+double half_angle(const TentBins& bins) {
+  if (!bins.is_plane()) return bins.extent();
+  const double across = std::hypot(bins.half_x_mm(), bins.half_y_mm());
+  return std::atan2(across, length(bins.axes().origin_mm()));
+}
+
+/// Gathers stages, leaving out what repeats.
+class Stages {
+ public:
+  explicit Stages(std::uint64_t most_rays) : most_rays_(most_rays) {}
+
+  void add(FitStage stage) {
+    stage.rays = std::min(most_rays_, stage.rays);
+    if (!all_.empty()) {
+      const FitStage& last = all_.back();
+      if (last.rays == stage.rays && last.bins == stage.bins && last.intervals_x == stage.intervals_x &&
+          last.intervals_y == stage.intervals_y && last.smoothing == stage.smoothing) {
+        all_.back().gate |= stage.gate;
+        return;
+      }
+    }
+    all_.push_back(stage);
+  }
+  std::vector<FitStage> take() { return std::move(all_); }
+
+ private:
+  std::uint64_t most_rays_;
+  std::vector<FitStage> all_;
+};
+
+std::uint64_t two_to(int n) { return std::uint64_t{1} << n; }
+
+std::vector<FitStage> ladder_of_revolution(int n, int ny, int k, double smoothing, const LadderOptions& o) {
+  // A ring is one number: fewer rings than parameters would leave the shape open.
+  const int few = std::min(n, 4), coarse = std::min(k, std::max(k / 2, n + 6));
+  Stages stages(o.rays);
+  if (o.far) {
+    stages.add({few, ny, k / 2, 1.2, two_to(14), 30, 0.03, smoothing});
+    stages.add({n, ny, coarse, 1.1, two_to(15), 30, 0.03, 0.1 * smoothing});
+  }
+  stages.add({n, ny, k, 1.0, two_to(16), 40, 0.02});
+  stages.add({n, ny, k, 1.0, two_to(18), 30, 0.01, 0.0, true});
+  stages.add({n, ny, k, 1.0, two_to(20), 30, 0.02});
+  return stages.take();
+}
+
+}  // namespace
+
+std::vector<FitStage> ladder(const DesignShape& shape, const TentBins& bins, const LadderOptions& o) {
   const int nx = shape.intervals_x(), ny = shape.intervals_y(), k = bins.count();
-  std::vector<FitStage> stages;
-  const auto add = [&](int mx, int my, int count, double widen, int log_rays, double gain) {
-    const std::uint64_t n = std::min(rays, std::uint64_t{1} << log_rays);
-    if (!stages.empty()) {
-      const FitStage& last = stages.back();
-      if (last.rays == n && last.bins == count && last.intervals_x == mx && last.intervals_y == my) return;
+  const double smoothing = kSmoothing / std::pow(half_angle(bins), 2);
+  if (shape.is_revolution()) return ladder_of_revolution(nx, ny, k, smoothing, o);
+  // Knots halved until few are left.
+  std::vector<std::array<int, 2>> knots{{nx, ny}};
+  while (o.far && std::max(knots.back()[0], knots.back()[1]) > 3) {
+    const int y = shape.is_trough() ? ny : (knots.back()[1] + 1) / 2;
+    knots.push_back({(knots.back()[0] + 1) / 2, y});
+  }
+  std::reverse(knots.begin(), knots.end());
+  Stages stages(o.rays);
+  if (o.far) {
+    for (const auto& [x, y] : knots) {
+      const int most = std::max(x, y);
+      if (most > 6) break;
+      stages.add({x, y, k / 4, 1.2, two_to(15), 30, 0.03, smoothing});
     }
-    stages.push_back({mx, my, count, widen, n, 30, gain});
+  }
+  for (const auto& [x, y] : knots) {
+    const int most = std::max(x, y);
+    if (o.far && most <= 3 && knots.size() > 1) continue;
+    const bool own = x == nx && y == ny;
+    // Twice as many bins across as knots, and more: three bins for each parameter.
+    if (most <= 6) stages.add({x, y, k / 3, 1.0, two_to(15), 30, 0.02, own ? 0.0 : 0.1 * smoothing});
+    if (most <= 10) stages.add({x, y, k / 2, 1.0, two_to(17), 30, 0.03});
+  }
+  // The gate, where attempts are compared.
+  const bool many = std::max(nx, ny) > 10;
+  stages.add({nx, ny, many ? k : k / 2, 1.0, two_to(17), 30, 0.03, 0.0, true});
+  if (!many) stages.add({nx, ny, k / 2, 1.0, two_to(20), 30, 0.02});
+  if (many) stages.add({nx, ny, k, 1.0, two_to(18), 30, 0.02});
+  const auto fine = [&](int doublings, std::uint64_t rays, double gain) {
+    const int y = shape.is_trough() ? ny : ny << doublings;
+    stages.add({nx << doublings, y, k, 1.0, rays, 30, gain, 0.0, false, true});
   };
-  if (shape.is_revolution()) {
-    // A ring is one number: fewer rings than parameters would leave the shape open.
-    const int few = std::min(nx, 4), coarse = std::min(k, std::max(k / 3, nx + 6));
-    if (far) {
-      add(few, ny, k / 3, 1.3, 16, 0.03);
-      add(nx, ny, coarse, 1.3, 16, 0.02);
-    }
-    add(nx, ny, coarse, 1.0, 17, 0.02);
-    add(nx, ny, k, 1.0, 18, 0.03);
-    stages.back().gate = true;
-    add(nx, ny, k, 1.0, 20, 0.02);
-    return stages;
-  }
-  if (far) {
-    const int few = 2, gentle = std::min(nx, few), gentle_y = std::min(ny, few);
-    add(gentle, gentle_y, k / 6, 1.5, 16, 0.03);
-    add(gentle, gentle_y, k / 4, 1.2, 16, 0.03);
-    add(nx, ny, k / 6, 1.5, 16, 0.02);
-    add(nx, ny, k / 4, 1.2, 16, 0.02);
-  }
-  add(nx, ny, k / 3, 1.0, 16, 0.03);
-  add(nx, ny, k / 3, 1.0, 18, 0.03);
-  stages.back().gate = true;
-  add(nx, ny, k / 2, 1.0, 18, 0.03);
-  add(nx, ny, k / 2, 1.0, 20, 0.03);
-  add(nx, ny, k, 1.0, 20, 0.03);
-  return stages;
+  for (int g = 1; g <= o.growth; ++g) fine(g, two_to(18), 0.03);
+  fine(o.growth, two_to(20), 0.01);
+  return stages.take();
 }
 
 }  // namespace lucerna

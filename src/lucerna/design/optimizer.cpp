@@ -29,8 +29,6 @@ const std::array<Optimizer, 6>& known() {
 constexpr std::uint64_t kSearchRays = std::uint64_t{1} << 15;
 /// Half width of the box, over the mirror's radius.
 constexpr double kReach = 0.06;
-/// A mirror of revolution has few parameters, cheap evaluations and many basins.
-constexpr int kRestartsOfRevolution = 6;
 
 struct Stopped {};
 
@@ -63,7 +61,6 @@ int search_evaluations(std::size_t parameters) { return 60 * static_cast<int>(pa
 bool prepare_starts(FitProblem& problem, const DesignShape& shape, const std::vector<FitStage>& stages,
                     const Optimizer& optimizer, std::vector<double>& costs, const SearchWatch& watch,
                     Progress& progress) {
-  if (shape.is_revolution()) problem.restarts = std::max(problem.restarts, kRestartsOfRevolution);
   problem.starts.clear();
   if (!optimizer.zero_etendue) return true;
   problem.starts = fit_starts(problem, shape, progress);

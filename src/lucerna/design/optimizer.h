@@ -46,7 +46,7 @@ int search_evaluations(std::size_t parameters);
 /// Called after every batch of a search with its record and the best so far; false ends the search.
 using SearchWatch = std::function<bool(const FitRecord&, const DesignShape& best)>;
 
-/// Fills `problem.starts` (and restarts) as the optimizer says. `costs` holds the costs that a search has
+/// Fills `problem.starts` as the optimizer says. `costs` holds the costs that a search has
 /// paid for already (a checkpoint) and is extended with every batch: a search that is taken up again with
 /// them ends at the same bits. Candidates of a batch are evaluated in parallel. Returns false if `watch`
 /// ended the search; the first start is then the best so far. Progress phases "rays", "starts", "search".
