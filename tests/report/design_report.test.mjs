@@ -33,7 +33,7 @@ let browser;
 before(async () => {
   writeFileSync(join(folder, 'wanted.toml'), project(17, ''));
   lucerna(folder, 'trace', 'wanted.toml', '-o', 'wanted', '--rays', '300000', '--quiet');
-  writeFileSync(join(folder, 'design.toml'), project(15, '[target]\nfile = "wanted/far.ldt"\n[design]\ntime_s = 30\n[design.limits]\nmax_height_mm = 30\n'));
+  writeFileSync(join(folder, 'design.toml'), project(15, '[target]\nfile = "wanted/far.ldt"\n[design]\nattempts = 1\ntime_s = 30\n[design.limits]\nmax_height_mm = 30\n'));
   lucerna(folder, 'design', 'design.toml', '-o', 'found', '--rays', '65536', '--report', 'design.html', '--quiet');
   browser = await launch();
 });
