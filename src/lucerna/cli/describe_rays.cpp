@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "lucerna/cli/describe.h"
 #include "lucerna/rayset/ray_file_info.h"
+#include "lucerna/source/model_etendue.h"
 
 namespace lucerna::cli {
 
@@ -16,7 +19,16 @@ std::string text_of(const std::optional<Vec3>& p) {
   return p ? fmt::format("({:.4f}, {:.4f}, {:.4f})", p->x, p->y, p->z) : "-";
 }
 
-Json rays_json(const std::string& path, const RayFileInfo& info) {
+/// Étendue of the brightest 50, 90 and 99 % of the flux, by the curve that `compare` shows; 0 without flux.
+std::array<double, 3> etendue_of(const RayFileInfo& info) {
+  const RayBlock& rays = info.some_rays;
+  const bool any = std::any_of(rays.weight.begin(), rays.weight.end(), [](float w) { return w > 0.0f; });
+  if (!any) return {};
+  const EtendueCurve curve = searched_etendue_curve(rays);
+  return {curve.at(0.50), curve.at(0.90), curve.at(0.99)};
+}
+
+Json rays_json(const std::string& path, const RayFileInfo& info, const std::array<double, 3>& etendue) {
   const RaySummary& s = info.summary;
   Json out;
   out["path"] = path;
@@ -29,7 +41,7 @@ Json rays_json(const std::string& path, const RayFileInfo& info) {
   out["surface"] = describe(info.surface);
   out["virtual_focus_mm"] = s.virtual_focus ? point(s.virtual_focus->point_mm) : Json();
   out["backwards_share"] = to_json(s.backwards_share);
-  out["etendue_mm2sr"] = {{"p50", info.etendue_p50}, {"p90", info.etendue_p90}, {"p99", info.etendue_p99}};
+  out["etendue_mm2sr"] = {{"p50", etendue[0]}, {"p90", etendue[1]}, {"p99", etendue[2]}};
   out["equal_weights"] = s.equal_weights;
   out["effective_rays"] = s.effective_rays;
   out["spectrum"] = info.spectrum;
@@ -37,7 +49,7 @@ Json rays_json(const std::string& path, const RayFileInfo& info) {
   return out;
 }
 
-std::vector<std::string> rays_lines(const RayFileInfo& info) {
+std::vector<std::string> rays_lines(const RayFileInfo& info, const std::array<double, 3>& etendue) {
   const RaySummary& s = info.summary;
   const std::string_view unit = symbol(info.header.flux_unit);
   std::vector<std::string> lines;
@@ -66,8 +78,8 @@ std::vector<std::string> rays_lines(const RayFileInfo& info) {
   if (s.backwards_share)
     line("backwards (kz < 0)", fmt::format("{:.4f} % of the flux", 100.0 * *s.backwards_share));
   line("etendue (mm2 sr)",
-       fmt::format("{:.4g} / {:.4g} / {:.4g} for the brightest 50 / 90 / 99 % of the flux", info.etendue_p50,
-                   info.etendue_p90, info.etendue_p99));
+       fmt::format("{:.4g} / {:.4g} / {:.4g} for the brightest 50 / 90 / 99 % of the flux", etendue[0],
+                   etendue[1], etendue[2]));
   return lines;
 }
 
@@ -78,7 +90,8 @@ Json to_json(const std::optional<double>& value) { return value ? to_json(*value
 
 Description describe_rays(const std::string& path, const std::string& format, Session& session) {
   const RayFileInfo info = describe_ray_file(path, {.format = format}, session.progress());
-  return {rays_json(path, info), rays_lines(info), info.warnings};
+  const auto etendue = session.timed("etendue", [&] { return etendue_of(info); });
+  return {rays_json(path, info, etendue), rays_lines(info, etendue), info.warnings};
 }
 
 }  // namespace lucerna::cli

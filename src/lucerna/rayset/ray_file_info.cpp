@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "lucerna/rayset/etendue_curve.h"
 #include "lucerna/rayset/ray_file.h"
 
 namespace lucerna {
@@ -65,13 +64,10 @@ RayFileInfo describe_ray_file(const std::filesystem::path& path, const ReadOptio
   info.header = reader->header();
   info.summary = statistics.result();
   if (const auto flux = info.header.flux()) info.flux_ratio = info.summary.weight_sum / *flux;
-  const EtendueCurve curve = etendue_curve(kept);
-  info.etendue_p50 = curve.at(0.50);
-  info.etendue_p90 = curve.at(0.90);
-  info.etendue_p99 = curve.at(0.99);
   info.surface = guess_surface(kept);
   info.spectrum = describe_spectrum(info.header, range);
   info.warnings = reader->warnings();
+  info.some_rays = std::move(kept);
   return info;
 }
 

@@ -21,16 +21,16 @@ struct RayFileInfo {
   /// Sum of the weights over the stated flux; absent if none is stated. 1 in files whose rays carry the
   /// total.
   std::optional<double> flux_ratio;
-  /// Étendue in mm^2 sr of the brightest 50, 90 and 99 % of the flux.
-  double etendue_p50 = 0.0, etendue_p90 = 0.0, etendue_p99 = 0.0;
+  /// At most 2^20 rays, spread evenly over the file, without extra columns.
+  RayBlock some_rays;
   SurfaceGuess surface;
   /// "none", "555 nm for all rays", "380 to 780 nm, one per ray", "450 to 620 nm, table of 86 points", ...
   std::string spectrum;
   std::vector<std::string> warnings;
 };
 
-/// Reads a file once, in blocks, and describes it. Étendue and surface come from at most 2^20 rays spread
-/// evenly over the file, so that memory stays below 100 MB beside extra columns. Throws as the readers do.
+/// Reads a file once, in blocks, and describes it. The surface comes from `some_rays`; memory stays below
+/// 100 MB beside extra columns. Throws as the readers do.
 RayFileInfo describe_ray_file(const std::filesystem::path& path, const ReadOptions& options = {},
                               Progress& progress = no_progress());
 

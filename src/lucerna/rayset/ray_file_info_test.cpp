@@ -21,7 +21,7 @@ TEST(RayFileInfo, SaysWhatTheFileHolds) {
   EXPECT_EQ(info.summary.count, 3000u);
   EXPECT_NEAR(info.flux_ratio.value(), info.summary.weight_sum / 337.5, 1e-9);
   EXPECT_NE(info.spectrum.find("one per ray"), std::string::npos);
-  EXPECT_LE(info.etendue_p50, info.etendue_p90);
+  EXPECT_EQ(info.some_rays.size(), 3000u);
   write_ray_set(dir / "a", test::random_ray_set(0, 1), "tm25");
   EXPECT_EQ(describe_ray_file(dir / "a").summary.count, 0u);
 }
@@ -33,7 +33,6 @@ TEST(RayFileInfoData, MeasuredLed) {
   EXPECT_EQ(info.spectrum, "450 to 620 nm, table of 86 points");
   EXPECT_EQ(info.surface.surface.kind, SurfaceKind::plane);
   EXPECT_TRUE(info.summary.equal_weights);
-  EXPECT_GT(info.etendue_p90, info.etendue_p50);
   EXPECT_TRUE(info.warnings.empty());
 }
 

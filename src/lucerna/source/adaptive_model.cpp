@@ -54,7 +54,7 @@ struct LeafBatch {
   BitColumn first, length;  // a length of 2^32 is 0
 };
 
-/// AdaptiveModel::place_in and the other three numbers, for all rays of a batch.
+/// adaptive_place_in and the other three numbers, for all rays of a batch.
 LUCERNA_VECTOR_CLONES void place_in_leaves(const std::array<BitColumn, 4>& bits, const LeafBatch& leaves,
                                            std::array<BatchColumn, 4>& to) {
   std::array<BatchColumn, 4> c;
@@ -164,22 +164,7 @@ std::size_t AdaptiveModel::leaf_of(std::uint32_t bits) const {
   return adaptive_leaf(leaves_.data(), leaves_.size(), guide_.data(), guide_shift_, bits);
 }
 
-double AdaptiveModel::place_in(std::size_t leaf, std::uint32_t bits) const {
-  return adaptive_place_in(leaves_.data(), leaf, bits);
-}
-
-Ray AdaptiveModel::sample(const std::array<double, 4>& u) const {
-  const auto bits = static_cast<std::uint32_t>(u[0] * 4294967296.0);
-  const std::size_t i = leaf_of(bits);
-  const SamplerLeaf& leaf = leaves_[i];
-  const Place& place = places_[leaf.place];
-  ChartPoint p{place.chart, {}};
-  for (std::size_t d = 0; d < 4; ++d) {
-    const double t = d == 0 ? place_in(i, bits) : u[d];
-    p.c[d] = static_cast<double>(leaf.low[d]) + t * static_cast<double>(leaf.width[d]);
-  }
-  return start_on(data_.surface, place.support->from_chart(p));
-}
+Ray AdaptiveModel::sample(const std::array<double, 4>& u) const { return sample_adaptive(view(), u); }
 
 /// Chooses the leaves of kSupportBatch rays and their numbers in them.
 void AdaptiveModel::choose(const Sequence& sequence, std::uint64_t first, Chosen& to) const {

@@ -111,7 +111,6 @@ class AdaptiveModel final : public SourceModel {
   double radiance_at(const Vec3& point_mm, const Direction& d) const;
   void build_sampler();
   std::size_t leaf_of(std::uint32_t bits) const;
-  double place_in(std::size_t leaf, std::uint32_t bits) const;
 
   /// A batch of rays as numbers in their leaves.
   struct Chosen {

@@ -78,7 +78,7 @@ EtendueCurve searched_etendue_curve(const RayBlock& rays) {
   for (RayBlock* half : {&train.rays, &judges}) half->resize(0, rays.extra.size());
   for (std::size_t i = 0; i < some.size(); ++i) (i % 2 == 0 ? train.rays : judges).append(some, i);
   AdaptiveOptions options;
-  options.trees = 1;
+  options.trees = 4;
   const auto model = compress_adaptive(train, options);
   const RayBlock drawn = draw_rays(*model, Sequence(SequenceKind::random, 1), 1 << 15);
   return curve_of(sorted_densities(*model, drawn), sorted_densities(*model, judges));

@@ -13,7 +13,7 @@ namespace lucerna {
 /// model has no étendue. Cost: pdf_etendue of each ray; 16,384 rays of a model of clusters take some seconds.
 EtendueCurve etendue_curve(const SourceModel& model, std::uint64_t rays = 16'384, std::uint64_t seed = 1);
 
-/// The curve of a ray set by way of an adaptive model of at most 2^17 of its rays (one tree a chart), whose
+/// The curve of a ray set by way of an adaptive model of at most 2^17 of its rays (four trees a chart), whose
 /// support follows a coil or a tube, where the tree of rayset/etendue_curve.h, on one plane, needs far more
 /// rays than there are. The model orders phase space by luminance; as many other rays say how much flux each
 /// part has, so that noise does not pass for brightness. Throws InputError without rays or flux. Cost: some
