@@ -154,7 +154,9 @@ TEST(AdaptiveCompressSlow, TurningAndMovingChangesNothingElse) {
       compare_ray_sets(turned_truth, from_model(*compress_adaptive(turned, {}), 1000000), &turned.rays);
   for (const ViewKind v : kViewKinds) {
     EXPECT_LT(b[v].excess, 0.6 * b[v].raw) << to_string(v);
-    EXPECT_NEAR(a[v].excess, b[v].excess, 0.25 * a[v].raw) << to_string(v);
+    // Views of few cells (near) know an excess of a million rays no better than to their standard error.
+    const double noise = 3.0 * std::max(a[v].standard_error, b[v].standard_error);
+    EXPECT_NEAR(a[v].excess, b[v].excess, std::max(0.25 * a[v].raw, noise)) << to_string(v);
   }
 }
 

@@ -17,6 +17,8 @@ constexpr std::size_t kParallelItems = 1 << 15, kHistogramBlock = 1 << 19;
 constexpr double kSmallestNode = 6.0;
 /// Effective rays from which every one of the 63 cuts is tried.
 constexpr double kAllCuts = 20000.0;
+/// Nats by which a cut that is not offered must beat those that are: only sharp edges do.
+constexpr double kSharpEdge = 2.0;
 /// Splits in a row that may gain nothing, after the test on pairs of axes.
 constexpr int kBlindSplits = 6;
 /// Edges are not cut below this share of the first box, nor to where float32 runs out.
@@ -98,6 +100,11 @@ struct Grower {
     return box.width(d) > std::max(kFinest * root.width(d), kFloatSteps * size);
   }
 
+  static double gain_of(const Counts& c, std::uint32_t cut, double below) {
+    const double f = cut * (1.0 / kTreeCuts);
+    return n_log_ratio(below, c.weight * f) + n_log_ratio(c.weight - below, c.weight * (1.0 - f));
+  }
+
   Cut best_cut(const Counts& c, const TreeBox& box, std::uint64_t path) const {
     const double scale = c.weight / c.squares, rays = c.weight * scale;
     const bool all = !options.coarse_cuts || rays > kAllCuts;
@@ -110,11 +117,24 @@ struct Grower {
       std::uint32_t summed = 0;
       for (std::uint32_t cut = offset; cut < kTreeCuts; cut += stride) {
         for (; summed < cut; ++summed) below += c.bins[d][summed];
-        const double f = cut * (1.0 / kTreeCuts);
-        const double gain =
-            n_log_ratio(below, c.weight * f) + n_log_ratio(c.weight - below, c.weight * (1.0 - f));
+        const double gain = gain_of(c, cut, below);
         if (gain * scale > best.gain_nats) best = {gain * scale, d, cut};
       }
+    }
+    return all || best.gain_nats <= 0.0 ? best : sharper(c, scale, best);
+  }
+
+  /// The best of the cuts beside one that was offered, if it is much better: a sharp edge lies there.
+  static Cut sharper(const Counts& c, double scale, const Cut& offered) {
+    constexpr std::uint32_t kBeside = 3;
+    Cut best = offered;
+    const std::uint32_t first = offered.cut > kBeside ? offered.cut - kBeside : 1;
+    double below = 0.0;
+    for (std::uint32_t b = 0; b < first; ++b) below += c.bins[offered.axis][b];
+    for (std::uint32_t cut = first; cut < kTreeCuts && cut <= offered.cut + kBeside; ++cut) {
+      const double gain = gain_of(c, cut, below) * scale;
+      if (gain > best.gain_nats && gain > offered.gain_nats + kSharpEdge) best = {gain, offered.axis, cut};
+      below += c.bins[offered.axis][cut];
     }
     return best;
   }

@@ -65,7 +65,8 @@ inline std::uint64_t child_path(std::uint64_t path, bool upper) {
   x ^= x >> 29;
   return x * 0xBF58476D1CE4E5B9u;
 }
-/// Small nodes offer the cuts 1 + offset, 5 + offset, ... with this offset (0..3) only.
+/// Small nodes offer the cuts 1 + offset, 5 + offset, ... with this offset (0..3), unless another is far
+/// better.
 inline std::uint32_t cut_offset(std::uint64_t tree_number, std::uint64_t path, std::uint32_t axis) {
   return static_cast<std::uint32_t>(child_path(path ^ tree_number << 32, axis % 2 != 0) >> (40 + axis)) & 3u;
 }

@@ -11,12 +11,13 @@ namespace lucerna {
 /// Nats that a split of a quick density must gain.
 inline constexpr double kQuickPenaltyNats = 6.0;
 
-/// A quick density of some rays on a support: one tree a chart. What supports are judged by and what tells
-/// overlapping layers apart. Immutable once made; thread safe.
+/// A quick density of some rays on a support: one tree a chart, or the mean of several. What supports are
+/// judged by and what tells overlapping layers apart. Immutable once made; thread safe.
 class FittedSupport {
  public:
   /// Only rays that the support carries are in it; `weight` as for project().
-  FittedSupport(const RayBlock& rays, std::span<const float> weight, BoundedSupport on, double tolerance_mm);
+  FittedSupport(const RayBlock& rays, std::span<const float> weight, BoundedSupport on, double tolerance_mm,
+                int trees = 1);
 
   /// Density of the ray's line, 1/(mm^2 sr), times carried(): it integrates to that share.
   double density(const Ray& ray) const;
@@ -30,7 +31,7 @@ class FittedSupport {
   struct Chart {
     std::uint32_t chart;
     double share;
-    TreeLookup tree;
+    std::vector<TreeLookup> trees;
   };
   BoundedSupport on_;
   double carried_ = 0.0, volume_ = 0.0;

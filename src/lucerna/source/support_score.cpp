@@ -15,8 +15,8 @@ constexpr double kPlainShare = 0.02;
 
 }  // namespace
 
-SupportJudge::SupportJudge(const RayBlock& rays, const Vec3& focus_mm, double tolerance_mm)
-    : tolerance_mm_(tolerance_mm) {
+SupportJudge::SupportJudge(const RayBlock& rays, const Vec3& focus_mm, double tolerance_mm, int trees)
+    : tolerance_mm_(tolerance_mm), trees_(trees) {
   for (std::size_t i = 0; i < rays.size(); ++i) (i % 3 == 2 ? held_ : train_).append(rays, i);
   const PlainDensity plain(train_, train_.weight, focus_mm, tolerance_mm_);
   for (std::size_t i = 0; i < held_.size(); ++i) plain_.push_back(plain.density(held_.ray(i)));
@@ -25,7 +25,7 @@ SupportJudge::SupportJudge(const RayBlock& rays, const Vec3& focus_mm, double to
 SupportScore SupportJudge::score(const Support& support) const {
   SupportScore score;
   score.on = bounded(support, train_);
-  const FittedSupport fitted(train_, train_.weight, score.on, tolerance_mm_);
+  const FittedSupport fitted(train_, train_.weight, score.on, tolerance_mm_, trees_);
   score.carried = fitted.carried();
   const double plain_share = kPlainShare + (1.0 - kPlainShare) * (1.0 - score.carried);
   double sum = 0.0, weight = 0.0;
@@ -43,7 +43,7 @@ SupportScore SupportJudge::score(const Support& support) const {
 }
 
 bool SupportJudge::clearly_better(const SupportScore& a, const SupportScore& b) const {
-  constexpr double kClear = 1.5;
+  constexpr double kClear = 3.0;
   double squares = 0.0, weight = 0.0;
   std::size_t k = 0;
   const double mean = a.nats - b.nats;

@@ -13,11 +13,12 @@ namespace lucerna {
 /// Immutable once made; thread safe.
 class SupportJudge {
  public:
-  SupportJudge(const RayBlock& rays, const Vec3& focus_mm, double tolerance_mm);
+  /// `trees`: a mean of so many is grown for each score.
+  SupportJudge(const RayBlock& rays, const Vec3& focus_mm, double tolerance_mm, int trees = 1);
 
   SupportScore score(const Support& support) const;
   /// True if `a` is better than `b` by more than chance would have it: the mean of the rays' differences is
-  /// above 1.5 of its standard errors. Both must be scores of this judge.
+  /// above 3 of its standard errors. Both must be scores of this judge.
   bool clearly_better(const SupportScore& a, const SupportScore& b) const;
   /// All at once, on all threads.
   std::vector<SupportScore> scores(const std::vector<Support>& supports) const;
@@ -25,6 +26,7 @@ class SupportJudge {
  private:
   RayBlock train_, held_;
   double tolerance_mm_;
+  int trees_;
   std::vector<double> plain_;  // density of each held-out ray under the plain model
 };
 

@@ -11,13 +11,15 @@
 #include "lucerna/core/random.h"
 #include "lucerna/rayset/ray_statistics.h"
 #include "lucerna/rayset/surface_guess.h"
+#include "lucerna/source/support_moves.h"
+#include "lucerna/source/support_polish.h"
 #include "lucerna/source/support_score.h"
 
 namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kScreenRays = 9000, kCoarseRays = 24000, kFineRays = 60000;
+constexpr std::size_t kScreenRays = 9000, kCoarseRays = 24000, kFineRays = 60000, kPolishRays = 120000;
 /// Candidates that are refined, and of them those of one kind.
 constexpr std::size_t kRefined = 5, kRefinedOfKind = 2;
 /// How many of them are still refined after each round.
@@ -174,63 +176,6 @@ std::vector<Support> candidates(const RayBlock& rays, const Shape& shape, const 
   return all;
 }
 
-/// One step of a support's dome: moved by `length_mm`, stronger or weaker, of another index but as strong.
-std::optional<Support> moved_dome(const Support& s, int move, double length_mm, double angle) {
-  if (!s.dome.exists()) return std::nullopt;
-  constexpr double kLeast = 1.02, kMost = 4.0;
-  Support t = s;
-  const Frame& f = s.world_from_support;
-  if (move < 3) {
-    const Vec3 axis = move == 0 ? f.ex() : move == 1 ? f.ey() : f.ez();
-    t.dome.centre_mm = s.dome.centre_mm + length_mm * axis;
-    return t;
-  }
-  if (move == 3) {
-    t.dome.radius_mm = s.dome.radius_mm * std::exp(angle);
-    return t;
-  }
-  t.dome.index = 1.0 + (s.dome.index - 1.0) * std::exp(angle);
-  if (t.dome.index < kLeast || t.dome.index > kMost) return std::nullopt;
-  const auto weakness = [](double index) { return 1.0 - 1.0 / index; };
-  t.dome.radius_mm = s.dome.radius_mm * weakness(t.dome.index) / weakness(s.dome.index);
-  return t;
-}
-
-/// One step of a support: moved along an axis of its own by `length_mm`, turned about one by `angle`, or
-/// resized. Nothing for steps that change nothing.
-std::optional<Support> moved(const Support& s, int move, double length_mm, double angle) {
-  Support t = s;
-  const Frame& f = s.world_from_support;
-  const bool flat = s.kind == SupportKind::plane, round = s.radius_mm > 0.0;
-  if (move < 3) {
-    if (flat && move < 2) return std::nullopt;  // a plane moved in itself is the same plane
-    const Vec3 axis = move == 0 ? f.ex() : move == 1 ? f.ey() : f.ez();
-    t.world_from_support = {f.ex(), f.ey(), f.ez(), f.origin_mm() + length_mm * axis};
-    return t;
-  }
-  if (move < 6) {
-    const Direction local = move == 3   ? Direction::from({1, 0, 0})
-                            : move == 4 ? Direction::from({0, 1, 0})
-                                        : Direction();
-    t.world_from_support = f * Frame::rotation(local, angle);
-    return t;
-  }
-  if (move == 6 && round) {
-    t.radius_mm = s.radius_mm + length_mm;
-    if (!(t.radius_mm > 0.2 * s.radius_mm)) return std::nullopt;
-    if (s.kind == SupportKind::cylinder) t.half_size_mm.x = t.half_size_mm.y = t.radius_mm;
-    return t;
-  }
-  if (move == 7 && s.kind == SupportKind::cylinder) {
-    t.half_size_mm.z = s.half_size_mm.z + 2.0 * length_mm;
-    if (!(t.half_size_mm.z > 0.2 * s.half_size_mm.z)) return std::nullopt;
-    return t;
-  }
-  if (move >= 8) return moved_dome(s, move - 8, length_mm, angle);
-  return std::nullopt;
-}
-constexpr int kMoves = 13;
-
 /// One round of compass search: the best of all single steps is taken while one gains.
 SupportScore refine_round(const SupportJudge& judge, SupportScore start, double length_mm, double angle,
                           Progress& progress) {
@@ -238,7 +183,7 @@ SupportScore refine_round(const SupportJudge& judge, SupportScore start, double 
   for (int step = 0; step < kMostSteps; ++step) {
     if (progress.stop_requested()) throw Interrupted();
     std::vector<Support> tries;
-    for (int move = 0; move < kMoves; ++move) {
+    for (int move = 0; move < kSupportMoves; ++move) {
       for (const double sign : {-1.0, 1.0}) {
         if (const auto t = moved(start.on.support, move, sign * length_mm, sign * angle)) tries.push_back(*t);
       }
@@ -373,6 +318,8 @@ SearchResult find_support(const RayBlock& rays, const BoundingSurface& surface, 
   result.coarse_nats = racers.front().nats;
   result.best = refine(fine_judge, fine_judge.score(racers.front().on.support), length_mm, angle, kFineRounds,
                        progress);
+  const SupportJudge last(stratified_choice(rays, kPolishRays, seed + 3), shape.focus_mm, tolerance_mm, 2);
+  result.best = polish_support(last, result.best.on.support, length_mm, angle, progress);
   return result;
 }
 
