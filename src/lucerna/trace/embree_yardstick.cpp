@@ -112,6 +112,7 @@ struct EmbreeYardstick::Device {
         const float per = met ? -1.0F / packet.hit.Ng_z[k] : 0.0F;
         hits.gx[i + k] = packet.hit.Ng_x[k] * per;
         hits.gy[i + k] = packet.hit.Ng_y[k] * per;
+        hits.gz[i + k] = 1.0F;
         const float towards = -packet.hit.Ng_x[k] * per * rays.dx[i + k] -
                               packet.hit.Ng_y[k] * per * rays.dy[i + k] + rays.dz[i + k];
         hits.state[i + k] = !met ? kMiss : towards < 0.0F ? kFront : kBack;
