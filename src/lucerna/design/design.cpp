@@ -52,16 +52,15 @@ std::string problem_key(const DesignProblem& problem, const DesignOptions& optio
 
 /// Angular radius under which the mirror's vertex and rim see the source: what no mirror can sharpen.
 double source_blur_rad(const DesignRays& rays, const DesignShape& shape) {
+  const RayBlock some = rays.first(std::uint64_t{16} * kBlockRays);
+  const auto n = static_cast<double>(some.size());
   Vec3 mean;
-  const std::size_t n = std::min<std::size_t>(rays.size() / kBlockRays, 16) * kBlockRays;
-  const auto at = [&](std::size_t i) {
-    const DesignRays::Block& b = rays.block(i / kBlockRays);
-    const std::size_t k = i % kBlockRays;
-    return Vec3{b.x_mm[k], b.y_mm[k], b.z_mm[k]};
-  };
-  for (std::size_t i = 0; i < n; ++i) mean += at(i) / static_cast<double>(n);
+  for (std::size_t i = 0; i < some.size(); ++i) mean += some.origin_mm(i) / n;
   double square = 0.0;
-  for (std::size_t i = 0; i < n; ++i) square += dot(at(i) - mean, at(i) - mean) / static_cast<double>(n);
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    const Vec3 off = some.origin_mm(i) - mean;
+    square += dot(off, off) / n;
+  }
   const double rim = shape.aperture().half_x_mm(), z = shape.at(rim, 0.0).z_mm - mean.z;
   return std::atan2(std::sqrt(square), std::max(std::hypot(rim, z), std::abs(shape.at(0, 0).z_mm - mean.z)));
 }

@@ -133,8 +133,7 @@ void add_detectors(Project& project, const DesignTarget& target) {
 DesignProblem design_problem(Project project, const std::filesystem::path& path) {
   const toml::table tables = project.table;  // the readers below point into it
   TomlReader root(tables, path.string(), "");
-  for (const char* known : {"source", "reflector", "detector"}) root.has(known);
-  if (root.has("body")) root.fail("body", "a design shapes one mirror alone; trace the result with bodies");
+  for (const char* known : {"source", "reflector", "detector", "body"}) root.has(known);
   auto target_reader = root.table("target");
   auto reader = root.table("design");
   root.finish();

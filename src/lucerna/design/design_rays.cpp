@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/design/design_rays.h"
 
+#include <algorithm>
 #include <atomic>
 #include <utility>
 
@@ -50,6 +51,25 @@ void DesignRays::grow(std::uint64_t n, Progress& progress) {
     done += last - first;
     progress.update("rays", done * kBlockRays, (blocks - old) * kBlockRays);
   });
+}
+
+RayBlock DesignRays::first(std::uint64_t most) const {
+  const std::uint64_t blocks = std::min(most, size()) / kBlockRays;
+  RayBlock out;
+  out.reserve(blocks * kBlockRays);
+  const auto append = [](std::vector<float>& to, const std::array<float, kBlockRays>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  for (std::uint64_t b = 0; b < blocks; ++b) {
+    append(out.x_mm, block_[b].x_mm);
+    append(out.y_mm, block_[b].y_mm);
+    append(out.z_mm, block_[b].z_mm);
+    append(out.kx, block_[b].kx);
+    append(out.ky, block_[b].ky);
+    append(out.kz, block_[b].kz);
+    append(out.weight, block_[b].weight);
+  }
+  return out;
 }
 
 void DesignRays::fill(std::uint64_t b) {

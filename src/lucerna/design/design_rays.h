@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lucerna/core/progress.h"
+#include "lucerna/rayset/ray_block.h"
 #include "lucerna/trace/ray_numbering.h"
 
 namespace lucerna {
@@ -40,6 +41,8 @@ class DesignRays {
     std::array<float, kBlockRays> weight;
   };
   const Block& block(std::uint64_t b) const { return block_[b]; }
+  /// A copy of the first `most` rays (whole blocks of them), for what takes ray sets.
+  RayBlock first(std::uint64_t most) const;
 
  private:
   void fill(std::uint64_t b);

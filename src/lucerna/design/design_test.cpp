@@ -81,7 +81,8 @@ DesignProblem problem(
     const std::filesystem::path& folder, const std::string& design = "",
     const std::string& shape = "family = \"revolution\"\npreset = \"parabola\"\nfocal_mm = 8\n") {
   write_file(folder / "project.toml",
-             kSource + mirror(shape) + "[target]\nfile = \"target.ies\"\n[design]\nattempts = 1\n" + design);
+             kSource + mirror(shape) + "[target]\nfile = \"target.ies\"\n[design]\n" +
+                 (design.find("attempts") == std::string::npos ? "attempts = 0\n" : "") + design);
   return design_problem(read_project(folder / "project.toml"), folder / "project.toml");
 }
 
@@ -90,6 +91,13 @@ DesignOptions small() {
   options.time_s = 1e6;
   options.most_rays = 1 << 14;
   options.judge_rays = 1 << 16;
+  return options;
+}
+
+/// Where only the way counts.
+DesignOptions tiny() {
+  DesignOptions options = small();
+  options.most_rays = 1 << 13;
   return options;
 }
 
@@ -114,14 +122,14 @@ TEST(Design, ReachesTheLightOfAHiddenProfile) {
 TEST(Design, ResumesToTheSameBits) {
   const TempDir folder;
   write_target(folder.path());
-  const DesignProblem p = problem(folder.path(), "intervals = 4\n");
+  const DesignProblem p = problem(folder.path(), "intervals = 2\nattempts = 1\n");
   std::vector<std::string> states;
   const DesignResult whole = design(
-      p, small(), no_progress(),
+      p, tiny(), no_progress(),
       [&](const FitRecord&, const DesignShape&, const std::string& state) { states.push_back(state); });
-  ASSERT_GT(states.size(), 4u);
-  for (const std::size_t at : {std::size_t{0}, states.size() / 2, states.size() - 2}) {
-    DesignOptions options = small();
+  ASSERT_GT(states.size(), 12u);
+  for (const std::size_t at : {states.size() / 4, states.size() - 9}) {
+    DesignOptions options = tiny();
     options.checkpoint = states[at];
     const DesignResult resumed = design(p, options);
     EXPECT_EQ(resumed.checkpoint, whole.checkpoint) << "from step " << at;
@@ -134,16 +142,31 @@ TEST(Design, ResumesInTheMiddleOfASearchToTheSameBits) {
   write_target(folder.path());
   const DesignProblem p = problem(folder.path(), "intervals = 1\noptimizer = \"cma-es\"\n");
   std::vector<std::string> states;
-  const DesignResult whole = design(p, small(), no_progress(),
-                                    [&](const FitRecord& r, const DesignShape&, const std::string& state) {
-                                      if (r.stage < 0) states.push_back(state);
-                                    });
+  const DesignResult whole =
+      design(p, tiny(), no_progress(), [&](const FitRecord& r, const DesignShape&, const std::string& state) {
+        if (r.stage < 0) states.push_back(state);
+      });
   ASSERT_GT(states.size(), 8u);
-  DesignOptions options = small();
+  DesignOptions options = tiny();
   options.checkpoint = states[states.size() / 2];
   const DesignResult resumed = design(p, options);
   EXPECT_EQ(resumed.checkpoint, whole.checkpoint);
   EXPECT_LT(resumed.history.size(), whole.history.size());
+}
+
+/// Whatever looks for the basin, the light comes nearer to the target and stays whole.
+TEST(Design, EveryOptimizerIsSensible) {
+  const TempDir folder;
+  write_target(folder.path());
+  for (const char* name : {"least-squares", "tree", "annealing", "cma-es", "direct"}) {
+    const DesignProblem p = problem(folder.path(), fmt::format("intervals = 1\noptimizer = \"{}\"\n", name));
+    DesignOptions options = tiny();
+    const DesignResult result = design(p, options);
+    EXPECT_EQ(result.end, DesignEnd::converged) << name;
+    EXPECT_LT(result.error.relative_rms, 0.7 * result.start_error.relative_rms) << name;
+    EXPECT_NEAR(result.efficiency + result.absorbed + result.back + result.lost, 1.0, 1e-9) << name;
+    EXPECT_GT(result.efficiency, 0.8) << name;
+  }
 }
 
 /// A budget that ends within the search leaves the best so far, whole, and a state that goes on.
@@ -151,7 +174,7 @@ TEST(Design, TimeMayEndWithinASearch) {
   const TempDir folder;
   write_target(folder.path());
   const DesignProblem p = problem(folder.path(), "intervals = 2\noptimizer = \"tree\"\n");
-  DesignOptions options = small();
+  DesignOptions options = tiny();
   options.time_s = 1e-9;
   const DesignResult result = design(p, options);
   EXPECT_EQ(result.end, DesignEnd::time);

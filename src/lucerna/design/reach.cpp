@@ -14,29 +14,9 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kMostRays = std::uint64_t{1} << 18;
+constexpr std::uint64_t kReachRays = std::uint64_t{1} << 18;
 /// Shares that are this close to a bound are not called impossible: the curve is known to a few percent.
 constexpr double kSlack = 1.05;
-
-RayBlock ray_block(const DesignRays& rays) {
-  const std::uint64_t blocks = std::min(kMostRays, rays.size()) / kBlockRays;
-  RayBlock out;
-  out.resize(blocks * kBlockRays, 0);
-  for (std::uint64_t b = 0; b < blocks; ++b) {
-    const DesignRays::Block& from = rays.block(b);
-    for (std::size_t k = 0; k < kBlockRays; ++k) {
-      const std::size_t i = b * kBlockRays + k;
-      out.x_mm[i] = from.x_mm[k];
-      out.y_mm[i] = from.y_mm[k];
-      out.z_mm[i] = from.z_mm[k];
-      out.kx[i] = from.kx[k];
-      out.ky[i] = from.ky[k];
-      out.kz[i] = from.kz[k];
-      out.weight[i] = from.weight[k];
-    }
-  }
-  return out;
-}
 
 /// The largest share of the flux whose brightest part fits into an étendue.
 double share_in(const EtendueCurve& curve, double etendue) {
@@ -81,7 +61,7 @@ Reach target_reach(const DesignRays& rays, const DesignShape& shape, const TentB
     }
   }
   if (bins.is_plane()) return reach;
-  const RayBlock block = ray_block(rays);
+  const RayBlock block = rays.first(kReachRays);
   const EtendueCurve curve = etendue_curve(block);
   reach.opening_mm2 = opening(shape, block);
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/roughness.h"
+
+#include <gtest/gtest.h>
+
+#include "lucerna/core/random.h"
+
+namespace lucerna {
+namespace {
+
+NormalEquations nothing(const DesignShape& shape) {
+  const auto n = static_cast<Eigen::Index>(shape.parameter_count());
+  return {0.0, Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
+}
+
+DesignShape shaken(const DesignShape& shape) {
+  Eigen::VectorXd p = shape.parameters();
+  Rng rng(3, 0);
+  for (double& x : p) x += rng.uniform();
+  return shape.with(p);
+}
+
+TEST(Roughness, ParaboloidsAreSmoothAndShakenShapesAreNot) {
+  const DesignShape shapes[] = {DesignShape::revolution(10, Aperture::circle(40), 6),
+                                DesignShape::bspline(10, Aperture::rectangle(40, 30), 5, 3),
+                                DesignShape::bspline(10, Aperture::circle(40), 4, 4, ShapeSymmetry::both)};
+  for (const DesignShape& shape : shapes) {
+    const DesignShape wider =
+        shape.through([&](double x, double y) { return shape.at(x, y).z_mm + 0.01 * (x * x + y * y); });
+    EXPECT_NEAR(roughness(wider, 1.0, nullptr), 0.0, 1e-18);
+    EXPECT_GT(roughness(shaken(shape), 1.0, nullptr), 1e-3);
+  }
+}
+
+/// It is quadratic in the parameters: gradient and Hessian give its values exactly.
+TEST(Roughness, GradientAndHessianAreThoseOfTheCost) {
+  const DesignShape shape = shaken(DesignShape::bspline(10, Aperture::circle(40), 4, 4, ShapeSymmetry::both));
+  NormalEquations equations = nothing(shape);
+  const double here = roughness(shape, 0.5, &equations);
+  Eigen::VectorXd move(equations.gradient.size());
+  Rng rng(4, 0);
+  for (double& x : move) x = rng.uniform() - 0.5;
+  const double there = roughness(shape.with(shape.parameters() + move), 0.5, nullptr);
+  EXPECT_NEAR(there, here + 2.0 * equations.gradient.dot(move) + move.dot(equations.hessian * move),
+              1e-9 * there);
+}
+
+}  // namespace
+}  // namespace lucerna
