@@ -128,6 +128,7 @@ TEST(Design, ResumesToTheSameBits) {
       p, tiny(), no_progress(),
       [&](const FitRecord&, const DesignShape&, const std::string& state) { states.push_back(state); });
   ASSERT_GT(states.size(), 12u);
+  EXPECT_LE(parse_checkpoint(whole.checkpoint, whole.checkpoint.substr(32, 16)).fruitless, 1);
   for (const std::size_t at : {states.size() / 4, states.size() - 9}) {
     DesignOptions options = tiny();
     options.checkpoint = states[at];

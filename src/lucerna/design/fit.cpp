@@ -125,7 +125,7 @@ void Fit::finish_stage() {
   state_.costs.clear();
   state_.lambda = std::clamp(state_.lambda, 1e-4, 1e-2);
   ready_ = false;
-  if (gate) pass_gate();
+  if (gate && !pass_gate()) return;
   if (done()) pass_end();
 }
 
@@ -137,23 +137,27 @@ DesignShape Fit::shape_of(const FitMark& mark) const {
   return family_.refined(mark.intervals_x, mark.intervals_y).with(to_eigen(mark.parameters));
 }
 
-void Fit::pass_gate() {
+bool Fit::pass_gate() {
   const bool better = !state_.gate.exists() || equations_.cost < state_.gate.cost;
   if (better) state_.gate = mark();
   const auto begun = static_cast<std::size_t>(++state_.starts);
   if (state_.best.exists()) {
-    if (better) return;
+    if (better) return true;
     ++state_.fruitless;
-    return begin_again();
+    begin_again();
+    return false;
   }
   if (state_.gate.over_noise > kGateFloors && begun < problem_.starts.size()) {
-    return begin_with(problem_.starts[begun].shape, stage_of(problem_.starts[begun]));
+    begin_with(problem_.starts[begun].shape, stage_of(problem_.starts[begun]));
+    return false;
   }
   shape_ = shape_of(state_.gate);
   state_.parameters = state_.gate.parameters;
   state_.intervals_x = state_.gate.intervals_x;
   state_.intervals_y = state_.gate.intervals_y;
   state_.over_noise = state_.gate.over_noise;
+  equations_.cost = state_.gate.cost;  // the gate may be the last stage
+  return true;
 }
 
 void Fit::pass_end() {

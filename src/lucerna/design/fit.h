@@ -129,7 +129,8 @@ class Fit {
  private:
   void begin_stage(Progress& progress);
   void finish_stage();
-  void pass_gate();
+  /// Whether the shape goes on beyond the gate.
+  bool pass_gate();
   void pass_end();
   void begin_again();
   FitMark mark() const;
