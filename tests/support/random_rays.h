@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "lucerna/core/random.h"
 #include "lucerna/rayset/ray_set.h"
+#include "tests/support/random_direction.h"
 
 namespace lucerna::test {
 
@@ -24,10 +23,9 @@ inline RaySet random_ray_set(std::size_t n, std::uint64_t seed, std::vector<Colu
   b.resize(n, set.header.columns.size());
   for (std::size_t i = 0; i < n; ++i) {
     Rng rng(seed, i);
-    const double kz = 2.0 * rng.uniform() - 1.0, phi = 2.0 * std::numbers::pi * rng.uniform();
-    const double across = std::sqrt(1.0 - kz * kz);
+    const Direction direction = random_direction(rng);
     const Vec3 start{6.0 * rng.uniform() - 3.0, 4.0 * rng.uniform(), rng.uniform() - 20.0};
-    b.set(i, {start, Direction::from({across * std::cos(phi), across * std::sin(phi), kz})});
+    b.set(i, {start, direction});
     b.weight[i] = static_cast<float>(rng.uniform() + 0.01);
     for (std::size_t c = 0; c < b.extra.size(); ++c) {
       const bool wavelength = set.header.columns[c].kind == ColumnKind::wavelength_nm;

@@ -133,6 +133,13 @@ FitMark Fit::mark() const {
   return {equations_.cost, state_.over_noise, state_.intervals_x, state_.intervals_y, state_.parameters};
 }
 
+void Fit::take(const FitMark& mark) {
+  shape_ = shape_of(mark);
+  state_.parameters = mark.parameters;
+  state_.intervals_x = mark.intervals_x;
+  state_.intervals_y = mark.intervals_y;
+}
+
 DesignShape Fit::shape_of(const FitMark& mark) const {
   return family_.refined(mark.intervals_x, mark.intervals_y).with(to_eigen(mark.parameters));
 }
@@ -151,10 +158,7 @@ bool Fit::pass_gate() {
     begin_with(problem_.starts[begun].shape, stage_of(problem_.starts[begun]));
     return false;
   }
-  shape_ = shape_of(state_.gate);
-  state_.parameters = state_.gate.parameters;
-  state_.intervals_x = state_.gate.intervals_x;
-  state_.intervals_y = state_.gate.intervals_y;
+  take(state_.gate);
   state_.over_noise = state_.gate.over_noise;
   equations_.cost = state_.gate.cost;  // the gate may be the last stage
   return true;
@@ -173,10 +177,7 @@ void Fit::pass_end() {
 /// better neighbour.
 void Fit::begin_again() {
   if (at_noise() || state_.fruitless >= problem_.fruitless) {
-    shape_ = shape_of(state_.best);
-    state_.parameters = state_.best.parameters;
-    state_.intervals_x = state_.best.intervals_x;
-    state_.intervals_y = state_.best.intervals_y;
+    take(state_.best);
     state_.stage = static_cast<int>(stages_.size());
     return;
   }

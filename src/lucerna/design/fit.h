@@ -135,6 +135,8 @@ class Fit {
   void begin_again();
   FitMark mark() const;
   DesignShape shape_of(const FitMark& mark) const;
+  /// Goes back to a shape that was kept.
+  void take(const FitMark& mark);
   NormalEquations equations_at(const DesignShape& shape, const Evaluation& e) const;
   std::size_t first_stage(int least_intervals) const;
   void begin_with(const DesignShape& start, std::size_t stage);

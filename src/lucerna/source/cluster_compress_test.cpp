@@ -13,6 +13,7 @@
 #include "lucerna/source/draw_rays.h"
 #include "lucerna/source/emitter.h"
 #include "lucerna/source/warp.h"
+#include "tests/support/random_direction.h"
 
 namespace lucerna {
 namespace {
@@ -199,9 +200,8 @@ RaySet rays_from(std::size_t n, const Start& start) {
   set.rays.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     Rng rng(11, i);
-    const double z = 2.0 * rng.uniform() - 1.0, phi = 2.0 * std::numbers::pi * rng.uniform(),
-                 s = std::sqrt(1.0 - z * z);
-    set.rays.set(i, {start(rng), Direction::from({s * std::cos(phi), s * std::sin(phi), z})});
+    const Direction direction = test::random_direction(rng);
+    set.rays.set(i, {start(rng), direction});
     set.rays.weight[i] = 1.0f;
   }
   return set;

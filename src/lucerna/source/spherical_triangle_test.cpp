@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lucerna/core/random.h"
+#include "tests/support/random_direction.h"
 #include "tests/support/statistics.h"
 
 namespace lucerna {
@@ -16,9 +17,7 @@ namespace {
 
 Direction random_direction(std::uint64_t seed, std::uint64_t i) {
   Rng rng(seed, i);
-  const double z = 2.0 * rng.uniform() - 1.0, phi = 2.0 * std::numbers::pi * rng.uniform(),
-               s = std::sqrt(1.0 - z * z);
-  return Direction::from({s * std::cos(phi), s * std::sin(phi), z});
+  return test::random_direction(rng);
 }
 
 bool inside(const SphericalTriangle& t, const Vec3& d, double slack) {

@@ -9,15 +9,12 @@
 #include "lucerna/core/frame.h"
 #include "lucerna/core/random.h"
 #include "lucerna/trace/reference_tracer.h"
+#include "tests/support/random_direction.h"
 
 namespace lucerna {
 namespace {
 
-Direction random_direction(Rng& rng) {
-  const double z = 2.0 * rng.uniform() - 1.0, phi = 2.0 * std::numbers::pi * rng.uniform();
-  const double s = std::sqrt(1.0 - z * z);
-  return Direction::from({s * std::cos(phi), s * std::sin(phi), z});
-}
+using test::random_direction;
 
 Vec3 random_point(Rng& rng, double half) {
   const double x = half * (2.0 * rng.uniform() - 1.0), y = half * (2.0 * rng.uniform() - 1.0);

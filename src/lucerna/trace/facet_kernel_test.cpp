@@ -12,15 +12,12 @@
 #include "lucerna/source/emitter.h"
 #include "lucerna/trace/facet_mirror.h"
 #include "lucerna/trace/trace.h"
+#include "tests/support/random_direction.h"
 
 namespace lucerna {
 namespace {
 
-Direction random_direction(Rng& rng) {
-  const double z = 2.0 * rng.uniform() - 1.0, phi = 2.0 * std::numbers::pi * rng.uniform();
-  const double s = std::sqrt(1.0 - z * z);
-  return Direction::from({s * std::cos(phi), s * std::sin(phi), z});
-}
+using test::random_direction;
 
 Reflector facets_on_paraboloid(double radius_mm, const Aperture& aperture) {
   const Reflector base = conic_reflector(ConicPreset::parabola, 15.0, 0.0, aperture);

@@ -18,16 +18,15 @@
 #include "lucerna/trace/exact_mirrors.h"
 #include "lucerna/trace/field_view.h"
 #include "lucerna/trace/reference_tracer.h"
+#include "tests/support/available_kernels.h"
+#include "tests/support/random_direction.h"
 #include "tests/support/test_mirrors.h"
 
 namespace lucerna {
 namespace {
 
-Direction random_direction(Rng& rng) {
-  const double z = 2.0 * rng.uniform() - 1.0, phi = 2.0 * std::numbers::pi * rng.uniform();
-  const double s = std::sqrt(1.0 - z * z);
-  return Direction::from({s * std::cos(phi), s * std::sin(phi), z});
-}
+using test::available_kernels;
+using test::random_direction;
 
 /// Mirrors that no grid stands for: both tracers work on the exact shape.
 std::vector<Reflector> exact_mirrors() {
@@ -298,17 +297,6 @@ HitCounts exact_against_reference(const Reflector& mirror, std::size_t rays) {
   return against_reference(mirror, 0.0, rays, [&](const LocalRays& in, std::size_t n, LocalHits& out) {
     meet_facets(view, in, n, out);
   });
-}
-
-std::vector<const Kernels*> available_kernels() {
-  std::vector<const Kernels*> all;
-  for (const char* isa : {"scalar", "portable", "avx2", "avx512"}) {
-    try {
-      all.push_back(&kernels_named(isa));
-    } catch (const UsageError&) {
-    }
-  }
-  return all;
 }
 
 // A hundred thousand rays for each instruction set.

@@ -17,27 +17,15 @@
 #include "lucerna/trace/far_field.h"
 #include "lucerna/trace/field_view.h"
 #include "lucerna/trace/reference_tracer.h"
+#include "tests/support/available_kernels.h"
+#include "tests/support/random_direction.h"
 #include "tests/support/test_mirrors.h"
 
 namespace lucerna {
 namespace {
 
-Direction random_direction(Rng& rng) {
-  const double z = 2.0 * rng.uniform() - 1.0, phi = 2.0 * std::numbers::pi * rng.uniform();
-  const double s = std::sqrt(1.0 - z * z);
-  return Direction::from({s * std::cos(phi), s * std::sin(phi), z});
-}
-
-std::vector<const Kernels*> available_kernels() {
-  std::vector<const Kernels*> all;
-  for (const char* isa : {"scalar", "portable", "avx2", "avx512"}) {
-    try {
-      all.push_back(&kernels_named(isa));
-    } catch (const UsageError&) {
-    }
-  }
-  return all;
-}
+using test::available_kernels;
+using test::random_direction;
 
 // Rays exactly along the axis, also on cell borders, and along the grid lines.
 TEST(Kernels, RaysAlongTheAxesOfTheGrid) {

@@ -6,15 +6,12 @@
 #include <cmath>
 
 #include "lucerna/core/random.h"
+#include "tests/support/random_direction.h"
 
 namespace lucerna {
 namespace {
 
-Direction random_direction(Rng& rng) {
-  const double z = 2.0 * rng.uniform() - 1.0, phi = 2.0 * std::numbers::pi * rng.uniform();
-  const double s = std::sqrt(1.0 - z * z);
-  return Direction::from({s * std::cos(phi), s * std::sin(phi), z});
-}
+using test::random_direction;
 
 /// First crossing of a paraboloid z = r^2 / (4 f) inside the aperture, in closed form.
 std::optional<double> paraboloid_hit(const Ray& ray, double f, const Aperture& aperture) {
