@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "lucerna/core/error.h"
 #include "lucerna/design/starts.h"
 #include "lucerna/rayset/etendue_curve.h"
+#include "lucerna/source/model_etendue.h"
 
 namespace lucerna {
 
@@ -45,6 +45,65 @@ double opening(const DesignShape& shape, const RayBlock& rays) {
   return outline + std::numbers::pi * *at * *at;
 }
 
+/// Bins in the order of falling intensity; dark ones left out.
+std::vector<std::size_t> brightest_first(const TentBins& bins, const Eigen::VectorXd& target) {
+  const auto intensity = [&](std::size_t i) {
+    const double omega = bins.measure()[i];
+    return omega > 0.0 ? target[static_cast<Eigen::Index>(i)] / omega : 0.0;
+  };
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    if (intensity(i) > 0.0) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return intensity(a) > intensity(b); });
+  return order;
+}
+
+/// What the étendue of the opening lets the sources send, by their curve.
+void bound_by_etendue(const EtendueCurve& curve, const TentBins& bins, const Eigen::VectorXd& target,
+                      TargetMode mode, Reach& reach) {
+  const double total = target.sum();
+  double part = 0.0, etendue = 0.0;
+  bool half = false;
+  reach.most_share = 1.0;
+  for (const std::size_t i : brightest_first(bins, target)) {
+    part += target[static_cast<Eigen::Index>(i)] / total;
+    const double cosine = std::abs(bin_direction(bins, i, {}).z());
+    etendue += bins.measure()[i] * (cosine * reach.opening_mm2);
+    reach.most_share = std::min(reach.most_share, share_in(curve, etendue) / part);
+    if (half || part < 0.5) continue;
+    half = true;
+    reach.etendue_mm2sr = etendue;
+    const double share = mode == TargetMode::absolute ? std::min(1.0, total * part) : part;
+    reach.needed_mm2sr = curve.degenerate() ? 0.0 : curve.at(share);
+  }
+}
+
+/// What that forbids.
+std::vector<std::string> etendue_statements(const Reach& reach, TargetMode mode, double wanted_efficiency) {
+  std::vector<std::string> statements;
+  const auto forbids = [&](const char* what, double share) {
+    statements.push_back(fmt::format(
+        "etendue: an opening of {:.4g} mm2 passes {:.3g} mm2 sr towards the brighter half of the target, "
+        "where the sources' light needs {:.3g}; at most {:.1f} % of it can have the target's distribution, "
+        "{} {:.1f} %. A wider mirror, a smaller source or a wider beam would do",
+        reach.opening_mm2, reach.etendue_mm2sr, reach.needed_mm2sr, 100.0 * reach.most_share, what,
+        100.0 * share));
+  };
+  const double most = kSlack * reach.most_share;
+  if (reach.wanted_share > most && reach.wanted_share <= 1.0) {
+    forbids("the target asks for", reach.wanted_share);
+  }
+  if (mode == TargetMode::shape && most < 1.0) forbids("the sources have", 1.0);
+  if (wanted_efficiency > most) {
+    statements.push_back(
+        fmt::format("efficiency: {:.3f} is asked for, the etendue lets {:.3f} have the target's distribution",
+                    wanted_efficiency, reach.most_share));
+  }
+  return statements;
+}
+
 }  // namespace
 
 Reach target_reach(const DesignRays& rays, const DesignShape& shape, const TentBins& bins,
@@ -62,54 +121,15 @@ Reach target_reach(const DesignRays& rays, const DesignShape& shape, const TentB
   }
   if (bins.is_plane()) return reach;
   const RayBlock block = rays.first(kReachRays);
-  const EtendueCurve curve = etendue_curve(block);
   reach.opening_mm2 = opening(shape, block);
-
-  // The brightest directions first: bins in the order of falling intensity.
-  std::vector<std::size_t> order(bins.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto intensity = [&](std::size_t i) {
-    const double omega = bins.measure()[i];
-    return omega > 0.0 ? target[static_cast<Eigen::Index>(i)] / omega : 0.0;
-  };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return intensity(a) > intensity(b); });
-  double part = 0.0, etendue = 0.0;
-  bool half = false;
-  for (const std::size_t i : order) {
-    if (!(intensity(i) > 0.0)) break;
-    part += target[static_cast<Eigen::Index>(i)] / total;
-    const double cosine = std::abs(bin_direction(bins, i, {}).z());
-    etendue += bins.measure()[i] * (cosine * reach.opening_mm2);
-    reach.most_share = std::min(reach.most_share, share_in(curve, etendue) / part);
-    if (half || part < 0.5) continue;
-    half = true;
-    reach.etendue_mm2sr = etendue;
-    const double share = mode == TargetMode::absolute ? std::min(1.0, total * part) : part;
-    reach.needed_mm2sr = curve.degenerate() ? 0.0 : curve.at(share);
+  // The quick curve of the focus plane can be too large, never far too small: what it allows is allowed. What
+  // it forbids is judged again by the curve of a searched support, which takes seconds.
+  bound_by_etendue(etendue_curve(block), bins, target, mode, reach);
+  if (!etendue_statements(reach, mode, wanted_efficiency).empty()) {
+    bound_by_etendue(searched_etendue_curve(block), bins, target, mode, reach);
   }
-  const auto etendue_sentence = [&](const char* what, double share) {
-    return fmt::format(
-        "etendue: an opening of {:.4g} mm2 passes {:.3g} mm2 sr towards the brighter half of the target, "
-        "where "
-        "the sources' light needs {:.3g}; at most {:.1f} % of it can have the target's distribution, {} "
-        "{:.1f} "
-        "%. A wider mirror, a smaller source or a wider beam would do",
-        reach.opening_mm2, reach.etendue_mm2sr, reach.needed_mm2sr, 100.0 * reach.most_share, what,
-        100.0 * share);
-  };
-  if (reach.wanted_share > 0.0 && reach.wanted_share <= 1.0 &&
-      reach.wanted_share > kSlack * reach.most_share) {
-    reach.statements.push_back(etendue_sentence("the target asks for", reach.wanted_share));
-  }
-  if (mode == TargetMode::shape && kSlack * reach.most_share < 1.0) {
-    reach.statements.push_back(etendue_sentence("the sources have", 1.0));
-  }
-  if (wanted_efficiency > kSlack * reach.most_share) {
-    reach.statements.push_back(
-        fmt::format("efficiency: {:.3f} is asked for, the etendue lets {:.3f} have the target's distribution",
-                    wanted_efficiency, reach.most_share));
-  }
+  const auto forbidden = etendue_statements(reach, mode, wanted_efficiency);
+  reach.statements.insert(reach.statements.end(), forbidden.begin(), forbidden.end());
   return reach;
 }
 

@@ -30,7 +30,8 @@ struct Reach {
 /// Bounds a target in bins over directions: `target` as shares of the sources' flux (any scale by shape).
 /// `wanted_efficiency` (0: none) is a limit that the sources' share must reach. Rays beyond the first 2^18
 /// are not used. Bins on a plane have no bound here (no statements): the plane is near. The bound is on the
-/// light that leaves through the opening; light that passes beside the mirror has étendue of its own.
+/// light that leaves through the opening; light that passes beside the mirror has étendue of its own. Cost:
+/// half a second; some seconds where the étendue forbids something (two curves, model_etendue.h).
 Reach target_reach(const DesignRays& rays, const DesignShape& shape, const TentBins& bins,
                    const Eigen::VectorXd& target, TargetMode mode, double wanted_efficiency = 0.0);
 

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "lucerna/rayset/etendue_curve.h"
 #include "lucerna/rayset/ray_statistics.h"
 #include "lucerna/report/html_assets.h"
 #include "lucerna/report/html_page.h"
@@ -16,28 +15,13 @@
 #include "lucerna/source/adaptive_model.h"
 #include "lucerna/source/cluster_model.h"
 #include "lucerna/source/draw_rays.h"
+#include "lucerna/source/model_etendue.h"
 
 namespace lucerna {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Rays of either side behind the étendue curve.
-constexpr std::size_t kCurveRays = std::size_t{1} << 19;
-
-/// The first n of the rays, evenly spread.
-RayBlock spread(const RayBlock& rays, std::size_t n) {
-  RayBlock out;
-  const std::size_t m = std::min(n, rays.size());
-  out.resize(m, 0);
-  for (std::size_t j = 0; j < m; ++j) {
-    const std::size_t i = rays.size() * j / m;
-    out.set(j, rays.ray(i));
-    out.weight[j] = rays.weight[i];
-  }
-  return out;
-}
 
 Json etendue_json(const EtendueCurve& curve) {
   return {{"p50", curve.at(0.5)}, {"p90", curve.at(0.9)}, {"p99", curve.at(0.99)}};
@@ -168,17 +152,14 @@ Compared compare(HtmlPage& page, const SourceModel& model, Json& result, const M
                  Progress& progress) {
   progress.step("report", 0, 3);
   Compared out;
-  const RayBlock drawn =
-      draw_rays(model, Sequence(SequenceKind::random, 1),
-                options.rays != nullptr ? std::max(options.model_rays, kCurveRays) : kCurveRays);
-  const std::size_t n = options.rays != nullptr ? std::min(kCurveRays, options.rays->size()) : kCurveRays;
-  out.model_curve = etendue_curve(spread(drawn, n));
+  out.model_curve = etendue_curve(model);
   result["etendue_mm2sr"]["model"] = etendue_json(out.model_curve);
   progress.step("report", 1, 3);
   if (options.rays == nullptr) return out;
-  out.rays_curve = etendue_curve(spread(*options.rays, n));
+  out.rays_curve = searched_etendue_curve(*options.rays);
   result["etendue_mm2sr"]["rays"] = etendue_json(out.rays_curve);
   progress.step("report", 2, 3);
+  const RayBlock drawn = draw_rays(model, Sequence(SequenceKind::random, 1), options.model_rays);
   const Views views(*options.rays);
   ViewCounts reference(views), test(views);
   reference.add(*options.rays);
@@ -221,10 +202,10 @@ std::string model_report_html(const SourceModel& model, Json json, const ModelRe
     const std::string of = all ? fmt::format("all {} rays", options.rays->size())
                                : fmt::format("{} of {} rays, spread over the files", options.rays->size(),
                                              options.rays_in_files);
-    page.section("views", "Rays and model in five views",
-                 fmt::format("<p>Left {}, in the middle {} rays drawn from the model.</p>\n", of,
-                             std::max(options.model_rays, kCurveRays)) +
-                     view_table(result, all) + compared.view_plots);
+    page.section(
+        "views", "Rays and model in five views",
+        fmt::format("<p>Left {}, in the middle {} rays drawn from the model.</p>\n", of, options.model_rays) +
+            view_table(result, all) + compared.view_plots);
   } else {
     page.section(
         "views", "Rays and model in five views",

@@ -27,7 +27,8 @@ struct ModelReportOptions {
 /// direction drawn in the page, the five views of rays and model with error, floor, excess and raw, the
 /// étendue curve, layers, provenance. `result` is what compress or info say of it (design.md section 3:
 /// method rays bytes layers leaves flux_lm|flux_w and the keys that every result has); the page embeds it
-/// with `views` and `etendue_mm2sr` added. Cost: about a second per million rays. Throws InputError where
+/// with `views` and `etendue_mm2sr` added. Cost: about a second per million rays, and some for
+/// the étendue (model_etendue.h). Throws InputError where
 /// `result` lacks a figure.
 std::string model_report_html(const SourceModel& model, nlohmann::ordered_json result,
                               const ModelReportOptions& options, Progress& progress = no_progress());
