@@ -102,7 +102,7 @@ SupportScore polish_support(const SupportJudge& judge, const Support& start, dou
       wanted = wanted && polisher.improve(move);
     }
   }
-  return polisher.best;
+  return judge.tightened(polisher.best);
 }
 
 }  // namespace lucerna

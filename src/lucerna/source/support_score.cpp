@@ -2,16 +2,20 @@
 #include "lucerna/source/support_score.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "lucerna/core/parallel.h"
 #include "lucerna/source/fitted_support.h"
+#include "lucerna/source/support_tighten.h"
 
 namespace lucerna {
 
 namespace {
 
 constexpr double kPlainShare = 0.02;
+/// Shares of rays that a tight support may miss: stray ones, and those of its blurred edge.
+constexpr std::array<double, 4> kMissed{0.0, 1e-4, 1e-3, 5e-3};
 
 }  // namespace
 
@@ -55,6 +59,17 @@ bool SupportJudge::clearly_better(const SupportScore& a, const SupportScore& b) 
     squares += w * w * d * d, weight += w;
   }
   return weight > 0.0 && mean > kClear * std::sqrt(squares) / weight;
+}
+
+SupportScore SupportJudge::tightened(SupportScore start) const {
+  std::vector<Support> tries;
+  for (const double missed : kMissed) {
+    if (const auto t = lucerna::tightened(start.on.support, train_, missed)) tries.push_back(*t);
+  }
+  for (SupportScore& score : scores(tries)) {
+    if (score.nats > start.nats) start = std::move(score);
+  }
+  return start;
 }
 
 std::vector<SupportScore> SupportJudge::scores(const std::vector<Support>& supports) const {

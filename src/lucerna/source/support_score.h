@@ -20,6 +20,8 @@ class SupportJudge {
   /// True if `a` is better than `b` by more than chance would have it: the mean of the rays' differences is
   /// above 3 of its standard errors. Both must be scores of this judge.
   bool clearly_better(const SupportScore& a, const SupportScore& b) const;
+  /// The best of the score and those of its support made as small as most rays allow (support_tighten.h).
+  SupportScore tightened(SupportScore start) const;
   /// All at once, on all threads.
   std::vector<SupportScore> scores(const std::vector<Support>& supports) const;
 

@@ -194,7 +194,7 @@ SupportScore refine_round(const SupportJudge& judge, SupportScore start, double 
     if (best == scores.end() || !judge.clearly_better(*best, start)) break;
     start = *best;
   }
-  return start;
+  return judge.tightened(start);
 }
 
 /// Rounds with steps halved after each.
