@@ -24,7 +24,7 @@ export const temporaryFolder = () => {
 
 export const lucerna = (folder, ...words) => execFileSync(program, words, { cwd: folder, encoding: 'utf8' });
 
-// A page with the file open; `page.requests` and `page.complaints` fill as it lives.
+// A page with the file open and all parts drawn; `page.requests` and `page.complaints` fill as it lives.
 export const open = async (browser, file, options = {}) => {
   const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
   const page = await context.newPage();
@@ -37,6 +37,7 @@ export const open = async (browser, file, options = {}) => {
     if (/^(error|warning)$/.test(m.type()) && !/ReadPixels|getImageData/.test(m.text())) page.complaints.push(m.text());
   });
   await page.goto(pathToFileURL(file).href);
+  await page.waitForSelector('html[data-complete]');
   return page;
 };
 

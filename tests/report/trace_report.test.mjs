@@ -152,7 +152,6 @@ test('the far-field map shows the table, in any colours, to any angle', async ()
 
 test('the 3D view shows something, orbits, zooms, switches layers and colours', async () => {
   const page = await open(browser, file);
-  await page.waitForSelector('.scene3d canvas[data-drawn]');
   const first = await canvasPixels(page);
   assert.ok(first.share > 0.02 && first.share < 0.9, `${first.share} of the canvas is drawn`);
   assert.ok(first.colours > 200, `${first.colours} colours`);
@@ -198,10 +197,74 @@ test('bodies are drawn from their triangles', async () => {
   assert.ok(html.includes('"bodies":[]'));
   writeFileSync(other, html.replace('"bodies":[]', `"bodies":[${JSON.stringify(body)}]`));
   const page = await open(browser, other);
-  await page.waitForSelector('.scene3d canvas[data-drawn]');
   const old = await canvasPixels(page);
   await page.locator('#layer-bodies').uncheck();
   assert.notEqual((await canvasPixels(page)).sum, old.sum);
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+// The layers' boxes by keys: what is pixels before and after.
+const togglesByKey = async (page, id) => {
+  const old = await canvasPixels(page);
+  await page.locator(id).focus();
+  await page.keyboard.press('Space');
+  const now = await canvasPixels(page);
+  assert.notEqual(now.sum, old.sum, `${id} changed nothing`);
+  await page.keyboard.press('Space');
+  assert.equal((await canvasPixels(page)).sum, old.sum, `${id} does not come back`);
+  return { old, now };
+};
+
+test('a cover glass is a layer of its own, and rays are bent in it, go on behind it and come back from it', async () => {
+  const project = readFileSync(join(folder, 'led.toml'), 'utf8') + `
+[[body]]
+role = "glass"
+diameter_mm = 70.0
+thickness_mm = 6.0
+refractive_index = 1.8
+position_mm = [0, 0, -20]
+`;
+  writeFileSync(join(folder, 'glass.toml'), project);
+  lucerna(folder, 'trace', 'glass.toml', '-o', 'glass', '--rays', '20000', '--report', 'glass.html', '--quiet');
+  const page = await open(browser, join(folder, 'glass.html'));
+  assert.equal(await page.locator('label', { hasText: 'Cover glass' }).count(), 1);
+  await page.locator('#cut').selectOption('none');
+  const { old, now } = await togglesByKey(page, '#layer-glass');
+  assert.notEqual(now.colours, old.colours);
+  await togglesByKey(page, '#layer-rays0');
+  const { legs, share } = await page.evaluate(() => {
+    const { rays } = lucerna.json('scene'), p = lucerna.floats(rays.position), legs = [];
+    rays.bounces.forEach((bounces, i) => legs.push({ from: [...p.slice(6 * i, 6 * i + 3)], to: [...p.slice(6 * i + 3, 6 * i + 6)], bounces }));
+    const { ledger } = lucerna.json('result');
+    return { legs, share: ledger.absorbed.glass.mean / ledger.emitted };
+  });
+  const step = ({ from, to }) => from.map((v, k) => to[k] - v), norm = v => Math.hypot(...v), flat = ([x, y]) => Math.hypot(x, y);
+  const at = (z, v) => Math.abs(v[2] - z) < 1e-3;
+  // From above at z = -14 to below at -20: bent by the index, and on in the old direction, not reflected by it.
+  let bent = 0, back = 0;
+  legs.forEach((leg, i) => {
+    const before = legs[i - 1], after = legs[i + 1];
+    if (!before || !after) return;
+    if (at(-14, leg.from) && at(-20, leg.to) && before.from[2] > -14 && after.from[2] < -19.9) {
+      const into = step(before), inside = step(leg), out = step(after);
+      assert.ok(Math.abs(flat(inside) / norm(inside) * 1.8 - flat(into) / norm(into)) < 2e-3);
+      if (after.to[2] > -20) return;  // to and fro
+      assert.ok(Math.abs(flat(out) / norm(out) - flat(into) / norm(into)) < 1e-3);
+      assert.equal(after.bounces, before.bounces);
+      ++bent;
+    }
+    // From the lower face back up: reflected once more when it leaves.
+    if (at(-20, leg.from) && at(-14, leg.to) && after.to[2] > -14) {
+      assert.equal(after.bounces, leg.bounces + 1);
+      ++back;
+    }
+  });
+  assert.ok(bent > 150 && back > 5, `${bent} bent, ${back} back; the glass keeps ${share}`);
+  if (process.env.SHOTS) {
+    await page.locator('#cut').selectOption('y');
+    await page.locator('#scene3d').screenshot({ path: join(process.env.SHOTS, 'glass-3d.png') });
+  }
   assert.deepEqual(page.complaints, []);
   await page.context().close();
 });

@@ -197,6 +197,35 @@ Json body_json(const Body& body, Extent& extent) {
           {"thinned", mesh == &coarse}};
 }
 
+/// The plate as a solid: its outline on both faces and what joins them.
+Json glass_json(const CoverGlass& glass, Extent& extent) {
+  const Aperture& aperture = glass.aperture;
+  const bool round = aperture.shape() == ApertureShape::circle;
+  const std::uint32_t corners = round ? kSpokes : 4;
+  std::vector<double> position;
+  const auto add = [&](const Vec3& v) {
+    const Vec3 world = glass.world_from_glass.point(v);
+    extent.add(world);
+    append(position, world);
+  };
+  for (std::uint32_t i = 0; i < corners; ++i) {
+    const double phi = 2.0 * std::numbers::pi * i / corners;
+    const double x =
+        round ? aperture.half_x_mm() * std::cos(phi) : (i == 0 || i == 3 ? 1.0 : -1.0) * aperture.half_x_mm();
+    const double y =
+        round ? aperture.half_y_mm() * std::sin(phi) : (i < 2 ? 1.0 : -1.0) * aperture.half_y_mm();
+    add({x, y, 0.0});
+    add({x, y, glass.thickness_mm});
+  }
+  std::vector<std::uint32_t> index;
+  for (std::uint32_t i = 0; i < corners; ++i) {
+    const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % corners);
+    index.insert(index.end(), {a, b, b + 1, a, b + 1, a + 1});
+    if (i > 0 && i + 1 < corners) index.insert(index.end(), {0, b, a, 1, a + 1, b + 1});
+  }
+  return {{"name", glass.name}, {"position", base64_floats(position)}, {"index", base64_counts(index)}};
+}
+
 /// The starts of the run's first rays.
 std::vector<double> source_points(const Scene& scene, const Scene3dOptions& options, Extent& extent) {
   // Without mirrors a path is its start alone.
@@ -216,11 +245,11 @@ Json rays_json(const std::vector<RayPath>& paths, double beyond_mm) {
   Json bounces = Json::array();
   for (const RayPath& path : paths) {
     std::vector<Vec3> points = path.points_mm;
-    if (path.end == PathEnd::out) points.push_back(points.back() + beyond_mm * path.last_direction.vec());
+    if (path.end == RayEnd::out) points.push_back(points.back() + beyond_mm * path.last_direction.vec());
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
       append(position, points[i]);
       append(position, points[i + 1]);
-      bounces.push_back(i);
+      bounces.push_back(path.reflections[i]);
     }
   }
   return {{"count", paths.size()}, {"position", base64_floats(position)}, {"bounces", bounces}};
@@ -240,6 +269,8 @@ Json scene3d_json(const Scene& scene, const Scene3dOptions& options) {
   }
   Json bodies = Json::array();
   for (const Body& body : scene.bodies) bodies.push_back(body_json(body, extent));
+  Json glasses = Json::array();
+  for (const CoverGlass& glass : scene.glasses) glasses.push_back(glass_json(glass, extent));
   const std::vector<double> starts = source_points(scene, options, extent);
   const Vec3 centre = extent.centre();
   const double radius = extent.radius();
@@ -250,6 +281,7 @@ Json scene3d_json(const Scene& scene, const Scene3dOptions& options) {
           {"radius_mm", radius},
           {"mirrors", mirrors},
           {"bodies", bodies},
+          {"glasses", glasses},
           {"source", {{"position", base64_floats(starts)}}},
           {"rays", rays_json(paths, 1.2 * radius)}};
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -135,6 +136,46 @@ TEST(Scene3d, BodiesAreTheirTrianglesAndFineOnesAreJoined) {
     area += 0.5 * length(cross(at(1) - at(0), at(2) - at(0)));
   }
   EXPECT_NEAR(area, 100.0, 2.0);
+}
+
+TEST(Scene3d, GlassesAreClosedPlatesAndRaysPassThem) {
+  Scene scene = scene_with(conic_reflector(ConicPreset::parabola, 20.0, 0.0, Aperture::circle(80.0)));
+  CoverGlass round, box;
+  round.aperture = Aperture::circle(90.0);
+  round.thickness_mm = 5.0;
+  round.world_from_glass = Frame::from_axis(Direction::from({0, 0.2, -1}), 0.0, {0, 0, -30});
+  box.name = "window";
+  box.aperture = Aperture::rectangle(300.0, 200.0);
+  box.world_from_glass = Frame::from_axis(Direction::from({0, 0, -1}), 30.0, {0, 0, -60});
+  scene.glasses = {round, box};
+  const auto json = scene3d_json(scene, {.rays = 200});
+  ASSERT_EQ(json["glasses"].size(), 2u);
+  EXPECT_EQ(json["glasses"][1]["name"], "window");
+  const double expected[] = {0.5 * 96 * std::sin(2.0 * std::numbers::pi / 96) * 45.0 * 45.0 * 5.0,
+                             300.0 * 200.0 * 3.0};
+  for (std::size_t g = 0; g < 2; ++g) {
+    const auto p = floats(json["glasses"][g]["position"]);
+    const auto index = test::unpacked<std::uint32_t>(json["glasses"][g]["index"]);
+    // By Gauss' theorem, and only if closed with all triangles the same way round.
+    double volume = 0.0;
+    Vec3 area{};
+    for (std::size_t i = 0; i < index.size(); i += 3) {
+      const auto at = [&](std::size_t k) {
+        return Vec3{p[3 * index[i + k]], p[3 * index[i + k] + 1], p[3 * index[i + k] + 2]};
+      };
+      volume += dot(at(0), cross(at(1), at(2))) / 6.0;
+      area = area + cross(at(1) - at(0), at(2) - at(0));
+    }
+    EXPECT_NEAR(volume, expected[g], 1e-4 * expected[g]);
+    EXPECT_NEAR(length(area), 0.0, 0.1);
+  }
+  // Being let through is no reflection: light that left the source and went through both plates is direct
+  // still.
+  const auto position = floats(json["rays"]["position"]);
+  std::size_t direct_below = 0;
+  for (std::size_t i = 0; i < json["rays"]["bounces"].size(); ++i)
+    direct_below += json["rays"]["bounces"][i] == 0 && position[6 * i + 2] < -62.9f;
+  EXPECT_GT(direct_below, 20u);
 }
 
 TEST(Scene3d, RaysStartAtTheSourceAndCountTheirBounces) {

@@ -73,7 +73,10 @@ GlassPassage GlassTracer::pass(const Ray& ray, const GlassHit& hit, const Reflec
   // What goes straight on keeps the direction that it came with, to the bit.
   const Direction direction =
       out.transmitted ? ray.direction : plate.world_from_glass.direction(Direction::from_unit(out.direction));
-  return {out.kept, out.transmitted, {plate.world_from_glass.point(out.origin_mm), direction}};
+  return {out.kept,
+          out.transmitted,
+          static_cast<int>(out.ways),
+          {plate.world_from_glass.point(out.origin_mm), direction}};
 }
 
 }  // namespace lucerna

@@ -55,9 +55,11 @@ struct GlassHit {
 
 /// A ray after a plate, in the luminaire frame.
 struct GlassPassage {
-  /// Share of the flux that goes on; 0: the ray ends here.
+  /// Share of the flux that goes on; 0: the ray ends here, and `ray` is nothing.
   double kept = 0.0;
   bool transmitted = false;
+  /// How often it went through the glass, face to face.
+  int ways = 0;
   Ray ray;
 };
 

@@ -103,6 +103,8 @@ struct PlateOutcome {
   /// Share of its flux that goes on; the rest stays in the plate.
   double kept = 0.0;
   bool transmitted = false;
+  /// How often it went through the glass: odd if transmitted, even if reflected.
+  double ways = 0.0;
   Vec3 origin_mm;
   Vec3 direction;
 };
@@ -134,6 +136,7 @@ LUCERNA_HD inline PlateOutcome pass_plate(const PlateView& plate, const Vec3& o,
     }
   }
   if (inside && ratio > 0.0) ways += 2.0 * std::floor(std::log(1.0 - rest) / std::log(ratio));
+  out.ways = ways;
   const double shift = ways * plate.thickness_mm / (plate.index * at.cos_inside);
   const bool from_above = d.z < 0.0;
   const bool leaves_above = from_above != out.transmitted;

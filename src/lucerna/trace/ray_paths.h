@@ -10,16 +10,20 @@
 namespace lucerna {
 
 /// How a ray's way through a scene ended.
-enum class PathEnd { out, mirror_back, body, bounce_limit };
+enum class RayEnd { out, mirror_back, body, glass, bounce_limit };
 
 /// The way of one ray in the luminaire frame.
 struct RayPath {
   std::size_t source = 0;
-  /// Where it starts, then every point where it meets a mirror or a body.
+  /// Where it starts, then every point where it meets a mirror, a body or a face of a cover glass: inside a
+  /// glass it goes from face to face, as often as the tracer says.
   std::vector<Vec3> points_mm;
+  /// How often it was reflected before it leaves each of these points, as TraceOptions::max_bounces counts: a
+  /// glass that returns it counts once, on leaving the glass; one that lets it through does not.
+  std::vector<int> reflections;
   /// Direction after the last point; what leaves goes on along it.
   Direction last_direction;
-  PathEnd end = PathEnd::out;
+  RayEnd end = RayEnd::out;
 };
 
 struct PathOptions {
@@ -31,8 +35,9 @@ struct PathOptions {
 };
 
 /// The ways of up to `count` rays of the run that `trace` makes of the same seed, sequence and first ray: for
-/// pictures. Bodies that reflect at all pass a ray on whole; slope errors are left out. Rays with a
-/// coordinate that is not finite are left out. By the reference tracer, one thread; the hierarchies cost more
+/// pictures. Bodies that reflect at all and glasses that keep some light pass a ray on whole; at a glass it
+/// goes where the trace sends it. Slope errors are left out, and so are rays with a coordinate that is not
+/// finite. By the reference tracer, one thread; the hierarchies cost more
 /// than some hundred rays. Throws InputError on a bad scene (`check`).
 std::vector<RayPath> ray_paths(const Scene& scene, std::uint64_t count, const PathOptions& options = {});
 

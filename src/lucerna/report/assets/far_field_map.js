@@ -3,9 +3,11 @@
 // around it (C0 to the right, C90 up). Distances are true along the radii (azimuthal equidistant projection). Where the
 // figure has a target, the target and the difference (result - target) can be shown too.
 'use strict';
-for (const figure of document.querySelectorAll('figure.map')) {
+for (const figure of document.querySelectorAll('figure.map')) lucerna.afterLoad(() => {
   const field = lucerna.fields[Number(figure.dataset.detector)];
-  const canvas = figure.querySelector('canvas'), context = canvas.getContext('2d');
+  const canvas = figure.querySelector('canvas');
+  // Its pixels come from here: a graphics card would only keep them waiting.
+  const context = canvas.getContext('2d', { willReadFrequently: true });
   const output = figure.querySelector('output.cursor'), stage = figure.querySelector('.stage');
   const [reach, colours, log, shown] = ['.reach', '.colours', '.log', '.shown'].map(name => figure.querySelector(name));
   const target = figure.dataset.target ? lucerna.fields[Number(figure.dataset.target)] : null;
@@ -33,8 +35,8 @@ for (const figure of document.querySelectorAll('figure.map')) {
     const share = peak > 0 ? cd / peak : 0;
     return decades ? 1 + Math.log10(Math.max(share, 1e-3)) / 3 : share;
   };
-  const at = (x, y, out = Number(reach.value)) => {
-    const dx = x - middle, dy = middle - y, r = Math.sqrt(dx * dx + dy * dy) / radius * out;
+  const at = (x, y) => {
+    const out = Number(reach.value), dx = x - middle, dy = middle - y, r = Math.sqrt(dx * dx + dy * dy) / radius * out;
     const c = Math.atan2(dy, dx) * 180 / Math.PI;
     return r <= out ? [c < 0 ? c + 360 : c, around(r)] : null;
   };
@@ -62,26 +64,29 @@ for (const figure of document.querySelectorAll('figure.map')) {
   const draw = () => {
     const image = context.createImageData(size, size), levels = new Int8Array(size * size).fill(-1);
     const tones = new Float32Array(size * size), name = difference() ? 'blueorange' : colours.value;
-    const table = lucerna.rampTable(name), signed = difference(), tone = toneOf(signed, log.checked), out = Number(reach.value);
+    const table = lucerna.rampTable(name), pixels = image.data, signed = difference(), tone = toneOf(signed, log.checked), out = Number(reach.value);
     const drawn = shown?.value === 'target' ? target : field, steps = shares.map(s => s * peak);
     for (let y = 0; y < size; ++y) {
       for (let x = 0; x < size; ++x) {
-        const where = at(x + 0.5, y + 0.5, out);
-        if (!where) continue;
-        const i = y * size + x, found = lucerna.intensityAt(drawn, where[0], where[1]);
-        const cd = signed ? found - lucerna.intensityAt(target, where[0], where[1]) : found;
+        const dx = x + 0.5 - middle, dy = middle - y - 0.5, r = Math.sqrt(dx * dx + dy * dy) / radius * out;
+        if (r > out) continue;
+        const i = y * size + x, c = Math.atan2(dy, dx) * 180 / Math.PI, gamma = around(r);
+        const found = lucerna.intensityAt(drawn, c, gamma), cd = signed ? found - lucerna.intensityAt(target, c, gamma) : found;
         let level = 0;
         while (level < steps.length && cd >= steps[level]) ++level;
         levels[i] = level;
         tones[i] = tone(cd);
-        const k = 3 * Math.round(255 * Math.max(0, Math.min(1, tones[i])));
-        image.data.set([table[k], table[k + 1], table[k + 2], 255], 4 * i);
+        const k = 3 * Math.round(255 * Math.max(0, Math.min(1, tones[i]))), p = 4 * i;
+        pixels[p] = table[k];
+        pixels[p + 1] = table[k + 1];
+        pixels[p + 2] = table[k + 2];
+        pixels[p + 3] = 255;
       }
     }
     for (let i = 0; !signed && i < size * (size - 1) - 1; ++i) {
       if (levels[i] < 0 || (levels[i] === levels[i + 1] && levels[i] === levels[i + size])) continue;
       if (levels[i + 1] < 0 || levels[i + size] < 0) continue;
-      image.data.set(tones[i] > 0.55 ? [0, 0, 0, 255] : [255, 255, 255, 255], 4 * i);
+      pixels.fill(tones[i] > 0.55 ? 0 : 255, 4 * i, 4 * i + 3);
     }
     context.clearRect(0, 0, size, size);
     context.putImageData(image, 0, 0);
@@ -119,4 +124,4 @@ for (const figure of document.querySelectorAll('figure.map')) {
   document.addEventListener('lucerna-theme', draw);
   lucerna.savesCanvas(figure, canvas, () => lucerna.csvOf(field));
   draw();
-}
+});

@@ -49,26 +49,26 @@ const lucerna = (() => {
   };
   const rampCss = name => `linear-gradient(90deg, ${ramps[name].map(c => '#' + c.toString(16).padStart(6, '0')).join(',')})`;
 
-  // Index of the grid step that holds x, and how far x is into it.
+  // The last of rising angles that is not above x, but never the last of several.
   const locate = (angles, x) => {
     let low = 0, high = angles.length - 1;
     while (high - low > 1) {
       const middle = (low + high) >> 1;
       if (angles[middle] <= x) low = middle; else high = middle;
     }
-    return [low, high, high > low ? (x - angles[low]) / (angles[high] - angles[low]) : 0];
+    return low;
   };
   // Bilinear in (C, gamma), periodic in C, as intensity_at of the library.
   const intensityAt = (field, c, gamma, values = field.intensity) => {
     const gammas = field.gamma_deg, planes = field.c_deg, n = gammas.length;
     if (gamma < gammas[0] || gamma > gammas[n - 1]) return 0;
-    const turn = ((c % 360) + 360) % 360;
-    const [c0, c1, u] = turn > planes[planes.length - 1]
-      ? [planes.length - 1, 0, (turn - planes[planes.length - 1]) / (360 - planes[planes.length - 1])]
-      : locate(planes, turn);
-    const [g0, g1, v] = locate(gammas, gamma);
-    const row = i => values[i * n + g0] * (1 - v) + values[i * n + g1] * v;
-    return row(c0) * (1 - u) + row(c1) * u;
+    const turn = ((c % 360) + 360) % 360, last = planes.length - 1, around = turn > planes[last];
+    const c0 = around ? last : locate(planes, turn), c1 = around ? 0 : Math.min(c0 + 1, last);
+    const u = c1 === c0 ? 0 : (turn - planes[c0]) / ((around ? 360 : planes[c1]) - planes[c0]);
+    const g0 = locate(gammas, gamma), g1 = Math.min(g0 + 1, n - 1), v = g1 > g0 ? (gamma - gammas[g0]) / (gammas[g1] - gammas[g0]) : 0;
+    // Many thousand times for a picture: no arrays, no functions.
+    const a = values[c0 * n + g0] * (1 - v) + values[c0 * n + g1] * v, b = values[c1 * n + g0] * (1 - v) + values[c1 * n + g1] * v;
+    return a * (1 - u) + b * u;
   };
   // Does more of the light go up than down?
   const goesUp = field => {
@@ -131,6 +131,24 @@ const lucerna = (() => {
     document.dispatchEvent(new Event('lucerna-theme'));
   });
   document.getElementById('print').addEventListener('click', () => window.print());
+  // What takes long to draw waits until the page has been read and painted, part after part, so that text and diagrams
+  // are there at once. The root says when all is drawn.
+  const parts = [], root = document.documentElement;
+  const drawPart = () => {
+    const draw = parts.shift();
+    if (draw) draw();
+    else if (!root.dataset.complete) {
+      root.dataset.complete = 'yes';
+      performance.mark('complete');
+    }
+    return Boolean(draw);
+  };
+  const onward = () => { if (drawPart()) setTimeout(onward); };
+  const afterLoad = draw => { parts.push(draw); };
+  // No frames come where nobody looks.
+  addEventListener('load', () => (document.hidden ? setTimeout(onward) : requestAnimationFrame(() => setTimeout(onward))));
+  addEventListener('beforeprint', () => { while (drawPart()); });
+
   // Paper cannot be unfolded.
   const opened = [];
   addEventListener('beforeprint', () => document.querySelectorAll('details:not([open])').forEach(d => {
@@ -139,7 +157,7 @@ const lucerna = (() => {
   }));
   addEventListener('afterprint', () => opened.splice(0).forEach(d => { d.open = false; }));
   return {
-    json, floats, counts, fields, figure, plain, locate, intensityAt, goesUp, ramps, rampAt, rampTable, rampCss, svgElement,
-    save, saveText, savesCanvas, csvOf,
+    json, floats, counts, fields, figure, plain, intensityAt, goesUp, ramps, rampAt, rampTable, rampCss, svgElement,
+    save, saveText, savesCanvas, csvOf, afterLoad,
   };
 })();

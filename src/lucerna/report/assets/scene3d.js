@@ -3,6 +3,10 @@
 // something changed. Data: scene3d.h.
 'use strict';
 (() => {
+  const wait = document.querySelector('#scene3d .wait');
+  if (wait) wait.textContent = 'The 3D view is being drawn.';
+})();
+lucerna.afterLoad(() => {
   const box = document.getElementById('scene3d'), scene = lucerna.json('scene');
   if (!box || !scene) return;
   const canvas = document.createElement('canvas');
@@ -71,6 +75,20 @@
   if (solids.length) bodies.add(...solids);
   if (solids.length) {
     layer('bodies', scene.bodies.some(b => b.thinned) ? 'Bodies (fine meshes drawn coarser)' : 'Bodies', bodies, '#8a7f73');
+  }
+
+  // After all that is not transparent; it hides nothing.
+  const panes = scene.glasses.map(g => {
+    const mesh = new THREE.Mesh(triangles(g), new THREE.MeshPhongMaterial({
+      color: 0x56b4e9, transparent: true, opacity: 0.22, side: THREE.DoubleSide, depthWrite: false, flatShading: true, clippingPlanes: [],
+    }));
+    mesh.userData = { name: g.name };
+    return mesh;
+  });
+  const glasses = new THREE.Group();
+  if (panes.length) {
+    glasses.add(...panes);
+    layer('glass', panes.length > 1 ? 'Cover glasses' : 'Cover glass', glasses, '#56b4e9');
   }
 
   const points = new THREE.BufferGeometry();
@@ -160,12 +178,12 @@
   output.textContent = hint;
   canvas.tabIndex = 0;
   canvas.setAttribute('role', 'application');
-  canvas.setAttribute('aria-label', `3D view of ${meshes.length} mirror(s), the source and ${scene.rays.count} rays. ${hint}`);
+  canvas.setAttribute('aria-label', `3D view of ${meshes.length} mirror(s)${panes.length ? ', ' + panes.length + ' cover glass(es)' : ''}, the source and ${scene.rays.count} rays. ${hint}`);
   const stage = element('div', {}, canvas, output);
   const side = element('aside', {}, show);
   side.setAttribute('aria-label', '3D view settings');
-  if (meshes.length || solids.length) {
-    side.append(element('fieldset', {}, element('legend', { textContent: 'Mirrors and bodies' }),
+  if (meshes.length || solids.length || panes.length) {
+    side.append(element('fieldset', {}, element('legend', { textContent: panes.length ? 'Mirrors, bodies and glass' : 'Mirrors and bodies' }),
       element('label', {}, 'Colour by ', colouring), ramp, ends,
       element('label', {}, 'Section ', cut), element('label', {}, 'Section at ', depth)));
   }
@@ -198,9 +216,10 @@
     const on = cut.value !== 'none', at = centre.clone().addScaledVector(new THREE.Vector3(1, 1, 1), radius * depth.value / 100);
     depth.disabled = !on;
     if (on) section.setFromNormalAndCoplanarPoint(new THREE.Vector3(+(cut.value === 'x'), +(cut.value === 'y'), +(cut.value === 'z')), at);
-    for (const m of [...meshes, ...solids]) m.material.clippingPlanes = on ? [section] : [];
+    for (const m of [...meshes, ...solids, ...panes]) m.material.clippingPlanes = on ? [section] : [];
   };
 
+  let size = [];
   const draw = () => {
     const width = canvas.clientWidth, height = canvas.clientHeight;
     renderer.setPixelRatio(Math.min(2, devicePixelRatio));
@@ -213,6 +232,7 @@
     lamp.position.copy(camera.position).add(new THREE.Vector3(radius, 0, 2 * radius));
     camera.updateProjectionMatrix();
     renderer.render(world, camera);
+    size = [width, height];
     canvas.dataset.drawn = Number(canvas.dataset.drawn || 0) + 1;
   };
   const turn = (across, up) => {
@@ -243,8 +263,10 @@
     const r = canvas.getBoundingClientRect();
     spot.set((event.clientX - r.left) / r.width * 2 - 1, 1 - (event.clientY - r.top) / r.height * 2);
     rays.setFromCamera(spot, camera);
-    const hit = rays.intersectObjects([...mirrors.visible ? meshes : [], ...bodies.visible ? solids : []])
+    const first = objects => rays.intersectObjects(objects)
       .find(h => !h.object.material.clippingPlanes.some(p => p.distanceToPoint(h.point) < 0));
+    // What is behind a glass is seen through it.
+    const hit = first([...mirrors.visible ? meshes : [], ...bodies.visible ? solids : []]) || first(glasses.visible ? panes : []);
     if (!hit) { output.textContent = hint; return; }
     const { slope, curvature, name } = hit.object.userData, i = hit.face.a, p = hit.point;
     output.textContent = `${name} at (${[p.x, p.y, p.z].map(v => v.toFixed(2)).join(', ')}) mm` +
@@ -300,6 +322,7 @@
   cut.value = 'y';
   paint();
   slice();
-  new ResizeObserver(draw).observe(canvas);
+  draw();
+  new ResizeObserver(() => { if (size[0] !== canvas.clientWidth || size[1] !== canvas.clientHeight) draw(); }).observe(canvas);
   addEventListener('beforeprint', draw);
-})();
+});
