@@ -2,12 +2,14 @@
 // Rays a second that adaptive models are drawn at, on one core and without output: every kind of support,
 // both maps of directions, random and Sobol numbers. The models are made up: 4096 even leaves on each chart.
 //   bench_adaptive_sampling [million rays]
+//   bench_adaptive_sampling million-rays MODEL.nfl ...     the rates of these models instead
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <ctime>
 
+#include "lucerna/core/error.h"
 #include "lucerna/source/adaptive_model.h"
 
 using namespace lucerna;
@@ -69,6 +71,15 @@ double rate(const AdaptiveModel& model, SequenceKind kind, std::size_t rays) {
 int main(int argc, char** argv) {
   const double millions = argc > 1 ? std::atof(argv[1]) : 2.0;
   const auto rays = static_cast<std::size_t>(1e6 * millions);
+  if (argc > 2) fmt::print("| model | leaves | random | Sobol |\n|---|---|---|---|\n");
+  for (int i = 2; i < argc; ++i) {
+    const auto source = load_source_model(argv[i]);
+    const auto* model = dynamic_cast<const AdaptiveModel*>(source.get());
+    if (model == nullptr) throw InputError(fmt::format("{}: not an adaptive model", argv[i]));
+    fmt::print("| {} | {} | {:.1f} | {:.1f} |\n", argv[i], model->leaves(),
+               rate(*model, SequenceKind::random, rays), rate(*model, SequenceKind::sobol, rays));
+  }
+  if (argc > 2) return 0;
   fmt::print("| support | starts on | map | random | Sobol |\n|---|---|---|---|---|\n");
   for (std::size_t k = 0; k < kSupportKinds + 1; ++k) {
     Support s;
