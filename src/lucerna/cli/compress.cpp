@@ -58,9 +58,9 @@ struct Compressed {
 Compressed compress_stream(const CompressArguments& a, const AdaptiveOptions& options, Session& session) {
   const auto reader = open_ray_file(a.inputs.front());
   session.add_input(a.inputs.front());
-  if (reader->ray_count() > kMostTrainingRays) {
+  if (reader->ray_count() > options.most_rays) {
     session.note(fmt::format("{}: of its {} rays {} are used, one of each stretch of equal length",
-                             a.inputs.front(), reader->ray_count(), kMostTrainingRays));
+                             a.inputs.front(), reader->ray_count(), options.most_rays));
   }
   Compressed made{compress_adaptive(*reader, options, session.progress()), reader->ray_count()};
   for (const std::string& warning : reader->warnings()) {

@@ -39,6 +39,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::span<const std::byte> bytes) {
+  if (bytes.empty()) return;  // whose place may be null, which fwrite must not be given
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) {
     throw InputError(fmt::format("{}: cannot write: {}", path_.string(), reason()));
   }

@@ -349,7 +349,7 @@ std::unique_ptr<AdaptiveModel> compress_adaptive(const RaySet& rays, const Adapt
 
 std::unique_ptr<AdaptiveModel> compress_adaptive(RayReader& reader, const AdaptiveOptions& options,
                                                  Progress& progress) {
-  const std::uint64_t count = reader.ray_count(), kept = std::min(count, kMostTrainingRays);
+  const std::uint64_t count = reader.ray_count(), kept = std::min(count, options.most_rays);
   RayBlock rays, block;
   std::vector<float> nm;
   std::uint64_t read = 0, next = 0;

@@ -17,6 +17,9 @@ struct AdaptiveOptions {
   std::uint64_t seed = 1;
   /// Total flux of the model, in the unit of the rays; absent: what the header states.
   std::optional<double> flux;
+  /// Of rays still in their file at most so many are used; more are thinned out evenly, by chance within each
+  /// stretch, as they are read. Keeps memory below 1.5 GB for files of any size.
+  std::uint64_t most_rays = 20'000'000;
   /// For studies only; absent: what the rays say. Trees averaged in each chart, nats a split must gain, and
   /// whether a second support is looked for.
   std::optional<int> trees;
@@ -30,10 +33,6 @@ struct AdaptiveOptions {
 /// beside the rays.
 std::unique_ptr<AdaptiveModel> compress_adaptive(const RaySet& rays, const AdaptiveOptions& options,
                                                  Progress& progress = no_progress());
-
-/// Rays of a file that are used: more are thinned out evenly, by chance within each stretch, as they are
-/// read. Keeps memory below 1.5 GB for files of any size.
-inline constexpr std::uint64_t kMostTrainingRays = 20'000'000;
 
 /// The same for rays still in their file.
 std::unique_ptr<AdaptiveModel> compress_adaptive(RayReader& reader, const AdaptiveOptions& options,

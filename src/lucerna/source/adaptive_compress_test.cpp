@@ -9,9 +9,11 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/rayset/compare.h"
+#include "lucerna/rayset/ray_file.h"
 #include "lucerna/rayset/surface_guess.h"
 #include "lucerna/source/draw_rays.h"
 #include "lucerna/source/emitter.h"
+#include "tests/support/temp_dir.h"
 
 namespace lucerna {
 namespace {
@@ -99,6 +101,24 @@ RaySet special(int which, std::size_t n) {
     if (which == 2) set.rays.set(i, {{rng.uniform(), rng.uniform(), 0.0}, Direction::from({0.2, 0.1, 1.0})});
   }
   return set;
+}
+
+TEST(AdaptiveCompress, FilesOfMoreRaysThanAreWantedAreThinnedOutEvenly) {
+  const test::TempDir folder;
+  const auto path = folder.path() / "rays.tm25ray";
+  // The first half of the file is a disk, the other another one, 5 mm beside it.
+  RaySet rays = drawn(EmitterKind::disk, 40'000);
+  for (std::size_t i = 20'000; i < 40'000; ++i) rays.rays.x_mm[i] += 5.0f;
+  write_ray_set(path, rays, "tm25");
+  const auto right = [](const RayBlock& block) {
+    std::size_t n = 0;
+    for (const float x : block.x_mm) n += x > 2.5f ? 1 : 0;
+    return static_cast<double>(n) / static_cast<double>(block.size());
+  };
+  const auto model = compress_adaptive(*open_ray_file(path), {.most_rays = 10'000});
+  EXPECT_EQ(model->training_rays(), 40'000u);
+  EXPECT_DOUBLE_EQ(model->flux(), *rays.header.flux());
+  EXPECT_NEAR(right(from_model(*model, 100'000)), 0.5, 0.01);
 }
 
 TEST(AdaptiveCompress, PointsLinesAndParallelRaysStayThat) {
