@@ -65,9 +65,11 @@ class Packet {
     hit_t_ = kFar;
     hit_gx_ = hit_gy_ = 0.0f;
     prepare(lanes);
-    while (any(node_ | leaf_)) {
+    while (any(node_ | leaf_ | met_)) {
       while (any(node_)) node_step();
       while (any(leaf_)) leaf_step();
+      // Lanes that cross the surface wait here for the others: Newton's steps then serve all at once.
+      if (!any(node_) && any(met_)) settle();
     }
     return {hit_t_, hit_gx_, hit_gy_, hit_state_};
   }
@@ -107,7 +109,7 @@ class Packet {
     end_ = select(lower.exist, min(first_end, t1), -1.0f);
     next_begin_ = max(upper.high, t0);
     next_end_ = select(upper.exist & lower.exist, min(lower.high, t1), -1.0f);
-    node_ = leaf_ = mask_of(0);
+    node_ = leaf_ = met_ = mask_of(0);
     start(lanes);
   }
 
@@ -164,8 +166,8 @@ class Packet {
     const Int ny = shift_right(min(max(by_, Int(0)), last_square), level_);
     const Int per_side = shift_right(Int(f_.blocks), level_);
     const Int node = shift_left(gather(f_.offsets, level_) + ny * per_side + nx, Int(2));
-    const Float a = gather(f_.nodes, node), b = gather(f_.nodes + 1, node), c = gather(f_.nodes + 2, node);
-    const Float e = gather(f_.nodes + 3, node);
+    Float a, b, c, e;
+    gather4(f_.nodes, node, a, b, c, e);
     const Float scale = to_float(shift_left(Int(8), level_));
     const Float wx = scale * f_.step_x, wy = scale * f_.step_y;
     const Float xl = fma(to_float(nx), wx, f_.x0), yl = fma(to_float(ny), wy, f_.y0);
@@ -203,15 +205,26 @@ class Packet {
     iy_ = select(down, min(max(cy, shift_left(by_, Int(3))), shift_left(by_, Int(3)) + Int(7)), iy_);
     leaf_ = leaf_ | down;
     node_ = node_ & ~down;
+    if (any(down)) {  // while other lanes still look for their leaf
+      const Int row = Int((f_.blocks * 8 + 1) * 3), first = iy_ * row + ix_ * Int(3);
+      prefetch(f_.vertices, first, down);
+      prefetch(f_.vertices, first + row, down);
+    }
     level_ = select(enter & ~down, level_ - Int(1), level_);
+#ifndef NOLOOK
     // Where there is no mirror the ray may have gone through the surface unseen.
     const Mask unseen = skip & (e < Float(0.0f));
     if (any(unseen)) look_at_side(unseen, te);
+#endif
     if (any(skip)) skip_node(skip, nx, ny, tx, ty, te);
   }
 
   /// On which side of the surface the lanes of `m` are at t.
   LUCERNA_HD void look_at_side(Mask m, Float t) {
+    // Outside a round rim and on the way out, no ray meets the mirror again.
+    const Float x = fma(t, dx_, ox_), y = fma(t, dy_, oy_);
+    m = m & ((x * dx_ + y * dy_ < Float(0.0f)) | (x * x + y * y < Float(f_.half_x * f_.half_x)));
+    if (!any(m)) return;
     Int ix, iy;
     cell_at(t, ix, iy);
     side_ = select(m, select(surface(t, ix, iy).z <= over(t), 1.0f, -1.0f), side_);
@@ -275,10 +288,16 @@ class Packet {
     }
     const Mask over_now = ends & ~cross;
     const Mask go = border & ~cross;
-    if (any(cross)) hit(cross, segment);
+    met_ = met_ | cross;
+    leaf_ = leaf_ & ~cross;
+    met_end_ = select(cross, segment, met_end_);
     t_ = select(go, segment, t_);
     ix_ = select(go & by_x, ix_ + select(right, Int(1), Int(-1)), ix_);
     iy_ = select(go & ~by_x, iy_ + select(north, Int(1), Int(-1)), iy_);
+    if (any(go)) {  // what the next step reads, if it goes on along y
+      const Int row = Int((f_.blocks * 8 + 1) * 3);
+      prefetch(f_.vertices, (iy_ + select(north, Int(1), Int(0))) * row + ix_ * Int(3), go);
+    }
     // Division by 8 that rounds down: one square before the first is -1.
     const Int nbx = shift_right(ix_ + Int(8), Int(3)) - Int(1),
               nby = shift_right(iy_ + Int(8), Int(3)) - Int(1);
@@ -304,11 +323,11 @@ class Packet {
     const Int vy = min(max(select(by_x, iy_, gy), zero), select(by_x, last, last + one));
     const Int first = (vy * per_row + vx) * Int(3);
     const Int second = first + select(by_x, per_row * Int(3), Int(3));
-    const Int slope = select(by_x, Int(2), Int(1));
-    const Float z0 = gather(f_.vertices, first), z1 = gather(f_.vertices, second);
-    const Float step = select(by_x, Float(f_.step_y), Float(f_.step_x));
-    const Float g0 = gather(f_.vertices, first + slope) * step,
-                g1 = gather(f_.vertices, second + slope) * step;
+    Float z0, z1, p0, p1, q0, q1;
+    gather3(f_.vertices, first, z0, p0, q0);
+    gather3(f_.vertices, second, z1, p1, q1);
+    const Float g0 = select(by_x, q0 * f_.step_y, p0 * f_.step_x),
+                g1 = select(by_x, q1 * f_.step_y, p1 * f_.step_x);
     const Float along = select(by_x, (fma(t, dy_, oy_) - f_.y0) * (1.0f / f_.step_y) - to_float(iy_),
                                (fma(t, dx_, ox_) - f_.x0) * (1.0f / f_.step_x) - to_float(ix_));
     const Float u = min(max(along, 0.0f), 1.0f), w = Float(1.0f) - u;
@@ -326,21 +345,20 @@ class Packet {
   LUCERNA_HD Cell cell(Int ix, Int iy) const {
     const Int row = Int((f_.blocks * 8 + 1) * 3);
     const Int a = iy * row + ix * Int(3), b = a + row;
-    const float* const z = f_.vertices;
     Cell k;
-    k.z00 = gather(z, a);
-    k.z10 = gather(z + 3, a);
-    k.z01 = gather(z, b);
-    k.z11 = gather(z + 3, b);
-    const Float s = f_.step_x, q = f_.step_y;
-    k.p00 = s * gather(z + 1, a);
-    k.p10 = s * gather(z + 4, a);
-    k.p01 = s * gather(z + 1, b);
-    k.p11 = s * gather(z + 4, b);
-    k.q00 = q * gather(z + 2, a);
-    k.q10 = q * gather(z + 5, a);
-    k.q01 = q * gather(z + 2, b);
-    k.q11 = q * gather(z + 5, b);
+    Float p, q, again;
+    gather4(f_.vertices, a, k.z00, p, q, k.z10);
+    k.p00 = f_.step_x * p;
+    k.q00 = f_.step_y * q;
+    gather4(f_.vertices + 2, a, again, again, p, q);
+    k.p10 = f_.step_x * p;
+    k.q10 = f_.step_y * q;
+    gather4(f_.vertices, b, k.z01, p, q, k.z11);
+    k.p01 = f_.step_x * p;
+    k.q01 = f_.step_y * q;
+    gather4(f_.vertices + 2, b, again, again, p, q);
+    k.p11 = f_.step_x * p;
+    k.q11 = f_.step_y * q;
     return k;
   }
   LUCERNA_HD static void bend(Float u, Float a, Float b, Float& value, Float& slope) {
@@ -364,9 +382,12 @@ class Packet {
   }
   LUCERNA_HD Piece surface(Float t, Int ix, Int iy) const { return piece(cell(ix, iy), t, ix, iy); }
 
-  /// Lanes of `m` cross the surface between t_ and `segment`: finds where, by Newton's method in that
+  /// The lanes of met_ cross the surface between t_ and met_end_: finds where, by Newton's method in that
   /// bracket.
-  LUCERNA_HD void hit(Mask m, Float segment) {
+  LUCERNA_HD void settle() {
+    const Mask m = met_;
+    const Float segment = met_end_;
+    met_ = mask_of(0);
     const Cell k =
         cell(min(max(ix_, Int(0)), Int(f_.blocks * 8 - 1)), min(max(iy_, Int(0)), Int(f_.blocks * 8 - 1)));
     Float t = 0.5f * (t_ + segment);
@@ -384,10 +405,10 @@ class Packet {
     hit_gx_ = select(there, Float(f_.qx) + 2.0f * f_.qxx * x + f_.qxy * y + p.gx, hit_gx_);
     hit_gy_ = select(there, Float(f_.qy) + f_.qxy * x + 2.0f * f_.qyy * y + p.gy, hit_gy_);
     hit_state_ = select(there, select(Float(0.0f) < side_, Int(kFront), Int(kBack)), hit_state_);
-    leaf_ = leaf_ & ~there;
     // Through the hole or past the rim: on, on the other side.
     const Mask on = m & ~there;
     if (!any(on)) return;
+    leaf_ = leaf_ | on;
     t_ = select(on, segment, t_);
     side_ = select(on, Float(0.0f) - side_, side_);
     set_end(on);
@@ -399,9 +420,9 @@ class Packet {
   Float ox_, oy_, oz_, dx_, dy_, dz_, idx_, idy_;
   Float u0_, u1_, u2_;
   Float begin_, end_, next_begin_, next_end_;
-  Float t_ = 0.0f, side_ = 1.0f, leaf_end_ = 0.0f;
+  Float t_ = 0.0f, side_ = 1.0f, leaf_end_ = 0.0f, met_end_ = 0.0f;
   Int level_{0}, bx_{0}, by_{0}, ix_{0}, iy_{0};
-  Mask on_mirror_, node_, leaf_, crosses_ = mask_of(0), leaf_crosses_ = mask_of(0);
+  Mask on_mirror_, node_, leaf_, met_, crosses_ = mask_of(0), leaf_crosses_ = mask_of(0);
   Float hit_t_, hit_gx_, hit_gy_;
   Int hit_state_;
 };

@@ -81,6 +81,27 @@ inline void store(int32_t* p, Int a) { _mm512_storeu_si512(p, a.v); }
 inline Int gather(const int32_t* p, Int i) { return _mm512_i32gather_epi32(i.v, p, 4); }
 inline Int float_bits(Float a) { return _mm512_castps_si512(a.v); }
 
+/// p[i] .. p[i + 3] of every lane by whole loads and a transpose: a third of the time of four gathers here.
+template <typename Load>
+inline void transposed(Int i, Load four_at, Float& a, Float& b, Float& c, Float& d) {
+  alignas(64) int32_t k[16];
+  _mm512_store_si512(k, i.v);
+  const auto row = [&](int n) {
+    __m512 r = _mm512_castps128_ps512(four_at(k[n]));
+    r = _mm512_insertf32x4(r, four_at(k[n + 4]), 1);
+    r = _mm512_insertf32x4(r, four_at(k[n + 8]), 2);
+    return _mm512_insertf32x4(r, four_at(k[n + 12]), 3);
+  };
+  const __m512 q0 = row(0), q1 = row(1), q2 = row(2), q3 = row(3);
+  const __m512 l01 = _mm512_unpacklo_ps(q0, q1), l23 = _mm512_unpacklo_ps(q2, q3);
+  const __m512 h01 = _mm512_unpackhi_ps(q0, q1), h23 = _mm512_unpackhi_ps(q2, q3);
+  a = _mm512_shuffle_ps(l01, l23, 0x44);
+  b = _mm512_shuffle_ps(l01, l23, 0xEE);
+  c = _mm512_shuffle_ps(h01, h23, 0x44);
+  d = _mm512_shuffle_ps(h01, h23, 0xEE);
+}
+inline __m128 three_at(const float* p) { return _mm_maskz_loadu_ps(7, p); }
+
 #elif defined(__AVX2__)
 
 inline constexpr int kLanes = 8;
@@ -142,6 +163,24 @@ inline Int load(const int32_t* p) { return _mm256_loadu_si256(reinterpret_cast<c
 inline void store(int32_t* p, Int a) { _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), a.v); }
 inline Int gather(const int32_t* p, Int i) { return _mm256_i32gather_epi32(p, i.v, 4); }
 inline Int float_bits(Float a) { return _mm256_castps_si256(a.v); }
+
+/// p[i] .. p[i + 3] of every lane by whole loads and a transpose.
+template <typename Load>
+inline void transposed(Int i, Load four_at, Float& a, Float& b, Float& c, Float& d) {
+  alignas(32) int32_t k[8];
+  _mm256_store_si256(reinterpret_cast<__m256i*>(k), i.v);
+  const auto row = [&](int n) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(four_at(k[n])), four_at(k[n + 4]), 1);
+  };
+  const __m256 q0 = row(0), q1 = row(1), q2 = row(2), q3 = row(3);
+  const __m256 l01 = _mm256_unpacklo_ps(q0, q1), l23 = _mm256_unpacklo_ps(q2, q3);
+  const __m256 h01 = _mm256_unpackhi_ps(q0, q1), h23 = _mm256_unpackhi_ps(q2, q3);
+  a = _mm256_shuffle_ps(l01, l23, 0x44);
+  b = _mm256_shuffle_ps(l01, l23, 0xEE);
+  c = _mm256_shuffle_ps(h01, h23, 0x44);
+  d = _mm256_shuffle_ps(h01, h23, 0xEE);
+}
+inline __m128 three_at(const float* p) { return _mm_maskload_ps(p, _mm_setr_epi32(-1, -1, -1, 0)); }
 
 #else
 
@@ -300,7 +339,43 @@ inline Int float_bits(Float a) {
 
 #endif
 
+#if (defined(__AVX2__) || defined(__AVX512F__)) && !defined(LUCERNA_ONE_LANE) && !defined(__CUDACC__)
+/// p[i] .. p[i + 3] of every lane.
+inline void gather4(const float* p, Int i, Float& a, Float& b, Float& c, Float& d) {
+  transposed(
+      i, [p](int32_t k) { return _mm_loadu_ps(p + k); }, a, b, c, d);
+}
+/// p[i] .. p[i + 2] of every lane; reads nothing behind them.
+inline void gather3(const float* p, Int i, Float& a, Float& b, Float& c) {
+  Float none;
+  transposed(
+      i, [p](int32_t k) { return three_at(p + k); }, a, b, c, none);
+}
+#else
+LUCERNA_HD inline void gather4(const float* p, Int i, Float& a, Float& b, Float& c, Float& d) {
+  a = gather(p, i);
+  b = gather(p + 1, i);
+  c = gather(p + 2, i);
+  d = gather(p + 3, i);
+}
+LUCERNA_HD inline void gather3(const float* p, Int i, Float& a, Float& b, Float& c) {
+  a = gather(p, i);
+  b = gather(p + 1, i);
+  c = gather(p + 2, i);
+}
+#endif
+
 LUCERNA_HD inline bool any(Mask a) { return bits(a) != 0; }
+
+/// Asks for the cache lines of p[i] in the lanes of `m`, which will be read soon. Nothing on a GPU.
+LUCERNA_HD inline void prefetch([[maybe_unused]] const float* p, [[maybe_unused]] Int i,
+                                [[maybe_unused]] Mask m) {
+#if !defined(LUCERNA_ONE_LANE) && !defined(__CUDACC__)
+  alignas(64) int32_t k[kLanes];
+  store(k, i);
+  for (uint32_t left = bits(m); left != 0; left &= left - 1) __builtin_prefetch(p + k[__builtin_ctz(left)]);
+#endif
+}
 
 }  // namespace
 }  // namespace lucerna
