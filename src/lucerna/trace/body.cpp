@@ -16,6 +16,18 @@ void check(const Body& body) {
     throw InputError(fmt::format("body '{}': smooth below {} degrees, expected 0 to 180", body.name,
                                  body.smooth_below_deg));
   }
+  if (!(body.slope_error_mrad >= 0.0 && body.slope_error_mrad <= 1000.0)) {
+    throw InputError(fmt::format("body '{}': slope_error_mrad = {}, expected 0 to 1000", body.name,
+                                 body.slope_error_mrad));
+  }
+}
+
+Direction reflected_off(const Body& body, const Direction& direction, const BodyHit& hit,
+                        const ReflectionKey& key) {
+  if (!(body.slope_error_mrad > 0.0)) return Direction::from(reflect(direction, hit.normal));
+  const Direction normal = tilted_normal(hit.normal, 1e-3 * body.slope_error_mrad, key);
+  const Direction out = Direction::from(reflect(direction, normal));
+  return dot(out, hit.face) < 0.0 ? Direction::from(reflect(out, hit.face)) : out;
 }
 
 #if defined(LUCERNA_EMBREE)
@@ -104,7 +116,7 @@ std::optional<BodyHit> BodyTracer::first_hit(const Ray& ray, double t_max_mm, bo
   if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   Direction n = Direction::from({q.hit.Ng_x, q.hit.Ng_y, q.hit.Ng_z});
   if (dot(n, ray.direction) > 0.0) n = -n;
-  BodyHit hit{static_cast<double>(q.ray.tfar), q.hit.geomID, n};
+  BodyHit hit{static_cast<double>(q.ray.tfar), q.hit.geomID, n, n};
   const std::vector<Vec3>& corners = corner_normals_[q.hit.geomID];
   if (corners.empty()) return hit;
   const double u = static_cast<double>(q.hit.u), v = static_cast<double>(q.hit.v);

@@ -9,6 +9,7 @@
 #include "lucerna/core/frame.h"
 #include "lucerna/reflector/mesh.h"
 #include "lucerna/trace/reflectance.h"
+#include "lucerna/trace/slope_error.h"
 
 namespace lucerna {
 
@@ -27,9 +28,12 @@ struct Body {
   /// > 0: a mirror's normal changes steadily across triangles that meet at less than this angle
   /// (`corner_normals`); 0: every triangle is flat.
   double smooth_below_deg = 0.0;
+  /// As PlacedReflector::slope_error_mrad, on both sides.
+  double slope_error_mrad = 0.0;
 };
 
-/// Throws InputError unless the body has triangles and 0 <= smooth_below_deg <= 180.
+/// Throws InputError unless the body has triangles, 0 <= smooth_below_deg <= 180 and 0 <= slope_error_mrad <=
+/// 1000.
 void check(const Body& body);
 
 struct BodyHit {
@@ -38,7 +42,14 @@ struct BodyHit {
   /// Normal towards the side the ray came from: the triangle's own, or the smooth one where that sends the
   /// reflected ray to the same side.
   Direction normal;
+  /// The triangle's own, towards the same side.
+  Direction face;
 };
+
+/// Where a mirror reflects a ray that met it: about the normal, tilted by the body's slope error of this
+/// reflection. What a tilt sends into the triangle is reflected there once more: nothing leaks through.
+Direction reflected_off(const Body& body, const Direction& direction, const BodyHit& hit,
+                        const ReflectionKey& key);
 
 /// Finds first hits with a set of bodies (Embree). Immutable and thread safe.
 class BodyTracer {

@@ -3,11 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "lucerna/core/error.h"
+#include "lucerna/core/random.h"
 #include "lucerna/source/emitter.h"
+#include "lucerna/source/ray_set_source.h"
 #include "lucerna/trace/trace.h"
+#include "tests/support/statistics.h"
 
 namespace lucerna {
 namespace {
@@ -106,6 +111,91 @@ TEST_P(Bodies, SmoothNormalsMakeAMeshAMirror) {
   }
   EXPECT_GT(near_axis[1], 0.97 * all);
   EXPECT_LT(near_axis[0], 0.2 * all);
+}
+
+/// `n` equal rays along `direction` through the origin, from 50 mm before it.
+std::shared_ptr<const RaySource> pencil(std::size_t n, const Direction& direction) {
+  auto set = std::make_shared<RaySet>();
+  set->header.set_flux(1.0);
+  set->rays.resize(n, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    set->rays.set(i, {-50.0 * direction.vec(), direction});
+    set->rays.weight[i] = 1.0F;
+  }
+  return std::make_shared<RaySetSource>(set, "pencil");
+}
+
+/// p-value of `slopes` (pairs) being of two independent Gaussians of standard deviation `sigma` about 0: by
+/// radius and azimuth, in cells of equal probability.
+double gaussian_p(const std::vector<std::array<double, 2>>& slopes, double sigma) {
+  constexpr std::size_t kRadii = 24, kAzimuths = 16;
+  std::vector<double> observed(kRadii * kAzimuths), expected(observed.size());
+  for (const auto& [p, q] : slopes) {
+    const double within = 1.0 - std::exp(-(p * p + q * q) / (2.0 * sigma * sigma));
+    const double turn = 0.5 + std::atan2(q, p) / (2.0 * std::numbers::pi);
+    const auto r = std::min(kRadii - 1, static_cast<std::size_t>(within * kRadii));
+    const auto a = std::min(kAzimuths - 1, static_cast<std::size_t>(turn * kAzimuths));
+    observed[r * kAzimuths + a] += 1.0;
+  }
+  for (double& e : expected) e = static_cast<double>(slopes.size()) / static_cast<double>(expected.size());
+  return test::chi_square_p(observed, expected);
+}
+
+class BodiesStatistical : public Bodies {};
+INSTANTIATE_TEST_SUITE_P(Engines, BodiesStatistical,
+                         testing::Values(EngineKind::reference, EngineKind::fast));
+
+// The normal that sent each ray where it went, against the triangle's: two Gaussians of the slope error.
+// False alarms 1e-6; an error of 5 % in it, a tilt about one axis only and a disc of the same variance are
+// rejected.
+TEST_P(BodiesStatistical, SlopeErrorOfAMeshIsGaussian) {
+  for (const double incidence : {0.0, 40.0}) {
+    const double a = radians(incidence);
+    const Direction down = Direction::from({std::sin(a), 0.0, -std::cos(a)});
+    Scene scene;
+    // Not along an axis of the luminaire, and hit on its back.
+    const Frame turned = Frame::from_axis(Direction::from({0.3, -0.2, -1.0}), 20.0, {0, 0, 0});
+    scene.sources = {{pencil(40000, turned.direction(down)), {}, std::nullopt}};
+    scene.far_fields = {{"far", 30.0, 10.0}};
+    scene.ray_detectors = {{}};
+    scene.bodies = {{"sheet", square(20, 0), turned, Reflectance(1.0), false, 0.0, 15.0}};
+    const TraceResult result = trace(scene, {.last_ray = 40000, .engine = GetParam()});
+    ASSERT_EQ(result.out_rays.size(), 40000u);
+    std::vector<std::array<double, 2>> slopes, one_axis, disc;
+    const Frame sheet = turned.inverse();
+    Rng rng(5, 0);
+    for (std::size_t i = 0; i < 40000; ++i) {
+      const Vec3 n = sheet.direction(result.out_rays.direction(i)).vec() - down.vec();
+      slopes.push_back({n.x / n.z, n.y / n.z});
+      one_axis.push_back({n.x / n.z, 0.0});
+      const double r = 2.0 * 0.015 * std::sqrt(rng.uniform()), phi = 2.0 * std::numbers::pi * rng.uniform();
+      disc.push_back({r * std::cos(phi), r * std::sin(phi)});
+    }
+    EXPECT_GT(gaussian_p(slopes, 0.015), test::kFalseAlarm) << incidence << " degrees";
+    EXPECT_LT(gaussian_p(slopes, 0.015 * 1.05), test::kFalseAlarm);
+    EXPECT_LT(gaussian_p(slopes, 0.015 / 1.05), test::kFalseAlarm);
+    EXPECT_LT(gaussian_p(one_axis, 0.015), test::kFalseAlarm);
+    EXPECT_LT(gaussian_p(disc, 0.015), test::kFalseAlarm);
+  }
+}
+
+// At grazing incidence many tilts would send light into the sheet.
+TEST_P(Bodies, SlopeErrorLetsNothingThrough) {
+  Scene scene;
+  const Direction grazing = Direction::from({1.0, 0.0, -0.02});
+  scene.sources = {{pencil(20000, grazing), {}, std::nullopt}};
+  scene.far_fields = {{"far", 360.0, 90.0}};
+  scene.ray_detectors = {{}};
+  scene.bodies = {{"sheet", square(100, 0), {}, Reflectance(1.0), false, 0.0, 50.0}};
+  const TraceResult result = trace(scene, {.last_ray = 20000, .engine = GetParam()});
+  ASSERT_EQ(result.out_rays.size(), 20000u);
+  for (std::size_t i = 0; i < 20000; ++i) ASSERT_GE(result.out_rays.direction(i).z(), 0.0);
+  EXPECT_NEAR(ledger(result).out_reflected.mean, 1.0, 1e-9);
+}
+
+TEST(BodyTracer, RefusesASlopeErrorOutOfRange) {
+  EXPECT_THROW(check(Body{.mesh = square(1, 0), .slope_error_mrad = -1.0}), InputError);
+  EXPECT_THROW(check(Body{.mesh = square(1, 0), .slope_error_mrad = 1e9}), InputError);
 }
 
 TEST(BodyTracer, RefusesAnEmptyMesh) {

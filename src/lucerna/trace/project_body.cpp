@@ -16,6 +16,13 @@ Reflectance read_reflectance(TomlReader& reader) {
   });
 }
 
+double read_slope_error(TomlReader& reader) {
+  const double mrad = reader.number("slope_error_mrad", 0.0);
+  if (!(mrad >= 0.0 && mrad <= 1000.0))
+    reader.fail("slope_error_mrad", fmt::format("found {}, expected 0 to 1000", mrad));
+  return mrad;
+}
+
 std::shared_ptr<const Mesh> read_mesh_file(TomlReader& reader, Project& project) {
   const auto file = reader.file("file");
   if (!file) reader.fail("file", "is missing: an .stl or .obj file");
@@ -76,8 +83,11 @@ void read_body(TomlReader reader, Project& project) {
   body.only_returning_light = role == "lamp";
   if (role == "mirror") {
     body.reflectance = reader.has("reflectance") ? read_reflectance(reader) : Reflectance(1.0);
-  } else if (reader.has("reflectance")) {
-    reader.fail("reflectance", fmt::format("belongs to role = \"mirror\"; this is {}", role));
+    body.slope_error_mrad = read_slope_error(reader);
+  }
+  for (const char* key : {"reflectance", "slope_error_mrad"}) {
+    if (role != "mirror" && reader.has(key))
+      reader.fail(key, fmt::format("belongs to role = \"mirror\"; this is {}", role));
   }
   const bool may_be_open = reader.flag("open").value_or(false);
   body.mesh = read_mesh_file(reader, project);

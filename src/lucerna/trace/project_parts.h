@@ -39,6 +39,9 @@ std::shared_ptr<const Mesh> read_mesh_file(TomlReader& reader, Project& project)
 /// A number, or [[angle of incidence in degrees, value], ...].
 Reflectance read_reflectance(TomlReader& reader);
 
+/// `slope_error_mrad`, 0 to 1000; 0 if it is not there.
+double read_slope_error(TomlReader& reader);
+
 /// The cause of loss that a body is: `name`, by default its file's name without the ending
 /// (-2, -3, ... where that is taken); `otherwise` if it has no file.
 std::string read_cause(TomlReader& reader, const Scene& scene, const std::string& otherwise);

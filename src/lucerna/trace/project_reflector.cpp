@@ -213,6 +213,7 @@ void read_mesh_mirror(TomlReader& reader, Project& project) {
   body.name = read_cause(reader, project.scene, "body");
   body.world_from_body = read_placement(reader);
   body.reflectance = reader.has("reflectance") ? read_reflectance(reader) : Reflectance(1.0);
+  body.slope_error_mrad = read_slope_error(reader);
   const bool smooth = reader.flag("smooth_normals").value_or(false);
   if (!smooth && reader.has("crease_deg")) reader.fail("crease_deg", "needs smooth_normals = true");
   if (smooth) body.smooth_below_deg = reader.positive("crease_deg").value_or(30.0);
@@ -244,8 +245,7 @@ void read_reflector(TomlReader reader, Project& project) {
   placed.world_from_reflector = read_placement(reader);
   placed.reflector = read_family(reader, family, project);
   placed.reflectance = read_reflectance(reader);
-  placed.slope_error_mrad = reader.number("slope_error_mrad", 0.0);
-  if (!(placed.slope_error_mrad >= 0.0)) reader.fail("slope_error_mrad", "expected >= 0");
+  placed.slope_error_mrad = read_slope_error(reader);
   reader.finish();
   project.scene.reflectors.push_back(std::move(placed));
 }

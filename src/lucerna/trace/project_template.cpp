@@ -123,6 +123,7 @@ slope_error_mrad = 0.0        # Gaussian tilt of the normal, standard deviation 
 #scale = 1.0
 #smooth_normals = true
 #crease_deg = 30.0
+#slope_error_mrad = 0.0
 #reflectance = 0.9
 #position_mm = [700, 0, 0]
 

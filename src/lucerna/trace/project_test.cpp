@@ -164,13 +164,15 @@ TEST(Project, BodiesHaveRolesPlacesAndNames) {
       "[[body]]\nfile = 't.obj'\nrole = 'mirror'\nreflectance = 0.5\nposition_mm = [0, 0, 90]\n"
       "[[body]]\nfile = 't.obj'\nname = 'bulb'\nrole = 'lamp'\n"
       "[[body]]\nfile = 'sheet.obj'\nopen = true\n"
-      "[[reflector]]\nfamily = 'mesh'\nfile = 'sheet.obj'\nreflectance = 0.8\nsmooth_normals = true\n",
+      "[[reflector]]\nfamily = 'mesh'\nfile = 'sheet.obj'\nreflectance = 0.8\nsmooth_normals = true\n"
+      "slope_error_mrad = 3\n",
       dir);
   const std::vector<Body>& b = p.scene.bodies;
   ASSERT_EQ(b.size(), 5u);
   EXPECT_EQ(b[0].name, "sheet") << "mirrors come first";
   EXPECT_EQ(b[0].reflectance.at(1.0), 0.8);
   EXPECT_EQ(b[0].smooth_below_deg, 30.0);
+  EXPECT_EQ(b[0].slope_error_mrad, 3.0);
   EXPECT_EQ(b[1].name, "t");
   EXPECT_EQ(b[1].reflectance.at(1.0), 0.0);
   EXPECT_EQ(b[1].mesh->vertices_mm[1], (Vec3{0, 20, 0}));
@@ -323,6 +325,9 @@ TEST(Project, BadBodiesMapsAndDetectorsNameTheirKey) {
   expect("[[body]]\nfile = 't.obj'\nname = 'x'\n[[body]]\nfile = 't.obj'\nname = 'x'\n", "named 'x'");
   const std::string mesh = "[[reflector]]\nfamily = 'mesh'\nfile = 't.obj'\n";
   expect(mesh + "crease_deg = 20\n", "needs smooth_normals");
+  expect(mesh + "slope_error_mrad = -1\n", "slope_error_mrad: found -1, expected 0 to 1000");
+  expect("[[body]]\nfile = 't.obj'\nslope_error_mrad = 2\n",
+         "belongs to role = \"mirror\"; this is absorber");
   expect(mesh + "smooth_normals = true\ncrease_deg = 200\n", "expected 0 to 180");
   const std::string map = "[[reflector]]\nfamily = 'heightmap'\n";
   expect(map + "size_mm = [1, 1]\n", "reflector[0].file: is missing");

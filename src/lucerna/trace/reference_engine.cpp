@@ -103,7 +103,7 @@ class ReferenceEngine final : public TraceEngine {
         if (energy == 0) return;
         ++bounce;
         ++tally.reflections;
-        ray = {ray.at(hit->t_mm), Direction::from(reflect(ray.direction, hit->normal))};
+        ray = {ray.at(hit->t_mm), reflected_off(scene_.bodies[hit->body], ray.direction, *hit, key)};
         continue;
       }
       if (n.mirror == nullptr) {

@@ -56,7 +56,11 @@ class WavefrontEngine final : public TraceEngine {
     Batch batch;
     const std::size_t n =
         emit(rays, source.world_from_source, numbering_.ray_flux(run.source), batch.rays, tally);
-    if (!glasses().empty()) batch.reflections.fill(0);
+    if (!bodies().empty()) batch.body.resize(n);
+    if (!glasses().empty()) {
+      batch.glass.resize(n);
+      batch.reflections.fill(0);
+    }
     follow(batch, n, run, scratch, tally);
   }
 
@@ -79,10 +83,10 @@ class WavefrontEngine final : public TraceEngine {
     WorldRays out;
     std::size_t out_count = 0;
     alignas(64) float cosine[kBatch];
-    /// First hits with bodies, where those come before all mirrors.
-    std::array<std::optional<BodyHit>, kBatch> body;
+    /// First hits with bodies, where those come before all mirrors; of no length without bodies.
+    std::vector<std::optional<BodyHit>> body;
     /// The same of cover glasses, where those come before all else.
-    std::array<std::optional<GlassHit>, kBatch> glass;
+    std::vector<std::optional<GlassHit>> glass;
     /// By number, how often each ray was reflected; kept only if there are cover glasses: else it is the same
     /// for all rays still on their way.
     std::array<int, kBatch> reflections;
@@ -238,7 +242,7 @@ class WavefrontEngine final : public TraceEngine {
       if (!bodies().empty() && batch.body[i]) nearest = std::min(nearest, batch.body[i]->t_mm);
       batch.glass[i] = glasses().first_hit(ray_of(batch.rays, i), nearest);
       if (!batch.glass[i]) continue;
-      batch.body[i].reset();
+      if (!bodies().empty()) batch.body[i].reset();
       for (Meeting& m : meetings) m.hits.state[i] = kMiss;
     }
   }
@@ -295,16 +299,18 @@ class WavefrontEngine final : public TraceEngine {
   }
 
   /// Absorbs or reflects ray `i` where it met a body; returns what sort_out notes of it.
-  std::int32_t leave_body(Batch& batch, std::size_t i, int bounce, Tally& tally) const {
+  std::int32_t leave_body(Batch& batch, std::size_t i, ReflectionKey key, Tally& tally) const {
     WorldRays& rays = batch.rays;
     const BodyHit& hit = *batch.body[i];
+    const int bounce = key.bounce;
+    key.ray += static_cast<std::uint64_t>(rays.number[i]);
     if (!may_reflect(batch, i, bounce, tally)) return kGone;
     const Ray ray = ray_of(rays, i);
     const double kept = scene_.bodies[hit.body].reflectance.at(-dot(ray.direction, hit.normal));
     absorb(rays.flux[i], kept, kMirrorLosses + hit.body, tally);
     if (kept == 0.0) return kGone;
     ++tally.reflections;
-    put(rays, i, {ray.at(hit.t_mm), Direction::from(reflect(ray.direction, hit.normal))});
+    put(rays, i, {ray.at(hit.t_mm), reflected_off(scene_.bodies[hit.body], ray.direction, hit, key)});
     return kOnBody;
   }
 
@@ -338,7 +344,7 @@ class WavefrontEngine final : public TraceEngine {
       }
     }
     for (std::size_t i = 0; !bodies().empty() && i < n; ++i) {
-      if (batch.body[i]) mirror[i] = leave_body(batch, i, bounce, tally);
+      if (batch.body[i]) mirror[i] = leave_body(batch, i, first, tally);
     }
     for (std::size_t i = 0; !glasses().empty() && i < n; ++i) {
       if (batch.glass[i]) mirror[i] = leave_glass(batch, i, first, tally);
