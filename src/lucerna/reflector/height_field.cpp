@@ -7,6 +7,10 @@
 #include <cmath>
 #include <limits>
 
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
 
@@ -38,6 +42,19 @@ SurfacePoint adini(const AdiniCorners& k, double u, double v) {
   return {vm * (k.z00 + u * south + s.value) + v * (k.z01 + u * north + n.value) + um * w.value + u * e.value,
           vm * (south + s.slope) + v * (north + n.slope) - w.value + e.value,
           um * (west + w.slope) + u * (east + e.slope) - s.value + n.value};
+}
+
+/// Rays read all over a large array: with small pages most reads would also walk the page table.
+void advise_huge_pages([[maybe_unused]] void* data, [[maybe_unused]] std::size_t bytes) {
+#if defined(__linux__)
+  constexpr std::uintptr_t kPage = 4096;
+  constexpr std::size_t kWorthIt = std::size_t{4} << 20;
+  if (bytes < kWorthIt) return;
+  const auto first = (reinterpret_cast<std::uintptr_t>(data) + kPage - 1) / kPage * kPage;
+  const auto last = reinterpret_cast<std::uintptr_t>(data) + bytes;
+  // Advice only: where there are no huge pages, small ones serve.
+  static_cast<void>(madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE));
+#endif
 }
 
 }  // namespace
@@ -97,6 +114,8 @@ void HeightField::fit_quadric(const HeightSurface& surface) {
 
 void HeightField::sample(const HeightSurface& surface) {
   const auto n = static_cast<std::size_t>(cells_) + 1;
+  vertices_.reserve(n * n);
+  advise_huge_pages(vertices_.data(), n * n * sizeof(FieldVertex));
   vertices_.resize(n * n);
   parallel_blocks(n, 8, [&](std::size_t first, std::size_t last) {
     for (std::size_t iy = first; iy < last; ++iy) {
