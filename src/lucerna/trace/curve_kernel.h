@@ -63,6 +63,12 @@ class CurveWalk {
 
  private:
   static constexpr double kNever = 1e300;
+  /// A Newton step this small, taken, leaves an error far below rounding: each squares the one before.
+  static constexpr double kLastStep = 1e-8;
+
+  // std::fmin and fmax are calls, for what they do with NaN; there is none here.
+  LUCERNA_HD static double least(double a, double b) { return b < a ? b : a; }
+  LUCERNA_HD static double greatest(double a, double b) { return a < b ? b : a; }
 
   LUCERNA_HD double rho2(double t) const {
     const double s = t - turn_;
@@ -78,13 +84,13 @@ class CurveWalk {
       if (o_.z < z0 || o_.z > z1) return true;
     } else {
       const double p = (z0 - o_.z) / d_.z, q = (z1 - o_.z) / d_.z;
-      t0 = std::fmax(t0, std::fmin(p, q));
-      t1 = std::fmin(t1, std::fmax(p, q));
+      t0 = greatest(t0, least(p, q));
+      t1 = least(t1, greatest(p, q));
       if (t0 > t1) return true;
     }
     const double r1 = n.r1 + v_.overlap_mm, r0 = n.r0 - v_.overlap_mm;
-    if (rho2(std::fmin(std::fmax(turn_, t0), t1)) > r1 * r1) return true;
-    return r0 > 0.0 && std::fmax(rho2(t0), rho2(t1)) < r0 * r0;
+    if (rho2(least(greatest(turn_, t0), t1)) > r1 * r1) return true;
+    return r0 > 0.0 && greatest(rho2(t0), rho2(t1)) < r0 * r0;
   }
 
   /// Height of the ray in front of the piece at distance t, its derivative, and the piece's parameter there.
@@ -101,12 +107,12 @@ class CurveWalk {
   LUCERNA_HD static double parameter(const double (&k)[4], double from, double to, double m) {
     double s = (m - from) / (to - from);
     for (int i = 0; i < 8; ++i) {
-      s = std::fmin(std::fmax(s, 0.0), 1.0);
+      s = least(greatest(s, 0.0), 1.0);
       const double step = (cubic(k, s) - m) / cubic_slope(k, s);
       s -= step;
-      if (std::abs(step) < 1e-15) break;
+      if (std::abs(step) < kLastStep) break;
     }
-    return std::fmin(std::fmax(s, 0.0), 1.0);
+    return least(greatest(s, 0.0), 1.0);
   }
   LUCERNA_HD Value value(const CurvePiece& p, double t) const {
     const double r = rho(t), z = o_.z + t * d_.z;
@@ -135,7 +141,7 @@ class CurveWalk {
       if (n.piece < 0) continue;
       const CurvePiece& p = v_.pieces[n.piece];
       const double m = p.along_z ? o_.z : across;
-      if (m < std::fmin(p.from, p.to) - slack || m > std::fmax(p.from, p.to) + slack) continue;
+      if (m < least(p.from, p.to) - slack || m > greatest(p.from, p.to) + slack) continue;
       if (!step_in_front(p, slack)) continue;
       step_in_front(p, slack);
       return;
@@ -175,13 +181,12 @@ class CurveWalk {
   /// Looks for hits with one piece: the ray's part beside it is cut where the ray turns, so that rho is
   /// monotone in each part.
   LUCERNA_HD void meet(const CurvePiece& p) {
-    const double low = std::fmin(p.from, p.to) - v_.overlap_mm,
-                 high = std::fmax(p.from, p.to) + v_.overlap_mm;
+    const double low = least(p.from, p.to) - v_.overlap_mm, high = greatest(p.from, p.to) + v_.overlap_mm;
     if (p.along_z) {
       if (d_.z == 0.0) {
         if (o_.z < low || o_.z > high) return;
         // No farther than where it is surely outside the curve.
-        const double far = std::fmax(std::fabs(cubic(p.r, 0.0)), std::fabs(cubic(p.r, 1.0))) * 2.0 + 1.0;
+        const double far = greatest(std::fabs(cubic(p.r, 0.0)), std::fabs(cubic(p.r, 1.0))) * 2.0 + 1.0;
         if (!(a_ > 0.0) || least2_ > far * far) return;
         const double w = std::sqrt((far * far - least2_) / a_);
         part(p, turn_ - w, turn_);
@@ -189,9 +194,9 @@ class CurveWalk {
         return;
       }
       const double t0 = (low - o_.z) / d_.z, t1 = (high - o_.z) / d_.z;
-      const double begin = std::fmin(t0, t1), end = std::fmax(t0, t1);
-      part(p, begin, std::fmin(end, std::fmax(begin, turn_)));
-      part(p, std::fmax(begin, turn_), end);
+      const double begin = least(t0, t1), end = greatest(t0, t1);
+      part(p, begin, least(end, greatest(begin, turn_)));
+      part(p, greatest(begin, turn_), end);
       return;
     }
     if (high * high < least2_ || high < 0.0) return;
@@ -208,14 +213,19 @@ class CurveWalk {
     part(p, turn_ + inner, turn_ + outer);
   }
 
+  /// A place on the ray and its height there.
+  struct End {
+    double t, f;
+  };
+
   LUCERNA_HD void part(const CurvePiece& p, double t0, double t1) {
-    t0 = std::fmax(t0, 0.0);
-    t1 = std::fmin(t1, best_.t);
+    t0 = greatest(t0, 0.0);
+    t1 = least(t1, best_.t);
     if (!(t0 < t1)) return;
     const Value a = value(p, t0), b = value(p, t1);
     const bool front = in_front(a);
     if (front != in_front(b)) {
-      crossing(p, t0, t1, front);
+      crossing(p, {t0, a.f}, {t1, b.f}, front);
       return;
     }
     // On the same side at both ends it may still go over and come back.
@@ -226,8 +236,8 @@ class CurveWalk {
       const double middle = 0.5 * (low + high);
       const Value v = value(p, middle);
       if (in_front(v) != front) {
-        crossing(p, t0, middle, front);
-        crossing(p, middle, t1, !front);
+        crossing(p, {t0, a.f}, {middle, v.f}, front);
+        crossing(p, {middle, v.f}, {t1, b.f}, !front);
         return;
       }
       (sign * v.df < 0.0 ? low : high) = middle;
@@ -235,16 +245,22 @@ class CurveWalk {
   }
 
   /// The root between t0 and t1, where the side changes, by Newton's method inside a shrinking bracket.
-  LUCERNA_HD void crossing(const CurvePiece& p, double t0, double t1, bool front) {
-    double low = t0, high = t1, t = 0.5 * (t0 + t1);
+  LUCERNA_HD void crossing(const CurvePiece& p, const End& first, const End& last, bool front) {
+    double low = first.t, high = last.t;
+    // Where the chord crosses; the curve is nearly straight beside it.
+    double t = low + (high - low) * (first.f / (first.f - last.f));
+    if (!(t > low && t < high)) t = 0.5 * (low + high);
     Value v = value(p, t);
     for (int i = 0; i < 100; ++i) {
       (in_front(v) == front ? low : high) = t;
       double next = t - v.f / v.df;
-      if (!(next > low && next < high)) next = 0.5 * (low + high);
-      if (std::abs(next - t) <= 1e-15 * (1.0 + std::abs(t)) || next == low || next == high) break;
+      const bool newton = next >= low && next <= high;
+      if (!newton) next = 0.5 * (low + high);
+      if (next == t) break;
+      const bool last_step = newton && std::abs(next - t) <= kLastStep;
       t = next;
       v = value(p, t);
+      if (last_step || t == low || t == high) break;
     }
     if (!(t < best_.t)) return;
     const double x = o_.x + t * d_.x, y = o_.y + t * d_.y, r2 = x * x + y * y;
