@@ -31,7 +31,27 @@ inline constexpr int kFieldBlock = 8;
 namespace detail {
 LUCERNA_HD inline float least(float a, float b) { return b < a ? b : a; }
 LUCERNA_HD inline float greatest(float a, float b) { return a < b ? b : a; }
+
+/// The vertices of one row of a leaf square: heights, and slopes times the cell's size.
+struct FieldRow {
+  float z[kFieldBlock + 1], p[kFieldBlock + 1], q[kFieldBlock + 1];
+
+  LUCERNA_HD void read(const FieldVertex* v, float step_x_mm, float step_y_mm) {
+    for (int i = 0; i <= kFieldBlock; ++i) {
+      z[i] = v[i].z_mm;
+      p[i] = v[i].dzdx * step_x_mm;
+      q[i] = v[i].dzdy * step_y_mm;
+    }
+  }
+};
 }  // namespace detail
+
+// g++ unrolls loops of nine before it looks for vectors, and then finds none.
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
+#define LUCERNA_KEEP_LOOP _Pragma("GCC unroll 1")
+#else
+#define LUCERNA_KEEP_LOOP
+#endif
 
 /// The slab over leaf square (bx, by) of a grid of `cells` a side.
 LUCERNA_HD inline FieldNode field_leaf(const FieldVertex* vertices, int cells, float step_x_mm,
@@ -44,33 +64,52 @@ LUCERNA_HD inline FieldNode field_leaf(const FieldVertex* vertices, int cells, f
   const float dx = 0.5F * (v10.z_mm - v00.z_mm + v11.z_mm - v01.z_mm) / static_cast<float>(k);
   const float dy = 0.5F * (v01.z_mm - v00.z_mm + v11.z_mm - v10.z_mm) / static_cast<float>(k);
   // Heights over that plane, and how far a cell's edges can bend away from their chords: at most a quarter of
-  // the greatest difference between a slope and the chord's, in each direction.
-  float low = FLT_MAX, high = -low, bend_x = 0.0F, bend_y = 0.0F;
+  // the greatest difference between a slope and the chord's, in each direction. By column, so that compilers
+  // see vectors.
+  float low[k + 1], high[k + 1], bend_x[k], bend_y[k + 1];
+  for (std::size_t i = 0; i <= k; ++i) {
+    low[i] = FLT_MAX;
+    high[i] = -FLT_MAX;
+    bend_y[i] = 0.0F;
+  }
+  for (std::size_t i = 0; i < k; ++i) bend_x[i] = 0.0F;
+  detail::FieldRow rows[2];
   for (std::size_t j = 0; j <= k; ++j) {
-    const FieldVertex* const row = base + j * n;
+    detail::FieldRow& row = rows[j % 2];
+    row.read(base + j * n, step_x_mm, step_y_mm);
+    LUCERNA_KEEP_LOOP
     for (std::size_t i = 0; i <= k; ++i) {
-      const float r = row[i].z_mm - dx * static_cast<float>(i) - dy * static_cast<float>(j);
-      low = least(low, r);
-      high = greatest(high, r);
+      const float r = row.z[i] - dx * static_cast<float>(i) - dy * static_cast<float>(j);
+      low[i] = least(low[i], r);
+      high[i] = greatest(high[i], r);
     }
+    LUCERNA_KEEP_LOOP
     for (std::size_t i = 0; i < k; ++i) {
-      const float chord = row[i + 1].z_mm - row[i].z_mm;
-      bend_x = greatest(greatest(bend_x, std::abs(row[i].dzdx * step_x_mm - chord)),
-                        std::abs(row[i + 1].dzdx * step_x_mm - chord));
+      const float chord = row.z[i + 1] - row.z[i];
+      bend_x[i] = greatest(bend_x[i], greatest(std::abs(row.p[i] - chord), std::abs(row.p[i + 1] - chord)));
     }
-    if (j == k) break;
+    if (j == 0) continue;
+    const detail::FieldRow& before = rows[1 - j % 2];
+    LUCERNA_KEEP_LOOP
     for (std::size_t i = 0; i <= k; ++i) {
-      const float chord = row[i + n].z_mm - row[i].z_mm;
-      bend_y = greatest(greatest(bend_y, std::abs(row[i].dzdy * step_y_mm - chord)),
-                        std::abs(row[i + n].dzdy * step_y_mm - chord));
+      const float chord = row.z[i] - before.z[i];
+      bend_y[i] = greatest(bend_y[i], greatest(std::abs(before.q[i] - chord), std::abs(row.q[i] - chord)));
     }
+  }
+  for (std::size_t i = 1; i <= k; ++i) {
+    low[0] = least(low[0], low[i]);
+    high[0] = greatest(high[0], high[i]);
+    bend_y[0] = greatest(bend_y[0], bend_y[i]);
+    if (i < k) bend_x[0] = greatest(bend_x[0], bend_x[i]);
   }
   const float half = 0.5F * static_cast<float>(k);
   // A hair more for the rounding of these sums.
-  const float slack = 1e-6F * (std::abs(low) + std::abs(high)) + FLT_MIN;
-  return {0.5F * (low + high) + half * (dx + dy), dx / step_x_mm, dy / step_y_mm,
-          0.5F * (high - low) + 0.25F * (bend_x + bend_y) + slack};
+  const float slack = 1e-6F * (std::abs(low[0]) + std::abs(high[0])) + FLT_MIN;
+  return {0.5F * (low[0] + high[0]) + half * (dx + dy), dx / step_x_mm, dy / step_y_mm,
+          0.5F * (high[0] - low[0]) + 0.25F * (bend_x[0] + bend_y[0]) + slack};
 }
+
+#undef LUCERNA_KEEP_LOOP
 
 /// The slab over square (ix, iy) of `level` > 0 from the four of the level below, whose nodes begin at
 /// `children`; `n` of them a side.
