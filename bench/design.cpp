@@ -15,7 +15,7 @@
 
 #include "lucerna/core/random.h"
 #include "lucerna/design/fit.h"
-#include "lucerna/design/starts.h"
+#include "lucerna/design/optimizer.h"
 #include "lucerna/design/window.h"
 #include "lucerna/source/emitter.h"
 
@@ -144,13 +144,22 @@ bool solve(const Suite& s, std::uint64_t seed, bool verbose, Outcome& out) {
   problem.fruitless = s.restarts;
   const DesignShape begin = plain(s);
   const bool far = out.start > 0.2 || s.revolution;
-  if (far) problem.starts = fit_starts(problem, begin);
+  const std::vector<FitStage> stages = ladder(begin, bins, {1 << 20, far, 0});
+  std::vector<double> search_costs;
+  if (far) {
+    prepare_starts(problem, begin, stages, optimizer("auto"), search_costs,
+                   [](const FitRecord&, const DesignShape&) { return true; });
+  }
   if (verbose) {
     for (const FitStart& f : problem.starts) {
-      fmt::print("  start{} {:.4f}\n", f.few_knots ? " (plain)" : "", std::sqrt(f.cost));
+      fmt::print("  start{} {:.4f}\n",
+                 f.entry == FitEntry::few_knots ? " (plain)"
+                 : f.entry == FitEntry::end     ? " (profile)"
+                                                : "",
+                 std::sqrt(f.cost));
     }
   }
-  Fit fit(problem, ladder(begin, bins, {1 << 20, far, 0}), begin);
+  Fit fit(problem, stages, begin, search_costs);
   // Seconds of two idle cores: what the clock says, or what processors were given on a shared machine.
   constexpr double kTwoCores = 1.8;
   const auto spent = [&] {

@@ -102,7 +102,8 @@ std::vector<std::pair<std::string, Way>> ways() {
   out.emplace_back("zero-etendue",
                    [](const FitProblem& p, const DesignShape& s, const std::vector<FitStage>&, double) {
                      for (const FitStart& start : fit_starts(p, s)) {
-                       if (!start.few_knots) return start.shape;  // the cheapest of a point source's
+                       if (start.entry == FitEntry::own_knots)
+                         return start.shape;  // the cheapest of a point source's
                      }
                      return s;
                    });
@@ -132,7 +133,8 @@ void run(const Case& c, const std::string& source, double seconds, const std::fi
   for (const auto& [name, way] : ways()) {
     DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
     const FitProblem fit = fit_problem(problem, options, rays);
-    const std::vector<FitStage> stages = ladder(problem.start, fit.bins, {options.most_rays, true, problem.growth});
+    const std::vector<FitStage> stages =
+        ladder(problem.start, fit.bins, {options.most_rays, true, problem.growth});
     const double from = cpu_seconds();
     const DesignShape shape = way(fit, problem.start, stages, seconds);
     const double took = cpu_seconds() - from;

@@ -86,9 +86,9 @@ void put(std::string& text, const char* name, const FitMark& m) {
 std::string checkpoint_text(const FitState& s, const std::string& key) {
   std::string text = fmt::format(
       "{}\nkey {}\nintervals_x {}\nintervals_y {}\nstage {}\nstep {}\nlambda {}\nevaluations {}\n"
-      "total_rays {}\nover_noise {}\nstarts {}\nfruitless {}\n",
+      "total_rays {}\nover_noise {}\nstarts {}\nfruitless {}\nrefused {}\n",
       kMagic, key, s.intervals_x, s.intervals_y, s.stage, s.step, s.lambda, s.evaluations, s.total_rays,
-      s.over_noise, s.starts, s.fruitless);
+      s.over_noise, s.starts, s.fruitless, s.refused);
   put(text, "parameters", s.parameters);
   put(text, "costs", s.costs);
   put(text, "gate", s.gate);
@@ -115,6 +115,7 @@ FitState parse_checkpoint(const std::string& text, const std::string& key) {
   s.over_noise = in.number<double>("over_noise");
   s.starts = in.number<int>("starts");
   s.fruitless = in.number<int>("fruitless");
+  s.refused = in.number<int>("refused");
   s.parameters = in.numbers("parameters");
   s.costs = in.numbers("costs");
   s.gate = in.mark("gate");

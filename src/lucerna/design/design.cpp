@@ -25,14 +25,37 @@ constexpr std::uint64_t kFewestJudgeRays = std::uint64_t{1} << 18;
 /// Rays that measure how much light leaves the mirror to begin with.
 constexpr std::uint64_t kFluxRays = std::uint64_t{1} << 16;
 
+/// Share of the rays (of the first that are enough to tell) that begin behind a mirror.
+double share_behind(const DesignShape& shape, const DesignRays& rays) {
+  constexpr std::uint64_t kBlocks = 16;
+  double behind = 0.0, all = 0.0;
+  for (std::uint64_t b = 0; b < std::min(kBlocks, rays.size() / kBlockRays); ++b) {
+    const DesignRays::Block& block = rays.block(b);
+    for (std::size_t i = 0; i < kBlockRays; ++i) {
+      const auto x = static_cast<double>(block.x_mm[i]), y = static_cast<double>(block.y_mm[i]);
+      const auto weight = static_cast<double>(block.weight[i]);
+      all += weight;
+      const bool over = shape.aperture().contains(x, y);
+      if (over && static_cast<double>(block.z_mm[i]) < shape.at(x, y).z_mm) behind += weight;
+    }
+  }
+  return behind / all;
+}
+
+/// What of the source may be behind a mirror beyond what the given mirror leaves there.
+constexpr double kMostBehind = 1e-3;
+
 /// All limits as one cost; empty without any. `rays` must outlive it.
 std::function<double(const DesignShape&, std::uint64_t, NormalEquations*)> limits_cost(
     const DesignProblem& problem, const DesignRays& rays) {
   const ShapeLimits form(problem.limits, problem.start);
   const LightLimits light(problem.limits, problem.reflectance);
   if (form.empty() && light.empty()) return {};
-  return [form, light, &rays](const DesignShape& shape, std::uint64_t n, NormalEquations* equations) {
-    return form.cost(shape, equations) + light.cost(shape, rays, n, equations);
+  // The source is a body too: a limit must not be met by a mirror that has passed it.
+  const double given = share_behind(problem.start, rays);
+  return [form, light, given, &rays](const DesignShape& shape, std::uint64_t n, NormalEquations* equations) {
+    const double past = std::max(0.0, share_behind(shape, rays) - given) / kMostBehind;
+    return form.cost(shape, equations) + light.cost(shape, rays, n, equations) + past * past;
   };
 }
 
@@ -86,6 +109,9 @@ void add_remarks(const DesignRays& rays, DesignResult& result) {
                     100.0 * (1.0 - result.in_window / result.efficiency),
                     "direct light passes the mirror; a wider or deeper mirror would catch it"));
   }
+  // Where only noise is left, nothing holds the design back.
+  const std::string binding = binding_limits(result.limits);
+  if (error > 1.5 * floor && !binding.empty()) result.remarks.push_back(binding);
   for (const LimitCheck& c : result.limits) {
     if (c.held) continue;
     result.remarks.push_back(
@@ -137,6 +163,10 @@ void judge(const DesignProblem& problem, const DesignOptions& options, const Fit
   result.back = e.back;
   result.lost = e.lost;
   result.limits = checked_limits(problem, result.shape, rays, judge_rays);
+  const double behind = share_behind(result.shape, rays), given = share_behind(problem.start, rays);
+  if (behind > given + kMostBehind) {
+    result.limits.push_back({"source in front of the mirror (share behind it)", given, behind, false});
+  }
   result.remarks = target_reach(rays, problem.start, fit.bins, target, fit.mode,
                                 problem.limits.min_efficiency.value_or(0.0))
                        .statements;

@@ -24,6 +24,9 @@ constexpr double kGateFloors = 1.5;
 /// scatter of the noise's own estimate if that is more (48 rings tell it to 20 % only).
 constexpr double kEndShare = 0.1;
 
+/// Steps in turn, each five times as damped as the one before, after which a stage is at its end.
+constexpr int kMostRefused = 5;
+
 /// What an attempt has to make of the best error not to have been fruitless.
 constexpr double kGain = 0.97;
 
@@ -44,8 +47,9 @@ Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignSh
          std::vector<double> search_costs)
     : problem_(problem), stages_(std::move(stages)), family_(shape), shape_(shape), bins_(problem.bins) {
   LUCERNA_CHECK(!stages_.empty(), "a fit without stages");
-  if (problem_.starts.empty()) problem_.starts = {{shape, true, 0.0}};
+  if (problem_.starts.empty()) problem_.starts = {{shape}};
   state_.search_costs = std::move(search_costs);
+  state_.evaluations = static_cast<int>(state_.search_costs.size());
   begin_with(problem_.starts[0].shape, stage_of(problem_.starts[0]));
 }
 
@@ -57,7 +61,7 @@ Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignSh
       shape_(family_.refined(state.intervals_x, state.intervals_y).with(to_eigen(state.parameters))),
       state_(state),
       bins_(problem.bins) {
-  if (problem_.starts.empty()) problem_.starts = {{family, true, 0.0}};
+  if (problem_.starts.empty()) problem_.starts = {{family}};
 }
 
 std::size_t Fit::first_stage(int least_intervals) const {
@@ -69,13 +73,16 @@ std::size_t Fit::first_stage(int least_intervals) const {
 }
 
 std::size_t Fit::stage_of(const FitStart& start) const {
-  return start.few_knots ? 0 : first_stage(kKnotsOfStarts);
+  if (start.entry == FitEntry::few_knots) return 0;
+  if (start.entry == FitEntry::own_knots) return first_stage(kKnotsOfStarts);
+  return stages_.size() - 1;
 }
 
 void Fit::begin_with(const DesignShape& start, std::size_t stage) {
   shape_ = start.refined(stages_[stage].intervals_x, stages_[stage].intervals_y);
   state_.stage = static_cast<int>(stage);
   state_.step = 0;
+  state_.refused = 0;
   state_.costs.clear();
   state_.lambda = FitState{}.lambda;
   state_.parameters.assign(shape_.parameters().begin(), shape_.parameters().end());
@@ -122,6 +129,7 @@ void Fit::finish_stage() {
   state_.over_noise = std::sqrt(equations_.cost) / std::max(floor, 1e-12);
   ++state_.stage;
   state_.step = 0;
+  state_.refused = 0;
   state_.costs.clear();
   state_.lambda = std::clamp(state_.lambda, 1e-4, 1e-2);
   ready_ = false;
@@ -147,14 +155,15 @@ DesignShape Fit::shape_of(const FitMark& mark) const {
 bool Fit::pass_gate() {
   const bool better = !state_.gate.exists() || equations_.cost < state_.gate.cost;
   if (better) state_.gate = mark();
-  const auto begun = static_cast<std::size_t>(++state_.starts);
+  const auto begun = static_cast<std::size_t>(state_.starts);
   if (state_.best.exists()) {
     if (better) return true;
     ++state_.fruitless;
     begin_again();
     return false;
   }
-  if (state_.gate.over_noise > kGateFloors && begun < problem_.starts.size()) {
+  if (state_.gate.over_noise > kGateFloors && begun < std::min(problem_.compared, problem_.starts.size())) {
+    ++state_.starts;
     begin_with(problem_.starts[begun].shape, stage_of(problem_.starts[begun]));
     return false;
   }
@@ -181,8 +190,13 @@ void Fit::begin_again() {
     state_.stage = static_cast<int>(stages_.size());
     return;
   }
-  const int attempt = state_.starts;
+  const int attempt = state_.starts++;
   const std::size_t n = problem_.starts.size();
+  if (static_cast<std::size_t>(attempt) < n) {
+    const FitStart& next = problem_.starts[static_cast<std::size_t>(attempt)];
+    begin_with(next.shape, stage_of(next));
+    return;
+  }
   if (attempt % 3 == 2) {
     begin_with(shape_of(state_.best), first_stage(stages_.back().intervals_x));
   } else {
@@ -245,12 +259,8 @@ FitRecord Fit::step(Progress& progress) {
   state_.total_rays += e.rays;
   NormalEquations equations = equations_at(trial, e);
   record.accepted = equations.cost < equations_.cost;
-  const double predicted = -(equations_.gradient.dot(move) * 2.0 +
-                             move.dot(equations_.hessian.selfadjointView<Eigen::Lower>() * move));
   if (record.accepted) {
-    const double gain = (equations_.cost - equations.cost) / predicted;
-    // Nielsen's rule: no jumps, so that a narrow valley is not left at every other step.
-    state_.lambda = std::max(1e-7, state_.lambda * std::max(0.2, 1.0 - std::pow(2.0 * gain - 1.0, 3)));
+    state_.lambda = next_lambda(state_.lambda, equations_, move, equations.cost);
     shape_ = trial;
     now_ = std::move(e);
     equations_ = std::move(equations);
@@ -258,6 +268,7 @@ FitRecord Fit::step(Progress& progress) {
   } else {
     state_.lambda *= 5.0;
   }
+  state_.refused = record.accepted ? 0 : state_.refused + 1;
   state_.parameters.assign(shape_.parameters().begin(), shape_.parameters().end());
   state_.intervals_x = shape_.intervals_x();
   state_.intervals_y = shape_.intervals_y();
@@ -271,7 +282,9 @@ FitRecord Fit::step(Progress& progress) {
   // At the noise of its own rays a stage has nothing left to learn that more rays would not teach better.
   const bool last = state_.stage + 1 == static_cast<int>(stages_.size());
   const bool at_noise = !last && equations_.cost <= error.floor * error.floor;
-  if (state_.step >= stage().most_steps || state_.lambda > 1e4 || at_noise || stalled()) finish_stage();
+  if (state_.step >= stage().most_steps || state_.refused >= kMostRefused || at_noise || stalled()) {
+    finish_stage();
+  }
   return record;
 }
 

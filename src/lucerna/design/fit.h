@@ -10,11 +10,14 @@
 
 namespace lucerna {
 
+/// Where on the ladder a start begins: with few knots, which leave the details to what the light asks for;
+/// with most of its own; or in the last stage, where it is known to be near.
+enum class FitEntry { few_knots, own_knots, end };
+
 /// A shape that a fit may begin with.
 struct FitStart {
   DesignShape shape;
-  /// Begins with few knots, which leave the details to what the light asks for; else with all.
-  bool few_knots = true;
+  FitEntry entry = FitEntry::few_knots;
   /// Relative RMS^2 with limits, in a third of the bins.
   double cost = 0.0;
 };
@@ -37,6 +40,8 @@ struct FitProblem {
   std::function<double(const DesignShape&, std::uint64_t rays, NormalEquations* equations)> limits;
   /// Shapes to begin with, the most promising first; empty: the shape that the fit is made with.
   std::vector<FitStart> starts;
+  /// So many of them are compared at the gate before the best goes on; further ones are the first attempts.
+  std::size_t compared = 5;
   /// While the result is above the noise the fit begins again, with `starts` and the best so far by turns,
   /// shaken; so many attempts in turn that bring nothing end it.
   int fruitless = 6;
@@ -95,8 +100,11 @@ struct FitState {
   std::uint64_t total_rays = 0;
   /// Error over noise where the last stage ended.
   double over_noise = 0.0;
-  /// Starts and attempts so far that came to the gate; of these in turn, how many brought nothing.
-  int starts = 0, fruitless = 0;
+  /// Starts and attempts that were begun so far; of those that came to their end in turn, how many brought
+  /// nothing.
+  int starts = 1, fruitless = 0;
+  /// Steps in turn that were refused.
+  int refused = 0;
   /// The best at the gate, and at the end of the ladder.
   FitMark gate, best;
   /// What a global search before the fit has paid for so far (optimizer.h).

@@ -2,6 +2,7 @@
 #include "lucerna/design/least_squares.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "lucerna/core/error.h"
@@ -93,6 +94,14 @@ Eigen::VectorXd damped_step(const NormalEquations& equations, double lambda) {
   a.diagonal() += lambda * (diagonal.array() + 1e-2 * diagonal.mean() + 1e-300).matrix();
   const Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> solver(a);
   return -solver.solve(equations.gradient);
+}
+
+double next_lambda(double lambda, const NormalEquations& equations, const Eigen::VectorXd& step,
+                   double cost) {
+  const double predicted = -(equations.gradient.dot(step) * 2.0 +
+                             step.dot(equations.hessian.selfadjointView<Eigen::Lower>() * step));
+  const double gain = (equations.cost - cost) / predicted;
+  return std::max(1e-7, lambda * std::max(0.2, 1.0 - std::pow(2.0 * gain - 1.0, 3)));
 }
 
 }  // namespace lucerna

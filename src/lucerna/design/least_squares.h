@@ -46,4 +46,8 @@ NormalEquations normal_equations(const Evaluation& e, const Eigen::VectorXd& tar
 /// light stay where they are.
 Eigen::VectorXd damped_step(const NormalEquations& equations, double lambda);
 
+/// The damping after a step that made the cost `cost`: Nielsen's rule, by how much of the gain that the
+/// equations predicted came true. No jumps, so that a narrow valley is not left at every other step.
+double next_lambda(double lambda, const NormalEquations& equations, const Eigen::VectorXd& step, double cost);
+
 }  // namespace lucerna

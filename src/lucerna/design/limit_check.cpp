@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "lucerna/core/direction.h"
+#include "lucerna/core/error.h"
 #include "lucerna/design/keep_out.h"
 
 namespace lucerna {
@@ -189,6 +190,24 @@ std::vector<LimitCheck> check_limits(const Mesh& mirror, const DesignLimits& lim
                    distance > 0.0 && distance >= zone.clearance_mm - 2.0 * chord_mm});
   }
   return out;
+}
+
+std::string binding_limits(const std::vector<LimitCheck>& checks) {
+  std::string names;
+  for (const LimitCheck& c : checks) {
+    const std::string key = c.limit.substr(0, c.limit.find(' '));
+    if (key == "max_diameter_mm" || key == "min_opening_mm" || key == "min_hole_diameter_mm") continue;
+    const bool zone = key == "body" || key.rfind("keep_out", 0) == 0;
+    const double near = zone ? 0.2 : 0.05 * std::abs(c.allowed);
+    if (std::abs(c.found - c.allowed) > near && c.held) continue;
+    const char* what = key == "min_efficiency"          ? "efficiency"
+                       : key == "glare"                 ? "glare"
+                       : key == "max_height_mm" || zone ? "envelope"
+                                                        : "tooling";
+    names += fmt::format("{}{} ({}: {:.4g} found, {:.4g} allowed)", names.empty() ? "" : ", ", what, c.limit,
+                         c.found, c.allowed);
+  }
+  return names.empty() ? names : "what limits this design is set: " + names;
 }
 
 }  // namespace lucerna

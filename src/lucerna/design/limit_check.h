@@ -23,4 +23,9 @@ struct LimitCheck {
 std::vector<LimitCheck> check_limits(const Mesh& mirror, const DesignLimits& limits, double chord_mm,
                                      double slope_deg);
 
+/// What of the limits keeps a design from more, in one sentence with the keys and figures: those within a
+/// twentieth of what is allowed (a zone: within 0.2 mm). Limits of the aperture are not among them, it is
+/// given. Empty if none binds.
+std::string binding_limits(const std::vector<LimitCheck>& checks);
+
 }  // namespace lucerna

@@ -249,5 +249,18 @@ TEST(LightLimits, EfficiencyBeyondTheReflectanceIsRefused) {
   LightLimits(limits, Reflectance(0.8)).check(shape, light);
 }
 
+TEST(LimitCheck, NamesTheLimitsThatBind) {
+  const std::string said = binding_limits({{"max_diameter_mm", 80.0, 80.0, true},
+                                           {"max_height_mm", 15.0, 14.99, true},
+                                           {"max_slope_deg", 60.0, 40.0, true},
+                                           {"min_efficiency", 0.85, 0.852, true},
+                                           {"keep_out[0]", 1.0, 1.1, true},
+                                           {"glare 10 cd/klm", 100.0, 20.0, true}});
+  EXPECT_EQ(said,
+            "what limits this design is set: envelope (max_height_mm: 14.99 found, 15 allowed), efficiency "
+            "(min_efficiency: 0.852 found, 0.85 allowed), envelope (keep_out[0]: 1.1 found, 1 allowed)");
+  EXPECT_EQ(binding_limits({{"max_height_mm", 15.0, 12.0, true}}), "");
+}
+
 }  // namespace
 }  // namespace lucerna

@@ -9,6 +9,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
+#include "lucerna/design/profile_search.h"
 #include "lucerna/design/starts.h"
 
 namespace lucerna {
@@ -29,8 +30,38 @@ const std::array<Optimizer, 6>& known() {
 constexpr std::uint64_t kSearchRays = std::uint64_t{1} << 15;
 /// Half width of the box, over the mirror's radius.
 constexpr double kReach = 0.06;
+/// Profiles that are compared at the gate before the best of them goes on.
+constexpr std::size_t kProfilesCompared = 3;
 
 struct Stopped {};
+
+/// Puts what a search among profiles finds before the other starts. False if `watch` ended it.
+bool add_profiles(FitProblem& problem, const DesignShape& shape, std::uint64_t rays,
+                  std::vector<double>& costs, const SearchWatch& watch, Progress& progress) {
+  FitRecord record;
+  record.stage = -1;
+  bool whole = true;
+  const auto after_round = [&](const DesignShape& best, double cost, int evaluations) {
+    progress.update("search", static_cast<std::uint64_t>(evaluations), kProfileEvaluations);
+    const auto paid = static_cast<std::size_t>(evaluations);
+    const bool fresh = paid > costs.size();
+    costs.resize(std::max(paid, costs.size()), cost);
+    record.error = std::sqrt(cost);
+    record.evaluations = evaluations;
+    ++record.step;
+    return !fresh || watch(record, best);
+  };
+  std::vector<FitStart> found = profile_search(problem, shape, rays, after_round, whole);
+  // The point source's solutions stay in reserve, should the search be misled.
+  constexpr std::size_t kMost = 8;
+  if (found.size() > kMost) found.erase(found.begin() + kMost, found.end());
+  problem.compared = kProfilesCompared;
+  found.insert(found.end(), problem.starts.begin(), problem.starts.end());
+  std::stable_sort(found.begin(), found.end(),
+                   [](const FitStart& a, const FitStart& b) { return a.cost < b.cost; });
+  problem.starts = std::move(found);
+  return whole;
+}
 
 }  // namespace
 
@@ -64,7 +95,10 @@ bool prepare_starts(FitProblem& problem, const DesignShape& shape, const std::ve
   problem.starts.clear();
   if (!optimizer.zero_etendue) return true;
   problem.starts = fit_starts(problem, shape, progress);
-  if (!optimizer.global) return true;
+  if (!optimizer.global) {
+    return !can_search_profiles(problem, shape) ||
+           add_profiles(problem, shape, stages.back().rays, costs, watch, progress);
+  }
 
   const SearchSpace space = search_space(problem.starts[0].shape, stages);
   const std::uint64_t rays = std::min(kSearchRays, stages.back().rays);
@@ -112,7 +146,7 @@ bool prepare_starts(FitProblem& problem, const DesignShape& shape, const std::ve
     whole = false;
   }
   const DesignShape found = space.shape.with(best);
-  problem.starts.insert(problem.starts.begin(), {found, false, record.error * record.error});
+  problem.starts.insert(problem.starts.begin(), {found, FitEntry::own_knots, record.error * record.error});
   return whole;
 }
 

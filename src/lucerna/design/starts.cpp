@@ -82,13 +82,21 @@ std::vector<DirectedFlux> wanted_light(const FitProblem& problem, const DesignSh
   return light;
 }
 
+Evaluation evaluate_start(const FitProblem& problem, const DesignShape& shape, const TentBins& bins,
+                          std::uint64_t rays) {
+  return evaluate(shape, problem.reflectance, *problem.rays, bins, plain_options(problem, rays));
+}
+
 double fit_cost(const FitProblem& problem, const DesignShape& shape, const TentBins& bins,
                 const Eigen::VectorXd& target, std::uint64_t rays) {
-  const Evaluation e =
-      evaluate(shape, problem.reflectance, *problem.rays, bins, plain_options(problem, rays));
+  return fit_cost(problem, shape, evaluate_start(problem, shape, bins, rays), bins, target);
+}
+
+double fit_cost(const FitProblem& problem, const DesignShape& shape, const Evaluation& e,
+                const TentBins& bins, const Eigen::VectorXd& target) {
   const double error = bin_error(e, target, bins, problem.mode).relative_rms;
   double cost = error * error;
-  if (problem.limits) cost += problem.limits(shape, rays, nullptr);
+  if (problem.limits) cost += problem.limits(shape, e.rays, nullptr);
   const double missing = 1.0 - e.flux.sum() / problem.flux_reference;
   return cost + problem.flux_weight * missing * missing;
 }
@@ -98,9 +106,9 @@ std::vector<FitStart> fit_starts(const FitProblem& problem, const DesignShape& s
   progress.update("starts", 0, 0);
   const PointSource source = point_source(*problem.rays, kStartRays);
   const double blur = blur_rad(*problem.rays, source, shape);
-  std::vector<FitStart> starts{{shape, true, 0.0}};
+  std::vector<FitStart> starts{{shape}};
   for (const DesignShape& s : zero_etendue_shapes(shape, source, wanted_light(problem, shape), blur)) {
-    starts.push_back({s, false, 0.0});
+    starts.push_back({s, FitEntry::own_knots});
   }
   const TentBins bins = rebinned(problem.bins, 1.0, problem.bins.count() / 3);
   const Eigen::VectorXd target = problem.target(bins);

@@ -16,6 +16,15 @@ Direction bin_direction(const TentBins& bins, std::size_t i, const Vec3& from_mm
 /// plane, as seen from the mirror. Traces 65 k rays.
 std::vector<DirectedFlux> wanted_light(const FitProblem& problem, const DesignShape& shape);
 
+/// A trace of a shape without derivatives, of the first `rays` of the problem's rays, which must be there.
+/// Thread safe.
+Evaluation evaluate_start(const FitProblem& problem, const DesignShape& shape, const TentBins& bins,
+                          std::uint64_t rays);
+
+/// Cost of a shape that was traced so.
+double fit_cost(const FitProblem& problem, const DesignShape& shape, const Evaluation& e,
+                const TentBins& bins, const Eigen::VectorXd& target);
+
 /// Cost of a shape in bins: relative RMS^2 and what limits and lost light add, as `Fit` counts it. Traces the
 /// first `rays` of the problem's rays, which must be there. Thread safe.
 double fit_cost(const FitProblem& problem, const DesignShape& shape, const TentBins& bins,

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "lucerna/design/fit.h"
+
+namespace lucerna {
+
+/// Whether `profile_search` can look: a mirror of revolution, a target in rings about its axis, and few
+/// enough parameters for chance to find its way.
+bool can_search_profiles(const FitProblem& problem, const DesignShape& shape);
+
+/// Called after each round with the best so far, its cost, and evaluations so far; false ends the search.
+using ProfileWatch = std::function<bool(const DesignShape& best, double cost, int evaluations)>;
+
+/// Evaluations of a whole search.
+inline constexpr int kProfileEvaluations = 114;
+
+/// Basins of a mirror of revolution, the cheapest first: a thousand shapes about the given one are fitted on
+/// a table of what its zones throw (zone_table.h), the best hop on from where they ended, and those ahead are
+/// traced. What the trace shows beside the table (second reflections), light and derivatives, is added to the
+/// table near there, and the hops go on: space mapping (Bandler et al. 2004), six rounds of fewer shapes and
+/// more rays (at most `rays`). Limits count where shapes are traced. Deterministic: the same for any number
+/// of threads. Costs about eight seconds of processor time with 2^20 rays. Ends early, with `whole` false,
+/// where `watch` says so.
+std::vector<FitStart> profile_search(const FitProblem& problem, const DesignShape& shape, std::uint64_t rays,
+                                     const ProfileWatch& watch, bool& whole);
+
+}  // namespace lucerna

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/profile_search.h"
+
+#include <gtest/gtest.h>
+
+#include "lucerna/core/parallel.h"
+#include "lucerna/core/random.h"
+#include "lucerna/design/zone_table.h"
+#include "lucerna/source/emitter.h"
+
+namespace lucerna {
+namespace {
+
+constexpr std::uint64_t kRays = std::uint64_t{1} << 15;
+
+/// A Lambertian cylinder in a mirror of revolution, 100 mm wide; light that passes the mirror left out.
+struct Lamp {
+  Lamp()
+      : rays({{make_emitter(emitter()), Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 15}), {}}}, Frame(),
+             3) {
+    rays.grow(kRays);
+  }
+  static EmitterOptions emitter() {
+    EmitterOptions options;
+    options.kind = EmitterKind::cylinder;
+    return options;
+  }
+  static DesignShape shaken(double size_mm, std::uint64_t seed) {
+    const DesignShape plain = DesignShape::revolution(15, Aperture::circle(100), 6);
+    Eigen::VectorXd p = plain.parameters();
+    Rng rng(seed, 0);
+    for (double& x : p) x = size_mm * (2.0 * rng.uniform() - 1.0);
+    return plain.with(p);
+  }
+  Evaluation traced(const DesignShape& shape, bool derivatives = false) const {
+    EvaluationOptions options;
+    options.rays = kRays;
+    options.direct_light = false;
+    options.derivatives = derivatives;
+    return evaluate(shape, mirror, rays, bins, options);
+  }
+
+  DesignRays rays;
+  Reflectance mirror{0.9};
+  TentBins bins = TentBins::rings(Frame(), 0.35, 48);
+};
+
+ZoneTable table_of(const Lamp& lamp) {
+  return {Lamp::shaken(0.0, 1), lamp.mirror, lamp.rays, kRays, lamp.bins, 4.0, Eigen::VectorXd::Zero(48)};
+}
+
+TEST(ZoneTable, ThrowsTheLightOfTheTraceButForSecondReflections) {
+  const Lamp lamp;
+  const ZoneTable table = table_of(lamp);
+  const Evaluation plain = lamp.traced(Lamp::shaken(0.0, 1));
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const DesignShape shape = Lamp::shaken(1.0, seed);
+    const Evaluation truth = lamp.traced(shape);
+    const auto off = [&](const Evaluation& e) {
+      return bin_error(e, truth.flux, lamp.bins, TargetMode::absolute).relative_rms;
+    };
+    EXPECT_LT(off(table.evaluate(shape)), 0.05) << seed;
+    EXPECT_GT(off(plain), 0.12) << seed;  // what shaking by 1 mm changes
+  }
+}
+
+TEST(ZoneTable, DerivativesAreThoseOfItsOwnLight) {
+  const Lamp lamp;
+  const ZoneTable table = table_of(lamp);
+  const DesignShape shape = Lamp::shaken(0.3, 5);
+  const Evaluation e = table.evaluate(shape);
+  constexpr double kStep_mm = 0.02;
+  for (Eigen::Index i = 0; i < shape.parameters().size(); ++i) {
+    const Eigen::VectorXd along = kStep_mm * Eigen::VectorXd::Unit(shape.parameters().size(), i);
+    const Eigen::VectorXd difference = (table.evaluate(shape.with(shape.parameters() + along)).flux -
+                                        table.evaluate(shape.with(shape.parameters() - along)).flux) /
+                                       (2.0 * kStep_mm);
+    // The table is linear between its entries: differences over several entries are a mean of slopes.
+    EXPECT_LT((difference - e.jacobian.col(i)).norm(), 0.25 * difference.norm()) << i;
+  }
+}
+
+TEST(ProfileSearch, FindsAHiddenMirrorsLightForAnyNumberOfThreads) {
+  Lamp lamp;
+  const DesignShape plain = Lamp::shaken(0.0, 1);
+  const Evaluation truth = lamp.traced(Lamp::shaken(1.0, 11));
+  FitProblem problem{&lamp.rays, lamp.mirror, {}, lamp.bins, TargetMode::absolute, false};
+  problem.target = [&](const TentBins&) { return truth.flux; };
+  ASSERT_TRUE(can_search_profiles(problem, plain));
+  const double start =
+      bin_error(lamp.traced(plain), truth.flux, lamp.bins, TargetMode::absolute).relative_rms;
+  EXPECT_GT(start, 0.15);
+  const auto searched = [&](int rounds, bool& whole) {
+    int round = 0;
+    return profile_search(
+        problem, plain, kRays, [&](const DesignShape&, double, int) { return ++round < rounds; }, whole);
+  };
+  bool whole = false;
+  std::vector<FitStart> two, one;
+  two = searched(2, whole);
+  EXPECT_FALSE(whole);  // ended by its caller
+  EXPECT_LT(std::sqrt(two.front().cost), 0.03);
+  {
+    const ThreadLimit serial(1);
+    one = searched(2, whole);
+  }
+  ASSERT_EQ(one.size(), two.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].cost, two[i].cost);
+    EXPECT_EQ(one[i].shape.parameters(), two[i].shape.parameters());
+  }
+}
+
+TEST(ProfileSearch, IsForMirrorsAndTargetsOfRevolution) {
+  Lamp lamp;
+  FitProblem problem{&lamp.rays, lamp.mirror, {}, lamp.bins, TargetMode::absolute, false};
+  EXPECT_FALSE(can_search_profiles(problem, DesignShape::bspline(15, Aperture::circle(100), 4, 4)));
+  problem.bins = TentBins::square(Frame(), 0.3, 12);
+  EXPECT_FALSE(can_search_profiles(problem, Lamp::shaken(0.0, 1)));
+}
+
+}  // namespace
+}  // namespace lucerna
