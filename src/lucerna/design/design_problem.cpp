@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/design/design_rays.h"
 #include "lucerna/design/limits.h"
 #include "lucerna/design/window.h"
 #include "lucerna/reflector/trough_surface.h"
@@ -90,6 +92,30 @@ int doublings(const DesignShape& shape, int bins, bool told) {
   return n;
 }
 
+/// Least height of the rays' beginnings over a shape; of those that `given` has in front of itself.
+double clearance_mm(const DesignShape& shape, const DesignShape& given, const DesignRays& rays) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint64_t b = 0; b < rays.size() / kBlockRays; ++b) {
+    const DesignRays::Block& block = rays.block(b);
+    for (std::size_t i = 0; i < kBlockRays; ++i) {
+      const auto x = static_cast<double>(block.x_mm[i]), y = static_cast<double>(block.y_mm[i]);
+      const auto z = static_cast<double>(block.z_mm[i]);
+      if (!given.aperture().contains(x, y) || z < given.at(x, y).z_mm) continue;
+      least = std::min(least, z - shape.at(x, y).z_mm);
+    }
+  }
+  return least;
+}
+
+/// Limits on the form say nothing of where the mirror is: a flatter one must not rise past the source. `held`
+/// is moved along the axis until it is as far from the source as `given` is.
+DesignShape in_front_of_source(const DesignShape& given, const DesignShape& held, DesignRays rays) {
+  rays.grow(std::uint64_t{1} << 14);
+  const double rise = clearance_mm(given, given, rays) - clearance_mm(held, given, rays);
+  if (!(rise > 0.0)) return held;
+  return held.with((held.parameters().array() - rise).matrix());
+}
+
 toml::array point(const Vec3& p) { return toml::array{p.x, p.y, p.z}; }
 
 /// What every design watches, also when its project is read again: a far field, and a plane target's plane.
@@ -170,7 +196,12 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   std::optional<ToleranceRanges> tolerances;
   if (auto table = design.table("tolerances")) tolerances = read_tolerances(std::move(*table));
   design.finish();
-  start = ShapeLimits(limits, start).nearest(start);
+  const DesignShape held = ShapeLimits(limits, start).nearest(start);
+  if (held.parameters() != start.parameters()) {
+    const DesignRays rays(project.scene.sources, placed.world_from_reflector.inverse(), 1);
+    start = in_front_of_source(start, held, rays);
+    start = ShapeLimits(limits, start).nearest(start);
+  }
   const int growth = doublings(start, WindowOptions().count, !intervals.empty());
   add_detectors(project, target);
   return {std::move(project),

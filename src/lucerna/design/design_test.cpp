@@ -208,6 +208,15 @@ TEST(Design, HoldsTheHeightLimit) {
   EXPECT_GT(design(free, small()).shape.height_mm(), 0.9 * height);
 }
 
+TEST(Design, AFlatterMirrorDoesNotRisePastTheSource) {
+  const TempDir folder;
+  write_target(folder.path());
+  // The given one is 28 mm high and the source 8 mm over its vertex: the nearest of 3 mm would be behind it.
+  const DesignProblem p = problem(folder.path(), "intervals = 6\n[design.limits]\nmax_height_mm = 3\n");
+  EXPECT_LE(p.start.height_mm(), 3.001);
+  for (const double r : {0.0, 0.5, 1.0}) EXPECT_LT(p.start.at(r, 0.0).z_mm, 0.5) << r;
+}
+
 TEST(Design, ShapesAFreeFormMirrorAndKeepsItsSymmetry) {
   const TempDir folder;
   write_target(folder.path());

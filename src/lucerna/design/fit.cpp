@@ -50,6 +50,7 @@ Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignSh
   if (problem_.starts.empty()) problem_.starts = {{shape}};
   state_.search_costs = std::move(search_costs);
   state_.evaluations = static_cast<int>(state_.search_costs.size());
+  state_.total_rays = problem_.search_rays;
   begin_with(problem_.starts[0].shape, stage_of(problem_.starts[0]));
 }
 

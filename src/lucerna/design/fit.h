@@ -42,6 +42,8 @@ struct FitProblem {
   std::vector<FitStart> starts;
   /// So many of them are compared at the gate before the best goes on; further ones are the first attempts.
   std::size_t compared = 5;
+  /// Rays that were traced to find them.
+  std::uint64_t search_rays = 0;
   /// While the result is above the noise the fit begins again, with `starts` and the best so far by turns,
   /// shaken; so many attempts in turn that bring nothing end it.
   int fruitless = 6;

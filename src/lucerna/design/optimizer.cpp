@@ -41,17 +41,20 @@ bool add_profiles(FitProblem& problem, const DesignShape& shape, std::uint64_t r
   FitRecord record;
   record.stage = -1;
   bool whole = true;
-  const auto after_round = [&](const DesignShape& best, double cost, int evaluations) {
-    progress.update("search", static_cast<std::uint64_t>(evaluations), kProfileEvaluations);
-    const auto paid = static_cast<std::size_t>(evaluations);
+  const auto on_progress = [&](const ProfileProgress& now) {
+    progress.update("search", static_cast<std::uint64_t>(now.evaluations), kProfileEvaluations);
+    const auto paid = static_cast<std::size_t>(now.evaluations);
     const bool fresh = paid > costs.size();
-    costs.resize(std::max(paid, costs.size()), cost);
-    record.error = std::sqrt(cost);
-    record.evaluations = evaluations;
+    costs.resize(std::max(paid, costs.size()), now.cost);
+    record.error = std::sqrt(now.cost);
+    record.rays = now.rays;
+    record.total_rays = now.total_rays;
+    record.evaluations = now.evaluations;
     ++record.step;
-    return !fresh || watch(record, best);
+    return !fresh || watch(record, now.best);
   };
-  std::vector<FitStart> found = profile_search(problem, shape, rays, after_round, whole);
+  std::vector<FitStart> found = profile_search(problem, shape, rays, on_progress, whole);
+  problem.search_rays = record.total_rays;
   // The point source's solutions stay in reserve, should the search be misled.
   constexpr std::size_t kMost = 8;
   if (found.size() > kMost) found.erase(found.begin() + kMost, found.end());
@@ -145,6 +148,7 @@ bool prepare_starts(FitProblem& problem, const DesignShape& shape, const std::ve
   } catch (const Stopped&) {
     whole = false;
   }
+  problem.search_rays = record.total_rays;
   const DesignShape found = space.shape.with(best);
   problem.starts.insert(problem.starts.begin(), {found, FitEntry::own_knots, record.error * record.error});
   return whole;

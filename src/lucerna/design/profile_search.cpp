@@ -23,7 +23,8 @@ constexpr double kHalfHeight = 0.08;
 constexpr std::array<double, 3> kShakes{0.01, 0.02, 0.04};
 constexpr std::array<double, 2> kHops{0.004, 0.01};
 constexpr double kApart = 0.003;
-constexpr int kFirstPerParameter = 300, kFirstSteps = 12, kSecondPerParameter = 30, kSecondSteps = 60;
+constexpr int kFirstPerParameter = 300, kMostFirst = 3000, kFirstSteps = 12, kSecondPerParameter = 30,
+              kSecondSteps = 60;
 constexpr int kHopsPerRound = 3, kHoppers = 48, kHoppersPerParameter = 5, kHopsEach = 8, kHopSteps = 30,
               kKept = 96;
 /// How many shapes a round traces, and with how many rays: the fewer are left the better they are known.
@@ -33,6 +34,8 @@ struct Round {
 };
 constexpr std::array<Round, 6> kRounds{
     {{40, 1 << 15}, {28, 1 << 16}, {20, 1 << 17}, {14, 1 << 18}, {8, 1 << 19}, {4, 1 << 20}}};
+/// Shapes that are traced between two looks at the clock.
+constexpr std::size_t kBatch = 4;
 /// Beyond so far (over the radius) what a trace showed beside the table counts by half.
 constexpr double kTrust = 0.02;
 /// Longest change of a height in one step, over the radius.
@@ -67,7 +70,8 @@ class Search {
   std::vector<Candidate> first() {
     const DesignShape few = shape_.refined(std::max(2, shape_.intervals_x() / 2), shape_.intervals_y());
     std::vector<Candidate> all;
-    const int parameters = static_cast<int>(shape_.parameter_count());
+    const int parameters =
+        std::min(static_cast<int>(shape_.parameter_count()), kMostFirst / kFirstPerParameter);
     for (int i = 0; i < kFirstPerParameter * parameters; ++i) {
       const double size = kShakes[static_cast<std::size_t>(i) % kShakes.size()];
       // Every other shape is smooth: many knots by chance alone are only waves.
@@ -98,16 +102,18 @@ class Search {
     return from;
   }
 
-  /// Traces the first candidates; what the round before the last found is forgotten, as fewer rays tell less.
-  void trace(const std::vector<Candidate>& candidates, int round) {
+  /// Traces some candidates, from `first` on; what the round before the last found is forgotten, as fewer
+  /// rays tell less. Returns their number.
+  std::size_t trace(const std::vector<Candidate>& candidates, int round, std::size_t first) {
     const auto& [shapes, rays] = kRounds[static_cast<std::size_t>(round)];
-    const std::size_t n = std::min(candidates.size(), static_cast<std::size_t>(shapes));
+    const std::size_t last = std::min({candidates.size(), static_cast<std::size_t>(shapes), first + kBatch});
+    const std::size_t n = last - first;
     EvaluationOptions options;
     options.rays = std::min(rays_, rays);
     options.direct_light = problem_.direct_light;
     problem_.rays->grow(options.rays);
     std::vector<Traced> now;
-    for (std::size_t i = 0; i < n; ++i) now.push_back({candidates[i], {}, {}, round});
+    for (std::size_t i = 0; i < n; ++i) now.push_back({candidates[first + i], {}, {}, round});
     parallel_blocks(n, 1, [&](std::size_t i, std::size_t) {
       Candidate& c = now[i].candidate;
       const Evaluation e = evaluate(c.shape, problem_.reflectance, *problem_.rays, problem_.bins, options);
@@ -117,17 +123,22 @@ class Search {
       now[i].beside_table = e.flux - table.flux;
       now[i].slope_beside_table = e.jacobian - table.jacobian;
     });
-    std::stable_sort(now.begin(), now.end(),
-                     [](const Traced& a, const Traced& b) { return cheaper(a.candidate, b.candidate); });
     evaluations_ += static_cast<int>(n);
-    traced_.insert(traced_.begin(), now.begin(), now.end());
+    total_rays_ += n * options.rays;
+    traced_.insert(traced_.end(), now.begin(), now.end());
+    std::stable_sort(traced_.begin(), traced_.end(), [](const Traced& a, const Traced& b) {
+      return a.round != b.round ? a.round > b.round : cheaper(a.candidate, b.candidate);
+    });
     traced_.erase(
         std::remove_if(traced_.begin(), traced_.end(), [&](const Traced& t) { return t.round + 1 < round; }),
         traced_.end());
+    return n;
   }
   /// Of the last two rounds, the last first, each by cost.
   const std::vector<Traced>& traced() const { return traced_; }
-  int evaluations() const { return evaluations_; }
+  ProfileProgress progress(std::uint64_t rays) const {
+    return {traced_.front().candidate.shape, traced_.front().candidate.cost, evaluations_, rays, total_rays_};
+  }
 
  private:
   /// Light that passes the mirror: the same for all shapes, but for the little that the rim moves.
@@ -232,12 +243,13 @@ class Search {
   std::vector<Traced> traced_;
   std::uint64_t shaken_ = 0;
   int evaluations_ = 0;
+  std::uint64_t total_rays_ = 0;
 };
 
 }  // namespace
 
 bool can_search_profiles(const FitProblem& problem, const DesignShape& shape) {
-  return shape.is_revolution() && problem.bins.is_rings() &&
+  return !problem.limits && shape.is_revolution() && problem.bins.is_rings() &&
          std::abs(problem.bins.axes().ez().z) > 0.999999 && shape.parameter_count() <= kMostParameters;
 }
 
@@ -252,9 +264,12 @@ std::vector<FitStart> profile_search(const FitProblem& problem, const DesignShap
     const auto r = static_cast<std::size_t>(round);
     if (round > 1 && std::min(rays, kRounds[r - 2].rays) == std::min(rays, kRounds[r].rays)) break;
     candidates = search.hop(std::move(candidates));
-    search.trace(candidates, round);
-    const Candidate& best = search.traced().front().candidate;
-    whole = watch(best.shape, best.cost, search.evaluations());
+    for (std::size_t at = 0; whole;) {
+      const std::size_t n = search.trace(candidates, round, at);
+      if (n == 0) break;
+      at += n;
+      whole = watch(search.progress(std::min(rays, kRounds[r].rays)));
+    }
   }
   std::vector<FitStart> starts;
   for (const Traced& t : search.traced()) {

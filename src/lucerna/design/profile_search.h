@@ -8,12 +8,20 @@
 
 namespace lucerna {
 
-/// Whether `profile_search` can look: a mirror of revolution, a target in rings about its axis, and few
-/// enough parameters for chance to find its way.
+/// Whether `profile_search` can look: a mirror of revolution, a target in rings about its axis, few enough
+/// parameters for chance to find its way, and no limits, which the table does not know.
 bool can_search_profiles(const FitProblem& problem, const DesignShape& shape);
 
-/// Called after each round with the best so far, its cost, and evaluations so far; false ends the search.
-using ProfileWatch = std::function<bool(const DesignShape& best, double cost, int evaluations)>;
+/// Where a search is: the best of the present round and its cost, evaluations so far, rays of the last and of
+/// all.
+struct ProfileProgress {
+  DesignShape best;
+  double cost = 0.0;
+  int evaluations = 0;
+  std::uint64_t rays = 0, total_rays = 0;
+};
+/// Called after every few evaluations; false ends the search.
+using ProfileWatch = std::function<bool(const ProfileProgress&)>;
 
 /// Evaluations of a whole search.
 inline constexpr int kProfileEvaluations = 114;
@@ -22,7 +30,7 @@ inline constexpr int kProfileEvaluations = 114;
 /// a table of what its zones throw (zone_table.h), the best hop on from where they ended, and those ahead are
 /// traced. What the trace shows beside the table (second reflections), light and derivatives, is added to the
 /// table near there, and the hops go on: space mapping (Bandler et al. 2004), six rounds of fewer shapes and
-/// more rays (at most `rays`). Limits count where shapes are traced. Deterministic: the same for any number
+/// more rays (at most `rays`). Deterministic: the same for any number
 /// of threads. Costs about eight seconds of processor time with 2^20 rays. Ends early, with `whole` false,
 /// where `watch` says so.
 std::vector<FitStart> profile_search(const FitProblem& problem, const DesignShape& shape, std::uint64_t rays,

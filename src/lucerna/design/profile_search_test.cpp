@@ -90,19 +90,19 @@ TEST(ProfileSearch, FindsAHiddenMirrorsLightForAnyNumberOfThreads) {
   const double start =
       bin_error(lamp.traced(plain), truth.flux, lamp.bins, TargetMode::absolute).relative_rms;
   EXPECT_GT(start, 0.15);
-  const auto searched = [&](int rounds, bool& whole) {
-    int round = 0;
+  const auto searched = [&](int batches, bool& whole) {
+    int batch = 0;
     return profile_search(
-        problem, plain, kRays, [&](const DesignShape&, double, int) { return ++round < rounds; }, whole);
+        problem, plain, kRays, [&](const ProfileProgress&) { return ++batch < batches; }, whole);
   };
   bool whole = false;
   std::vector<FitStart> two, one;
-  two = searched(2, whole);
+  two = searched(15, whole);
   EXPECT_FALSE(whole);  // ended by its caller
   EXPECT_LT(std::sqrt(two.front().cost), 0.03);
   {
     const ThreadLimit serial(1);
-    one = searched(2, whole);
+    one = searched(15, whole);
   }
   ASSERT_EQ(one.size(), two.size());
   for (std::size_t i = 0; i < one.size(); ++i) {
@@ -115,6 +115,10 @@ TEST(ProfileSearch, IsForMirrorsAndTargetsOfRevolution) {
   Lamp lamp;
   FitProblem problem{&lamp.rays, lamp.mirror, {}, lamp.bins, TargetMode::absolute, false};
   EXPECT_FALSE(can_search_profiles(problem, DesignShape::bspline(15, Aperture::circle(100), 4, 4)));
+  problem.limits = [](const DesignShape&, std::uint64_t, NormalEquations*) { return 0.0; };
+  EXPECT_FALSE(can_search_profiles(problem, Lamp::shaken(0.0, 1)));
+  problem.limits = {};
+  EXPECT_TRUE(can_search_profiles(problem, Lamp::shaken(0.0, 1)));
   problem.bins = TentBins::square(Frame(), 0.3, 12);
   EXPECT_FALSE(can_search_profiles(problem, Lamp::shaken(0.0, 1)));
 }
