@@ -213,7 +213,7 @@ lucerna.model = (() => {
   return { data, luminance, image, directionCode };
 })();
 
-(() => {
+lucerna.afterLoad(() => {
   const figure = document.getElementById('luminance'), { model } = lucerna;
   if (!figure || !model) return;
   const part = name => figure.querySelector(name), canvas = part('canvas'), context = canvas.getContext('2d');
@@ -339,4 +339,4 @@ lucerna.model = (() => {
   });
   document.addEventListener('lucerna-theme', paint);
   draw();
-})();
+});
