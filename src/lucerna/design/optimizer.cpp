@@ -30,6 +30,8 @@ const std::array<Optimizer, 6>& known() {
 constexpr std::uint64_t kSearchRays = std::uint64_t{1} << 15;
 /// Half width of the box, over the mirror's radius.
 constexpr double kReach = 0.06;
+/// Error of a start (with what light it loses) from which profiles are not searched.
+constexpr double kGoodStart = 0.05;
 /// Profiles that are compared at the gate before the best of them goes on.
 constexpr std::size_t kProfilesCompared = 3;
 
@@ -99,7 +101,8 @@ bool prepare_starts(FitProblem& problem, const DesignShape& shape, const std::ve
   if (!optimizer.zero_etendue) return true;
   problem.starts = fit_starts(problem, shape, progress);
   if (!optimizer.global) {
-    return !can_search_profiles(problem, shape) ||
+    // A start as good as this is in its basin already.
+    return !can_search_profiles(problem, shape) || problem.starts[0].cost < kGoodStart * kGoodStart ||
            add_profiles(problem, shape, stages.back().rays, costs, watch, progress);
   }
 
