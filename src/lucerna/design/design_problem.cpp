@@ -55,7 +55,7 @@ DesignShape start_shape(const Reflector& reflector, const std::vector<int>& inte
   const int ny = intervals.empty() ? 8 : (intervals.size() > 1 ? intervals[1] : nx);
   const BsplineShape& shape = s->shape();
   const DesignShape plain = DesignShape::bspline(shape.focal_mm(), reflector.aperture, nx, ny, symmetry);
-  return plain.through([&](double x, double y) { return smooth_point(shape, x, y).z_mm; });
+  return plain.through([&](double x, double y) { return smooth_point(shape.view(), x, y).z_mm; });
 }
 
 std::vector<int> read_intervals(TomlReader& reader) {

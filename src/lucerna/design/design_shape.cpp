@@ -207,7 +207,7 @@ DesignShape DesignShape::with(const Eigen::VectorXd& parameters) const {
 DesignShape DesignShape::refined(int intervals_x, int intervals_y) const {
   return std::visit(
       [&](const auto& s) {
-        const Height offset = [&](double x, double y) { return s.offset(x, y).s; };
+        const Height offset = [&](double x, double y) { return s.view().offset(x, y).s; };
         const DesignShape fine(interpolate(s, intervals_x, intervals_y, offset), aperture_, symmetry_);
         return fine.with(fine.parameters());  // tied coefficients equal to the last bit
       },
@@ -266,7 +266,7 @@ std::shared_ptr<const HeightSurface> DesignShape::surface() const {
 }
 
 SurfacePoint DesignShape::at(double x_mm, double y_mm) const {
-  return std::visit([&](const auto& s) { return smooth_point(s, x_mm, y_mm); }, shape_);
+  return std::visit([&](const auto& s) { return smooth_point(s.view(), x_mm, y_mm); }, shape_);
 }
 
 }  // namespace lucerna

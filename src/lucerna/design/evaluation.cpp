@@ -7,7 +7,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/design/smooth_path.h"
+#include "lucerna/design/evaluation_kernel.h"
 
 namespace lucerna {
 
@@ -17,130 +17,35 @@ namespace {
 struct TaskSums {
   std::vector<double> flux;
   double weight = 0.0, reflected = 0.0, direct = 0.0, absorbed = 0.0, back = 0.0, lost = 0.0;
+  /// Bins x coefficients, row by row; null without derivatives.
+  double* jacobian = nullptr;
+  std::size_t coefficients = 0;
+
+  void ended(PathEnd end, double kept, double taken) {
+    absorbed += taken;
+    (end == PathEnd::direct      ? direct
+     : end == PathEnd::reflected ? reflected
+     : end == PathEnd::back      ? back
+                                 : lost) += kept;
+  }
+  void add(int bin, double x) { flux[static_cast<std::size_t>(bin)] += x; }
+  struct Row {
+    double* at;
+    void add(int coefficient, double x) const { at[coefficient] += x; }
+  };
+  Row row(int bin) const { return {jacobian + static_cast<std::size_t>(bin) * coefficients}; }
 };
 
-/// Traces blocks of rays into sums and, for the coefficients of the family, into a Jacobian.
-template <class Shape>
-class BlockTracer {
- public:
-  BlockTracer(const Shape& shape, const Aperture& aperture, const Reflectance& reflectance,
-              const TentBins& bins, const EvaluationOptions& options)
-      : shape_(shape),
-        aperture_(aperture),
-        tracer_(shape, aperture),
-        reflectance_(reflectance),
-        bins_(bins),
-        options_(options) {}
-
-  /// `jacobian` (bins x coefficients, row by row) may be null.
-  void trace(const DesignRays::Block& block, TaskSums& sums, double* jacobian) const {
-    Path<Shape> path;
-    for (std::size_t i = 0; i < kBlockRays; ++i) {
-      const double weight = block.weight[i];
-      sums.weight += weight;
-      tracer_.trace({block.x_mm[i], block.y_mm[i], block.z_mm[i]}, {block.kx[i], block.ky[i], block.kz[i]},
-                    path);
-      const double kept = weight * reflected_share(path);
-      sums.absorbed += weight - kept;
-      switch (path.end) {
-        case PathEnd::direct:
-          sums.direct += kept;
-          if (!options_.direct_light) continue;
-          break;
-        case PathEnd::reflected:
-          sums.reflected += kept;
-          break;
-        case PathEnd::back:
-          sums.back += kept;
-          continue;
-        case PathEnd::lost:
-          sums.lost += kept;
-          continue;
-      }
-      deposit(path, kept, sums, jacobian);
-    }
+template <class View>
+void trace_block(const EvaluationView<View>& view, const DesignRays::Block& block, TaskSums& sums) {
+  Path<View> path;
+  for (std::size_t i = 0; i < kBlockRays; ++i) {
+    const double weight = block.weight[i];
+    sums.weight += weight;
+    view.trace({block.x_mm[i], block.y_mm[i], block.z_mm[i]}, {block.kx[i], block.ky[i], block.kz[i]}, weight,
+               path, sums);
   }
-
- private:
-  double reflected_share(const Path<Shape>& path) const {
-    double share = 1.0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(path.hits); ++i) {
-      const auto& hit = path.hit[i];
-      share *= reflectance_.at(std::min(1.0, -hit.m / length(hit.g)));
-    }
-    return share;
-  }
-
-  void deposit(const Path<Shape>& path, double energy, TaskSums& sums, double* jacobian) const {
-    TentBins::Deposit d;
-    bins_.deposit(path.origin, path.direction, d);
-    if (d.n == 0) return;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(d.n); ++k) {
-      sums.flux[static_cast<std::size_t>(d.bin[k])] += energy * d.weight[k];
-    }
-    if (jacobian == nullptr || path.hits == 0) return;
-    std::array<HitAdjoint, kMostPathHits> by_u, by_v;
-    const TentBins::Gradient in_u = bins_.gradient_u(path.origin, path.direction);
-    path_adjoint(path, path.hits - 1, in_u.direction, in_u.origin, by_u.data());
-    if (!bins_.is_rings()) {
-      const TentBins::Gradient in_v = bins_.gradient_v(path.origin, path.direction);
-      path_adjoint(path, path.hits - 1, in_v.direction, in_v.origin, by_v.data());
-    }
-    const std::size_t n = shape_.coefficients().size();
-    for (std::size_t i = 0; i < static_cast<std::size_t>(path.hits); ++i) {
-      std::array<double, Shape::kSupport> u, v{};
-      const auto& local = path.hit[i].local;
-      shape_.gradient(local, by_u[i].alpha, by_u[i].beta, by_u[i].gamma, u.data());
-      if (!bins_.is_rings()) {
-        shape_.gradient(local, by_v[i].alpha, by_v[i].beta, by_v[i].gamma, v.data());
-      }
-      for (std::size_t k = 0; k < static_cast<std::size_t>(d.n); ++k) {
-        shape_.add(local, energy * d.du[k], u.data(), energy * d.dv[k], v.data(),
-                   jacobian + static_cast<std::size_t>(d.bin[k]) * n);
-      }
-    }
-    if (options_.rim_mm <= 0.0) return;
-    for (int i = 0; i < path.hits; ++i) rim_term(path, i, energy, d, jacobian);
-  }
-
-  /// Light that the rim gains or loses as a hit moves: a strip of `rim_mm` inside it stands for the rim.
-  void rim_term(const Path<Shape>& path, int last, double energy, const TentBins::Deposit& reflected,
-                double* jacobian) const {
-    const auto& hit = path.hit[static_cast<std::size_t>(last)];
-    const RimDistance rim = rim_distance(aperture_, hit.x, hit.y);
-    if (!(rim.inside_mm < options_.rim_mm)) return;
-    std::array<HitAdjoint, kMostPathHits> by_place;
-    path_adjoint(path, last, {}, rim.gradient, by_place.data());
-    TentBins::Deposit missed;
-    if (last > 0 || options_.direct_light) {
-      bins_.deposit({hit.x, hit.y, smooth_point(shape_, hit.x, hit.y).z_mm}, hit.d, missed);
-    }
-    const std::size_t n = shape_.coefficients().size();
-    const double density = energy / options_.rim_mm;
-    const std::array<double, Shape::kSupport> none{};
-    for (int i = 0; i <= last; ++i) {
-      const auto& local = path.hit[static_cast<std::size_t>(i)].local;
-      const HitAdjoint& by = by_place[static_cast<std::size_t>(i)];
-      std::array<double, Shape::kSupport> place;
-      shape_.gradient(local, by.alpha, by.beta, by.gamma, place.data());
-      const auto add = [&](const TentBins::Deposit& to, double sign) {
-        for (std::size_t k = 0; k < static_cast<std::size_t>(to.n); ++k) {
-          shape_.add(local, sign * density * to.weight[k], place.data(), 0.0, none.data(),
-                     jacobian + static_cast<std::size_t>(to.bin[k]) * n);
-        }
-      };
-      add(reflected, 1.0);
-      add(missed, -1.0);
-    }
-  }
-
-  const Shape& shape_;
-  const Aperture& aperture_;
-  SmoothTracer<Shape> tracer_;
-  const Reflectance& reflectance_;
-  const TentBins& bins_;
-  const EvaluationOptions& options_;
-};
+}
 
 /// Jacobians that are summed apart: by the number of rays alone, so that the sums never depend on threads.
 /// Each is as large as the result, so few rays get few.
@@ -196,24 +101,34 @@ Evaluation summarise(const std::vector<TaskSums>& sums, std::size_t bins) {
 }
 
 template <class Shape>
+auto evaluation_view(const Shape& shape, const Aperture& aperture, const Reflectance& reflectance,
+                     const TentBins& bins, const EvaluationOptions& options) {
+  const auto& table = reflectance.table();
+  return EvaluationView<decltype(shape.view())>{
+      shape.view(),         aperture,
+      table.data(),         static_cast<std::uint32_t>(table.size()),
+      bins.view(),          options.derivatives,
+      options.direct_light, options.rim_mm};
+}
+
+template <class Shape>
 Evaluation evaluate_family(const DesignShape& design, const Shape& shape, const Reflectance& reflectance,
                            const DesignRays& rays, const TentBins& bins, const EvaluationOptions& options) {
   const std::uint64_t per_task = options.rays / kBlockRays / kDesignTasks;
-  const BlockTracer<Shape> tracer(shape, design.aperture(), reflectance, bins, options);
+  const auto view = evaluation_view(shape, design.aperture(), reflectance, bins, options);
   const std::size_t groups = jacobian_groups(options.rays);
   std::vector<std::vector<double>> jacobians(options.derivatives ? groups : 0);
   std::vector<TaskSums> sums(kDesignTasks);
   parallel_blocks(options.derivatives ? groups : kDesignTasks, 1, [&](std::size_t group, std::size_t) {
     const std::size_t each = options.derivatives ? kDesignTasks / groups : 1;
-    double* jacobian = nullptr;
-    if (options.derivatives) {
-      jacobians[group].assign(bins.size() * shape.coefficients().size(), 0.0);
-      jacobian = jacobians[group].data();
-    }
+    const std::size_t coefficients = shape.coefficients().size();
+    if (options.derivatives) jacobians[group].assign(bins.size() * coefficients, 0.0);
     for (std::size_t r = group * each; r < (group + 1) * each; ++r) {
       sums[r].flux.assign(bins.size(), 0.0);
+      if (options.derivatives) sums[r].jacobian = jacobians[group].data();
+      sums[r].coefficients = coefficients;
       for (std::uint64_t b = 0; b < per_task; ++b) {
-        tracer.trace(rays.block(b * kDesignTasks + r), sums[r], jacobian);
+        trace_block(view, rays.block(b * kDesignTasks + r), sums[r]);
       }
     }
   });

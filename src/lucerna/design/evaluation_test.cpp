@@ -74,8 +74,8 @@ TEST(SmoothPath, FindsTheHitsOfTheReferenceTracer) {
     int differing = 0, hits = 0;
     std::visit(
         [&](const auto& s) {
-          using Shape = std::decay_t<decltype(s)>;
-          const SmoothTracer<Shape> tracer(s, c.shape.aperture());
+          using Shape = decltype(s.view());
+          const SmoothTracer<Shape> tracer(s.view(), c.shape.aperture());
           Path<Shape> path;
           for (std::size_t i = 0; i < 4096; ++i) {
             const DesignRays::Block& b = rays.block(i / kBlockRays);

@@ -63,12 +63,11 @@ class Row {
   void add(double x, double y, double value, double slope_x, double slope_y) {
     std::visit(
         [&](const auto& shape) {
-          using Shape = std::decay_t<decltype(shape)>;
-          const auto local = shape.local(x, y);
-          std::array<double, Shape::kSupport> d;
-          shape.gradient(local, value, slope_x, slope_y, d.data());
-          for (int k = 0; k < Shape::kSupport; ++k)
-            put(coefficient(shape, local, k), d[static_cast<std::size_t>(k)]);
+          const auto view = shape.view();
+          const auto local = view.local(x, y);
+          std::array<double, std::decay_t<decltype(view)>::kSupport> d;
+          view.gradient(local, value, slope_x, slope_y, d.data());
+          view.add(local, 1.0, d.data(), 0.0, d.data(), Coefficients{*this});
         },
         design_.family());
   }
@@ -92,15 +91,10 @@ class Row {
   }
 
  private:
-  /// The k-th coefficient that counts at a place: of a row, or of four rows.
-  template <class Shape>
-  static int coefficient([[maybe_unused]] const Shape& shape, const typename Shape::Local& local, int k) {
-    if constexpr (Shape::kSupport == 4) {
-      return local.first[0] + k;
-    } else {
-      return (local.first[1] + k / 4) * shape.row_x().coefficients() + local.first[0] + k % 4;
-    }
-  }
+  struct Coefficients {
+    Row& row;
+    void add(int coefficient, double value) const { row.put(coefficient, value); }
+  };
   void put(int coefficient, double value) {
     const int parameter = design_.parameter_of()[static_cast<std::size_t>(coefficient)];
     const auto found = std::find(index_.begin(), index_.end(), parameter);
@@ -125,7 +119,7 @@ struct Curvature {
 Curvature curvature_at(const DesignShape& design, double x, double y) {
   return std::visit(
       [&](const auto& shape) {
-        const auto l = shape.local(x, y);
+        const auto l = shape.view().local(x, y);
         const double w = std::sqrt(1.0 + l.hx * l.hx + l.hy * l.hy);
         const double e = 1.0 + l.hx * l.hx, f = l.hx * l.hy, g = 1.0 + l.hy * l.hy, det = e * g - f * f;
         const double a = l.hxx / w, b = l.hxy / w, c = l.hyy / w;

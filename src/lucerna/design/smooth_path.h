@@ -7,8 +7,9 @@
 #include <limits>
 
 #include "lucerna/core/direction.h"
+#include "lucerna/core/host_device.h"
 #include "lucerna/reflector/aperture.h"
-#include "lucerna/reflector/smooth_shape.h"
+#include "lucerna/reflector/smooth_view.h"
 
 namespace lucerna {
 
@@ -36,7 +37,8 @@ struct Path {
   Vec3 origin, direction;
 };
 
-/// Traces rays through one mirror z = r^2 / (4 f) + s(x, y) over an aperture, all in the mirror's frame.
+/// Traces rays through one mirror (Shape: a view of smooth_view.h) z = r^2 / (4 f) + s(x, y) over an
+/// aperture, all in the mirror's frame.
 ///
 /// Along a ray, f(t) = q(t) - s(x(t), y(t)) with q the quadratic of the base paraboloid. Where |s''| <= B
 /// along every direction, f(t + tau) >= f + f' tau - A tau^2 with A = c2 + B |d_xy|^2 / 2: the positive root
@@ -47,11 +49,11 @@ struct Path {
 template <class Shape>
 class SmoothTracer {
  public:
-  SmoothTracer(const Shape& shape, const Aperture& aperture)
-      : shape_(shape), aperture_(aperture), k_(0.25 / shape.focal_mm()) {}
+  LUCERNA_HD SmoothTracer(const Shape& shape, const Aperture& aperture)
+      : shape_(shape), aperture_(aperture), k_(0.25 / shape.focal_mm) {}
 
   /// Follows a ray to its end.
-  void trace(Vec3 o, Vec3 d, Path<Shape>& path) const {
+  LUCERNA_HD void trace(Vec3 o, Vec3 d, Path<Shape>& path) const {
     path.hits = 0;
     bool on_surface = false;
     double slope = 0.0;
@@ -91,7 +93,7 @@ class SmoothTracer {
   };
 
   /// Part of the ray over the aperture's outer outline.
-  void clip(const Vec3& o, const Vec3& d, double& t0, double& t1) const {
+  LUCERNA_HD void clip(const Vec3& o, const Vec3& d, double& t0, double& t1) const {
     if (aperture_.shape() == ApertureShape::circle) {
       const double a = d.x * d.x + d.y * d.y + 1e-30, b = o.x * d.x + o.y * d.y;
       const double r = aperture_.half_x_mm(), c = o.x * o.x + o.y * o.y - r * r;
@@ -107,7 +109,7 @@ class SmoothTracer {
     slab(o.x, d.x, aperture_.half_x_mm(), t0, t1);
     slab(o.y, d.y, aperture_.half_y_mm(), t0, t1);
   }
-  static void slab(double o, double d, double half, double& t0, double& t1) {
+  LUCERNA_HD static void slab(double o, double d, double half, double& t0, double& t1) {
     if (d == 0.0) {
       if (std::abs(o) > half) t1 = -1.0;
       return;
@@ -118,14 +120,14 @@ class SmoothTracer {
   }
 
   /// `slope` is f' where the ray starts on the surface.
-  Found first_hit(const Vec3& o, const Vec3& d, bool on_surface, double slope) const {
+  LUCERNA_HD Found first_hit(const Vec3& o, const Vec3& d, bool on_surface, double slope) const {
     double t = 0.0, t_end = std::numeric_limits<double>::infinity();
     clip(o, d, t, t_end);
     if (!(t <= t_end)) return {};
     const double across = d.x * d.x + d.y * d.y;
     const double c0 = o.z - k_ * (o.x * o.x + o.y * o.y), c1 = d.z - 2.0 * k_ * (o.x * d.x + o.y * d.y);
-    const double c2 = k_ * across + 1e-30, bend = c2 + 0.5 * shape_.bend_bound() * across;
-    const HeightRange& band = shape_.band();
+    const double c2 = k_ * across + 1e-30, bend = c2 + 0.5 * shape_.bend_bound * across;
+    const HeightRange& band = shape_.band;
     // q is above the band between `rise` and `fall`.
     double rise = 0.0, fall = -1.0;
     const double above = c0 - band.high_mm, root = c1 * c1 + 4.0 * c2 * above;
@@ -185,7 +187,7 @@ class SmoothTracer {
   /// Height above the surface at which a ray has arrived; a last Newton step follows.
   static constexpr double kTouch_mm = 1e-7;
 
-  const Shape& shape_;
+  Shape shape_;
   Aperture aperture_;
   double k_;
 };
@@ -201,8 +203,8 @@ struct HitAdjoint {
 /// `out[i]` belongs to hit i <= last. A hit moves along its ray as the surface rises, the normal turns with
 /// the slope there and with the place, and every later hit sees both.
 template <class Shape>
-void path_adjoint(const Path<Shape>& path, int last, const Vec3& direction, const Vec3& point,
-                  HitAdjoint* out) {
+LUCERNA_HD void path_adjoint(const Path<Shape>& path, int last, const Vec3& direction, const Vec3& point,
+                             HitAdjoint* out) {
   Vec3 a = direction, b = point;
   for (int i = last; i >= 0; --i) {
     const typename Path<Shape>::Hit& hit = path.hit[static_cast<std::size_t>(i)];
@@ -226,7 +228,7 @@ struct RimDistance {
   double inside_mm = 0.0;
   Vec3 gradient;
 };
-inline RimDistance rim_distance(const Aperture& aperture, double x, double y) {
+LUCERNA_HD inline RimDistance rim_distance(const Aperture& aperture, double x, double y) {
   const double r = std::sqrt(x * x + y * y), per_r = r > 0.0 ? 1.0 / r : 0.0;
   RimDistance rim;
   if (aperture.shape() == ApertureShape::circle) {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <functional>
 #include <vector>
 
 #include "lucerna/core/direction.h"
-#include "lucerna/core/frame.h"
+#include "lucerna/design/tent_view.h"
 
 namespace lucerna {
 
@@ -29,15 +28,15 @@ class TentBins {
   /// outermost tents end where the zone ends. 0 <= gamma_min < pi.
   static TentBins zone(const Frame& axes, double gamma_min_rad, int rings, int sectors);
 
-  bool is_rings() const { return kind_ == Kind::rings; }
-  bool is_plane() const { return kind_ == Kind::plane; }
-  int count() const { return count_; }
+  bool is_rings() const { return view_.is_rings(); }
+  bool is_plane() const { return view_.kind == TentKind::plane; }
+  int count() const { return view_.count; }
   std::size_t size() const { return measure_.size(); }
-  const Frame& axes() const { return axes_; }
+  const Frame& axes() const { return view_.axes; }
   /// Half width in direction cosines, the largest gamma in radians, or what a plane was widened by.
-  double extent() const { return extent_; }
-  double half_x_mm() const { return half_x_mm_; }
-  double half_y_mm() const { return half_y_mm_; }
+  double extent() const { return view_.extent; }
+  double half_x_mm() const { return view_.half_x_mm; }
+  double half_y_mm() const { return view_.half_y_mm; }
   /// Integral of a bin's tent over solid angle in sr, or over the plane's area in mm2; 0 for squares wholly
   /// beyond the horizon.
   const std::vector<double>& measure() const { return measure_; }
@@ -48,54 +47,25 @@ class TentBins {
   /// Integral of a density over (x, y) in mm * tent over the plane's area in mm2 (8 x 8 points per cell).
   std::vector<double> flux_on(const std::function<double(double x_mm, double y_mm)>& density_per_mm2) const;
 
-  /// Where one ray's light goes: up to four bins with weights, and the weights' derivatives by the window's
-  /// two coordinates (one for rings).
-  struct Deposit {
-    int n = 0;
-    std::array<int, 4> bin;
-    std::array<double, 4> weight, du, dv;
-  };
-  /// Of a ray that leaves `origin` along the unit vector `direction`; the origin counts for planes only.
+  /// See tent_view.h.
+  using Deposit = TentDeposit;
+  using Gradient = TentGradient;
   void deposit(const Vec3& origin, const Vec3& direction, Deposit& out) const {
-    out.n = 0;
-    switch (kind_) {
-      case Kind::rings:
-        return deposit_ring(direction, out);
-      case Kind::square:
-        return deposit_square(direction, out);
-      case Kind::plane:
-        return deposit_plane(origin, direction, out);
-      case Kind::zone:
-        return deposit_zone(direction, out);
-    }
+    view_.deposit(origin, direction, out);
   }
-  /// Gradients of the window's coordinates with respect to a ray's direction and start.
-  struct Gradient {
-    Vec3 direction, origin;
-  };
-  /// Of the first coordinate: u, x or gamma.
-  Gradient gradient_u(const Vec3& origin, const Vec3& direction) const;
-  /// Of the second: v, y or C. Not for rings.
-  Gradient gradient_v(const Vec3& origin, const Vec3& direction) const;
+  Gradient gradient_u(const Vec3& origin, const Vec3& direction) const {
+    return view_.gradient_u(origin, direction);
+  }
+  Gradient gradient_v(const Vec3& origin, const Vec3& direction) const {
+    return view_.gradient_v(origin, direction);
+  }
+  /// All but the measure, as a GPU reads it.
+  const TentBinsView& view() const { return view_; }
 
  private:
-  enum class Kind { square, rings, plane, zone };
-  TentBins(Kind kind, const Frame& axes, double extent, int count);
-  void deposit_ring(const Vec3& direction, Deposit& out) const;
-  void deposit_square(const Vec3& direction, Deposit& out) const;
-  void deposit_plane(const Vec3& origin, const Vec3& direction, Deposit& out) const;
-  void deposit_zone(const Vec3& direction, Deposit& out) const;
-  /// Tents of the grid of count_ x count_ cells over |u|, |v| <= extent_.
-  void deposit_grid(double u, double v, Deposit& out) const;
-  Gradient across_plane(const Vec3& origin, const Vec3& direction, const Vec3& axis, double half) const;
+  TentBins(TentKind kind, const Frame& axes, double extent, int count);
 
-  Kind kind_;
-  Frame axes_;
-  double extent_, cell_;
-  int count_;
-  double half_x_mm_ = 1.0, half_y_mm_ = 1.0;  // plane
-  double gamma_min_ = 0.0, sector_ = 1.0;     // zone
-  int sectors_ = 1;
+  TentBinsView view_;
   std::vector<double> measure_;
 };
 

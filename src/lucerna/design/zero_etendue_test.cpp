@@ -127,8 +127,8 @@ TEST(ZeroEtendue, ATroughSpreadsTheLightOfALine) {
   const std::vector<DesignShape> shapes = zero_etendue_shapes(plain, point_source(rays, kRays), wanted, 0.0);
   ASSERT_GE(shapes.size(), 1u);
   const auto shares = [&](const DesignShape& s) {  // of the reflected light in bins of the angle across
-    const SmoothTracer<BsplineShape> tracer(std::get<BsplineShape>(s.family()), s.aperture());
-    Path<BsplineShape> path;
+    const SmoothTracer<BsplineView> tracer(std::get<BsplineShape>(s.family()).view(), s.aperture());
+    Path<BsplineView> path;
     Eigen::VectorXd share = Eigen::VectorXd::Zero(12);
     for (std::uint64_t b = 0; b < kRays / kBlockRays; ++b) {
       const DesignRays::Block& block = rays.block(b);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "lucerna/core/host_device.h"
 #include "lucerna/reflector/height_surface.h"
 
 namespace lucerna {
@@ -28,10 +29,10 @@ class Aperture {
   Rectangle bounds() const { return {-half_x_mm_, half_x_mm_, -half_y_mm_, half_y_mm_}; }
   /// Distance of its farthest point from the axis.
   double outer_radius_mm() const;
-  double hole_radius_mm() const { return hole_radius_mm_; }
-  double half_x_mm() const { return half_x_mm_; }
-  double half_y_mm() const { return half_y_mm_; }
-  ApertureShape shape() const { return shape_; }
+  LUCERNA_HD double hole_radius_mm() const { return hole_radius_mm_; }
+  LUCERNA_HD double half_x_mm() const { return half_x_mm_; }
+  LUCERNA_HD double half_y_mm() const { return half_y_mm_; }
+  LUCERNA_HD ApertureShape shape() const { return shape_; }
 
   /// True if no point of `region` is on the mirror.
   bool misses(const Rectangle& region) const;
