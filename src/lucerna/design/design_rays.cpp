@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lucerna/core/parallel.h"
+#include "lucerna/design/device_evaluator.h"
 
 namespace lucerna {
 
@@ -70,6 +71,10 @@ RayBlock DesignRays::first(std::uint64_t most) const {
     append(out.weight, block_[b].weight);
   }
   return out;
+}
+
+void DesignRays::evaluate_on(std::shared_ptr<Accelerator> accelerator) {
+  device_ = accelerator ? std::make_shared<DeviceEvaluator>(std::move(accelerator)) : nullptr;
 }
 
 void DesignRays::fill(std::uint64_t b) {

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "lucerna/core/progress.h"
+#include "lucerna/design/design_ray_block.h"
 #include "lucerna/rayset/ray_block.h"
 #include "lucerna/trace/ray_numbering.h"
 
 namespace lucerna {
 
-/// Independent streams that a design's rays are dealt to: the fewest whose difference shows the noise. Fewer
-/// and longer Owen-scrambled nets are better: on a bench mirror 4 M rays of one stream have half the noise of
-/// 16 streams of a sixteenth.
-inline constexpr std::size_t kDesignStreams = 2;
+class Accelerator;
+class DeviceEvaluator;
+
 /// What blocks of rays are padded to and dealt by, so that the order of summing is fixed.
 inline constexpr std::size_t kDesignTasks = 16;
 
@@ -35,12 +35,14 @@ class DesignRays {
   double flux() const { return flux_; }
   FluxUnit unit() const { return sources_.front().rays->flux_unit(); }
 
-  struct Block {
-    std::array<float, kBlockRays> x_mm, y_mm, z_mm, kx, ky, kz;
-    /// Flux in mean rays.
-    std::array<float, kBlockRays> weight;
-  };
+  using Block = DesignRayBlock;
   const Block& block(std::uint64_t b) const { return block_[b]; }
+  /// From now on `evaluate` traces these rays on `accelerator`, which must not be used by another thread
+  /// meanwhile; nothing: on the CPU.
+  void evaluate_on(std::shared_ptr<Accelerator> accelerator);
+  /// Null on the CPU.
+  DeviceEvaluator* device() const { return device_.get(); }
+
   /// A copy of the first `most` rays (whole blocks of them), for what takes ray sets.
   RayBlock first(std::uint64_t most) const;
 
@@ -54,6 +56,7 @@ class DesignRays {
   double flux_ = 0.0;
   std::vector<double> ray_flux_;
   std::vector<Block> block_;
+  std::shared_ptr<DeviceEvaluator> device_;
 };
 
 }  // namespace lucerna

@@ -7,7 +7,8 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/design/evaluation_kernel.h"
+#include "lucerna/design/device_evaluator.h"
+#include "lucerna/design/evaluation_sums.h"
 
 namespace lucerna {
 
@@ -55,60 +56,21 @@ std::size_t jacobian_groups(std::uint64_t rays) {
   return groups;
 }
 
-/// Adds the groups in their order and the coefficients that are one parameter.
-BinJacobian fold(const std::vector<std::vector<double>>& groups, std::size_t bins, const DesignShape& shape,
-                 double scale) {
-  const std::vector<int>& parameter_of = shape.parameter_of();
-  const std::size_t n = parameter_of.size();
-  BinJacobian j =
-      BinJacobian::Zero(static_cast<Eigen::Index>(bins), static_cast<Eigen::Index>(shape.parameter_count()));
-  parallel_blocks(bins, 64, [&](std::size_t first, std::size_t last) {
-    for (std::size_t b = first; b < last; ++b) {
-      double* row = j.data() + b * shape.parameter_count();
-      for (const std::vector<double>& group : groups) {
-        for (std::size_t c = 0; c < n; ++c) row[parameter_of[c]] += scale * group[b * n + c];
-      }
-    }
-  });
-  return j;
-}
-
-Evaluation summarise(const std::vector<TaskSums>& sums, std::size_t bins) {
-  Evaluation e;
-  double weight = 0.0;
-  for (const TaskSums& s : sums) weight += s.weight;
-  e.flux = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(bins));
-  e.variance = e.flux;
-  // Streams are independent: the variance of their mean is that of their scatter over their number.
-  constexpr auto kStreams = static_cast<double>(kDesignStreams);
-  for (std::size_t b = 0; b < bins; ++b) {
-    std::array<double, kDesignStreams> stream{};
-    for (std::size_t t = 0; t < sums.size(); ++t) stream[t % kDesignStreams] += sums[t].flux[b];
-    double sum = 0.0, squares = 0.0;
-    for (const double x : stream) sum += x;
-    for (const double x : stream) squares += (x - sum / kStreams) * (x - sum / kStreams);
-    e.flux[static_cast<Eigen::Index>(b)] = sum / weight;
-    e.variance[static_cast<Eigen::Index>(b)] = squares * kStreams / (kStreams - 1.0) / (weight * weight);
+EvaluationSums total(const std::vector<TaskSums>& tasks, std::size_t bins) {
+  EvaluationSums sums;
+  for (std::vector<double>& flux : sums.flux) flux.assign(bins, 0.0);
+  for (std::size_t t = 0; t < tasks.size(); ++t) {
+    const TaskSums& task = tasks[t];
+    std::vector<double>& stream = sums.flux[t % kDesignStreams];
+    for (std::size_t b = 0; b < bins; ++b) stream[b] += task.flux[b];
+    sums.weight += task.weight;
+    sums.reflected += task.reflected;
+    sums.direct += task.direct;
+    sums.absorbed += task.absorbed;
+    sums.back += task.back;
+    sums.lost += task.lost;
   }
-  for (const TaskSums& s : sums) {
-    e.reflected += s.reflected / weight;
-    e.direct += s.direct / weight;
-    e.absorbed += s.absorbed / weight;
-    e.back += s.back / weight;
-    e.lost += s.lost / weight;
-  }
-  return e;
-}
-
-template <class Shape>
-auto evaluation_view(const Shape& shape, const Aperture& aperture, const Reflectance& reflectance,
-                     const TentBins& bins, const EvaluationOptions& options) {
-  const auto& table = reflectance.table();
-  return EvaluationView<decltype(shape.view())>{
-      shape.view(),         aperture,
-      table.data(),         static_cast<std::uint32_t>(table.size()),
-      bins.view(),          options.derivatives,
-      options.direct_light, options.rim_mm};
+  return sums;
 }
 
 template <class Shape>
@@ -132,22 +94,63 @@ Evaluation evaluate_family(const DesignShape& design, const Shape& shape, const 
       }
     }
   });
-  Evaluation e = summarise(sums, bins.size());
+  const EvaluationSums all = total(sums, bins.size());
+  Evaluation e = evaluation_of(all);
   e.rays = per_task * kDesignTasks * kBlockRays;
-  if (options.derivatives) {
-    double weight = 0.0;
-    for (const TaskSums& s : sums) weight += s.weight;
-    e.jacobian = fold(jacobians, bins.size(), design, 1.0 / weight);
-  }
+  if (options.derivatives) e.jacobian = fold_jacobians(jacobians, bins.size(), design, 1.0 / all.weight);
   return e;
 }
 
 }  // namespace
 
+BinJacobian fold_jacobians(const std::vector<std::vector<double>>& parts, std::size_t bins,
+                           const DesignShape& shape, double scale) {
+  const std::vector<int>& parameter_of = shape.parameter_of();
+  const std::size_t n = parameter_of.size();
+  BinJacobian j =
+      BinJacobian::Zero(static_cast<Eigen::Index>(bins), static_cast<Eigen::Index>(shape.parameter_count()));
+  parallel_blocks(bins, 64, [&](std::size_t first, std::size_t last) {
+    for (std::size_t b = first; b < last; ++b) {
+      double* row = j.data() + b * shape.parameter_count();
+      for (const std::vector<double>& part : parts) {
+        for (std::size_t c = 0; c < n; ++c) row[parameter_of[c]] += scale * part[b * n + c];
+      }
+    }
+  });
+  return j;
+}
+
+Evaluation evaluation_of(const EvaluationSums& sums) {
+  const std::size_t bins = sums.flux.front().size();
+  Evaluation e;
+  e.flux = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(bins));
+  e.variance = e.flux;
+  // Streams are independent: the variance of their mean is that of their scatter over their number.
+  constexpr auto kStreams = static_cast<double>(kDesignStreams);
+  for (std::size_t b = 0; b < bins; ++b) {
+    double sum = 0.0, squares = 0.0;
+    for (const std::vector<double>& stream : sums.flux) sum += stream[b];
+    for (const std::vector<double>& stream : sums.flux)
+      squares += (stream[b] - sum / kStreams) * (stream[b] - sum / kStreams);
+    e.flux[static_cast<Eigen::Index>(b)] = sum / sums.weight;
+    e.variance[static_cast<Eigen::Index>(b)] =
+        squares * kStreams / (kStreams - 1.0) / (sums.weight * sums.weight);
+  }
+  e.reflected = sums.reflected / sums.weight;
+  e.direct = sums.direct / sums.weight;
+  e.absorbed = sums.absorbed / sums.weight;
+  e.back = sums.back / sums.weight;
+  e.lost = sums.lost / sums.weight;
+  return e;
+}
+
 Evaluation evaluate(const DesignShape& shape, const Reflectance& reflectance, const DesignRays& rays,
                     const TentBins& bins, const EvaluationOptions& options) {
   LUCERNA_CHECK(options.rays <= rays.size() && options.rays >= kDesignTasks * kBlockRays, "{} rays of {}",
                 options.rays, rays.size());
+  if (DeviceEvaluator* const device = rays.device()) {
+    return device->evaluate(shape, reflectance, rays, bins, options);
+  }
   return std::visit(
       [&](const auto& s) { return evaluate_family(shape, s, reflectance, rays, bins, options); },
       shape.family());

@@ -90,7 +90,8 @@ struct EvaluationView {
     path_adjoint(path, last, {}, rim.gradient, by_place.data());
     TentDeposit missed;
     if (last > 0 || direct_light) {
-      bins.deposit({hit.x, hit.y, smooth_point(shape, hit.x, hit.y).z_mm}, hit.d, missed);
+      const Vec3 at{hit.x, hit.y, smooth_point(shape, hit.x, hit.y).z_mm};
+      bins.deposit(at, hit.d, missed);
     }
     const double density = energy / rim_mm;
     for (int i = 0; i <= last; ++i) {

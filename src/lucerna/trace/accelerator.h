@@ -43,6 +43,9 @@ class Accelerator {
   virtual void trace(int stream, const LaunchView& launch) = 0;
   /// Makes nodes and band from the vertices.
   virtual void rebuild(int stream, const HierarchyView& hierarchy) = 0;
+  /// The device's own name of a stream (a cudaStream_t), for kernels of other folders; null where the CPU
+  /// stands in: then they run at once.
+  virtual void* native_stream(int stream) const = 0;
   /// Returns when all work of the stream is done.
   virtual void wait(int stream) = 0;
 };

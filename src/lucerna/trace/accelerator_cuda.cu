@@ -7,6 +7,7 @@
 
 #include "lucerna/trace/accelerator.h"
 #include "lucerna/trace/accelerator_error.h"
+#include "lucerna/trace/block_sums.cuh"
 #include "lucerna/trace/trace_kernel.h"
 
 namespace lucerna {
@@ -18,20 +19,10 @@ namespace {
 constexpr unsigned kThreads = 128;
 static_assert(kBlockRays % kThreads == 0);
 
-/// Adds the counters of a block of threads to the replicate's sums: within warps by shuffles, then one atomic
-/// addition a warp and sum that is not zero.
-__device__ void add_counters(const Counters& counters, std::int64_t* ledger) {
-  for (int i = 0; i < kLedgerSums; ++i) {
-    long long sum = counters.sum[i];
-    for (int step = 16; step > 0; step /= 2) sum += __shfl_down_sync(0xffffffffu, sum, step);
-    if (threadIdx.x % 32 == 0 && sum != 0) deposit(ledger + i, sum);
-  }
-}
-
 __global__ void __launch_bounds__(kThreads) trace_kernel(const __grid_constant__ LaunchView v) {
   Counters counters;
   for (std::uint32_t k = threadIdx.x; k < kBlockRays; k += kThreads) trace_number(v, blockIdx.x, k, counters);
-  add_counters(counters, v.ledger + (v.first_block + blockIdx.x) % kReplicates * kLedgerSums);
+  add_block_sums(counters.sum, kLedgerSums, v.ledger + (v.first_block + blockIdx.x) % kReplicates * kLedgerSums);
 }
 
 __global__ void rebuild_level_kernel(const __grid_constant__ HierarchyView h, int level, std::size_t nodes) {
@@ -129,6 +120,7 @@ class CudaAccelerator final : public Accelerator {
     band_kernel<<<1, kThreads, 0, streams_[stream]>>>(h, leaves);
     check(cudaGetLastError());
   }
+  void* native_stream(int stream) const override { return streams_[stream]; }
   void wait(int stream) override {
     check(cudaSetDevice(device_));
     check(cudaStreamSynchronize(streams_[stream]));

@@ -48,7 +48,7 @@ class EmulatedAccelerator final : public Accelerator {
       Counters counters;
       for (std::uint32_t k = 0; k < kBlockRays; ++k) trace_number(v, block, k, counters);
       std::int64_t* const ledger = v.ledger + (v.first_block + block) % kReplicates * kLedgerSums;
-      for (int i = 0; i < kLedgerSums; ++i) deposit(ledger + i, counters.sum[i]);
+      for (int i = 0; i < kLedgerSums; ++i) atomic_add(ledger + i, counters.sum[i]);
     }
   }
 
@@ -64,6 +64,7 @@ class EmulatedAccelerator final : public Accelerator {
     h.band[1] = high;
   }
 
+  void* native_stream(int) const override { return nullptr; }
   void wait(int) override {}
 };
 

@@ -6,6 +6,7 @@
 // (accelerator_emulated.cpp), which runs the same functions in a loop. Plain data in flat arrays; sums are
 // the whole units of tally.h, so that the order of adding does not matter.
 
+#include "lucerna/core/atomic_add.h"
 #include "lucerna/trace/field_kernel.h"
 #include "lucerna/trace/launch_view.h"
 #include "lucerna/trace/slope_error.h"
@@ -21,15 +22,6 @@ struct Counters {
 
 LUCERNA_HD inline std::int64_t units_of(float flux) {
   return static_cast<std::int64_t>(static_cast<double>(flux) * kUnitsPerRay + 0.5);
-}
-
-/// Adds to a bin that other threads add to as well.
-LUCERNA_HD inline void deposit(std::int64_t* bin, std::int64_t units) {
-#if defined(__CUDA_ARCH__)
-  atomicAdd(reinterpret_cast<unsigned long long*>(bin), static_cast<unsigned long long>(units));
-#else
-  *bin += units;
-#endif
 }
 
 /// A ray as a source emits it: float32 as in a ray file, in the source's frame.
@@ -69,13 +61,13 @@ LUCERNA_HD inline void detect(const LaunchView& v, const LaneRays& ray, float fl
   const std::int64_t units = units_of(flux);
   for (std::int32_t d = 0; d < v.far_field_count; ++d) {
     const FarFieldView& far = v.far_fields[d];
-    deposit(bins + far.first_bin + far_field_cell(ray.dx, ray.dy, ray.dz, far.c_count, far.gamma_count).v,
+    atomic_add(bins + far.first_bin + far_field_cell(ray.dx, ray.dy, ray.dz, far.c_count, far.gamma_count).v,
             units);
   }
   if (v.plane_count == 0 && v.out_rays == nullptr) return;
   const Ray leg{{ray.x.v, ray.y.v, ray.z.v}, Direction::from({ray.dx.v, ray.dy.v, ray.dz.v})};
   for (std::int32_t d = 0; d < v.plane_count; ++d) {
-    if (const auto cell = v.planes[d].bins.cell(leg)) deposit(bins + v.planes[d].first_bin + *cell, units);
+    if (const auto cell = v.planes[d].bins.cell(leg)) atomic_add(bins + v.planes[d].first_bin + *cell, units);
   }
   if (v.out_rays == nullptr) return;
   v.out_rays[place] = {ray.x.v,
