@@ -8,7 +8,7 @@ build=${1:-build/cuda}
 cmake --preset release -B "$build" -DLUCERNA_CUDA=ON
 build=$(cd "$build" && pwd)
 start=$(date +%s)
-cmake --build "$build" --target trace_tests bench_gpu lucerna_cli
+cmake --build "$build" --target trace_tests design_tests bench_gpu bench_design lucerna_cli
 echo "build: $(($(date +%s) - start)) s on $(nproc) cores"
 
 echo "== device"
@@ -18,6 +18,7 @@ fi
 
 echo "== tests"
 "$build/tests/trace_tests" --gtest_filter='*Gpu.*'
+"$build/tests/design_tests" --gtest_filter='*Gpu.*'
 
 echo "== compute-sanitizer"
 sanitizer=$(command -v compute-sanitizer || ls /usr/local/cuda/bin/compute-sanitizer 2>/dev/null || true)
@@ -26,6 +27,8 @@ if [ -n "$sanitizer" ]; then
   for tool in memcheck racecheck initcheck; do
     "$sanitizer" --tool "$tool" --error-exitcode 9 "$build/tests/trace_tests" \
       --gtest_filter='DeviceTraceGpu.TreesAre*:DeviceTraceGpu.SmallScene*'
+    "$sanitizer" --tool "$tool" --error-exitcode 9 "$build/tests/design_tests" \
+      --gtest_filter='DeviceEvaluatorGpu.FewRays*'
   done
 else
   echo "not installed"
@@ -33,6 +36,10 @@ fi
 
 echo "== bench_gpu"
 "$build/bench/bench_gpu" "${RAYS_M:-1000}"
+
+echo "== a design with 400 coefficients, on the CPU and on the device"
+"$build/bench/bench_design" n400 -n1
+"$build/bench/bench_design" n400 -n1 --device cuda
 
 echo "== the same through the program"
 work=$(mktemp -d)

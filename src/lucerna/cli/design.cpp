@@ -9,6 +9,7 @@
 #include "lucerna/core/file.h"
 #include "lucerna/report/design_files.h"
 #include "lucerna/report/report_design.h"
+#include "lucerna/trace/accelerator.h"
 #include "lucerna/trace/trace.h"
 
 namespace lucerna::cli {
@@ -22,10 +23,14 @@ struct DesignArguments {
   bool resume = false, tolerances = false;
 };
 
-void check_device(const std::string& device) {
-  if (trace_device(device) == TraceDevice::cuda) {
-    throw InputError("--device cuda: designs are made on the CPU only; lucerna trace can use a device");
-  }
+/// Where evaluations are traced: the first CUDA device, or null for the CPU.
+std::shared_ptr<Accelerator> chosen_accelerator(const std::string& name) {
+  const TraceDevice device = trace_device(name);
+  if (device == TraceDevice::cpu) return nullptr;
+  auto found = cuda_accelerators();
+  if (!found.empty()) return std::move(found.front());
+  if (device == TraceDevice::cuda) throw InputError(fmt::format("--device cuda: {}", why_no_cuda()));
+  return nullptr;
 }
 
 DesignOptions design_options(const DesignArguments& a, const DesignProblem& problem) {
@@ -99,11 +104,12 @@ std::string bodies_note(const TraceResult& traced) {
 
 void run_design(const DesignArguments& a, Session& session, int& exit_code) {
   session.start();
-  check_device(a.device);
+  const auto accelerator = chosen_accelerator(a.device);
   DesignProblem problem = session.timed(
       "read", [&] { return design_problem(read_project(a.project, session.progress()), a.project); });
   if (a.tolerances && !problem.tolerances) problem.tolerances = ToleranceRanges{};
   DesignOptions options = design_options(a, problem);
+  options.accelerator = accelerator;
   prepare_folder(a.output, session.force || a.resume);
   for (const std::string& warning : problem.project.warnings) session.note(warning);
   for (const auto& input : problem.project.inputs) session.add_input(input);
@@ -119,6 +125,7 @@ void run_design(const DesignArguments& a, Session& session, int& exit_code) {
   TraceResult traced;
   const DesignFigures figures = finish(problem, result, options, traced, session);
   Json json = session.json_head(options.seed, traced.isa);
+  json["device"] = accelerator ? accelerator->name() : "cpu";
   json.update(design_json(problem, result, figures));
   json.update(trace_json(figures.trace));
   const auto names = session.timed("files", [&] {
@@ -154,7 +161,7 @@ void add_design(CLI::App& app, Session& session, int& exit_code) {
   command.add_option("--rays", a.rays,
                      "Rays of the finest evaluations (default 2^20); four times as many judge");
   command.add_option("--seed", a.seed, "Seed of the random numbers")->capture_default_str();
-  command.add_option("--device", a.device, "cpu or auto: designs are made on the CPU")->capture_default_str();
+  command.add_option("--device", a.device, "cpu, cuda or auto")->capture_default_str();
   command.add_option("--report", a.report, "Also write the report as one HTML file");
   command.add_flag("--tolerances", a.tolerances, "Try what a misplaced source and an inexact mirror change");
   command.add_flag("--resume", a.resume, "Go on from the folder's checkpoint");

@@ -102,7 +102,8 @@ FitState parse_checkpoint(const std::string& text, const std::string& key) {
   if (in.word() != kMagic) damaged("it does not begin like one");
   in.expect("key");
   if (in.word() != key) {
-    throw InputError("checkpoint: belongs to another project, seed or ray count; start without --resume");
+    throw InputError(
+        "checkpoint: belongs to another project, seed, ray count or device; start without --resume");
   }
   FitState s;
   s.intervals_x = in.number<int>("intervals_x");

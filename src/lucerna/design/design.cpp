@@ -13,6 +13,7 @@
 #include "lucerna/design/time_budget.h"
 #include "lucerna/design/window.h"
 #include "lucerna/reflector/cad_export.h"
+#include "lucerna/trace/accelerator.h"
 
 namespace lucerna {
 
@@ -68,6 +69,8 @@ std::string problem_key(const DesignProblem& problem, const DesignOptions& optio
   }
   std::ostringstream text;
   text << table << options.seed << ' ' << options.most_rays;
+  // Sums on a device are rounded otherwise: taken up elsewhere, a design would not end at the same bits.
+  if (options.accelerator) text << ' ' << options.accelerator->isa();
   std::uint64_t hash = 0xcbf29ce484222325ull;
   for (const char c : text.str()) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
   return fmt::format("{:016x}", hash);
@@ -147,6 +150,7 @@ void judge(const DesignProblem& problem, const DesignOptions& options, const Fit
            std::uint64_t judge_rays, DesignResult& result, Progress& progress) {
   DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(),
                   options.seed + 0x9E3779B97F4A7C15ull);
+  rays.evaluate_on(options.accelerator);
   rays.grow(judge_rays, progress);
   EvaluationOptions plain;
   plain.rays = judge_rays;
@@ -198,6 +202,7 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
                     const DesignObserver& observer) {
   TimeBudget time(options.time_s.value_or(problem.time_s), options.judge_rays + options.rays_after);
   DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
+  rays.evaluate_on(options.accelerator);
   FitProblem fit_data = fit_problem(problem, options, rays);
   const std::vector<FitStage> stages =
       ladder(problem.start, fit_data.bins, {options.most_rays, true, problem.growth});

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,8 @@ struct DesignOptions {
   std::uint64_t judge_rays = std::uint64_t{1} << 22;
   /// Rays that the caller will trace after that; time is kept for them.
   std::uint64_t rays_after = 0;
+  /// Where evaluations are traced (device_evaluator.h); null: on the CPU.
+  std::shared_ptr<Accelerator> accelerator;
   /// State to go on from (`checkpoint_text`); empty: from the start.
   std::string checkpoint;
 };

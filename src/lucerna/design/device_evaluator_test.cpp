@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "lucerna/design/fit.h"
 #include "lucerna/source/emitter.h"
 
 namespace lucerna {
@@ -107,6 +108,59 @@ TEST(DeviceEvaluator, WithoutDerivativesAndWithMoreRaysLater) {
   EXPECT_EQ(grown.jacobian, at_once.jacobian);
   EXPECT_NE(grown.flux, few.flux);
 }
+
+/// The fit of a plain paraboloid to the light of a rough mirror; its parameters at the end.
+Eigen::VectorXd fitted(std::shared_ptr<Accelerator> accelerator, double& error) {
+  const DesignShape start = DesignShape::bspline(15, Aperture::circle(50), 2, 2);
+  DesignRays rays = lamp(1 << 14), truth = lamp(1 << 15);
+  rays.evaluate_on(std::move(accelerator));
+  const TentBins bins = TentBins::square(Frame(), 0.4, 16);
+  FitProblem problem{&rays, Reflectance(0.9),
+                     [&](const TentBins& b) {
+                       EvaluationOptions plain{.rays = 1 << 15, .derivatives = false};
+                       return evaluate(rough(start), Reflectance(0.9), truth, b, plain).flux;
+                     },
+                     bins, TargetMode::absolute};
+  problem.fruitless = 0;
+  Fit fit(problem, ladder(start, bins, {1 << 14, true, {}}), start);
+  FitRecord last;
+  while (!fit.done()) last = fit.step();
+  error = last.error;
+  return fit.best().parameters();
+}
+
+TEST(DeviceEvaluator, AWholeFitRunsThereToTheSameMirror) {
+  double cpu = 0.0, device = 0.0, again = 0.0;
+  const Eigen::VectorXd here = fitted(nullptr, cpu), there = fitted(make_emulated_accelerator(), device);
+  EXPECT_NEAR(device, cpu, 0.02 * cpu);
+  EXPECT_LT(apart(there, here), 0.02);
+  EXPECT_EQ(fitted(make_emulated_accelerator(), again), there);
+}
+
+/// On a machine with a CUDA device: ctest -L gpu, or scripts/gpu_check.sh.
+void expect_agreement(std::uint64_t n) {
+  auto devices = cuda_accelerators();
+  if (devices.empty()) GTEST_SKIP() << why_no_cuda();
+  const std::shared_ptr<Accelerator> device = std::move(devices.front());
+  DesignRays rays = lamp(n);
+  EvaluationOptions options;
+  options.rays = n;
+  options.rim_mm = 0.5;
+  for (const Case& c : cases()) {
+    rays.evaluate_on(nullptr);
+    const Evaluation cpu = evaluate(c.shape, Reflectance(0.9), rays, c.bins, options);
+    rays.evaluate_on(device);
+    const Evaluation there = evaluate(c.shape, Reflectance(0.9), rays, c.bins, options);
+    // Its arc tangents differ in the last digit: a ray in a million may miss where another hits.
+    EXPECT_LT(apart(there.flux, cpu.flux), 1e-5) << c.name;
+    EXPECT_LT(apart(there.jacobian, cpu.jacobian), 1e-4) << c.name;
+    const Evaluation again = evaluate(c.shape, Reflectance(0.9), rays, c.bins, options);
+    EXPECT_EQ(again.flux, there.flux) << c.name;
+    EXPECT_EQ(again.jacobian, there.jacobian) << c.name;
+  }
+}
+TEST(DeviceEvaluatorGpu, FewRaysAgreeWithTheCpuAndToTheBitWithThemselves) { expect_agreement(1 << 14); }
+TEST(DeviceEvaluatorGpu, AMillionRaysAgreeWithTheCpuAndToTheBitWithThemselves) { expect_agreement(1 << 20); }
 
 }  // namespace
 }  // namespace lucerna
