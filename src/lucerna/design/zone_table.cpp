@@ -113,12 +113,13 @@ Evaluation ZoneTable::evaluate(const DesignShape& shape) const {
   Eigen::VectorXf flux = Eigen::VectorXf::Zero(m), by_height(m), by_slope(m);
   Eigen::MatrixXf jacobian = Eigen::MatrixXf::Zero(m, n);
   using Row = Eigen::Map<const Eigen::VectorXf>;
+  const RevolutionView view = profile.view();
   const double k2 = 0.5 / profile.focal_mm();
   for (std::size_t j = 0; j < zones_.size(); ++j) {
     const Zone& zone = zones_[j];
     const KnotRow::Place place = profile.row().place(zone.r_mm);
     const CubicBasis basis = cubic_basis(place.t), slope = cubic_basis_slope(place.t);
-    const auto [s, s_r] = profile.offset_at(zone.r_mm);
+    const auto [s, s_r] = view.offset_at(zone.r_mm);
     const double p = k2 * zone.r_mm + s_r;
     const double a = (std::atan(p) - zone.angle_rad + half_tilt_) / tilt_step_;
     const double b = (s + half_height_mm_) / level_step_mm_;
