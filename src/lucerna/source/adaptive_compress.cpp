@@ -297,7 +297,8 @@ std::unique_ptr<AdaptiveModel> compress(const RayBlock& rays, std::span<const fl
   data.training_rays = count;
   data.spectra = header.spectra;
   data.surface = starting_surface(rays);
-  const SearchResult search = find_support(rays, data.surface, options.seed, progress);
+  SearchResult search = search_support(rays, data.surface, options.seed, progress);
+  polish(search, rays, options.seed, progress);
   const double tolerance = rounding_mm(rays, search.best.on.support.world_from_support.origin_mm());
   Setting setting;
   setting.trees = options.trees.value_or(default_trees(rays.size()));

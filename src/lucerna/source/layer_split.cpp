@@ -163,26 +163,32 @@ std::optional<LayerSplit> split_layers(const RayBlock& rays, const SearchResult&
     weighted.weight = parted(h.rays[k], part[k], true);
     odd.append(weighted);
   }
-  const SearchResult found = find_support(odd, surface, seed + 1, progress);
-  if (found.degenerate) return std::nullopt;
-  LayerSplit split;
-  split.second_ = found.best.on;
-  Numbers two;
-  for (int step = 0; step < kSteps; ++step) {
-    if (progress.stop_requested()) throw Interrupted();
-    const auto a = maximisation(h, part, false, first.best.on, tolerance_mm);
-    const auto b = maximisation(h, part, true, split.second_, tolerance_mm);
-    one = crossed(h, a), two = crossed(h, b);
-    share = expectation(h, one, two, share, part);
-    if (step < kSteps - 1) continue;
-    split.densities_ = {{{a[0], a[1]}, {b[0], b[1]}}};
-    for (std::size_t k = 0; k < 2; ++k) more_leaves += static_cast<double>(a[k].leaves() + b[k].leaves());
-  }
-  const auto [nats, error] = gain(h, logs(h, alone, two, 0.0), logs(h, one, two, share));
-  const bool worth = nats * static_cast<double>(some.size()) > kQuickPenaltyNats * more_leaves;
-  if (share < kLeastShare || nats < kClear * error || !worth) return std::nullopt;
-  split.gain_nats_ = nats, split.gain_error_ = error, split.second_share_ = share;
-  return split;
+  const auto with = [&](const BoundedSupport& second) -> std::optional<LayerSplit> {
+    LayerSplit split;
+    split.second_ = second;
+    Numbers its_part = part, two;
+    double its_share = share, leaves = more_leaves;
+    for (int step = 0; step < kSteps; ++step) {
+      if (progress.stop_requested()) throw Interrupted();
+      const auto a = maximisation(h, its_part, false, first.best.on, tolerance_mm);
+      const auto b = maximisation(h, its_part, true, second, tolerance_mm);
+      one = crossed(h, a), two = crossed(h, b);
+      its_share = expectation(h, one, two, its_share, its_part);
+      if (step < kSteps - 1) continue;
+      split.densities_ = {{{a[0], a[1]}, {b[0], b[1]}}};
+      for (std::size_t k = 0; k < 2; ++k) leaves += static_cast<double>(a[k].leaves() + b[k].leaves());
+    }
+    const auto [nats, error] = gain(h, logs(h, alone, two, 0.0), logs(h, one, two, its_share));
+    const bool worth = nats * static_cast<double>(some.size()) > kQuickPenaltyNats * leaves;
+    if (its_share < kLeastShare || nats < kClear * error || !worth) return std::nullopt;
+    split.gain_nats_ = nats, split.gain_error_ = error, split.second_share_ = its_share;
+    return split;
+  };
+  SearchResult found = search_support(odd, surface, seed + 1, progress);
+  // Most of what is odd is no second source: that shows before the support is exact.
+  if (found.degenerate || !with(found.best.on)) return std::nullopt;
+  polish(found, odd, seed + 1, progress);
+  return with(found.best.on);
 }
 
 }  // namespace lucerna

@@ -28,7 +28,8 @@ RayBlock die_in_a_tube(std::size_t n, double share) {
 }
 
 std::optional<LayerSplit> split_of(const RayBlock& rays) {
-  const SearchResult first = find_support(rays, {}, 1, no_progress());
+  SearchResult first = search_support(rays, {}, 1, no_progress());
+  polish(first, rays, 1, no_progress());
   return split_layers(rays, first, {}, 2, no_progress());
 }
 

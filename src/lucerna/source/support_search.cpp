@@ -278,8 +278,8 @@ RayBlock stratified_choice(const RayBlock& rays, std::size_t n, std::uint64_t se
   return chosen;
 }
 
-SearchResult find_support(const RayBlock& rays, const BoundingSurface& surface, std::uint64_t seed,
-                          Progress& progress) {
+SearchResult search_support(const RayBlock& rays, const BoundingSurface& surface, std::uint64_t seed,
+                            Progress& progress) {
   const RayBlock fine = stratified_choice(rays, kFineRays, seed);
   const RayBlock coarse = stratified_choice(fine, kCoarseRays, seed + 1);
   const Shape shape = shape_of(coarse, summarize(rays), surface);
@@ -314,13 +314,21 @@ SearchResult find_support(const RayBlock& rays, const BoundingSurface& surface, 
   progress.step("compress: supports", 1, 2);
   result.rivals.insert(result.rivals.end(), racers.begin() + 1, racers.end());
   result.rivals = best_first(std::move(result.rivals));
-  const SupportJudge fine_judge(fine, shape.focus_mm, tolerance_mm);
   result.coarse_nats = racers.front().nats;
-  result.best = refine(fine_judge, fine_judge.score(racers.front().on.support), length_mm, angle, kFineRounds,
-                       progress);
-  const SupportJudge last(stratified_choice(rays, kPolishRays, seed + 3), shape.focus_mm, tolerance_mm, 2);
-  result.best = polish_support(last, result.best.on.support, length_mm, angle, progress);
+  result.best = std::move(racers.front());
+  result.step_mm = length_mm, result.step_rad = angle;
+  result.focus_mm = shape.focus_mm, result.tolerance_mm = tolerance_mm;
   return result;
+}
+
+void polish(SearchResult& found, const RayBlock& rays, std::uint64_t seed, Progress& progress) {
+  if (found.degenerate) return;
+  const SupportJudge fine(stratified_choice(rays, kFineRays, seed), found.focus_mm, found.tolerance_mm);
+  found.best =
+      refine(fine, fine.score(found.best.on.support), found.step_mm, found.step_rad, kFineRounds, progress);
+  const SupportJudge last(stratified_choice(rays, kPolishRays, seed + 3), found.focus_mm, found.tolerance_mm,
+                          2);
+  found.best = polish_support(last, found.best.on.support, found.step_mm, found.step_rad, progress);
 }
 
 }  // namespace lucerna

@@ -27,16 +27,24 @@ struct SearchResult {
   /// it was refined on more rays.
   std::vector<SupportScore> rivals;
   double coarse_nats = 0.0;
+  /// Where a polish goes on: steps at which the search stopped, the virtual focus, the rays' rounding.
+  double step_mm = 0.0, step_rad = 0.0;
+  Vec3 focus_mm;
+  double tolerance_mm = 0.0;
   /// Set when the rays have no étendue: then `best` is the support on which they have fewest dimensions.
   bool degenerate = false;
 };
 
 /// Finds the support that makes the density of `rays` simplest: places and sizes of every kind are proposed
 /// from the rays' virtual focus, mean direction, principal axes and `surface`, each is judged by held-out
-/// likelihood on some ten thousand rays, and the best few are moved, turned and scaled until nothing gains.
-/// Depends on rays and seed alone. Cost: 1 to 3 s, whatever the number of rays.
-SearchResult find_support(const RayBlock& rays, const BoundingSurface& surface, std::uint64_t seed,
-                          Progress& progress);
+/// likelihood on some ten thousand rays, and the best few race: they are moved, turned and scaled.
+/// Depends on rays and seed alone. Cost: 2 to 3 s of one core, whatever the number of rays.
+SearchResult search_support(const RayBlock& rays, const BoundingSurface& surface, std::uint64_t seed,
+                            Progress& progress);
+
+/// The last, exact steps of a search among the same rays with the same seed: on more rays until nothing
+/// gains, then support_polish.h. Nothing where the rays have no étendue. Cost: 3 to 5 s of one core.
+void polish(SearchResult& found, const RayBlock& rays, std::uint64_t seed, Progress& progress);
 
 /// Length below which a distance is rounding of the ray file, mm.
 double rounding_mm(const RayBlock& rays, const Vec3& about_mm);
