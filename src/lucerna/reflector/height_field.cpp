@@ -7,11 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
-
 #include "lucerna/core/error.h"
+#include "lucerna/core/huge_pages.h"
 #include "lucerna/core/parallel.h"
 
 namespace lucerna {
@@ -42,19 +39,6 @@ SurfacePoint adini(const AdiniCorners& k, double u, double v) {
   return {vm * (k.z00 + u * south + s.value) + v * (k.z01 + u * north + n.value) + um * w.value + u * e.value,
           vm * (south + s.slope) + v * (north + n.slope) - w.value + e.value,
           um * (west + w.slope) + u * (east + e.slope) - s.value + n.value};
-}
-
-/// Rays read all over a large array: with small pages most reads would also walk the page table.
-void advise_huge_pages([[maybe_unused]] void* data, [[maybe_unused]] std::size_t bytes) {
-#if defined(__linux__)
-  constexpr std::uintptr_t kPage = 4096;
-  constexpr std::size_t kWorthIt = std::size_t{4} << 20;
-  if (bytes < kWorthIt) return;
-  const auto first = (reinterpret_cast<std::uintptr_t>(data) + kPage - 1) / kPage * kPage;
-  const auto last = reinterpret_cast<std::uintptr_t>(data) + bytes;
-  // Advice only: where there are no huge pages, small ones serve.
-  static_cast<void>(madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE));
-#endif
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "lucerna/core/error.h"
+#include "lucerna/core/huge_pages.h"
 #include "lucerna/core/vector_clones.h"
 #include "lucerna/source/number_batch.h"
 #include "lucerna/source/support_batch.h"
@@ -117,6 +118,8 @@ std::unique_ptr<AdaptiveModel> AdaptiveModel::from_nfl(const NflFile& file, std:
 void AdaptiveModel::build_sampler() {
   constexpr double kAll = 4294967296.0;
   double before = 0.0, total = 0.0;
+  leaves_.reserve(data_.leaves() + 1);
+  advise_huge_pages(leaves_.data(), leaves_.capacity() * sizeof(SamplerLeaf));
   for (const AdaptiveLayer& layer : data_.layers) {
     for (const AdaptiveChart& chart : layer.charts) total += layer.share * chart.share;
   }
@@ -152,6 +155,8 @@ void AdaptiveModel::build_sampler() {
   unsigned bits = 1;
   while (bits < 24 && (std::size_t{1} << bits) < 4 * leaves_.size()) ++bits;
   guide_shift_ = 32 - bits;
+  guide_.reserve(std::size_t{1} << bits);
+  advise_huge_pages(guide_.data(), guide_.capacity() * sizeof(std::uint32_t));
   guide_.resize(std::size_t{1} << bits);
   std::size_t leaf = 0;
   for (std::size_t g = 0; g < guide_.size(); ++g) {
