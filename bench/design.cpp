@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hidden reflectors: recovers mirrors of each family from their far field alone, starting from the plain
 // paraboloid, and prints what a re-trace with independent rays says of the result.
-//   bench_design [case ...]     cases: n10 n49-near n49-far n400
+//   bench_design [-nTARGETS] [-v] [--device cuda] [case ...]     cases: n10-near n10 n49-near n49-far
+//   n49-wild n400
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <cstdio>
 #include <ctime>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,7 @@
 #include "lucerna/design/optimizer.h"
 #include "lucerna/design/window.h"
 #include "lucerna/source/emitter.h"
+#include "lucerna/trace/accelerator.h"
 
 using namespace lucerna;
 
@@ -111,7 +114,8 @@ TentBins window(const Suite& s, const DesignShape& truth, const DesignRays& rays
   return s.revolution ? ring_window(light, Direction()) : square_window(light, Direction());
 }
 
-bool solve(const Suite& s, std::uint64_t seed, bool verbose, Outcome& out) {
+bool solve(const Suite& s, std::uint64_t seed, bool verbose, const std::shared_ptr<Accelerator>& device,
+           Outcome& out) {
   const DesignShape truth = hidden(s, seed);
   DesignRays truth_rays({cylinder()}, Frame(), 1000 + seed);
   truth_rays.grow(kTruthRays);
@@ -140,6 +144,7 @@ bool solve(const Suite& s, std::uint64_t seed, bool verbose, Outcome& out) {
   const auto clock = std::chrono::steady_clock::now();
   const double cpu = cpu_seconds();
   DesignRays rays({cylinder()}, Frame(), 5);
+  rays.evaluate_on(device);
   problem.rays = &rays;
   problem.fruitless = s.restarts;
   const DesignShape begin = plain(s);
@@ -197,11 +202,11 @@ double median(std::vector<double> v) {
   return n % 2 == 1 ? v[n / 2] : 0.5 * (v[n / 2 - 1] + v[n / 2]);
 }
 
-void run(const Suite& s, int targets, bool verbose) {
+void run(const Suite& s, int targets, bool verbose, const std::shared_ptr<Accelerator>& device) {
   std::vector<Outcome> outcomes;
   for (std::uint64_t seed = 1; static_cast<int>(outcomes.size()) < targets && seed < 400; ++seed) {
     Outcome o;
-    if (!solve(s, seed, verbose, o)) continue;
+    if (!solve(s, seed, verbose, device, o)) continue;
     outcomes.push_back(o);
     fmt::print(
         "{:9} target {:2} (seed {:3}): start {:6.2f} %  result {:7.3f} %  floor {:.3f} %  excess {:6.3f} %  "
@@ -238,11 +243,20 @@ int main(int argc, char** argv) {
   };
   int targets = 10;
   bool verbose = false;
+  std::shared_ptr<Accelerator> device;
   std::vector<std::string> names;
   for (int i = 1; i < argc; ++i) {
     const std::string a = argv[i];
     if (a == "-v") {
       verbose = true;
+    } else if (a == "--device" && i + 1 < argc && std::string(argv[i + 1]) == "cuda") {
+      ++i;
+      auto found = cuda_accelerators();
+      if (found.empty()) {
+        fmt::print("{}\n", why_no_cuda());
+        return 1;
+      }
+      device = std::move(found.front());
     } else if (a.rfind("-n", 0) == 0) {
       targets = std::stoi(a.substr(2));
     } else {
@@ -251,6 +265,6 @@ int main(int argc, char** argv) {
   }
   for (const Suite& s : suites) {
     if (names.empty() || std::find(names.begin(), names.end(), s.name) != names.end())
-      run(s, targets, verbose);
+      run(s, targets, verbose, device);
   }
 }
