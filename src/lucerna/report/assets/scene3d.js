@@ -21,7 +21,12 @@ lucerna.afterLoad(() => {
   renderer.localClippingEnabled = true;
   const radius = scene.radius_mm, centre = new THREE.Vector3(...scene.centre_mm);
   const world = new THREE.Scene(), camera = new THREE.PerspectiveCamera(32, 1, radius / 50, radius * 60);
-  const view = { azimuth: -1.15, height: 0.18, distance: radius * 4.1, target: centre.clone().add(new THREE.Vector3(0, 0, -0.35 * radius)) };
+  // The mirrors stand back from the middle of the picture, so that there is room where the light goes.
+  const segments = lucerna.floats(scene.rays.position);
+  let rise = 0;
+  for (let i = 0; i + 5 < segments.length; i += 6) rise += segments[i + 5] - segments[i + 2];
+  const ahead = new THREE.Vector3(0, 0, (rise > 0 ? 0.35 : -0.35) * radius);
+  const view = { azimuth: -1.15, height: 0.18, distance: radius * 4.1, target: centre.clone().add(ahead) };
   const home = view.target.clone(), start = { ...view };
   camera.up.set(0, 0, 1);
   world.add(new THREE.HemisphereLight(0xffffff, 0x9999aa, 2.6));
@@ -99,7 +104,6 @@ lucerna.afterLoad(() => {
   // Rays by reflections so far: 0, 1, 2, 3 and more.
   const rayColours = ['#e69f00', '#3f9fe0', '#009e73', '#cc79a7'];
   const rayNames = ['Rays, not reflected', 'Rays, once', 'Rays, twice', 'Rays, three times or more'];
-  const segments = lucerna.floats(scene.rays.position);
   rayNames.forEach((name, b) => {
     const kept = [];
     scene.rays.bounces.forEach((n, i) => { if (Math.min(n, 3) === b) kept.push(...segments.subarray(6 * i, 6 * i + 6)); });
