@@ -153,7 +153,8 @@ radius_mm = 3
   const auto checks = check_limits(read_stl(dir / "out" / "reflector.stl"), problem.limits, 0.01, 2.0);
   EXPECT_EQ(checks.size(), 6u);
   for (const LimitCheck& c : checks) EXPECT_TRUE(c.held) << c.limit << ": " << c.found << " of " << c.allowed;
-  for (const Json& limit : Json::parse(slurp(dir / "out" / "result.json"))["limits"]) {
+  const Json result = Json::parse(slurp(dir / "out" / "result.json"));
+  for (const Json& limit : result["limits"]) {
     EXPECT_TRUE(limit["held"].get<bool>()) << limit;
   }
 }
