@@ -29,23 +29,6 @@ namespace {
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-void add_drawn(ViewCounts& counts, const RaySource& source, const Sequence& sequence, std::uint64_t n) {
-  constexpr std::uint64_t kPiece = 1 << 20;
-  RayBlock block;
-  for (std::uint64_t first = 0; first < n; first += kPiece) {
-    block.resize(std::min(kPiece, n - first), 0);
-    source.emit(sequence, first, block);
-    counts.add(block);
-  }
-}
-
-std::unique_ptr<RaySource> source_named(const std::string& name) {
-  if (auto own = bench::own_source(name)) return own;
-  EmitterOptions options;
-  options.kind = emitter_kind(name);
-  return make_emitter(options);
-}
-
 /// Million rays a second and core, random numbers, without output.
 double sampling_rate(const AdaptiveModel& model) {
   constexpr std::uint64_t kRays = 1 << 21;
@@ -85,7 +68,7 @@ Case make_case(const std::string& name, std::size_t train, std::uint64_t tests) 
       (i % 2 == 0 ? reference : rays.rays).append(file.rays, i);
     }
   } else {
-    source = source_named(name);
+    source = bench::source_named(name);
     rays.rays = draw_rays(*source, Sequence(SequenceKind::random, 11), train);
     reference = draw_rays(*source, Sequence(SequenceKind::random, 12), 1 << 19);
   }
@@ -93,7 +76,7 @@ Case make_case(const std::string& name, std::size_t train, std::uint64_t tests) 
   ViewCounts none(*views);
   Case c{std::filesystem::path(name).filename().string(), std::move(rays), std::move(views), none, none};
   if (source)
-    add_drawn(c.truth, *source, Sequence(SequenceKind::random, 13), tests);
+    bench::add_drawn(c.truth, *source, Sequence(SequenceKind::random, 13), tests);
   else
     c.truth.add(reference);
   c.training.add(c.rays.rays);
@@ -109,7 +92,7 @@ std::uint64_t report(const Case& c, const AdaptiveOptions& options, std::uint64_
   const double waited = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
   const double peak = peak_gb();
   ViewCounts test(*c.views);
-  add_drawn(test, *model, Sequence(SequenceKind::random, 14), tests);
+  bench::add_drawn(test, *model, Sequence(SequenceKind::random, 14), tests);
   const RaySetComparison r = compare_view_counts(c.truth, test, &c.training);
   for (const AdaptiveLayer& layer : model->data().layers) {
     if (why) fmt::print("# {}: {:.5f} {}\n", to_string(layer.support.kind), layer.share, layer.why);

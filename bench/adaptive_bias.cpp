@@ -17,37 +17,16 @@
 
 using namespace lucerna;
 
-namespace {
-
-std::unique_ptr<RaySource> source_named(const std::string& name) {
-  if (auto own = bench::own_source(name)) return own;
-  EmitterOptions options;
-  options.kind = emitter_kind(name);
-  return make_emitter(options);
-}
-
-void add_drawn(ViewCounts& counts, const RaySource& source, std::uint64_t seed, std::uint64_t n) {
-  constexpr std::uint64_t kPiece = 1 << 20;
-  RayBlock block;
-  for (std::uint64_t first = 0; first < n; first += kPiece) {
-    block.resize(std::min(kPiece, n - first), 0);
-    source.emit(Sequence(SequenceKind::random, seed), first, block);
-    counts.add(block);
-  }
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
   const auto argument = [&](int i, double otherwise) { return argc > i ? std::atof(argv[i]) : otherwise; };
   const std::string name = argc > 1 ? argv[1] : "strip";
   const auto n = static_cast<std::size_t>(argument(2, 1e5));
   const auto sets = static_cast<std::uint64_t>(std::max(2.0, argument(3, 4)));
   const auto tests = static_cast<std::uint64_t>(argument(4, 1e6));
-  const auto source = source_named(name);
+  const auto source = bench::source_named(name);
   const Views views(draw_rays(*source, Sequence(SequenceKind::random, 12), 1 << 19));
   ViewCounts truth(views), pooled(views);
-  add_drawn(truth, *source, 13, 2 * tests);
+  bench::add_drawn(truth, *source, Sequence(SequenceKind::random, 13), 2 * tests);
   std::array<double, 5> squares{}, raw{};
   double bytes = 0.0;
   for (std::uint64_t k = 0; k < sets; ++k) {
@@ -58,7 +37,9 @@ int main(int argc, char** argv) {
     bytes += static_cast<double>(encode_nfl(model->to_nfl()).size());
     ViewCounts test(views), training(views);
     training.add(rays.rays);
-    for (ViewCounts* counts : {&test, &pooled}) add_drawn(*counts, *model, 14 + 1000 * k, tests);
+    for (ViewCounts* counts : {&test, &pooled}) {
+      bench::add_drawn(*counts, *model, Sequence(SequenceKind::random, 14 + 1000 * k), tests);
+    }
     const RaySetComparison r = compare_view_counts(truth, test, &training);
     for (std::size_t v = 0; v < 5; ++v) {
       squares[v] += r[kViewKinds[v]].excess * r[kViewKinds[v]].excess;

@@ -5,10 +5,13 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <string>
 #include <string_view>
 
 #include "lucerna/core/frame.h"
 #include "lucerna/rayset/bounding_surface.h"
+#include "lucerna/rayset/compare.h"
+#include "lucerna/source/emitter.h"
 #include "lucerna/source/ray_source.h"
 #include "lucerna/source/warp.h"
 
@@ -149,6 +152,26 @@ inline std::unique_ptr<RaySource> own_source(std::string_view name) {
   if (name == "strip") return std::make_unique<OwnSource>(strip_ray);
   if (name == "arc") return std::make_unique<OwnSource>(arc_ray);
   return nullptr;
+}
+
+/// Counts `n` rays of a source.
+inline void add_drawn(ViewCounts& counts, const RaySource& source, const Sequence& sequence,
+                      std::uint64_t n) {
+  constexpr std::uint64_t kPiece = 1 << 20;
+  RayBlock block;
+  for (std::uint64_t first = 0; first < n; first += kPiece) {
+    block.resize(std::min(kPiece, n - first), 0);
+    source.emit(sequence, first, block);
+    counts.add(block);
+  }
+}
+
+/// One of these, or an emitter.
+inline std::unique_ptr<RaySource> source_named(const std::string& name) {
+  if (auto own = own_source(name)) return own;
+  EmitterOptions options;
+  options.kind = emitter_kind(name);
+  return make_emitter(options);
 }
 
 }  // namespace lucerna::bench

@@ -34,6 +34,11 @@ struct Round {
 };
 constexpr std::array<Round, 6> kRounds{
     {{40, 1 << 15}, {28, 1 << 16}, {20, 1 << 17}, {14, 1 << 18}, {8, 1 << 19}, {4, 1 << 20}}};
+static_assert([] {
+  int all = 0;
+  for (const Round& r : kRounds) all += r.shapes;
+  return all;
+}() == kProfileEvaluations);
 /// Shapes that are traced between two looks at the clock.
 constexpr std::size_t kBatch = 4;
 /// Beyond so far (over the radius) what a trace showed beside the table counts by half.

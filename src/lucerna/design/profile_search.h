@@ -26,7 +26,7 @@ using ProfileWatch = std::function<bool(const ProfileProgress&)>;
 /// Evaluations of a whole search.
 inline constexpr int kProfileEvaluations = 114;
 
-/// Basins of a mirror of revolution, the cheapest first: a thousand shapes about the given one are fitted on
+/// Basins of a mirror of revolution, the cheapest first: up to 3000 shapes about the given one are fitted on
 /// a table of what its zones throw (zone_table.h), the best hop on from where they ended, and those ahead are
 /// traced. What the trace shows beside the table (second reflections), light and derivatives, is added to the
 /// table near there, and the hops go on: space mapping (Bandler et al. 2004), six rounds of fewer shapes and

@@ -43,8 +43,6 @@ struct BsplineView {
   /// Bound on the offset's second derivative along any unit direction of the xy plane.
   double bend_bound = 0.0;
 
-  LUCERNA_HD int count() const { return row_x.coefficients() * row_y.coefficients(); }
-
   LUCERNA_HD ShapeOffset offset(double x, double y) const {
     const KnotRow::Place px = row_x.place(x), py = row_y.place(y);
     const CubicBasis bx = cubic_basis(px.t), dx = cubic_basis_slope(px.t);
@@ -129,8 +127,6 @@ struct RevolutionView {
   const double* coefficients = nullptr;
   HeightRange band;
   double bend_bound = 0.0;
-
-  LUCERNA_HD int count() const { return row.coefficients(); }
 
   /// Offset from the base paraboloid at a radius, and its slope.
   LUCERNA_HD std::array<double, 2> offset_at(double r) const {

@@ -62,7 +62,7 @@ LUCERNA_HD inline void detect(const LaunchView& v, const LaneRays& ray, float fl
   for (std::int32_t d = 0; d < v.far_field_count; ++d) {
     const FarFieldView& far = v.far_fields[d];
     atomic_add(bins + far.first_bin + far_field_cell(ray.dx, ray.dy, ray.dz, far.c_count, far.gamma_count).v,
-            units);
+               units);
   }
   if (v.plane_count == 0 && v.out_rays == nullptr) return;
   const Ray leg{{ray.x.v, ray.y.v, ray.z.v}, Direction::from({ray.dx.v, ray.dy.v, ray.dz.v})};
