@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <vector>
 
+#include "lucerna/reflector/faceted_surface.h"
 #include "lucerna/source/draw_rays.h"
 #include "lucerna/source/emitter.h"
 #include "lucerna/trace/trace.h"
@@ -58,6 +60,20 @@ inline std::vector<Reflector> families() {
           conic_reflector(ConicPreset::hyperbola, 25.0, 120.0, box),
           profile_reflector({{0.0, 10.0}, {20.0, 6.0}, {30.0, 3.0}, {45.0, -5.0}}, round),
           conic_trough(ConicPreset::parabola, 10.0, 0.0, box)};
+}
+
+/// Mirrors of every family that is no height field: profiles that close in again, revolved and drawn along y,
+/// and facets, flat and bulging.
+inline std::vector<Reflector> exact_families() {
+  const std::vector<ProfileKnot> closing{{6.0, 0.0}, {30.0, 5.0}, {45.0, 30.0}, {40.0, 48.0}, {36.0, 52.0}};
+  const Reflector base = conic_reflector(ConicPreset::parabola, 15.0, 0.0, Aperture::circle(90.0, 12.0));
+  const Aperture box = Aperture::rectangle(90.0, 70.0);
+  return {
+      deep_ellipse_reflector(12.0, 90.0, 40.0),
+      profile_reflector(closing, Aperture::circle(72.0, 12.0)),
+      profile_trough(closing, Aperture::rectangle(92.0, 70.0)),
+      {std::make_shared<FacetedSurface>(base.surface, 6.0, 20.0), base.aperture},
+      {std::make_shared<FacetedSurface>(base.surface, 4.0, std::numeric_limits<double>::infinity()), box}};
 }
 
 /// The same with one mirror instead of the two.

@@ -8,3 +8,11 @@
 #else
 #define LUCERNA_HD
 #endif
+
+/// After LUCERNA_HD: a GPU calls this function instead of copying it into its callers, whose registers stay free
+/// for what they do most.
+#if defined(__CUDACC__)
+#define LUCERNA_HD_CALL __noinline__
+#else
+#define LUCERNA_HD_CALL
+#endif

@@ -19,9 +19,12 @@ namespace {
 constexpr unsigned kThreads = 128;
 static_assert(kBlockRays % kThreads == 0);
 
+template <SceneFeatures kFeatures>
 __global__ void __launch_bounds__(kThreads) trace_kernel(const __grid_constant__ LaunchView v) {
   Counters counters;
-  for (std::uint32_t k = threadIdx.x; k < kBlockRays; k += kThreads) trace_number(v, blockIdx.x, k, counters);
+  for (std::uint32_t k = threadIdx.x; k < kBlockRays; k += kThreads) {
+    trace_number<kFeatures>(v, blockIdx.x, k, counters);
+  }
   add_block_sums(counters.sum, kLedgerSums, v.ledger + (v.first_block + blockIdx.x) % kReplicates * kLedgerSums);
 }
 
@@ -104,7 +107,9 @@ class CudaAccelerator final : public Accelerator {
   void trace(int stream, const LaunchView& launch) override {
     if (launch.blocks == 0) return;
     check(cudaSetDevice(device_));
-    trace_kernel<<<launch.blocks, kThreads, 0, streams_[stream]>>>(launch);
+    with_compiled(launch.features, [&](auto features) {
+      trace_kernel<features.value><<<launch.blocks, kThreads, 0, streams_[stream]>>>(launch);
+    });
     check(cudaGetLastError());
   }
   void rebuild(int stream, const HierarchyView& h) override {

@@ -44,12 +44,7 @@ class EmulatedAccelerator final : public Accelerator {
   }
 
   void trace(int, const LaunchView& v) override {
-    for (std::size_t block = 0; block < v.blocks; ++block) {
-      Counters counters;
-      for (std::uint32_t k = 0; k < kBlockRays; ++k) trace_number(v, block, k, counters);
-      std::int64_t* const ledger = v.ledger + (v.first_block + block) % kReplicates * kLedgerSums;
-      for (int i = 0; i < kLedgerSums; ++i) atomic_add(ledger + i, counters.sum[i]);
-    }
+    with_compiled(v.features, [&v](auto features) { trace_all<features.value>(v); });
   }
 
   void rebuild(int, const HierarchyView& h) override {
@@ -66,6 +61,17 @@ class EmulatedAccelerator final : public Accelerator {
 
   void* native_stream(int) const override { return nullptr; }
   void wait(int) override {}
+
+ private:
+  template <SceneFeatures kFeatures>
+  static void trace_all(const LaunchView& v) {
+    for (std::size_t block = 0; block < v.blocks; ++block) {
+      Counters counters;
+      for (std::uint32_t k = 0; k < kBlockRays; ++k) trace_number<kFeatures>(v, block, k, counters);
+      std::int64_t* const ledger = v.ledger + (v.first_block + block) % kReplicates * kLedgerSums;
+      for (int i = 0; i < kLedgerSums; ++i) atomic_add(ledger + i, counters.sum[i]);
+    }
+  }
 };
 
 }  // namespace

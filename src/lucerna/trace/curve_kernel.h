@@ -218,7 +218,7 @@ class CurveWalk {
     double t, f;
   };
 
-  LUCERNA_HD void part(const CurvePiece& p, double t0, double t1) {
+  LUCERNA_HD LUCERNA_HD_CALL void part(const CurvePiece& p, double t0, double t1) {
     t0 = greatest(t0, 0.0);
     t1 = least(t1, best_.t);
     if (!(t0 < t1)) return;
@@ -245,7 +245,8 @@ class CurveWalk {
   }
 
   /// The root between t0 and t1, where the side changes, by Newton's method inside a shrinking bracket.
-  LUCERNA_HD void crossing(const CurvePiece& p, const End& first, const End& last, bool front) {
+  LUCERNA_HD LUCERNA_HD_CALL void crossing(const CurvePiece& p, const End& first, const End& last,
+                                           bool front) {
     double low = first.t, high = last.t;
     // Where the chord crosses; the curve is nearly straight beside it.
     double t = low + (high - low) * (first.f / (first.f - last.f));

@@ -7,6 +7,7 @@
 #include "lucerna/core/error.h"
 #include "lucerna/source/adaptive_model.h"
 #include "lucerna/source/cluster_model.h"
+#include "lucerna/trace/curve_view.h"
 #include "lucerna/trace/facet_mirror.h"
 #include "lucerna/trace/field_view.h"
 
@@ -24,8 +25,6 @@ std::string why_not_on_accelerators(const Scene& scene) {
   for (const PlacedReflector& placed : reflectors) {
     [[maybe_unused]] const auto& [reflector, frame, reflectance, slope_error_mrad] = placed;
     [[maybe_unused]] const auto& [surface, aperture, curve] = reflector;
-    if (curve) return "profiles that are no function of the radius are traced on the CPU only";
-    if (faceted(reflector) != nullptr) return "facets are traced on the CPU only";
   }
   return "";
 }
@@ -105,20 +104,39 @@ SourceView DeviceScene::source_view(const PlacedSource& source, double ray_flux)
   return v;
 }
 
-void DeviceScene::add_mirror(const PlacedReflector& reflector, int cells) {
-  const HeightField field(reflector.reflector, cells);
+void DeviceScene::add_mirror(const PlacedReflector& placed, int cells) {
   MirrorView m;
-  m.field = view_of(field);
-  m.world_from_mirror = view_of(reflector.world_from_reflector);
-  m.mirror_from_world = view_of(reflector.world_from_reflector.inverse());
-  const auto& table = reflector.reflectance.table();
+  m.world_from_mirror = view_of(placed.world_from_reflector);
+  m.mirror_from_world = view_of(placed.world_from_reflector.inverse());
+  const auto& table = placed.reflectance.table();
   m.reflectance = put(table.data(), table.size());
   m.reflectance_entries = static_cast<std::uint32_t>(table.size());
-  m.slope_error_rad = 1e-3 * reflector.slope_error_mrad;
+  m.slope_error_rad = 1e-3 * placed.slope_error_mrad;
+  const Reflector& reflector = placed.reflector;
+  HierarchyView h;
+  if (reflector.curve) {
+    m.curve = view_of(*reflector.curve, reflector.aperture);
+    m.curve.pieces = put(m.curve.pieces, reflector.curve->pieces().size());
+    m.curve.nodes = put(m.curve.nodes, reflector.curve->nodes().size());
+    view_.features |= kExactMirrors;
+  } else if (const FacetedSurface* const surface = faceted(reflector)) {
+    const FacetMirror facets(*surface, reflector.aperture);
+    m.facets = facets.view();
+    m.facets.facets = put(m.facets.facets, static_cast<std::size_t>(m.facets.columns) *
+                                               static_cast<std::size_t>(m.facets.rows));
+    view_.features |= kExactMirrors;
+  } else {
+    h = add_field(HeightField(reflector, cells), m.field);
+  }
+  mirrors_.push_back(m);
+  hierarchies_.push_back(h);
+  bands_.emplace_back();
+  if (is_field(mirrors_.size() - 1)) rebuild(mirrors_.size() - 1);
+}
 
+HierarchyView DeviceScene::add_field(const HeightField& field, FieldView& view) {
   HierarchyView h;
   h.vertices = put(field.vertices().data(), field.vertices().size());
-  vertices_.push_back(const_cast<FieldVertex*>(h.vertices));
   h.leaf_is_mirror = put(field.leaf_is_mirror().data(), field.leaf_is_mirror().size());
   buffers_.emplace_back(accelerator_, field.nodes().size() * sizeof(FieldNode));
   h.nodes = buffers_.back().as<FieldNode>();
@@ -129,13 +147,10 @@ void DeviceScene::add_mirror(const PlacedReflector& reflector, int cells) {
   h.levels = static_cast<std::int32_t>(field.level_offsets().size());
   h.step_x = field.step_x_mm();
   h.step_y = field.step_y_mm();
-  m.field.vertices = &h.vertices->z_mm;
-  m.field.nodes = &h.nodes->a;
-  mirrors_.push_back(m);
-  hierarchies_.push_back(h);
-  node_counts_.push_back(field.nodes().size());
-  bands_.emplace_back();
-  rebuild(mirrors_.size() - 1);
+  view = view_of(field);
+  view.vertices = &h.vertices->z_mm;
+  view.nodes = &h.nodes->a;
+  return h;
 }
 
 void DeviceScene::rebuild(std::size_t m) {
@@ -152,15 +167,24 @@ void DeviceScene::rebuild(std::size_t m) {
 }
 
 void DeviceScene::set_vertices(std::size_t m, const std::vector<FieldVertex>& vertices) {
+  LUCERNA_CHECK(is_field(m), "mirror {} is no height field", m);
   const std::size_t n = static_cast<std::size_t>(hierarchies_[m].cells) + 1;
   LUCERNA_CHECK(vertices.size() == n * n, "{} vertices, {} a side", vertices.size(), n);
-  accelerator_.upload(0, vertices_[m], vertices.data(), vertices.size() * sizeof(FieldVertex));
+  accelerator_.upload(0, const_cast<FieldVertex*>(hierarchies_[m].vertices), vertices.data(),
+                      vertices.size() * sizeof(FieldVertex));
   rebuild(m);
 }
 
 std::vector<FieldNode> DeviceScene::nodes(std::size_t m) const {
-  std::vector<FieldNode> nodes(node_counts_[m]);
-  accelerator_.download(0, nodes.data(), hierarchies_[m].nodes, nodes.size() * sizeof(FieldNode));
+  const HierarchyView& h = hierarchies_[m];
+  // Four squares have one parent, up to the one that is all.
+  std::size_t count = 0;
+  for (std::int32_t level = 0; level < h.levels; ++level) {
+    const std::size_t side = static_cast<std::size_t>(h.cells / kFieldBlock) >> level;
+    count += side * side;
+  }
+  std::vector<FieldNode> nodes(count);
+  accelerator_.download(0, nodes.data(), h.nodes, nodes.size() * sizeof(FieldNode));
   accelerator_.wait(0);
   return nodes;
 }

@@ -24,9 +24,9 @@ class DeviceScene {
   DeviceScene(Accelerator& accelerator, const Scene& scene, const RayNumbering& numbering,
               const TraceOptions& options);
 
-  /// Gives mirror `m` another shape on the same grid, and makes its tree again.
+  /// Gives mirror `m`, a height field, another shape on the same grid, and makes its tree again.
   void set_vertices(std::size_t m, const std::vector<FieldVertex>& vertices);
-  /// The tree of mirror `m` and its band, as they are in the accelerator's memory.
+  /// The tree of mirror `m` and its band, as they are in the accelerator's memory; none of other mirrors.
   std::vector<FieldNode> nodes(std::size_t m) const;
   HeightRange band(std::size_t m) const { return bands_[m]; }
 
@@ -43,7 +43,10 @@ class DeviceScene {
   template <class T>
   const T* put(const T* data, std::size_t n);
   SourceView source_view(const PlacedSource& source, double ray_flux);
-  void add_mirror(const PlacedReflector& reflector, int cells);
+  void add_mirror(const PlacedReflector& placed, int cells);
+  /// Uploads a field and makes `view` of it; its tree is still to be made.
+  HierarchyView add_field(const HeightField& field, FieldView& view);
+  bool is_field(std::size_t m) const { return hierarchies_[m].cells > 0; }
   void add_detectors(const Scene& scene);
   void rebuild(std::size_t m);
 
@@ -51,9 +54,8 @@ class DeviceScene {
   std::vector<AcceleratorBuffer> buffers_;
   std::vector<SourceView> sources_;
   std::vector<MirrorView> mirrors_;
+  /// Without cells for mirrors that are no height field.
   std::vector<HierarchyView> hierarchies_;
-  std::vector<FieldVertex*> vertices_;
-  std::vector<std::size_t> node_counts_;
   std::vector<HeightRange> bands_;
   MirrorView* device_mirrors_ = nullptr;
   std::vector<std::size_t> bin_counts_;

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "lucerna/core/error.h"
-#include "lucerna/reflector/faceted_surface.h"
 #include "lucerna/source/adaptive_model.h"
 #include "lucerna/source/cluster_compress.h"
 #include "lucerna/source/emitter.h"
@@ -49,6 +48,26 @@ TEST(DeviceTrace, EveryFamilyIsTheCpusToTheBit) {
   }
 }
 
+/// `mirror` with a tilt and a reflectance over the angle, before a height field that takes part of its light.
+Scene exact_scene_of(const Reflector& mirror) {
+  Scene scene = scene_of(cylinder());
+  scene.reflectors[0].reflector = mirror;
+  scene.reflectors[0].slope_error_mrad = 2.0;
+  return scene;
+}
+
+TEST(DeviceTrace, MirrorsThatAreNoHeightFieldAreTheCpusToTheBit) {
+  for (const Reflector& family : test::exact_families()) {
+    for (const Scene& scene : {scene_of(cylinder(), family), exact_scene_of(family)}) {
+      const TraceResult device = trace_on(emulated(), scene, kScalar);
+      expect_same(trace(scene, kScalar), device);
+      const Ledger l = ledger(device);
+      EXPECT_GT(l.reflections_per_ray, 0.1);
+      EXPECT_GT(l.absorbed[0].second.mean, 0.0);
+    }
+  }
+}
+
 // Kernels of other widths round differently in places; rays stay together all the same.
 TEST(DeviceTrace, AgreesRayByRayWithTheFastestInstructionSet) {
   for (const Reflector& family : test::families()) {
@@ -64,6 +83,28 @@ TEST(DeviceTrace, AgreesRayByRayWithTheFastestInstructionSet) {
     Scene moved = scene;
     moved.reflectors[0].world_from_reflector = Frame::from_axis(Direction{}, 0.0, {0, 0, -12.01});
     EXPECT_GT(test::compare_rays(trace(moved, fastest), device).differ, p.rays / 20);
+  }
+}
+
+/// Rays of the two that are not the same within 1e-4 mm and 1e-5.
+test::RayPairs against_the_fastest(const Scene& scene, int max_bounces) {
+  TraceOptions scalar = kScalar, fastest = kScalar;
+  scalar.max_bounces = fastest.max_bounces = max_bounces;
+  fastest.isa.clear();
+  return test::compare_rays(trace(scene, fastest), trace_on(emulated(), scene, scalar));
+}
+
+// The rest of those that were reflected once started beside an edge. From one reflection to the next a small
+// error grows by twice the way over the radius of curvature: a few times in hollow mirrors, more on pillows.
+TEST(DeviceTrace, AgreesRayByRayWithTheFastestInstructionSetOffExactMirrors) {
+  for (const Reflector& family : test::exact_families()) {
+    const Scene scene = scene_of(cylinder(), family);
+    const test::RayPairs once = against_the_fastest(scene, 1), often = against_the_fastest(scene, 5);
+    std::printf("%zu of %zu rays differ that were reflected once, %zu of %zu of all\n", once.differ,
+                once.rays, often.differ, often.rays);
+    EXPECT_GT(once.rays, 5000u);
+    EXPECT_LE(once.differ, once.rays / 2000);
+    EXPECT_LE(often.differ, often.rays / 50);
   }
 }
 
@@ -229,18 +270,6 @@ TEST(DeviceTrace, BodiesAreRefusedInOneLine) {
   EXPECT_THROW(trace_on(emulated(), scene, kScalar), InputError);
   EXPECT_FALSE(why_not_on_accelerators(scene).empty());
   EXPECT_TRUE(why_not_on_accelerators(scene_of(cylinder())).empty());
-}
-
-TEST(DeviceTrace, MirrorsThatAreNoHeightFieldAreRefusedInOneLine) {
-  Scene scene = scene_of(cylinder());
-  scene.reflectors[0].reflector = deep_ellipse_reflector(10.0, 90.0, 40.0);
-  const std::string fault = test::message_of<InputError>([&] { trace_on(emulated(), scene, kScalar); });
-  EXPECT_NE(fault.find("profiles that are no function of the radius are traced on the CPU only"),
-            std::string::npos)
-      << fault;
-  const Reflector base = conic_reflector(ConicPreset::parabola, 12.0, 0.0, Aperture::circle(60.0));
-  scene.reflectors[0].reflector = {std::make_shared<FacetedSurface>(base.surface, 6.0, 20.0), base.aperture};
-  EXPECT_NE(why_not_on_accelerators(scene).find("facets are traced on the CPU only"), std::string::npos);
 }
 
 TEST(DeviceTrace, CudaWithoutADeviceIsAnErrorAndAutomaticTracesOnTheCpu) {

@@ -8,6 +8,8 @@
 #include "lucerna/reflector/field_hierarchy.h"
 #include "lucerna/source/adaptive_view.h"
 #include "lucerna/source/cluster_view.h"
+#include "lucerna/trace/curve_kernel.h"
+#include "lucerna/trace/facet_kernel.h"
 #include "lucerna/trace/kernel.h"
 #include "lucerna/trace/plane_detector.h"
 #include "lucerna/trace/reflectance.h"
@@ -50,12 +52,21 @@ struct RunView {
   std::uint32_t source = 0, count = 0;
 };
 
+/// What a scene has beyond height fields and hard bins. Kernels are compiled for some sets of these, so that
+/// plain scenes do not pay for them.
+enum SceneFeature : std::uint32_t { kExactMirrors = 1 };
+using SceneFeatures = std::uint32_t;
+inline constexpr SceneFeatures kPlainScene = 0;
+
 struct MirrorView {
-  FieldView field;
+  FieldView field{};
   FrameView world_from_mirror, mirror_from_world;
   const ReflectanceEntry* reflectance = nullptr;
   std::uint32_t reflectance_entries = 0;
   double slope_error_rad = 0.0;
+  /// In the field's place, if they have any nodes or columns (kExactMirrors):
+  CurveView curve{};
+  FacetView facets{};
 };
 
 struct FarFieldView {
@@ -89,6 +100,7 @@ struct LaunchView {
   const RunView* runs = nullptr;
   SentRays sent;
 
+  SceneFeatures features = kPlainScene;
   SequenceKind sequence = SequenceKind::sobol;
   std::int32_t max_bounces = 0, mirror_count = 0, far_field_count = 0, plane_count = 0;
   const SourceView* sources = nullptr;

@@ -6,7 +6,10 @@
 // (accelerator_emulated.cpp), which runs the same functions in a loop. Plain data in flat arrays; sums are
 // the whole units of tally.h, so that the order of adding does not matter.
 
+#include <type_traits>
+
 #include "lucerna/core/atomic_add.h"
+#include "lucerna/trace/exact_mirrors.h"
 #include "lucerna/trace/field_kernel.h"
 #include "lucerna/trace/launch_view.h"
 #include "lucerna/trace/slope_error.h"
@@ -79,18 +82,38 @@ LUCERNA_HD inline void detect(const LaunchView& v, const LaneRays& ray, float fl
                        static_cast<float>(static_cast<double>(units) / kUnitsPerRay)};
 }
 
+LUCERNA_HD LUCERNA_HD_CALL inline ExactHit meet_exact(const MirrorView& mirror, const Vec3& o, const Vec3& d,
+                                                      bool on_mirror) {
+  return mirror.curve.node_count > 0 ? curve_hit(mirror.curve, o, d, on_mirror)
+                                     : facet_hit(mirror.facets, o, d, on_mirror);
+}
+
+/// First hit of a ray in a mirror's frame with that mirror.
+template <SceneFeatures kFeatures>
+LUCERNA_HD inline LaneHits meet(const MirrorView& mirror, const LaneRays& local) {
+  if constexpr ((kFeatures & kExactMirrors) != 0) {
+    if (mirror.curve.node_count > 0 || mirror.facets.columns > 0) {
+      const ExactHit hit = meet_exact(mirror, {local.x.v, local.y.v, local.z.v},
+                                      {local.dx.v, local.dy.v, local.dz.v}, local.on_mirror.m);
+      return {hit.t, hit.gx, hit.gy, Int(hit.state), hit.gz};
+    }
+  }
+  return Packet(mirror.field, local).run(mask_of(1));
+}
+
 /// The mirror that a ray meets first; -1 if none.
 struct FirstHit {
   std::int32_t mirror = -1;
   LaneRays local;
   LaneHits hit;
 };
+template <SceneFeatures kFeatures>
 LUCERNA_HD inline FirstHit first_hit(const LaunchView& v, const LaneRays& ray, std::int32_t last) {
   FirstHit first;
   for (std::int32_t m = 0; m < v.mirror_count; ++m) {
     LaneRays local = in_frame(v.mirrors[m].mirror_from_world, ray);
     local.on_mirror = {m == last};
-    const LaneHits hit = Packet(v.mirrors[m].field, local).run(mask_of(1));
+    const LaneHits hit = meet<kFeatures>(v.mirrors[m], local);
     if (hit.state.v == kMiss || (first.mirror >= 0 && !(hit.t.v < first.hit.t.v))) continue;
     first.mirror = m;
     first.local = local;
@@ -113,11 +136,12 @@ LUCERNA_HD inline bool all_finite(const LaneRays& r) {
 }
 
 /// Follows a ray of the luminaire frame until it leaves, is absorbed or is given up.
+template <SceneFeatures kFeatures>
 LUCERNA_HD inline void follow(const LaunchView& v, LaneRays ray, float flux, ReflectionKey key,
                               std::uint32_t replicate, std::size_t place, Counters& counters) {
   std::int32_t last = -1;
   for (int bounce = 0;; ++bounce) {
-    FirstHit first = first_hit(v, ray, last);
+    FirstHit first = first_hit<kFeatures>(v, ray, last);
     if (first.mirror < 0) {
       counters.add(bounce == 0 ? kOutDirect : kOutReflected, units_of(flux));
       detect(v, ray, flux, replicate, place);
@@ -146,6 +170,7 @@ LUCERNA_HD inline void follow(const LaunchView& v, LaneRays ray, float flux, Ref
 }
 
 /// Ray number `k` (0 .. kBlockRays - 1) of block `block` of the launch: drawn, traced and counted.
+template <SceneFeatures kFeatures>
 LUCERNA_HD inline void trace_number(const LaunchView& v, std::size_t block, std::uint32_t k,
                                     Counters& counters) {
   const std::size_t place = block * kBlockRays + k;
@@ -167,8 +192,15 @@ LUCERNA_HD inline void trace_number(const LaunchView& v, std::size_t block, std:
       return counters.add(kLostNotFiniteRays, 1);
     }
     const std::uint32_t replicate = static_cast<std::uint32_t>((v.first_block + block) % kReplicates);
-    return follow(v, ray, flux, {run.sequence_seed, run.first + i, 0}, replicate, place, counters);
+    return follow<kFeatures>(v, ray, flux, {run.sequence_seed, run.first + i, 0}, replicate, place, counters);
   }
+}
+
+/// Calls `f` with the smallest compiled set of features (an integral_constant) that has all of `features`.
+template <class F>
+void with_compiled(SceneFeatures features, const F& f) {
+  if (features == kPlainScene) return f(std::integral_constant<SceneFeatures, kPlainScene>{});
+  f(std::integral_constant<SceneFeatures, kExactMirrors>{});
 }
 
 /// Node `i` of level `level` of a field's tree.

@@ -8,7 +8,9 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/reflector/height_field.h"
+#include "lucerna/trace/curve_view.h"
 #include "lucerna/trace/exact_mirrors.h"
+#include "lucerna/trace/facet_mirror.h"
 #include "lucerna/trace/field_view.h"
 #include "lucerna/trace/slope_error.h"
 #include "lucerna/trace/trace_engine.h"
