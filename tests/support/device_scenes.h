@@ -83,6 +83,28 @@ inline Scene scene_of(std::shared_ptr<const RaySource> rays, const Reflector& mi
   return scene;
 }
 
+/// A clear glass close about the source, a grey one across the light below, and a thick one aslant whose rim
+/// takes light.
+inline Scene with_glasses(Scene scene) {
+  scene.glasses = {
+      {.name = "tube",
+       .aperture = Aperture::rectangle(40.0, 30.0),
+       .thickness_mm = 1.0,
+       .world_from_glass = Frame::from_axis(Direction::from({1, 0, 0.2}), 0.0, {4, 0, 0})},
+      {.name = "front",
+       .aperture = Aperture::circle(120.0),
+       .refractive_index = 1.6,
+       .absorption_per_mm = 0.02,
+       .world_from_glass = Frame::from_axis(Direction{}, 0.0, {0, 0, -40})},
+      {.name = "block",
+       .aperture = Aperture::circle(30.0),
+       .thickness_mm = 15.0,
+       .refractive_index = 2.4,
+       .absorption_per_mm = 0.01,
+       .world_from_glass = Frame::from_axis(Direction::from({0.3, 0.2, 1}), 0.0, {-12, 5, -30})}};
+  return scene;
+}
+
 /// How the rays that left two traces compare, pairwise by number.
 struct RayPairs {
   std::size_t rays = 0, differ = 0;

@@ -64,7 +64,7 @@ struct TypeCAngles {
   double gamma_rad = 0.0;
 };
 
-inline TypeCAngles type_c_angles(const Direction& d) {
+LUCERNA_HD inline TypeCAngles type_c_angles(const Direction& d) {
   const double across = std::hypot(d.x(), d.y());
   double c = across > 0.0 ? std::atan2(d.y(), d.x()) : 0.0;
   if (c < 0.0) c += 2.0 * std::numbers::pi;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
 
 namespace lucerna {
 
@@ -47,36 +46,6 @@ GlassTracer::GlassTracer(const std::vector<CoverGlass>& glasses) {
     check(g);
     plates_.push_back({view_of(g), g.world_from_glass, g.world_from_glass.inverse()});
   }
-}
-
-std::optional<GlassHit> GlassTracer::first_hit(const Ray& ray, double t_max_mm) const {
-  std::optional<GlassHit> first;
-  for (std::size_t i = 0; i < plates_.size(); ++i) {
-    const Ray local = plates_[i].glass_from_world.ray(ray);
-    const PlateEntry entry = plate_entry(plates_[i].view, local.origin_mm, local.direction.vec());
-    if (!entry.met || !(entry.t_mm < t_max_mm)) continue;
-    t_max_mm = entry.t_mm;
-    first = GlassHit{entry.t_mm, i, entry.edge};
-  }
-  return first;
-}
-
-GlassPassage GlassTracer::pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key) const {
-  const Plate& plate = plates_[hit.glass];
-  const Ray local = plate.glass_from_world.ray(ray);
-  // Streams below 2^17 belong to whoever emits and to slope errors.
-  Rng rng(key.sequence_seed, key.ray, 0x20000u + static_cast<std::uint32_t>(key.bounce));
-  const double u = rng.uniform(), v = rng.uniform();
-  const PlateOutcome out =
-      pass_plate(plate.view, local.origin_mm, local.direction.vec(), {true, hit.edge, hit.t_mm}, u, v);
-  if (!(out.kept > 0.0)) return {};
-  // What goes straight on keeps the direction that it came with, to the bit.
-  const Direction direction =
-      out.transmitted ? ray.direction : plate.world_from_glass.direction(Direction::from_unit(out.direction));
-  return {out.kept,
-          out.transmitted,
-          static_cast<int>(out.ways),
-          {plate.world_from_glass.point(out.origin_mm), direction}};
 }
 
 }  // namespace lucerna

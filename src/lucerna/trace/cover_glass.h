@@ -5,10 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/frame.h"
 #include "lucerna/reflector/aperture.h"
 #include "lucerna/trace/plate_kernel.h"
-#include "lucerna/trace/slope_error.h"
 
 namespace lucerna {
 
@@ -47,22 +45,6 @@ struct GlassShares {
 };
 GlassShares glass_shares(const CoverGlass& glass, double cos_incidence);
 
-struct GlassHit {
-  double t_mm = 0.0;
-  std::size_t glass = 0;
-  bool edge = false;
-};
-
-/// A ray after a plate, in the luminaire frame.
-struct GlassPassage {
-  /// Share of the flux that goes on; 0: the ray ends here, and `ray` is nothing.
-  double kept = 0.0;
-  bool transmitted = false;
-  /// How often it went through the glass, face to face.
-  int ways = 0;
-  Ray ray;
-};
-
 /// Rays through a set of cover glasses. Immutable and thread safe.
 class GlassTracer {
  public:
@@ -70,19 +52,21 @@ class GlassTracer {
   explicit GlassTracer(const std::vector<CoverGlass>& glasses);
 
   bool empty() const { return plates_.empty(); }
+  /// As kernels read them.
+  const std::vector<PlacedPlate>& plates() const { return plates_; }
 
   /// The first plate within [0, t_max_mm) of a ray in the luminaire frame. O(plates).
-  std::optional<GlassHit> first_hit(const Ray& ray, double t_max_mm) const;
+  std::optional<GlassHit> first_hit(const Ray& ray, double t_max_mm) const {
+    return first_plate(plates_.data(), plates_.size(), ray, t_max_mm);
+  }
 
   /// What becomes of the ray there. `key.bounce` counts all that the ray met before, plates included.
-  GlassPassage pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key) const;
+  GlassPassage pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key) const {
+    return through_plate(plates_[hit.glass], ray, hit, key);
+  }
 
  private:
-  struct Plate {
-    PlateView view;
-    Frame world_from_glass, glass_from_world;
-  };
-  std::vector<Plate> plates_;
+  std::vector<PlacedPlate> plates_;
 };
 
 }  // namespace lucerna

@@ -18,10 +18,6 @@ std::string why_not_on_accelerators(const Scene& scene) {
   [[maybe_unused]] const auto& [sources, reflectors, far_fields, planes, luminances, ray_detectors, bodies,
                                 glasses] = scene;
   if (!bodies.empty()) return "bodies are traced on the CPU only";
-  for (const FarFieldDetector& detector : far_fields) {
-    if (detector.tent) return "tent bins are dealt on the CPU only";
-  }
-  if (!glasses.empty()) return "cover glasses are traced on the CPU only";
   for (const PlacedReflector& placed : reflectors) {
     [[maybe_unused]] const auto& [reflector, frame, reflectance, slope_error_mrad] = placed;
     [[maybe_unused]] const auto& [surface, aperture, curve] = reflector;
@@ -71,7 +67,16 @@ DeviceScene::DeviceScene(Accelerator& accelerator, const Scene& scene, const Ray
   view_.mirror_count = static_cast<std::int32_t>(mirrors_.size());
   device_mirrors_ = const_cast<MirrorView*>(put(mirrors_.data(), mirrors_.size()));
   view_.mirrors = device_mirrors_;
+  add_glasses(scene);
   add_detectors(scene);
+}
+
+void DeviceScene::add_glasses(const Scene& scene) {
+  if (scene.glasses.empty()) return;
+  const GlassTracer glasses(scene.glasses);
+  view_.plates = put(glasses.plates().data(), glasses.plates().size());
+  view_.plate_count = glasses.plates().size();
+  view_.features |= kObstacles;
 }
 
 SourceView DeviceScene::source_view(const PlacedSource& source, double ray_flux) {
@@ -199,7 +204,8 @@ void DeviceScene::add_detectors(const Scene& scene) {
   for (const FarFieldDetector& d : scene.far_fields) {
     const FarFieldGrid grid(d);
     far_fields.push_back({static_cast<std::int32_t>(grid.c_count()),
-                          static_cast<std::int32_t>(grid.gamma_count()), first_bin});
+                          static_cast<std::int32_t>(grid.gamma_count()), first_bin, grid});
+    if (grid.tent()) view_.features |= kTents;
     count(grid.size());
   }
   std::vector<PlaneView> planes;
@@ -221,14 +227,18 @@ void DeviceScene::add_detectors(const Scene& scene) {
   };
   view_.bins = sums(kReplicates * first_bin);
   view_.ledger = sums(kReplicates * kLedgerSums);
+  view_.cause_count = static_cast<std::int32_t>(scene.bodies.size() + scene.glasses.size());
+  view_.causes = sums(kReplicates * kCauseCopies * causes());
   accelerator_.wait(0);
 }
 
 void DeviceScene::add_to(std::vector<Tally>& replicates) const {
   std::vector<std::int64_t> bins(kReplicates * view_.bins_per_replicate);
   std::vector<std::int64_t> ledger(kReplicates * kLedgerSums);
+  std::vector<std::int64_t> absorbed(kReplicates * kCauseCopies * causes());
   accelerator_.download(0, bins.data(), view_.bins, bins.size() * sizeof(std::int64_t));
   accelerator_.download(0, ledger.data(), view_.ledger, ledger.size() * sizeof(std::int64_t));
+  accelerator_.download(0, absorbed.data(), view_.causes, absorbed.size() * sizeof(std::int64_t));
   accelerator_.wait(0);
   const auto index = [](auto cause) { return static_cast<std::size_t>(cause); };
   for (std::size_t r = 0; r < kReplicates; ++r) {
@@ -245,6 +255,9 @@ void DeviceScene::add_to(std::vector<Tally>& replicates) const {
     t.lost[index(LostCause::not_finite)] += sum[kLostNotFinite];
     t.lost_rays[index(LostCause::bounce_limit)] += static_cast<std::uint64_t>(sum[kLostBounceLimitRays]);
     t.lost_rays[index(LostCause::not_finite)] += static_cast<std::uint64_t>(sum[kLostNotFiniteRays]);
+    for (std::size_t i = 0; i < kCauseCopies * causes(); ++i) {
+      t.absorbed[kMirrorLosses + i % causes()] += absorbed[r * kCauseCopies * causes() + i];
+    }
     const std::int64_t* bin = bins.data() + r * view_.bins_per_replicate;
     for (std::size_t d = 0; d < bin_counts_.size(); ++d) {
       for (std::size_t i = 0; i < bin_counts_[d]; ++i) t.bins[d][i] += *bin++;

@@ -47,7 +47,10 @@ class DeviceScene {
   /// Uploads a field and makes `view` of it; its tree is still to be made.
   HierarchyView add_field(const HeightField& field, FieldView& view);
   bool is_field(std::size_t m) const { return hierarchies_[m].cells > 0; }
+  void add_glasses(const Scene& scene);
   void add_detectors(const Scene& scene);
+  /// Of absorption, beside the mirrors.
+  std::size_t causes() const { return static_cast<std::size_t>(view_.cause_count); }
   void rebuild(std::size_t m);
 
   Accelerator& accelerator_;

@@ -86,6 +86,56 @@ TEST(DeviceTrace, AgreesRayByRayWithTheFastestInstructionSet) {
   }
 }
 
+/// What every sum of a replicate must add up to.
+void expect_closed(const TraceResult& result) {
+  for (const Tally& t : result.replicates) {
+    std::int64_t ends = t.out_direct + t.out_reflected;
+    for (const std::int64_t x : t.absorbed) ends += x;
+    for (const std::int64_t x : t.lost) ends += x;
+    EXPECT_EQ(t.emitted, ends);
+  }
+}
+
+TEST(DeviceTrace, CoverGlassesAreTheCpusToTheBit) {
+  std::vector<Scene> scenes{test::with_glasses(scene_of(cylinder()))};
+  for (const Reflector& family : test::exact_families()) {
+    scenes.push_back(test::with_glasses(exact_scene_of(family)));
+  }
+  for (const Scene& scene : scenes) {
+    const TraceResult device = trace_on(emulated(), scene, kScalar);
+    expect_same(trace(scene, kScalar), device);
+    expect_closed(device);
+    const Ledger l = ledger(device);
+    for (std::size_t cause = kMirrorLosses; cause < l.absorbed.size(); ++cause) {
+      EXPECT_GT(l.absorbed[cause].second.mean, 0.0) << l.absorbed[cause].first;
+    }
+    EXPECT_GT(l.lost[0].second.mean, 0.0) << "some must reach the limit of reflections";
+  }
+}
+
+// A glass that no ray comes near changes the kernel, and nothing else.
+TEST(DeviceTrace, TheKernelOfAllFeaturesTracesPlainScenesToTheBit) {
+  const Scene plain = scene_of(cylinder());
+  Scene scene = plain;
+  scene.glasses = {{.aperture = Aperture::circle(1.0),
+                    .world_from_glass = Frame::from_axis(Direction{}, 0.0, {0, 0, 1e6})}};
+  const TraceResult a = trace_on(emulated(), plain, kScalar), b = trace_on(emulated(), scene, kScalar);
+  EXPECT_TRUE(a.out_rays == b.out_rays);
+  for (std::size_t r = 0; r < a.replicates.size(); ++r) {
+    EXPECT_TRUE(a.replicates[r].bins == b.replicates[r].bins);
+  }
+}
+
+TEST(DeviceTrace, TentBinsAreTheCpusToTheBit) {
+  Scene scene = scene_of(cylinder());
+  scene.far_fields = {{"tents", 5.0, 1.0, true}, {"hard", 15.0, 5.0}, {"whole turn", 360.0, 90.0, true}};
+  expect_same(trace(scene, kScalar), trace_on(emulated(), scene, kScalar));
+  scene.ray_detectors.clear();
+  scene.planes.clear();
+  scene.luminances.clear();
+  expect_same(trace(scene, kScalar), trace_on(emulated(), scene, kScalar));
+}
+
 /// Rays of the two that are not the same within 1e-4 mm and 1e-5.
 test::RayPairs against_the_fastest(const Scene& scene, int max_bounces) {
   TraceOptions scalar = kScalar, fastest = kScalar;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/trace/far_field.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "lucerna/core/error.h"
@@ -32,24 +31,6 @@ FarFieldGrid::FarFieldGrid(const FarFieldDetector& detector)
   if (size() > kMostCells) {
     throw InputError(
         fmt::format("detector '{}': {} cells, expected at most {}", detector.name, size(), kMostCells));
-  }
-}
-
-void FarFieldGrid::add_tent(const Direction& d, std::int64_t units, std::int64_t* bins) const {
-  const TypeCAngles a = type_c_angles(d);
-  const double u = a.c_rad * per_c_rad_, v = a.gamma_rad * per_gamma_rad_;
-  const std::size_t c = std::min(static_cast<std::size_t>(u), c_count_ - 1);
-  const std::size_t g = std::min(static_cast<std::size_t>(v), gamma_count_ - 2);
-  const auto share = [](std::int64_t whole, double part) {
-    return static_cast<std::int64_t>(std::llround(static_cast<double>(whole) * std::clamp(part, 0.0, 1.0)));
-  };
-  const std::int64_t next = share(units, u - static_cast<double>(c));
-  const std::size_t columns[2] = {c, (c + 1) % c_count_};
-  const std::int64_t parts[2] = {units - next, next};
-  for (std::size_t k = 0; k < 2; ++k) {
-    const std::int64_t outer = share(parts[k], v - static_cast<double>(g));
-    bins[columns[k] * gamma_count_ + g] += parts[k] - outer;
-    bins[columns[k] * gamma_count_ + g + 1] += outer;
   }
 }
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 
+#include "lucerna/core/atomic_add.h"
 #include "lucerna/core/direction.h"
 
 namespace lucerna {
@@ -42,14 +45,35 @@ class FarFieldGrid {
     return c * gamma_count_ + g;
   }
 
-  bool tent() const { return tent_; }
+  LUCERNA_HD bool tent() const { return tent_; }
   /// Deals `units` to the four grid angles about `d`, by tents in C and in gamma; their sum is exact.
-  void add_tent(const Direction& d, std::int64_t units, std::int64_t* bins) const;
+  /// Additions are atomic_add's.
+  LUCERNA_HD void add_tent(const Direction& d, std::int64_t units, std::int64_t* bins) const;
 
  private:
   std::size_t c_count_, gamma_count_;
   double per_c_rad_, per_gamma_rad_;
   bool tent_;
 };
+
+LUCERNA_HD inline void FarFieldGrid::add_tent(const Direction& d, std::int64_t units,
+                                              std::int64_t* bins) const {
+  const TypeCAngles a = type_c_angles(d);
+  const double u = a.c_rad * per_c_rad_, v = a.gamma_rad * per_gamma_rad_;
+  const std::size_t c = std::min(static_cast<std::size_t>(u), c_count_ - 1);
+  const std::size_t g = std::min(static_cast<std::size_t>(v), gamma_count_ - 2);
+  const auto share = [](std::int64_t whole, double part) {
+    return static_cast<std::int64_t>(std::llround(static_cast<double>(whole) * std::clamp(part, 0.0, 1.0)));
+  };
+  const std::int64_t next = share(units, u - static_cast<double>(c));
+  const std::size_t columns[2] = {c, (c + 1) % c_count_};
+  const std::int64_t parts[2] = {units - next, next};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::int64_t outer = share(parts[k], v - static_cast<double>(g));
+    std::int64_t* const bin = bins + columns[k] * gamma_count_ + g;
+    atomic_add(bin, parts[k] - outer);
+    atomic_add(bin + 1, outer);
+  }
+}
 
 }  // namespace lucerna

@@ -10,8 +10,10 @@
 #include "lucerna/source/cluster_view.h"
 #include "lucerna/trace/curve_kernel.h"
 #include "lucerna/trace/facet_kernel.h"
+#include "lucerna/trace/far_field.h"
 #include "lucerna/trace/kernel.h"
 #include "lucerna/trace/plane_detector.h"
+#include "lucerna/trace/plate_kernel.h"
 #include "lucerna/trace/reflectance.h"
 #include "lucerna/trace/units.h"
 
@@ -36,6 +38,10 @@ enum LedgerSum : std::int32_t {
   kLedgerSums
 };
 
+/// Copies of the sums of causes: rays of neighbouring numbers, which meet the same glass at the same time,
+/// add to different ones.
+inline constexpr std::size_t kCauseCopies = 32;
+
 struct SourceView {
   /// `sent`: the CPU draws the rays and sends them along (ray files, analytic emitters).
   enum class Kind : std::int32_t { sent, adaptive, clusters } kind = Kind::sent;
@@ -54,9 +60,13 @@ struct RunView {
 
 /// What a scene has beyond height fields and hard bins. Kernels are compiled for some sets of these, so that
 /// plain scenes do not pay for them.
-enum SceneFeature : std::uint32_t { kExactMirrors = 1 };
+enum SceneFeature : std::uint32_t {
+  kExactMirrors = 1,  ///< swept curves, facets
+  kObstacles = 2,     ///< cover glasses
+  kTents = 4,
+};
 using SceneFeatures = std::uint32_t;
-inline constexpr SceneFeatures kPlainScene = 0;
+inline constexpr SceneFeatures kPlainScene = 0, kAllFeatures = kExactMirrors | kObstacles | kTents;
 
 struct MirrorView {
   FieldView field{};
@@ -73,6 +83,8 @@ struct FarFieldView {
   std::int32_t c_count = 0, gamma_count = 0;
   /// Where its bins begin within those of a replicate.
   std::uint64_t first_bin = 0;
+  /// Its tents, if it has any (kTents).
+  FarFieldGrid grid;
 };
 struct PlaneView {
   PlaneBins bins;
@@ -107,11 +119,16 @@ struct LaunchView {
   const MirrorView* mirrors = nullptr;
   const FarFieldView* far_fields = nullptr;
   const PlaneView* planes = nullptr;
+  const PlacedPlate* plates = nullptr;
+  std::uint64_t plate_count = 0;
 
   /// kReplicates times bins_per_replicate, and times kLedgerSums.
   std::int64_t* bins = nullptr;
   std::uint64_t bins_per_replicate = 0;
   std::int64_t* ledger = nullptr;
+  /// What cover glasses absorbed, cause by cause: kReplicates times kCauseCopies times cause_count.
+  std::int64_t* causes = nullptr;
+  std::int32_t cause_count = 0;
   /// By place; null if no detector keeps rays.
   OutRay* out_rays = nullptr;
 };

@@ -2,9 +2,13 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <optional>
 
-#include "lucerna/core/direction.h"
+#include "lucerna/core/frame.h"
 #include "lucerna/core/host_device.h"
+#include "lucerna/core/random.h"
+#include "lucerna/trace/slope_error.h"
 
 namespace lucerna {
 
@@ -145,6 +149,61 @@ LUCERNA_HD inline PlateOutcome pass_plate(const PlateView& plate, const Vec3& o,
   out.direction = {d.x, d.y, out.transmitted ? d.z : -d.z};
   if (!on_plate(plate, out.origin_mm.x, out.origin_mm.y)) out.kept = ways > 0.0 ? 0.0 : out.kept;
   return out;
+}
+
+/// A plate in the luminaire frame.
+struct PlacedPlate {
+  PlateView plate;
+  Frame world_from_glass, glass_from_world;
+};
+
+struct GlassHit {
+  double t_mm = 0.0;
+  std::size_t glass = 0;
+  bool edge = false;
+};
+
+/// The first of n plates within [0, t_max_mm) of a ray in the luminaire frame.
+LUCERNA_HD inline std::optional<GlassHit> first_plate(const PlacedPlate* plates, std::size_t n,
+                                                      const Ray& ray, double t_max_mm) {
+  std::optional<GlassHit> first;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Ray local = plates[i].glass_from_world.ray(ray);
+    const PlateEntry entry = plate_entry(plates[i].plate, local.origin_mm, local.direction.vec());
+    if (!entry.met || !(entry.t_mm < t_max_mm)) continue;
+    t_max_mm = entry.t_mm;
+    first = GlassHit{entry.t_mm, i, entry.edge};
+  }
+  return first;
+}
+
+/// A ray after a plate, in the luminaire frame.
+struct GlassPassage {
+  /// Share of the flux that goes on; 0: the ray ends here, and `ray` is nothing.
+  double kept = 0.0;
+  bool transmitted = false;
+  /// How often it went through the glass, face to face.
+  int ways = 0;
+  Ray ray;
+};
+
+/// What becomes of a ray that met a plate. `key.bounce` counts all that the ray met before, plates included.
+LUCERNA_HD inline GlassPassage through_plate(const PlacedPlate& plate, const Ray& ray, const GlassHit& hit,
+                                             const ReflectionKey& key) {
+  const Ray local = plate.glass_from_world.ray(ray);
+  // Streams below 2^17 belong to whoever emits and to slope errors.
+  Rng rng(key.sequence_seed, key.ray, 0x20000u + static_cast<std::uint32_t>(key.bounce));
+  const double u = rng.uniform(), v = rng.uniform();
+  const PlateOutcome out =
+      pass_plate(plate.plate, local.origin_mm, local.direction.vec(), {true, hit.edge, hit.t_mm}, u, v);
+  if (!(out.kept > 0.0)) return {};
+  // What goes straight on keeps the direction that it came with, to the bit.
+  const Direction direction =
+      out.transmitted ? ray.direction : plate.world_from_glass.direction(Direction::from_unit(out.direction));
+  return {out.kept,
+          out.transmitted,
+          static_cast<int>(out.ways),
+          {plate.world_from_glass.point(out.origin_mm), direction}};
 }
 
 }  // namespace lucerna

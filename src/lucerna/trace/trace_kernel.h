@@ -6,6 +6,7 @@
 // (accelerator_emulated.cpp), which runs the same functions in a loop. Plain data in flat arrays; sums are
 // the whole units of tally.h, so that the order of adding does not matter.
 
+#include <cfloat>
 #include <type_traits>
 
 #include "lucerna/core/atomic_add.h"
@@ -57,18 +58,36 @@ LUCERNA_HD inline Emitted emit(const LaunchView& v, const RunView& run, std::uin
           s.weight[place]};
 }
 
+/// As rays are kept for what works in double.
+LUCERNA_HD inline Ray world_ray(const LaneRays& ray) {
+  return {{ray.x.v, ray.y.v, ray.z.v}, Direction::from({ray.dx.v, ray.dy.v, ray.dz.v})};
+}
+
+LUCERNA_HD LUCERNA_HD_CALL inline void deal_to_tents(const LaunchView& v, const Direction& d,
+                                                     std::int64_t units, std::int64_t* bins) {
+  for (std::int32_t i = 0; i < v.far_field_count; ++i) {
+    const FarFieldView& far = v.far_fields[i];
+    if (far.grid.tent()) far.grid.add_tent(d, units, bins + far.first_bin);
+  }
+}
+
 /// A ray that has left, given to all detectors.
+template <SceneFeatures kFeatures>
 LUCERNA_HD inline void detect(const LaunchView& v, const LaneRays& ray, float flux, std::uint32_t replicate,
                               std::size_t place) {
   std::int64_t* const bins = v.bins + replicate * v.bins_per_replicate;
   const std::int64_t units = units_of(flux);
   for (std::int32_t d = 0; d < v.far_field_count; ++d) {
     const FarFieldView& far = v.far_fields[d];
+    if constexpr ((kFeatures & kTents) != 0) {
+      if (far.grid.tent()) continue;  // below
+    }
     atomic_add(bins + far.first_bin + far_field_cell(ray.dx, ray.dy, ray.dz, far.c_count, far.gamma_count).v,
                units);
   }
-  if (v.plane_count == 0 && v.out_rays == nullptr) return;
-  const Ray leg{{ray.x.v, ray.y.v, ray.z.v}, Direction::from({ray.dx.v, ray.dy.v, ray.dz.v})};
+  if ((kFeatures & kTents) == 0 && v.plane_count == 0 && v.out_rays == nullptr) return;
+  const Ray leg = world_ray(ray);
+  if constexpr ((kFeatures & kTents) != 0) deal_to_tents(v, leg.direction, units, bins);
   for (std::int32_t d = 0; d < v.plane_count; ++d) {
     if (const auto cell = v.planes[d].bins.cell(leg)) atomic_add(bins + v.planes[d].first_bin + *cell, units);
   }
@@ -135,36 +154,83 @@ LUCERNA_HD inline bool all_finite(const LaneRays& r) {
   return std::isfinite(r.x.v + r.y.v + r.z.v + r.dx.v + r.dy.v + r.dz.v);
 }
 
+/// What becomes of a ray at what is no mirror.
+struct Encounter {
+  bool met = false;
+  bool reflected = false;  ///< else it was let through
+  double kept = 0.0;       ///< share of its flux that goes on; 0: it ends here
+  std::int32_t cause = 0;  ///< that keeps the rest
+  Ray ray;                 ///< after it
+};
+
+/// The first thing that is no mirror before `nearest_mm`.
+LUCERNA_HD LUCERNA_HD_CALL inline Encounter meet_obstacles(const LaunchView& v, const Ray& ray,
+                                                           double nearest_mm, const ReflectionKey& key) {
+  if (const auto hit = first_plate(v.plates, v.plate_count, ray, nearest_mm)) {
+    const GlassPassage passage = through_plate(v.plates[hit->glass], ray, *hit, key);
+    return {true, passage.kept > 0.0 && !passage.transmitted, passage.kept,
+            static_cast<std::int32_t>(hit->glass), passage.ray};
+  }
+  return {};
+}
+
+/// Takes `1 - kept` off `flux`; returns what that is.
+LUCERNA_HD inline std::int64_t absorb(float& flux, double kept) {
+  const std::int64_t before = units_of(flux);
+  flux = static_cast<float>(static_cast<double>(flux) * kept);
+  return before - units_of(flux);
+}
+
+LUCERNA_HD inline void lose_to_bounce_limit(float flux, Counters& counters) {
+  counters.add(kLostBounceLimit, units_of(flux));
+  counters.add(kLostBounceLimitRays, 1);
+}
+
 /// Follows a ray of the luminaire frame until it leaves, is absorbed or is given up.
 template <SceneFeatures kFeatures>
 LUCERNA_HD inline void follow(const LaunchView& v, LaneRays ray, float flux, ReflectionKey key,
                               std::uint32_t replicate, std::size_t place, Counters& counters) {
+  constexpr bool kMeetsOthers = (kFeatures & kObstacles) != 0;
   std::int32_t last = -1;
-  for (int bounce = 0;; ++bounce) {
+  // All that a ray meets counts as a bounce; without glass each is a reflection.
+  for (int bounce = 0, reflections = 0;; ++bounce) {
+    if constexpr (!kMeetsOthers) reflections = bounce;
     FirstHit first = first_hit<kFeatures>(v, ray, last);
+    key.bounce = bounce;
+    if constexpr (kMeetsOthers) {
+      const double nearest =
+          first.mirror < 0 ? static_cast<double>(FLT_MAX) : static_cast<double>(first.hit.t.v);
+      const Encounter e = meet_obstacles(v, world_ray(ray), nearest, key);
+      if (e.met) {
+        if (e.reflected && reflections == v.max_bounces) return lose_to_bounce_limit(flux, counters);
+        const std::size_t copy = replicate * kCauseCopies + place % kCauseCopies;
+        atomic_add(v.causes + copy * static_cast<std::size_t>(v.cause_count) + e.cause, absorb(flux, e.kept));
+        if (e.kept == 0.0) return;
+        ray = emitted(e.ray).ray;
+        last = -1;
+        if (e.reflected) {
+          counters.add(kReflections, 1);
+          ++reflections;
+        }
+        continue;
+      }
+    }
     if (first.mirror < 0) {
-      counters.add(bounce == 0 ? kOutDirect : kOutReflected, units_of(flux));
-      detect(v, ray, flux, replicate, place);
+      counters.add(reflections == 0 ? kOutDirect : kOutReflected, units_of(flux));
+      detect<kFeatures>(v, ray, flux, replicate, place);
       return;
     }
     const MirrorView& mirror = v.mirrors[first.mirror];
     if (first.hit.state.v == kBack) return counters.add(kAbsorbedBack, units_of(flux));
-    if (bounce == v.max_bounces) {
-      counters.add(kLostBounceLimit, units_of(flux));
-      return counters.add(kLostBounceLimitRays, 1);
-    }
-    if (mirror.slope_error_rad > 0.0) {
-      key.bounce = bounce;
-      tilt(mirror.slope_error_rad, key, first.hit);
-    }
+    if (reflections == v.max_bounces) return lose_to_bounce_limit(flux, counters);
+    if (mirror.slope_error_rad > 0.0) tilt(mirror.slope_error_rad, key, first.hit);
     Float cosine;
     ray = in_frame(mirror.world_from_mirror, reflected(first.local, first.hit, cosine));
     const double kept =
         reflectance_at(mirror.reflectance, mirror.reflectance_entries, static_cast<double>(cosine.v));
-    const std::int64_t before = units_of(flux);
-    flux = static_cast<float>(static_cast<double>(flux) * kept);
-    counters.add(kAbsorbedFace, before - units_of(flux));
+    counters.add(kAbsorbedFace, absorb(flux, kept));
     counters.add(kReflections, 1);
+    ++reflections;
     last = first.mirror;
   }
 }
@@ -200,7 +266,8 @@ LUCERNA_HD inline void trace_number(const LaunchView& v, std::size_t block, std:
 template <class F>
 void with_compiled(SceneFeatures features, const F& f) {
   if (features == kPlainScene) return f(std::integral_constant<SceneFeatures, kPlainScene>{});
-  f(std::integral_constant<SceneFeatures, kExactMirrors>{});
+  if (features == kExactMirrors) return f(std::integral_constant<SceneFeatures, kExactMirrors>{});
+  f(std::integral_constant<SceneFeatures, kAllFeatures>{});
 }
 
 /// Node `i` of level `level` of a field's tree.
