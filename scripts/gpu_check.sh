@@ -63,7 +63,62 @@ kind = "far-field"
 c_step_deg = 1.0
 gamma_step_deg = 1.0
 END
+# Everything that is no height field: a profile that closes in again, facets, a glass, a shield of triangles.
+cat >"$work/shield.obj" <<'END'
+v -4 -6 0
+v 4 -6 0
+v 4 6 0
+v -4 6 0
+f 1 2 3 4
+END
+cat >"$work/parts.toml" <<'END'
+[[source]]
+file = "cylinder.nfl"
+position_mm = [0, 0, 14]
+
+[[reflector]]
+family = "revolution"
+profile_mm = [[6, 0], [30, 5], [45, 30], [40, 48], [36, 52]]
+aperture = "circle"
+diameter_mm = 72.0
+hole_diameter_mm = 12.0
+reflectance = [[0, 0.92], [60, 0.90], [85, 0.95]]
+slope_error_mrad = 2.0
+
+[[reflector]]
+family = "faceted"
+preset = "parabola"
+focal_mm = 40.0
+pitch_mm = 5.0
+aperture = "circle"
+diameter_mm = 60.0
+position_mm = [60, 0, 90]
+axis = [-0.3, 0, -1]
+
+[[body]]
+file = "shield.obj"
+role = "mirror"
+open = true
+reflectance = 0.6
+position_mm = [0, 0, 45]
+
+[[body]]
+role = "glass"
+name = "front"
+aperture = "circle"
+diameter_mm = 90.0
+absorption_per_mm = 0.01
+position_mm = [0, 0, 60]
+
+[[detector]]
+kind = "far-field"
+c_step_deg = 5.0
+gamma_step_deg = 1.0
+bins = "tent"
+END
 for device in cuda cpu; do
   "$build/lucerna" trace "$work/project.toml" -o "$work/$device" --rays 1e8 --device "$device"
+  "$build/lucerna" trace "$work/parts.toml" -o "$work/parts-$device" --rays 1e7 --device "$device"
 done
 "$build/lucerna" compare "$work/cuda/far-field.ldt" "$work/cpu/far-field.ldt"
+"$build/lucerna" compare "$work/parts-cuda/far-field.ldt" "$work/parts-cpu/far-field.ldt"

@@ -12,6 +12,7 @@
 #include "lucerna/source/draw_rays.h"
 #include "lucerna/source/emitter.h"
 #include "lucerna/trace/trace.h"
+#include "tests/support/meshes.h"
 
 /// What both the CPU's stand-in for a GPU and real GPUs are tested with.
 namespace lucerna::test {
@@ -50,6 +51,16 @@ inline void expect_same(const TraceResult& a, const TraceResult& b) {
   for (std::size_t r = 0; r < a.replicates.size(); ++r) EXPECT_TRUE(a.replicates[r] == b.replicates[r]) << r;
   EXPECT_TRUE(a.out_rays == b.out_rays);
   EXPECT_TRUE(a.out_runs == b.out_runs);
+}
+
+/// What every sum of a replicate must add up to.
+inline void expect_closed(const TraceResult& result) {
+  for (const Tally& t : result.replicates) {
+    std::int64_t ends = t.out_direct + t.out_reflected;
+    for (const std::int64_t x : t.absorbed) ends += x;
+    for (const std::int64_t x : t.lost) ends += x;
+    EXPECT_EQ(t.emitted, ends);
+  }
 }
 
 /// A mirror of every family that is traced as a height field.
@@ -102,6 +113,30 @@ inline Scene with_glasses(Scene scene) {
        .refractive_index = 2.4,
        .absorption_per_mm = 0.01,
        .world_from_glass = Frame::from_axis(Direction::from({0.3, 0.2, 1}), 0.0, {-12, 5, -30})}};
+  return scene;
+}
+
+/// The lamp's own body about the source, a shield, an open mirror that scatters a little, and a smooth one.
+inline Scene with_bodies(Scene scene) {
+  const auto add = [&](const char* name, std::shared_ptr<const Mesh> mesh, const Frame& frame, double kept) {
+    Body body;
+    body.name = name;
+    body.mesh = std::move(mesh);
+    body.world_from_body = frame;
+    body.reflectance = Reflectance(kept);
+    scene.bodies.push_back(body);
+  };
+  add("lamp", globe(24, 5.0), {}, 0.0);
+  scene.bodies.back().only_returning_light = true;
+  add("shield", box_mesh({6.0, 9.0, 1.0}), Frame::from_axis(Direction::from({0.2, 0, 1}), 0.4, {3, 4, -25}),
+      0.0);
+  add("sheet", sheet(12, 20.0, 0.0, 0.0),
+      Frame::from_axis(Direction::from({1, 0.3, 0.5}), 0.1, {-50, 0, -30}), 0.0);
+  scene.bodies.back().reflectance = Reflectance({{0.0, 0.6}, {60.0, 0.9}});
+  scene.bodies.back().slope_error_mrad = 5.0;
+  add("bowl", sheet(40, 25.0, 0.02, 0.0), Frame::from_axis(Direction::from({0, -1, 0.4}), 0.0, {0, 60, -20}),
+      0.8);
+  scene.bodies.back().smooth_below_deg = 30.0;
   return scene;
 }
 

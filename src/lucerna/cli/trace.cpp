@@ -46,7 +46,6 @@ void run_trace(const TraceArguments& a, Session& session) {
   for (const auto& input : project.inputs) session.add_input(input);
   const TraceResult result =
       session.timed("trace", [&] { return trace(project.scene, options, session.progress()); });
-  if (!result.device_note.empty()) session.note(result.device_note);
   const TraceFigures figures = session.timed("figures", [&] { return trace_figures(result); });
   const TraceOrigin origin = session.timed("hash", [&] { return trace_origin(project); });
   const auto names = write_trace_output(a.output, result, origin, figures, session);

@@ -22,12 +22,11 @@ void check(const Body& body) {
   }
 }
 
-Direction reflected_off(const Body& body, const Direction& direction, const BodyHit& hit,
-                        const ReflectionKey& key) {
-  if (!(body.slope_error_mrad > 0.0)) return Direction::from(reflect(direction, hit.normal));
-  const Direction normal = tilted_normal(hit.normal, 1e-3 * body.slope_error_mrad, key);
-  const Direction out = Direction::from(reflect(direction, normal));
-  return dot(out, hit.face) < 0.0 ? Direction::from(reflect(out, hit.face)) : out;
+std::vector<Vec3> smooth_normals(const Body& body) {
+  if (body.smooth_below_deg == 0.0) return {};
+  std::vector<Vec3> normals = corner_normals(*body.mesh, body.smooth_below_deg);
+  for (Vec3& n : normals) n = body.world_from_body.vector(n);
+  return normals;
 }
 
 #if defined(LUCERNA_EMBREE)
@@ -66,14 +65,6 @@ RTCGeometry geometry(RTCDevice device, const Body& body) {
   return g;
 }
 
-/// Corner normals in the luminaire frame, if the body wants them.
-std::vector<Vec3> smooth_normals(const Body& body) {
-  if (body.smooth_below_deg == 0.0) return {};
-  std::vector<Vec3> normals = corner_normals(*body.mesh, body.smooth_below_deg);
-  for (Vec3& n : normals) n = body.world_from_body.vector(n);
-  return normals;
-}
-
 }  // namespace
 
 BodyTracer::BodyTracer(const std::vector<Body>& bodies)
@@ -108,26 +99,17 @@ std::optional<BodyHit> BodyTracer::first_hit(const Ray& ray, double t_max_mm, bo
   q.ray.dir_x = static_cast<float>(ray.direction.x());
   q.ray.dir_y = static_cast<float>(ray.direction.y());
   q.ray.dir_z = static_cast<float>(ray.direction.z());
-  q.ray.tnear = returning ? 1e-3F : 0.0F;
+  q.ray.tnear = returning ? static_cast<float>(kBodyStart) : 0.0F;
   q.ray.tfar = static_cast<float>(t_max_mm);
   q.ray.mask = 0xFFFFFFFFU;
   q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(returning ? device_->returning : device_->direct, &context, &q);
   if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  Direction n = Direction::from({q.hit.Ng_x, q.hit.Ng_y, q.hit.Ng_z});
-  if (dot(n, ray.direction) > 0.0) n = -n;
-  BodyHit hit{static_cast<double>(q.ray.tfar), q.hit.geomID, n, n};
   const std::vector<Vec3>& corners = corner_normals_[q.hit.geomID];
-  if (corners.empty()) return hit;
-  const double u = static_cast<double>(q.hit.u), v = static_cast<double>(q.hit.v);
-  const Vec3* const c = &corners[3 * std::size_t{q.hit.primID}];
-  const Vec3 blend = (1.0 - u - v) * c[0] + u * c[1] + v * c[2];
-  if (!(length(blend) > 0.0)) return hit;
-  Direction smooth = Direction::from(blend);
-  if (dot(smooth, n) < 0.0) smooth = -smooth;
-  const bool same_side = dot(smooth, ray.direction) < 0.0 && dot(reflect(ray.direction, smooth), n) > 0.0;
-  if (same_side) hit.normal = smooth;
-  return hit;
+  return body_hit(ray.direction, static_cast<double>(q.ray.tfar), q.hit.geomID,
+                  {q.hit.Ng_x, q.hit.Ng_y, q.hit.Ng_z},
+                  corners.empty() ? nullptr : &corners[3 * std::size_t{q.hit.primID}],
+                  static_cast<double>(q.hit.u), static_cast<double>(q.hit.v));
 }
 
 #else

@@ -8,8 +8,8 @@
 
 #include "lucerna/core/frame.h"
 #include "lucerna/reflector/mesh.h"
+#include "lucerna/trace/body_kernel.h"
 #include "lucerna/trace/reflectance.h"
-#include "lucerna/trace/slope_error.h"
 
 namespace lucerna {
 
@@ -36,20 +36,13 @@ struct Body {
 /// 1000.
 void check(const Body& body);
 
-struct BodyHit {
-  double t_mm = 0.0;
-  std::size_t body = 0;
-  /// Normal towards the side the ray came from: the triangle's own, or the smooth one where that sends the
-  /// reflected ray to the same side.
-  Direction normal;
-  /// The triangle's own, towards the same side.
-  Direction face;
-};
+inline Direction reflected_off(const Body& body, const Direction& direction, const BodyHit& hit,
+                               const ReflectionKey& key) {
+  return reflected_off(body.slope_error_mrad, direction, hit, key);
+}
 
-/// Where a mirror reflects a ray that met it: about the normal, tilted by the body's slope error of this
-/// reflection. What a tilt sends into the triangle is reflected there once more: nothing leaks through.
-Direction reflected_off(const Body& body, const Direction& direction, const BodyHit& hit,
-                        const ReflectionKey& key);
+/// Three normals a triangle, in the luminaire frame, if the body is smooth; else none.
+std::vector<Vec3> smooth_normals(const Body& body);
 
 /// Finds first hits with a set of bodies (Embree). Immutable and thread safe.
 class BodyTracer {

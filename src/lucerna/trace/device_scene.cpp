@@ -10,22 +10,27 @@
 #include "lucerna/trace/curve_view.h"
 #include "lucerna/trace/facet_mirror.h"
 #include "lucerna/trace/field_view.h"
+#include "lucerna/trace/triangle_tree.h"
 
 namespace lucerna {
 
-std::string why_not_on_accelerators(const Scene& scene) {
-  // Whoever adds something to a scene meets a compiler error here, and says whether the kernels know it.
-  [[maybe_unused]] const auto& [sources, reflectors, far_fields, planes, luminances, ray_detectors, bodies,
-                                glasses] = scene;
-  if (!bodies.empty()) return "bodies are traced on the CPU only";
-  for (const PlacedReflector& placed : reflectors) {
+namespace {
+
+/// Whoever adds something to a scene meets a compiler error here, and teaches it to the kernels.
+[[maybe_unused]] void name_all_parts(const Scene& scene) {
+  [[maybe_unused]] const auto& [sources, mirrors, far_fields, planes, luminances, rays, bodies, glasses] =
+      scene;
+  for (const PlacedReflector& placed : mirrors) {
     [[maybe_unused]] const auto& [reflector, frame, reflectance, slope_error_mrad] = placed;
     [[maybe_unused]] const auto& [surface, aperture, curve] = reflector;
   }
-  return "";
+  for (const Body& body : bodies) {
+    [[maybe_unused]] const auto& [name, mesh, frame, reflectance, only_returning, smooth_deg, slope] = body;
+  }
+  for (const CoverGlass& glass : glasses) {
+    [[maybe_unused]] const auto& [name, aperture, thickness_mm, index, absorption, frame] = glass;
+  }
 }
-
-namespace {
 
 /// Does ray_from_chart know all that this support has? What it does not know is drawn on the CPU and sent.
 bool device_draws(const Support& support) {
@@ -55,7 +60,6 @@ const T* DeviceScene::put(const T* data, std::size_t n) {
 DeviceScene::DeviceScene(Accelerator& accelerator, const Scene& scene, const RayNumbering& numbering,
                          const TraceOptions& options)
     : accelerator_(accelerator) {
-  LUCERNA_CHECK(why_not_on_accelerators(scene).empty(), "{}", why_not_on_accelerators(scene));
   for (std::size_t s = 0; s < scene.sources.size(); ++s) {
     sources_.push_back(source_view(scene.sources[s], numbering.ray_flux(s)));
     has_sent_ = has_sent_ || is_sent(s);
@@ -67,8 +71,35 @@ DeviceScene::DeviceScene(Accelerator& accelerator, const Scene& scene, const Ray
   view_.mirror_count = static_cast<std::int32_t>(mirrors_.size());
   device_mirrors_ = const_cast<MirrorView*>(put(mirrors_.data(), mirrors_.size()));
   view_.mirrors = device_mirrors_;
+  add_bodies(scene);
   add_glasses(scene);
   add_detectors(scene);
+}
+
+void DeviceScene::add_bodies(const Scene& scene) {
+  if (scene.bodies.empty()) return;
+  std::vector<BodyView> bodies;
+  bool lamps = false;
+  for (const Body& body : scene.bodies) {
+    lamps = lamps || body.only_returning_light;
+    const auto& table = body.reflectance.table();
+    const std::vector<Vec3> corners = smooth_normals(body);
+    bodies.push_back({put(table.data(), table.size()), static_cast<std::uint32_t>(table.size()),
+                      body.slope_error_mrad,
+                      corners.empty() ? nullptr : put(corners.data(), corners.size())});
+  }
+  const auto tree = [&](bool returning) {
+    const TriangleTree made(scene.bodies, returning);
+    TriangleTreeView v = made.view();
+    v.nodes = put(v.nodes, made.nodes().size());
+    v.triangles = put(v.triangles, made.triangles().size());
+    return v;
+  };
+  view_.bodies.returning = tree(true);
+  view_.bodies.direct = lamps ? tree(false) : view_.bodies.returning;
+  view_.bodies.bodies = put(bodies.data(), bodies.size());
+  view_.bodies.count = bodies.size();
+  view_.features |= kObstacles;
 }
 
 void DeviceScene::add_glasses(const Scene& scene) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "lucerna/reflector/height_field.h"
@@ -12,15 +11,12 @@
 
 namespace lucerna {
 
-/// Why `scene` can only be traced on the CPU, as half a sentence; empty if an accelerator can.
-std::string why_not_on_accelerators(const Scene& scene);
-
-/// A scene in an accelerator's memory: source models and height fields are uploaded once, the fields' trees
-/// are made there. Everything it was made from may go afterwards. Memory: 12 bytes a vertex of the fields, 16
-/// sets of bins of 8 bytes, the models' flat arrays.
+/// A scene in an accelerator's memory: source models, mirrors, bodies and glasses are uploaded once, the
+/// height fields' trees are made there. Everything it was made from may go afterwards. Memory: 12 bytes a
+/// vertex of the fields, 24 a facet, some 60 a triangle of the bodies (twice that if there is a lamp's body
+/// among them; 72 more if it is smooth), 16 sets of bins of 8 bytes, the models' flat arrays.
 class DeviceScene {
  public:
-  /// The scene must be one that why_not_on_accelerators accepts.
   DeviceScene(Accelerator& accelerator, const Scene& scene, const RayNumbering& numbering,
               const TraceOptions& options);
 
@@ -47,6 +43,7 @@ class DeviceScene {
   /// Uploads a field and makes `view` of it; its tree is still to be made.
   HierarchyView add_field(const HeightField& field, FieldView& view);
   bool is_field(std::size_t m) const { return hierarchies_[m].cells > 0; }
+  void add_bodies(const Scene& scene);
   void add_glasses(const Scene& scene);
   void add_detectors(const Scene& scene);
   /// Of absorption, beside the mirrors.

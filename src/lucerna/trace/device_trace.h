@@ -17,7 +17,7 @@ using Accelerators = std::vector<std::unique_ptr<Accelerator>>;
 /// `trace` on accelerators (at least one), each with an equal range of the rays' numbers: rays are drawn from
 /// models, followed and counted there; those of ray files and analytic emitters are drawn on the CPU while
 /// the chunk before is traced. The sums are whole numbers, so they do not depend on how many accelerators
-/// there are. Errors as `trace`; InputError too on a scene that why_not_on_accelerators refuses. Memory of
+/// there are. Errors as `trace`. Memory of
 /// each accelerator: DeviceScene's, and 3 launches of its chunk_blocks(), of 28 bytes a ray if the CPU draws
 /// them and 28 if they are kept.
 TraceResult trace_on(const Accelerators& accelerators, const Scene& scene, const TraceOptions& options,

@@ -25,7 +25,7 @@ Accelerators emulated(std::size_t n = 1) {
   return all;
 }
 
-using test::cylinder, test::expect_same, test::rays_of, test::scene_of;
+using test::cylinder, test::expect_closed, test::expect_same, test::rays_of, test::scene_of;
 
 const TraceOptions kScalar{.last_ray = 40000, .max_bounces = 5, .cells = 256, .isa = "scalar"};
 
@@ -86,16 +86,6 @@ TEST(DeviceTrace, AgreesRayByRayWithTheFastestInstructionSet) {
   }
 }
 
-/// What every sum of a replicate must add up to.
-void expect_closed(const TraceResult& result) {
-  for (const Tally& t : result.replicates) {
-    std::int64_t ends = t.out_direct + t.out_reflected;
-    for (const std::int64_t x : t.absorbed) ends += x;
-    for (const std::int64_t x : t.lost) ends += x;
-    EXPECT_EQ(t.emitted, ends);
-  }
-}
-
 TEST(DeviceTrace, CoverGlassesAreTheCpusToTheBit) {
   std::vector<Scene> scenes{test::with_glasses(scene_of(cylinder()))};
   for (const Reflector& family : test::exact_families()) {
@@ -123,6 +113,45 @@ TEST(DeviceTrace, TheKernelOfAllFeaturesTracesPlainScenesToTheBit) {
   EXPECT_TRUE(a.out_rays == b.out_rays);
   for (std::size_t r = 0; r < a.replicates.size(); ++r) {
     EXPECT_TRUE(a.replicates[r].bins == b.replicates[r].bins);
+  }
+}
+
+// Embree rounds what it finds to float32, the device's tree does not: after the second reflection a few rays
+// of 10^4 are more than 1e-4 mm apart. A ray that only one of the two loses shifts the others of its run,
+// which then count as well.
+TEST(DeviceTrace, BodiesAgreeRayByRayWithEmbree) {
+  try {
+    const BodyTracer there({{.mesh = test::box_mesh({1, 1, 1})}});
+  } catch (const InputError& e) {
+    GTEST_SKIP() << e.what();
+  }
+  std::vector<Scene> scenes{test::with_bodies(scene_of(cylinder()))};
+  scenes.push_back(test::with_glasses(scenes.front()));
+  for (const Reflector& family : test::exact_families()) {  // less light comes out of these to the bodies
+    scenes.push_back(test::with_bodies(exact_scene_of(family)));
+  }
+  TraceOptions options = kScalar;
+  options.max_bounces = 2;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const Scene& scene = scenes[i];
+    const TraceResult cpu = trace(scene, options), device = trace_on(emulated(), scene, options);
+    const test::RayPairs p = test::compare_rays(cpu, device);
+    std::printf("%zu of %zu rays differ, the others by at most %.2g mm and %.2g\n", p.differ, p.rays,
+                p.most_mm, p.most_direction);
+    EXPECT_GT(p.rays, 3000u);
+    EXPECT_LE(p.differ, p.rays / 200);
+    expect_closed(device);
+    const Ledger a = ledger(cpu), b = ledger(device);
+    for (std::size_t cause = 0; cause < a.absorbed.size(); ++cause) {
+      EXPECT_TRUE(i > 1 || cause < kMirrorLosses || b.absorbed[cause].second.mean > 0.0)
+          << b.absorbed[cause].first;
+      EXPECT_NEAR(a.absorbed[cause].second.mean, b.absorbed[cause].second.mean, 1e-3 * 800.0);
+    }
+    if (i > 0) continue;
+    // A lamp whose body also meets the light that it sends is another scene.
+    Scene blocked = scene;
+    blocked.bodies[0].only_returning_light = false;
+    EXPECT_LT(trace_on(emulated(), blocked, options).out_rays.size(), device.out_rays.size() / 2);
   }
 }
 
@@ -312,14 +341,6 @@ TEST(DeviceScene, TreesAreThoseOfTheHeightField) {
   field.rebuild();
   device.set_vertices(0, field.vertices());
   expect_nodes(field);
-}
-
-TEST(DeviceTrace, BodiesAreRefusedInOneLine) {
-  Scene scene = scene_of(cylinder());
-  scene.bodies.emplace_back();
-  EXPECT_THROW(trace_on(emulated(), scene, kScalar), InputError);
-  EXPECT_FALSE(why_not_on_accelerators(scene).empty());
-  EXPECT_TRUE(why_not_on_accelerators(scene_of(cylinder())).empty());
 }
 
 TEST(DeviceTrace, CudaWithoutADeviceIsAnErrorAndAutomaticTracesOnTheCpu) {

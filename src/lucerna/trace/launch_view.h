@@ -8,6 +8,7 @@
 #include "lucerna/reflector/field_hierarchy.h"
 #include "lucerna/source/adaptive_view.h"
 #include "lucerna/source/cluster_view.h"
+#include "lucerna/trace/body_kernel.h"
 #include "lucerna/trace/curve_kernel.h"
 #include "lucerna/trace/facet_kernel.h"
 #include "lucerna/trace/far_field.h"
@@ -62,7 +63,7 @@ struct RunView {
 /// plain scenes do not pay for them.
 enum SceneFeature : std::uint32_t {
   kExactMirrors = 1,  ///< swept curves, facets
-  kObstacles = 2,     ///< cover glasses
+  kObstacles = 2,     ///< bodies, cover glasses
   kTents = 4,
 };
 using SceneFeatures = std::uint32_t;
@@ -119,6 +120,7 @@ struct LaunchView {
   const MirrorView* mirrors = nullptr;
   const FarFieldView* far_fields = nullptr;
   const PlaneView* planes = nullptr;
+  BodiesView bodies;
   const PlacedPlate* plates = nullptr;
   std::uint64_t plate_count = 0;
 
@@ -126,7 +128,8 @@ struct LaunchView {
   std::int64_t* bins = nullptr;
   std::uint64_t bins_per_replicate = 0;
   std::int64_t* ledger = nullptr;
-  /// What cover glasses absorbed, cause by cause: kReplicates times kCauseCopies times cause_count.
+  /// What bodies, then cover glasses, absorbed, cause by cause: kReplicates times kCauseCopies times
+  /// cause_count.
   std::int64_t* causes = nullptr;
   std::int32_t cause_count = 0;
   /// By place; null if no detector keeps rays.

@@ -8,7 +8,6 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/trace/device_scene.h"
 #include "lucerna/trace/device_trace.h"
 #include "lucerna/trace/ray_numbering.h"
 #include "lucerna/trace/trace_engine.h"
@@ -91,8 +90,8 @@ TraceResult empty_result(const Scene& scene, const RayNumbering& numbering, cons
   return result;
 }
 
-/// The accelerators that `options` ask for; none: the CPU traces, and `note` says why if that is a surprise.
-Accelerators chosen_accelerators(const Scene& scene, const TraceOptions& options, std::string& note) {
+/// The accelerators that `options` ask for; none: the CPU traces.
+Accelerators chosen_accelerators(const TraceOptions& options) {
   if (options.device == TraceDevice::cpu) return {};
   const bool must = options.device == TraceDevice::cuda;
   if (options.engine == EngineKind::reference || !options.isa.empty()) {
@@ -100,15 +99,8 @@ Accelerators chosen_accelerators(const Scene& scene, const TraceOptions& options
     return {};
   }
   Accelerators devices = cuda_accelerators();
-  if (devices.empty()) {
-    if (must) throw InputError(fmt::format("--device cuda: {}", why_no_cuda()));
-    return {};
-  }
-  const std::string why = why_not_on_accelerators(scene);
-  if (why.empty()) return devices;
-  if (must) throw InputError(fmt::format("--device cuda: {}", why));
-  note = fmt::format("traced on the CPU: {}", why);
-  return {};
+  if (devices.empty() && must) throw InputError(fmt::format("--device cuda: {}", why_no_cuda()));
+  return devices;
 }
 
 TraceResult trace_on_cpu(const Scene& scene, const RayNumbering& numbering, const TraceOptions& options,
@@ -118,19 +110,14 @@ TraceResult trace_on_cpu(const Scene& scene, const RayNumbering& numbering, cons
 
 TraceResult trace(const Scene& scene, const TraceOptions& options, Progress& progress) {
   check(scene);
-  std::string note;
-  const Accelerators devices = chosen_accelerators(scene, options, note);
+  const Accelerators devices = chosen_accelerators(options);
   if (!devices.empty()) return trace_on(devices, scene, options, progress);
-  TraceResult result = trace_on_cpu(scene, RayNumbering(scene.sources, options.seed), options, progress);
-  result.device_note = std::move(note);
-  return result;
+  return trace_on_cpu(scene, RayNumbering(scene.sources, options.seed), options, progress);
 }
 
 TraceResult trace_on(const Accelerators& accelerators, const Scene& scene, const TraceOptions& options,
                      Progress& progress) {
   check(scene);
-  const std::string why = why_not_on_accelerators(scene);
-  if (!why.empty()) throw InputError(why);
   const RayNumbering numbering(scene.sources, options.seed);
   TraceResult result = empty_result(scene, numbering, options);
   result.isa = accelerators.front()->isa();

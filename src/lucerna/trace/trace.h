@@ -17,7 +17,7 @@ namespace lucerna {
 /// one ray at a time in double; what the fast one is checked against.
 enum class EngineKind { fast, reference };
 
-/// `automatic`: on CUDA devices where there are some and they can trace the scene, else on the CPU.
+/// `automatic`: on CUDA devices where there are some, else on the CPU.
 enum class TraceDevice { cpu, cuda, automatic };
 
 /// "cpu", "cuda" or "auto"; throws UsageError on anything else.
@@ -39,7 +39,7 @@ struct TraceOptions {
   /// Instruction set of the fast engine: "scalar", "portable", "avx2", "avx512"; empty = the best that the
   /// processor has.
   std::string isa;
-  /// `cuda` throws InputError where there is no device, or none that can trace the scene.
+  /// `cuda` throws InputError where there is no device.
   TraceDevice device = TraceDevice::cpu;
 };
 

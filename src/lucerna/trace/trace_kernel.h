@@ -163,15 +163,33 @@ struct Encounter {
   Ray ray;                 ///< after it
 };
 
-/// The first thing that is no mirror before `nearest_mm`.
+LUCERNA_HD LUCERNA_HD_CALL inline std::optional<BodyHit> meet_bodies(const LaunchView& v, const Ray& ray,
+                                                                     double nearest_mm, bool returning) {
+  return first_body(v.bodies, ray, nearest_mm, returning);
+}
+
+/// The first thing that is no mirror before `nearest_mm`. `reflections`: how often the ray was reflected
+/// before.
 LUCERNA_HD LUCERNA_HD_CALL inline Encounter meet_obstacles(const LaunchView& v, const Ray& ray,
-                                                           double nearest_mm, const ReflectionKey& key) {
-  if (const auto hit = first_plate(v.plates, v.plate_count, ray, nearest_mm)) {
-    const GlassPassage passage = through_plate(v.plates[hit->glass], ray, *hit, key);
+                                                           double nearest_mm, int reflections,
+                                                           const ReflectionKey& key) {
+  std::optional<BodyHit> hit;
+  if (v.bodies.count > 0) hit = meet_bodies(v, ray, nearest_mm, reflections > 0);
+  if (hit) nearest_mm = hit->t_mm;
+  if (const auto plate = first_plate(v.plates, v.plate_count, ray, nearest_mm)) {
+    const GlassPassage passage = through_plate(v.plates[plate->glass], ray, *plate, key);
     return {true, passage.kept > 0.0 && !passage.transmitted, passage.kept,
-            static_cast<std::int32_t>(hit->glass), passage.ray};
+            static_cast<std::int32_t>(v.bodies.count + plate->glass), passage.ray};
   }
-  return {};
+  if (!hit) return {};
+  const BodyView& body = v.bodies.bodies[hit->body];
+  const double kept =
+      reflectance_at(body.reflectance, body.reflectance_entries, -dot(ray.direction, hit->normal));
+  Encounter e{true, true, kept, static_cast<std::int32_t>(hit->body), {}};
+  if (kept > 0.0) {
+    e.ray = {ray.at(hit->t_mm), reflected_off(body.slope_error_mrad, ray.direction, *hit, key)};
+  }
+  return e;
 }
 
 /// Takes `1 - kept` off `flux`; returns what that is.
@@ -200,7 +218,7 @@ LUCERNA_HD inline void follow(const LaunchView& v, LaneRays ray, float flux, Ref
     if constexpr (kMeetsOthers) {
       const double nearest =
           first.mirror < 0 ? static_cast<double>(FLT_MAX) : static_cast<double>(first.hit.t.v);
-      const Encounter e = meet_obstacles(v, world_ray(ray), nearest, key);
+      const Encounter e = meet_obstacles(v, world_ray(ray), nearest, reflections, key);
       if (e.met) {
         if (e.reflected && reflections == v.max_bounces) return lose_to_bounce_limit(flux, counters);
         const std::size_t copy = replicate * kCauseCopies + place % kCauseCopies;

@@ -33,8 +33,6 @@ struct TraceResult {
   int max_bounces = 0;
   /// Which tracer and instruction set made the sums: only equal ones can be merged.
   std::string isa;
-  /// Why the CPU traced although CUDA devices were there and allowed; else empty.
-  std::string device_note;
   /// Flux of all sources together.
   double flux = 0.0;
   FluxUnit unit = FluxUnit::lumen;
