@@ -149,7 +149,7 @@ bool solve(const Suite& s, std::uint64_t seed, bool verbose, const std::shared_p
   problem.fruitless = s.restarts;
   const DesignShape begin = plain(s);
   const bool far = out.start > 0.2 || s.revolution;
-  const std::vector<FitStage> stages = ladder(begin, bins, {1 << 20, far, 0});
+  const std::vector<FitStage> stages = ladder(begin, bins, {LadderOptions{}.rays, far, 0});
   std::vector<double> search_costs;
   if (far) {
     prepare_starts(problem, begin, stages, optimizer("auto"), search_costs,
@@ -170,8 +170,11 @@ bool solve(const Suite& s, std::uint64_t seed, bool verbose, const std::shared_p
   const auto spent = [&] {
     return std::min(seconds_since(clock) - target_wall, (cpu_seconds() - cpu - target_cpu) / kTwoCores);
   };
-  while (!fit.done() && spent() < s.seconds) {
+  double last_step = 0.0;  // one more like it has to fit
+  while (!fit.done() && spent() + last_step < s.seconds) {
+    const double before = spent();
     const FitRecord r = fit.step();
+    last_step = spent() - before;
     if (verbose) {
       fmt::print("  stage {} step {:2} rays {:8} error {:.5f} floor {:.5f} lambda {:.1e} {} {:.2f} s\n",
                  r.stage, r.step, r.rays, r.error, r.floor, r.lambda, r.accepted ? "" : "refused",

@@ -19,8 +19,8 @@ struct DesignOptions {
   /// Wall time after which the design stops at the next step; nothing: the problem's own. It only stops:
   /// every decision depends on counts.
   std::optional<double> time_s;
-  /// Rays of an evaluation at the end of the ladder.
-  std::uint64_t most_rays = std::uint64_t{1} << 20;
+  /// Rays of an evaluation at the end of the ladder, at most: a free form's ends at 2^20.
+  std::uint64_t most_rays = std::uint64_t{1} << 22;
   /// Rays of the re-trace that judges the result, other than those it was fitted with. Where time ran out or
   /// the user asked to stop, fewer may be traced.
   std::uint64_t judge_rays = std::uint64_t{1} << 22;

@@ -57,6 +57,7 @@ std::vector<FitStage> ladder_of_revolution(int n, int ny, int k, double smoothin
   stages.add({n, ny, k, 1.0, two_to(16), 40, 0.02});
   stages.add({n, ny, k, 1.0, two_to(18), 30, 0.01, 0.0, true});
   stages.add({n, ny, k, 1.0, two_to(20), 30, 0.02});
+  stages.add({n, ny, k, 1.0, two_to(22), 30, 0.02});
   return stages.take();
 }
 

@@ -15,7 +15,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kTableRays = std::uint64_t{1} << 16;
+constexpr std::uint64_t kTableRays = std::uint64_t{1} << 22;
 constexpr std::size_t kMostParameters = 40;
 /// Heights that the table knows, and sizes of random shapes, of hops, and of what counts as another shape,
 /// over the mirror's radius.
@@ -32,8 +32,7 @@ struct Round {
   int shapes;
   std::uint64_t rays;
 };
-constexpr std::array<Round, 6> kRounds{
-    {{40, 1 << 15}, {28, 1 << 16}, {20, 1 << 17}, {14, 1 << 18}, {8, 1 << 19}, {4, 1 << 20}}};
+constexpr std::array<Round, 2> kRounds{{{8, 1 << 20}, {3, 1 << 22}}};
 static_assert([] {
   int all = 0;
   for (const Round& r : kRounds) all += r.shapes;

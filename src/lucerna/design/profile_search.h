@@ -24,7 +24,7 @@ struct ProfileProgress {
 using ProfileWatch = std::function<bool(const ProfileProgress&)>;
 
 /// Evaluations of a whole search.
-inline constexpr int kProfileEvaluations = 114;
+inline constexpr int kProfileEvaluations = 11;
 
 /// Basins of a mirror of revolution, the cheapest first: up to 3000 shapes about the given one are fitted on
 /// a table of what its zones throw (zone_table.h), the best hop on from where they ended, and those ahead are

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "lucerna/core/parallel.h"
 #include "lucerna/core/random.h"
 #include "lucerna/design/zone_table.h"
@@ -11,7 +13,7 @@
 namespace lucerna {
 namespace {
 
-constexpr std::uint64_t kRays = std::uint64_t{1} << 15;
+constexpr std::uint64_t kRays = std::uint64_t{1} << 15, kMany = std::uint64_t{1} << 18;
 
 /// A Lambertian cylinder in a mirror of revolution, 100 mm wide; light that passes the mirror left out.
 struct Lamp {
@@ -32,11 +34,11 @@ struct Lamp {
     for (double& x : p) x = size_mm * (2.0 * rng.uniform() - 1.0);
     return plain.with(p);
   }
-  Evaluation traced(const DesignShape& shape, bool derivatives = false) const {
+  Evaluation traced(const DesignShape& shape, std::uint64_t count = kRays) const {
     EvaluationOptions options;
-    options.rays = kRays;
+    options.rays = count;
     options.direct_light = false;
-    options.derivatives = derivatives;
+    options.derivatives = false;
     return evaluate(shape, mirror, rays, bins, options);
   }
 
@@ -45,38 +47,46 @@ struct Lamp {
   TentBins bins = TentBins::rings(Frame(), 0.35, 48);
 };
 
-ZoneTable table_of(const Lamp& lamp) {
-  return {Lamp::shaken(0.0, 1), lamp.mirror, lamp.rays, kRays, lamp.bins, 4.0, Eigen::VectorXd::Zero(48)};
+ZoneTable table_of(const Lamp& lamp, std::uint64_t count = kRays) {
+  return {Lamp::shaken(0.0, 1), lamp.mirror, lamp.rays, count, lamp.bins, 4.0, Eigen::VectorXd::Zero(48)};
 }
 
-TEST(ZoneTable, ThrowsTheLightOfTheTraceButForSecondReflections) {
-  const Lamp lamp;
-  const ZoneTable table = table_of(lamp);
-  const Evaluation plain = lamp.traced(Lamp::shaken(0.0, 1));
-  for (const std::uint64_t seed : {1, 2, 3}) {
-    const DesignShape shape = Lamp::shaken(1.0, seed);
-    const Evaluation truth = lamp.traced(shape);
-    const auto off = [&](const Evaluation& e) {
-      return bin_error(e, truth.flux, lamp.bins, TargetMode::absolute).relative_rms;
-    };
-    EXPECT_LT(off(table.evaluate(shape)), 0.05) << seed;
-    EXPECT_GT(off(plain), 0.12) << seed;  // what shaking by 1 mm changes
+// What is left is the noise of 2^18 rays, 0.5-0.8 % for table and trace each: the table meets them elsewhere.
+TEST(ZoneTable, ThrowsTheLightOfTheTrace) {
+  for (const double side : {1.0, -1.0}) {  // gamma about z, or from behind
+    Lamp lamp;
+    lamp.rays.grow(kMany);
+    if (side < 0.0) {
+      lamp.bins = TentBins::rings(Frame({1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {}), std::numbers::pi, 48);
+    }
+    const ZoneTable table = table_of(lamp, kMany);
+    const Evaluation plain = lamp.traced(Lamp::shaken(0.0, 1), kMany);
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      const DesignShape shape = Lamp::shaken(1.0, seed);
+      const Evaluation truth = lamp.traced(shape, kMany);
+      const auto off = [&](const Evaluation& e) {
+        return bin_error(e, truth.flux, lamp.bins, TargetMode::absolute).relative_rms;
+      };
+      EXPECT_LT(off(table.evaluate(shape)), 0.015) << seed << ' ' << side;
+      EXPECT_GT(off(plain), 0.1) << seed;  // what shaking by 1 mm changes
+    }
   }
 }
 
 TEST(ZoneTable, DerivativesAreThoseOfItsOwnLight) {
-  const Lamp lamp;
-  const ZoneTable table = table_of(lamp);
+  Lamp lamp;
+  lamp.rays.grow(kMany);
+  const ZoneTable table = table_of(lamp, kMany);
   const DesignShape shape = Lamp::shaken(0.3, 5);
   const Evaluation e = table.evaluate(shape);
-  constexpr double kStep_mm = 0.02;
+  constexpr double kStep_mm = 1e-4;
   for (Eigen::Index i = 0; i < shape.parameters().size(); ++i) {
     const Eigen::VectorXd along = kStep_mm * Eigen::VectorXd::Unit(shape.parameters().size(), i);
     const Eigen::VectorXd difference = (table.evaluate(shape.with(shape.parameters() + along)).flux -
                                         table.evaluate(shape.with(shape.parameters() - along)).flux) /
                                        (2.0 * kStep_mm);
-    // The table is linear between its entries: differences over several entries are a mean of slopes.
-    EXPECT_LT((difference - e.jacobian.col(i)).norm(), 0.25 * difference.norm()) << i;
+    // The table is linear between its entries: a zone or two may pass one within the step.
+    EXPECT_LT((difference - e.jacobian.col(i)).norm(), 0.1 * difference.norm()) << i;
   }
 }
 
@@ -97,12 +107,12 @@ TEST(ProfileSearch, FindsAHiddenMirrorsLightForAnyNumberOfThreads) {
   };
   bool whole = false;
   std::vector<FitStart> two, one;
-  two = searched(15, whole);
+  two = searched(3, whole);
   EXPECT_FALSE(whole);  // ended by its caller
   EXPECT_LT(std::sqrt(two.front().cost), 0.03);
   {
     const ThreadLimit serial(1);
-    one = searched(15, whole);
+    one = searched(3, whole);
   }
   ASSERT_EQ(one.size(), two.size());
   for (std::size_t i = 0; i < one.size(); ++i) {
