@@ -405,7 +405,7 @@ TreeLookup::TreeLookup(const DensityTree& tree, const TreeBox& box) : box_(box),
       continue;
     }
     const TreeBox upper = p.box.half(n.axis, n.cut, true);
-    nodes_[p.node] = {upper.low[n.axis], n.right, n.axis};
+    nodes_[p.node] = {upper.low[n.axis], n.right, 1, n.axis};
     const double left = tree_share(n, tree.rays * p.share);
     stack.push_back({p.node + n.right, upper, p.share * (1.0 - left)});
     stack.push_back({p.node + 1, p.box.half(n.axis, n.cut, false), p.share * left});
@@ -419,6 +419,31 @@ double TreeLookup::density(const std::array<double, 4>& c) const {
   const Node* n = nodes_.data();
   while (n->right != 0) n += c[n->axis] >= n->value ? n->right : 1;
   return n->value;
+}
+
+void TreeLookup::add_densities(std::span<const std::array<double, 4>> points, std::span<double> sum) const {
+  constexpr std::size_t kWays = 8;
+  std::size_t first = 0;
+  for (; first + kWays <= points.size(); first += kWays) {
+    std::array<const Node*, kWays> at;
+    at.fill(nodes_.data());
+    bool down = true;
+    while (down) {
+      down = false;
+      for (std::size_t k = 0; k < kWays; ++k) {
+        const Node& n = *at[k];
+        at[k] += points[first + k][n.axis] >= n.value ? n.right : n.left;
+        down = down || n.right != 0;
+      }
+    }
+    for (std::size_t k = 0; k < kWays; ++k) {
+      const auto& c = points[first + k];
+      bool inside = true;
+      for (std::size_t d = 0; d < 4; ++d) inside = inside && c[d] >= box_.low[d] && c[d] <= box_.high[d];
+      sum[first + k] += inside ? at[k]->value : 0.0;
+    }
+  }
+  for (; first < points.size(); ++first) sum[first] += density(points[first]);
 }
 
 }  // namespace lucerna

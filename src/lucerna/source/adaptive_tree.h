@@ -137,11 +137,15 @@ class TreeLookup {
   TreeLookup(const DensityTree& tree, const TreeBox& box);
   /// As tree_density.
   double density(const std::array<double, 4>& c) const;
+  /// Adds the density at each point to `sum`: eight ways down at once, so that none waits for the others.
+  void add_densities(std::span<const std::array<double, 4>> points, std::span<double> sum) const;
 
-  /// In preorder, as TreeNode: `value` is a cut's place, or a leaf's (right == 0) density.
+  /// In preorder, as TreeNode: `value` is a cut's place, or a leaf's (right == 0) density. The left child is
+  /// `left` nodes further on: 1, but 0 at a leaf.
   struct Node {
     double value = 0.0;
-    std::uint32_t right = 0, axis = 0;
+    std::uint32_t right = 0;
+    std::uint16_t left = 0, axis = 0;
   };
   std::span<const Node> nodes() const { return nodes_; }
 

@@ -97,4 +97,34 @@ inline double half_kepler_angle(double m) {
   return upper ? std::numbers::pi - half : half;
 }
 
+/// Arc tangent of a / b for 0 <= a <= b, exact to 2e-16; 0 if both are 0. Beyond tan(pi / 8) it is pi / 4
+/// less that of (b - a) / (b + a); the coefficients interpolate atan(t) / t in t^2 at Chebyshev points.
+LUCERNA_ALWAYS_INLINE inline double arc_tangent(double a, double b) {
+  const bool far = a > 0.41421356237309505 * b;
+  const double above = far ? a - b : a, below = far ? a + b : b;
+  const double t = above / (below == 0.0 ? 1.0 : below), z = t * t;
+  double p = 0.021135373157693243;
+  p = p * z - 0.04348052215716462;
+  p = p * z + 0.056883492268090106;
+  p = p * z - 0.06640233930429408;
+  p = p * z + 0.07689953496306857;
+  p = p * z - 0.09090773074808414;
+  p = p * z + 0.11111106180455946;
+  p = p * z - 0.14285714180976467;
+  p = p * z + 0.1999999999885511;
+  p = p * z - 0.3333333333332844;
+  p = p * z + 1.0;
+  return t * p + (far ? 0.25 * std::numbers::pi : 0.0);
+}
+
+/// std::atan2 for finite numbers but for the sign of zeros: 0 for (0, 0), pi for (0, x < 0).
+LUCERNA_ALWAYS_INLINE inline double azimuth(double y, double x) {
+  const double across = std::abs(x), up = std::abs(y);
+  const bool steep = up > across;
+  const double part = arc_tangent(steep ? across : up, steep ? up : across);
+  const double quarter = steep ? 0.5 * std::numbers::pi - part : part;
+  const double half = x < 0.0 ? std::numbers::pi - quarter : quarter;
+  return y < 0.0 ? -half : half;
+}
+
 }  // namespace lucerna::batch

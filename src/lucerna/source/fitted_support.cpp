@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/source/fitted_support.h"
 
+#include <algorithm>
+
 namespace lucerna {
 
 namespace {
@@ -35,16 +37,33 @@ FittedSupport::FittedSupport(const RayBlock& rays, std::span<const float> weight
   }
 }
 
-double FittedSupport::density(const Ray& ray) const {
-  const auto p = on_.support.to_chart(ray);
-  if (!p) return 0.0;
+void FittedSupport::densities(const ChartBatch& lines, std::span<double> out) const {
+  std::fill(out.begin(), out.end(), 0.0);
   for (const Chart& c : charts_) {
-    if (c.chart != p->chart) continue;
-    double sum = 0.0;
-    for (const TreeLookup& tree : c.trees) sum += tree.density(p->c);
-    return c.share * sum;
+    std::array<std::array<double, 4>, kSupportBatch> points;
+    std::array<std::size_t, kSupportBatch> which;
+    std::array<double, kSupportBatch> sum{};
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      if (lines.chart[i] != c.chart) continue;
+      points[n] = lines.point(i);
+      which[n++] = i;
+    }
+    for (const TreeLookup& tree : c.trees)
+      tree.add_densities(std::span(points).first(n), std::span(sum).first(n));
+    for (std::size_t i = 0; i < n; ++i) out[which[i]] = c.share * sum[i];
   }
-  return 0.0;
+}
+
+void FittedSupport::densities(const RayBlock& rays, std::size_t first, std::span<double> out) const {
+  RayBatch batch;
+  ChartBatch lines;
+  for (std::size_t at = 0; at < out.size(); at += kSupportBatch) {
+    const std::size_t n = std::min(kSupportBatch, out.size() - at);
+    load_batch(rays, first + at, 1, n, batch);
+    charts_of(on_.support, batch, lines);
+    densities(lines, out.subspan(at, n));
+  }
 }
 
 PlainDensity::PlainDensity(const RayBlock& rays, std::span<const float> weight, const Vec3& focus_mm,
@@ -53,8 +72,9 @@ PlainDensity::PlainDensity(const RayBlock& rays, std::span<const float> weight, 
   even_ = kEvenShare / fitted_.volume();
 }
 
-double PlainDensity::density(const Ray& ray) const {
-  return (1.0 - kEvenShare) * fitted_.density(ray) + even_;
+void PlainDensity::densities(const RayBlock& rays, std::size_t first, std::span<double> out) const {
+  fitted_.densities(rays, first, out);
+  for (double& d : out) d = (1.0 - kEvenShare) * d + even_;
 }
 
 }  // namespace lucerna

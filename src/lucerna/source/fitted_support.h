@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "lucerna/source/chart_batch.h"
 #include "lucerna/source/support_fit.h"
 
 namespace lucerna {
@@ -19,8 +20,12 @@ class FittedSupport {
   FittedSupport(const RayBlock& rays, std::span<const float> weight, BoundedSupport on, double tolerance_mm,
                 int trees = 1);
 
-  /// Density of the ray's line, 1/(mm^2 sr), times carried(): it integrates to that share.
-  double density(const Ray& ray) const;
+  /// Densities of the first lines of a batch, as many as `out` holds, 1/(mm^2 sr) times carried(): they
+  /// integrate to that share. `lines` are in support()'s numbers.
+  void densities(const ChartBatch& lines, std::span<double> out) const;
+  /// The same for rays `first`, `first + 1` ... of a block.
+  void densities(const RayBlock& rays, std::size_t first, std::span<double> out) const;
+  const Support& support() const { return on_.support; }
   /// Share of the weight that the support carries.
   double carried() const { return carried_; }
   /// Étendue of the boxes about its rays.
@@ -45,7 +50,8 @@ class PlainDensity {
  public:
   PlainDensity(const RayBlock& rays, std::span<const float> weight, const Vec3& focus_mm,
                double tolerance_mm);
-  double density(const Ray& ray) const;
+  /// Densities of the lines of rays `first`, `first + 1` ... of a block.
+  void densities(const RayBlock& rays, std::size_t first, std::span<double> out) const;
 
  private:
   FittedSupport fitted_;

@@ -35,7 +35,7 @@ template <class Density>
 std::vector<double> densities(const RayBlock& rays, const Density& density) {
   std::vector<double> out(rays.size());
   parallel_blocks(rays.size(), kBlock, [&](std::size_t a, std::size_t b) {
-    for (std::size_t i = a; i < b; ++i) out[i] = density.density(rays.ray(i));
+    density.densities(rays, a, std::span(out).subspan(a, b - a));
   });
   return out;
 }
@@ -119,17 +119,27 @@ std::vector<float> LayerSplit::second_parts(const RayBlock& rays) const {
   constexpr double kNearly = 0.02;
   std::vector<float> out(rays.size());
   parallel_blocks(rays.size(), kBlock, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const Ray ray = rays.ray(i);
-      std::array<double, 2> p{};
+    RayBatch batch;
+    ChartBatch lines;
+    BatchColumn density;
+    for (std::size_t at = first; at < last; at += kSupportBatch) {
+      const std::size_t n = std::min(kSupportBatch, last - at);
+      load_batch(rays, at, 1, n, batch);
+      std::array<BatchColumn, 2> p{};
       for (std::size_t layer = 0; layer < 2; ++layer) {
-        for (const FittedSupport& f : densities_[layer]) p[layer] += f.density(ray);
+        charts_of(densities_[layer].front().support(), batch, lines);
+        for (const FittedSupport& f : densities_[layer]) {
+          f.densities(lines, std::span(density).first(n));
+          for (std::size_t i = 0; i < n; ++i) p[layer][i] += density[i];
+        }
       }
-      const double a = (1.0 - second_share_) * p[0], b = second_share_ * p[1];
-      double part = a + b > 0.0 ? b / (a + b) : 0.0;
-      if (part < kNearly) part = 0.0;
-      if (part > 1.0 - kNearly) part = 1.0;
-      out[i] = static_cast<float>(part);
+      for (std::size_t i = 0; i < n; ++i) {
+        const double a = (1.0 - second_share_) * p[0][i], b = second_share_ * p[1][i];
+        double part = a + b > 0.0 ? b / (a + b) : 0.0;
+        if (part < kNearly) part = 0.0;
+        if (part > 1.0 - kNearly) part = 1.0;
+        out[at + i] = static_cast<float>(part);
+      }
     }
   });
   return out;

@@ -20,14 +20,17 @@ double log_likelihood(const std::vector<TreeLookup>& trees, const std::vector<Tr
                       double volume) {
   const auto sums =
       parallel_map_blocks<double>(held.size(), kBlock, [&](std::size_t first, std::size_t last) {
+        std::vector<std::array<double, 4>> points(last - first);
+        std::vector<double> density(last - first, 0.0);
+        for (std::size_t i = first; i < last; ++i) {
+          const auto& c = held[i].c;
+          std::copy(c.begin(), c.end(), points[i - first].begin());
+        }
+        for (const TreeLookup& tree : trees) tree.add_densities(points, density);
         double sum = 0.0;
         for (std::size_t i = first; i < last; ++i) {
-          std::array<double, 4> c;
-          for (std::size_t d = 0; d < 4; ++d) c[d] = static_cast<double>(held[i].c[d]);
-          double density = 0.0;
-          for (const TreeLookup& tree : trees) density += tree.density(c);
-          density = (1.0 - kFloor) * density / static_cast<double>(trees.size()) + kFloor / volume;
-          sum += static_cast<double>(held[i].weight) * std::log(density);
+          const double mean = density[i - first] / static_cast<double>(trees.size());
+          sum += static_cast<double>(held[i].weight) * std::log((1.0 - kFloor) * mean + kFloor / volume);
         }
         return sum;
       });

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "lucerna/core/vector_clones.h"
-#include "lucerna/source/support_batch.h"
+#include "lucerna/source/local_batch.h"
 
 namespace lucerna {
 
@@ -13,22 +13,6 @@ namespace {
 struct Distances {
   BatchColumn t, good;
 };
-
-/// The rays in the frame of their surface: starts o, directions d.
-struct LocalRay {
-  double ox, oy, oz, dx, dy, dz;
-};
-
-LUCERNA_ALWAYS_INLINE inline LocalRay local_ray(const Frame& f, const RayBatch& r, std::size_t i) {
-  const Vec3 &ex = f.ex(), &ey = f.ey(), &ez = f.ez(), &o = f.origin_mm();
-  const double x = r.x[i] - o.x, y = r.y[i] - o.y, z = r.z[i] - o.z;
-  return {x * ex.x + y * ex.y + z * ex.z,
-          x * ey.x + y * ey.y + z * ey.z,
-          x * ez.x + y * ez.y + z * ez.z,
-          r.kx[i] * ex.x + r.ky[i] * ex.y + r.kz[i] * ex.z,
-          r.kx[i] * ey.x + r.ky[i] * ey.y + r.kz[i] * ey.z,
-          r.kx[i] * ez.x + r.ky[i] * ez.y + r.kz[i] * ez.z};
-}
 
 LUCERNA_VECTOR_CLONES void to_sphere(const BoundingSurface& s, const RayBatch& r, Distances& to) {
   const Vec3 o = s.world_from_surface.origin_mm();

@@ -6,6 +6,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
+#include "lucerna/source/chart_batch.h"
 
 namespace lucerna {
 
@@ -16,25 +17,30 @@ constexpr double kOpen = 1e29, kTail = 0.002, kDirectionTolerance = 1e-6;
 constexpr std::uint8_t kMissed = 255, kWithoutFlux = 254;
 
 bool inside(const TreeBox& box, const std::array<double, 4>& c) {
-  for (std::size_t d = 0; d < 4; ++d) {
-    if (!(c[d] >= box.low[d] && c[d] <= box.high[d])) return false;
-  }
-  return true;
+  bool in = true;
+  for (std::size_t d = 0; d < 4; ++d) in = in && c[d] >= box.low[d] && c[d] <= box.high[d];
+  return in;
 }
 
 /// The item and chart of every ray.
 void project_all(const RayBlock& rays, std::span<const float> weight, const BoundedSupport& on,
                  std::vector<TreeItem>& items, std::vector<std::uint8_t>& chart) {
   parallel_blocks(rays.size(), kBlock, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      chart[i] = kWithoutFlux;
-      if (!(weight[i] > 0.0f)) continue;
-      chart[i] = kMissed;
-      const auto p = on.support.to_chart(rays.ray(i));
-      if (!p || !inside(on.limits[p->chart], p->c)) continue;
-      chart[i] = static_cast<std::uint8_t>(p->chart);
-      for (std::size_t d = 0; d < 4; ++d) items[i].c[d] = static_cast<float>(p->c[d]);
-      items[i].weight = weight[i];
+    RayBatch batch;
+    ChartBatch lines;
+    for (std::size_t at = first; at < last; at += kSupportBatch) {
+      const std::size_t n = std::min(kSupportBatch, last - at);
+      load_batch(rays, at, 1, n, batch);
+      charts_of(on.support, batch, lines);
+      for (std::size_t k = 0; k < n; ++k) {
+        const std::size_t i = at + k;
+        chart[i] = weight[i] > 0.0f ? kMissed : kWithoutFlux;
+        const std::uint8_t its = lines.chart[k];
+        if (chart[i] != kMissed || its == kNoChart || !inside(on.limits[its], lines.point(k))) continue;
+        chart[i] = its;
+        for (std::size_t d = 0; d < 4; ++d) items[i].c[d] = static_cast<float>(lines.c[d][k]);
+        items[i].weight = weight[i];
+      }
     }
   });
 }
@@ -78,11 +84,16 @@ BoundedSupport bounded(const Support& support, const RayBlock& rays) {
   BoundedSupport result{support, std::vector<TreeBox>(support.charts())};
   std::vector<std::array<std::vector<double>, 2>> values(support.charts());
   const std::size_t stride = 1 + rays.size() / kBoundingRays;
-  for (std::size_t i = 0; i < rays.size(); i += stride) {
-    if (!(rays.weight[i] > 0.0f)) continue;
-    const auto p = support.to_chart(rays.ray(i));
-    if (!p) continue;
-    for (std::size_t d = 0; d < 2; ++d) values[p->chart][d].push_back(p->c[d]);
+  RayBatch batch;
+  ChartBatch lines;
+  for (std::size_t first = 0; first < rays.size(); first += stride * kSupportBatch) {
+    const std::size_t n = std::min(kSupportBatch, block_count(rays.size() - first, stride));
+    load_batch(rays, first, stride, n, batch);
+    charts_of(support, batch, lines);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!(rays.weight[first + i * stride] > 0.0f) || lines.chart[i] == kNoChart) continue;
+      for (std::size_t d = 0; d < 2; ++d) values[lines.chart[i]][d].push_back(lines.c[d][i]);
+    }
   }
   for (std::uint32_t chart = 0; chart < support.charts(); ++chart) {
     TreeBox& box = result.limits[chart];

@@ -23,7 +23,8 @@ SupportJudge::SupportJudge(const RayBlock& rays, const Vec3& focus_mm, double to
     : tolerance_mm_(tolerance_mm), trees_(trees) {
   for (std::size_t i = 0; i < rays.size(); ++i) (i % 3 == 2 ? held_ : train_).append(rays, i);
   const PlainDensity plain(train_, train_.weight, focus_mm, tolerance_mm_);
-  for (std::size_t i = 0; i < held_.size(); ++i) plain_.push_back(plain.density(held_.ray(i)));
+  plain_.resize(held_.size());
+  plain.densities(held_, 0, plain_);
 }
 
 SupportScore SupportJudge::score(const Support& support) const {
@@ -32,11 +33,13 @@ SupportScore SupportJudge::score(const Support& support) const {
   const FittedSupport fitted(train_, train_.weight, score.on, tolerance_mm_, trees_);
   score.carried = fitted.carried();
   const double plain_share = kPlainShare + (1.0 - kPlainShare) * (1.0 - score.carried);
+  std::vector<double> density(held_.size());
+  fitted.densities(held_, 0, density);
   double sum = 0.0, weight = 0.0;
   for (std::size_t i = 0; i < held_.size(); ++i) {
     const double w = static_cast<double>(held_.weight[i]);
     if (!(w > 0.0)) continue;
-    const double d = (1.0 - kPlainShare) * fitted.density(held_.ray(i)) + plain_share * plain_[i];
+    const double d = (1.0 - kPlainShare) * density[i] + plain_share * plain_[i];
     const double log_d = std::log(d);
     score.log_density.push_back(static_cast<float>(log_d));
     sum += w * log_d;

@@ -11,6 +11,7 @@
 #include "lucerna/core/random.h"
 #include "lucerna/rayset/ray_statistics.h"
 #include "lucerna/rayset/surface_guess.h"
+#include "lucerna/source/chart_batch.h"
 #include "lucerna/source/support_moves.h"
 #include "lucerna/source/support_polish.h"
 #include "lucerna/source/support_score.h"
@@ -93,11 +94,17 @@ std::array<double, 2> cylinder_size(const RayBlock& rays, const Frame& frame) {
   probe.kind = SupportKind::axis;
   probe.world_from_support = frame;
   std::vector<double> along, across;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const auto p = probe.to_chart(rays.ray(i));
-    if (!p) continue;
-    along.push_back(std::abs(p->c[0]));
-    across.push_back(std::abs(p->c[1]));
+  RayBatch batch;
+  ChartBatch lines;
+  for (std::size_t first = 0; first < rays.size(); first += kSupportBatch) {
+    const std::size_t n = std::min(kSupportBatch, rays.size() - first);
+    load_batch(rays, first, 1, n, batch);
+    charts_of(probe, batch, lines);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (lines.chart[i] == kNoChart) continue;
+      along.push_back(std::abs(lines.c[0][i]));
+      across.push_back(std::abs(lines.c[1][i]));
+    }
   }
   return {quantile(std::move(across), 0.985), quantile(std::move(along), 0.97)};
 }

@@ -43,7 +43,7 @@ std::vector<float> band_ends(const WavelengthTable& all) {
 bool foretold(const RayBlock& rays, const std::vector<std::size_t>& band, std::size_t bands,
               const BoundedSupport& on, double tolerance_mm) {
   constexpr double kClear = 4.0, kLeastGain = 0.002, kFloor = 0.05;
-  std::vector<FittedSupport> fitted;
+  std::vector<std::vector<double>> density;
   std::vector<double> share(bands, 0.0);
   double total = 0.0;
   for (std::size_t b = 0; b < bands; ++b) {
@@ -52,12 +52,12 @@ bool foretold(const RayBlock& rays, const std::vector<std::size_t>& band, std::s
       if (i % 3 != 2 && band[i] == b) weight[i] = rays.weight[i], share[b] += static_cast<double>(weight[i]);
     }
     total += share[b];
-    fitted.emplace_back(rays, weight, on, tolerance_mm);
+    FittedSupport(rays, weight, on, tolerance_mm).densities(rays, 0, density.emplace_back(rays.size()));
   }
   double sum = 0.0, squares = 0.0, weight = 0.0, weight2 = 0.0;
   for (std::size_t i = 2; i < rays.size(); i += 3) {
     std::vector<double> p(bands);
-    for (std::size_t b = 0; b < bands; ++b) p[b] = share[b] / total * fitted[b].density(rays.ray(i));
+    for (std::size_t b = 0; b < bands; ++b) p[b] = share[b] / total * density[b][i];
     const double all = std::accumulate(p.begin(), p.end(), 0.0), w = static_cast<double>(rays.weight[i]);
     const double before = share[band[i]] / total;
     if (!(before > 0.0)) continue;
