@@ -6,6 +6,7 @@
 #include <span>
 
 #include "lucerna/core/error.h"
+#include "lucerna/core/parallel.h"
 #include "lucerna/core/random.h"
 #include "lucerna/rayset/ray_statistics.h"
 #include "lucerna/rayset/surface_guess.h"
@@ -52,14 +53,10 @@ GrownLayer grown_layer(Projection& p, const Support& support, double total_weigh
   grown.layer.share = p.weight / total_weight;
   for (ChartItems& c : p.charts) {
     if (c.weight < kSmallestShare * total_weight) continue;
+    progress.step("compress: trees", static_cast<std::uint64_t>(&c - p.charts.data()), p.charts.size());
     grown.layer.charts.push_back({c.chart, c.weight, c.box, {}});
-    auto& grown_trees = grown.trees.emplace_back();
-    for (int t = 0; t < trees; ++t) {
-      progress.step("compress: trees", static_cast<std::uint64_t>(t), static_cast<std::uint64_t>(trees));
-      grown_trees.push_back(grow_tree(
-          c.items, c.box,
-          {.penalty_nats = penalty, .tree_number = static_cast<std::uint64_t>(t), .coarse_cuts = trees > 1}));
-    }
+    const GrowOptions grow{.penalty_nats = penalty, .coarse_cuts = trees > 1};
+    grown.trees.push_back(grow_trees(c.items, c.box, grow, static_cast<std::size_t>(trees)));
     c.items = {};
   }
   double sum = 0.0;
@@ -68,18 +65,25 @@ GrownLayer grown_layer(Projection& p, const Support& support, double total_weigh
   return grown;
 }
 
-/// The file's size with every tree pruned by `penalty`, and the layers themselves.
+/// The layers themselves, the first `trees` of every chart pruned by `penalty`; on all threads.
 std::vector<AdaptiveLayer> pruned(const std::vector<GrownLayer>& grown, double penalty, int trees) {
+  struct Pruning {
+    const GrownTree* from;
+    DensityTree* to;
+  };
   std::vector<AdaptiveLayer> layers;
-  for (const GrownLayer& g : grown) {
-    layers.push_back(g.layer);
-    for (std::size_t i = 0; i < g.trees.size(); ++i) {
-      for (std::size_t t = 0; t < std::min<std::size_t>(g.trees[i].size(), static_cast<std::size_t>(trees));
-           ++t) {
-        layers.back().charts[i].trees.push_back(prune_tree(g.trees[i][t], penalty));
-      }
+  for (const GrownLayer& g : grown) layers.push_back(g.layer);
+  std::vector<Pruning> all;
+  for (std::size_t k = 0; k < grown.size(); ++k) {
+    for (std::size_t i = 0; i < grown[k].trees.size(); ++i) {
+      const auto& from = grown[k].trees[i];
+      auto& to = layers[k].charts[i].trees;
+      to.resize(std::min<std::size_t>(from.size(), static_cast<std::size_t>(trees)));
+      for (std::size_t t = 0; t < to.size(); ++t) all.push_back({&from[t], &to[t]});
     }
   }
+  parallel_blocks(all.size(), 1,
+                  [&](std::size_t i, std::size_t) { *all[i].to = prune_tree(*all[i].from, penalty); });
   return layers;
 }
 
@@ -92,28 +96,34 @@ std::uint64_t file_bytes(const AdaptiveData& data) {
   return bytes > kLarge ? bytes : encode_nfl(file).size();
 }
 
+/// False where so many leaves surely do not fit: they take 11 to 20 bits each.
+bool fits(const AdaptiveData& data, std::uint64_t max_bytes) {
+  constexpr std::uint64_t kLeastBits = 6;
+  return kLeastBits * data.leaves() <= 8 * max_bytes && file_bytes(data) <= max_bytes;
+}
+
 /// Prunes until the file fits: first by penalty, then with fewer trees.
 void fit_to_size(AdaptiveData& data, const std::vector<GrownLayer>& grown, const Setting& setting,
                  std::uint64_t max_bytes) {
   for (int trees = setting.trees;; trees /= 2) {
     double low = setting.penalty_nats, high = low;
     data.layers = pruned(grown, low, trees);
-    if (file_bytes(data) <= max_bytes) return;
+    if (fits(data, max_bytes)) return;
     // Rougher trees than this are worse than fewer of them.
     const double most = trees > 1 ? 3.0 * setting.penalty_nats : 1e9;
     do {
       low = high;
       high = std::min(most, 2.0 * high);
       data.layers = pruned(grown, high, trees);
-    } while (file_bytes(data) > max_bytes && high < most);
-    if (file_bytes(data) > max_bytes) {
+    } while (!fits(data, max_bytes) && high < most);
+    if (!fits(data, max_bytes)) {
       if (trees > 1) continue;
       throw InputError(fmt::format("a model of these rays does not fit in {} bytes", max_bytes));
     }
     for (int i = 0; i < 6; ++i) {
       const double middle = std::sqrt(low * high);
       data.layers = pruned(grown, middle, trees);
-      (file_bytes(data) <= max_bytes ? high : low) = middle;
+      (fits(data, max_bytes) ? high : low) = middle;
     }
     data.layers = pruned(grown, high, trees);
     return;
@@ -241,13 +251,28 @@ void add_layers(LayerGrower& grower, std::span<const float> weight, std::span<co
   grower.add_background(search.best.on);
 }
 
+/// Above so many rays each goes to one of two layers as a whole, by chance: half the work, and noise that so
+/// many rays do not show.
+constexpr std::size_t kWholeRays = 4'500'000;
+
+void make_whole(std::vector<float>& part, std::uint64_t seed) {
+  constexpr std::size_t kBlock = 1 << 14;
+  parallel_blocks(part.size(), kBlock, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      if (part[i] > 0.0f && part[i] < 1.0f)
+        part[i] = Rng(seed, i).uniform() < static_cast<double>(part[i]) ? 1.0f : 0.0f;
+    }
+  });
+}
+
 /// All layers of all bands.
 std::vector<GrownLayer> grown_layers(const RayBlock& rays, std::span<const float> nm,
                                      const ColourBands& bands, const SearchResult& search,
                                      const std::optional<LayerSplit>& split, const Setting& setting,
-                                     double tolerance_mm, Progress& progress) {
+                                     double tolerance_mm, std::uint64_t seed, Progress& progress) {
   LayerGrower grower{rays, setting, sum_of(rays.weight), tolerance_mm, progress};
-  const std::vector<float> second = split ? split->second_parts(rays) : std::vector<float>{};
+  std::vector<float> second = split ? split->second_parts(rays) : std::vector<float>{};
+  if (rays.size() > kWholeRays) make_whole(second, seed);
   if (bands.cuts_nm.empty()) add_layers(grower, rays.weight, second, search, split);
   for (std::uint32_t b = 0; b < bands.tables.size() && !bands.cuts_nm.empty(); ++b) {
     std::vector<float> weight(rays.size());
@@ -314,7 +339,8 @@ std::unique_ptr<AdaptiveModel> compress(const RayBlock& rays, std::span<const fl
   if (!nm.empty()) bands = colour_bands(rays, nm, search.best.on, tolerance, options.seed + 5);
   if (nm.empty() && header.wavelength_nm)
     bands.tables = {{{0.0f, 1.0f}, {*header.wavelength_nm, *header.wavelength_nm}}};
-  const auto grown = grown_layers(rays, nm, bands, search, split, setting, tolerance, progress);
+  const auto grown =
+      grown_layers(rays, nm, bands, search, split, setting, tolerance, options.seed + 6, progress);
   data.wavelengths = bands.tables;
   fit_to_size(data, grown, setting, options.max_bytes.value_or(std::uint64_t{1} << 27));
   return std::make_unique<AdaptiveModel>(std::move(data));

@@ -27,7 +27,7 @@ std::vector<TreeItem> items(std::size_t n, const Keep& keep, float weight = 1.0f
 }
 
 DensityTree fit(std::vector<TreeItem> rays, double penalty = 8.0, const TreeBox& box = kUnitBox) {
-  return prune_tree(grow_tree(rays, box, {.penalty_nats = penalty}), penalty);
+  return prune_tree(grow_trees(rays, box, {.penalty_nats = penalty}, 1).front(), penalty);
 }
 
 TEST(AdaptiveTree, EvenLightIsOneLeaf) {
@@ -110,15 +110,19 @@ TEST(AdaptiveTree, SameBitsForAnyNumberOfThreads) {
 
 TEST(AdaptiveTree, TreesOfDifferentNumbersCutDifferently) {
   const auto hill = [](const TreeItem& i) { return static_cast<double>(i.c[0]); };
-  auto rays = items(10000, hill);
-  const auto a = grow_tree(rays, kUnitBox, {.penalty_nats = 4.0, .tree_number = 0});
-  const auto b = grow_tree(rays, kUnitBox, {.penalty_nats = 4.0, .tree_number = 1});
-  EXPECT_NE(prune_tree(a, 4.0).nodes, prune_tree(b, 4.0).nodes);
+  auto rays = items(60000, hill);
+  const auto both = grow_trees(rays, kUnitBox, {.penalty_nats = 4.0}, 2);
+  EXPECT_NE(prune_tree(both[0], 4.0).nodes, prune_tree(both[1], 4.0).nodes);
+  // Together they are what each is alone.
+  for (std::uint64_t t = 0; t < 2; ++t) {
+    const auto alone = grow_trees(rays, kUnitBox, {.penalty_nats = 4.0, .tree_number = t}, 1);
+    EXPECT_EQ(prune_tree(both[t], 4.0), prune_tree(alone.front(), 4.0));
+  }
 }
 
 TEST(AdaptiveTree, PruningKeepsWhatPays) {
   auto rays = items(50000, [](const TreeItem& i) { return 0.5 + 0.5 * static_cast<double>(i.c[0]); });
-  const GrownTree grown = grow_tree(rays, kUnitBox, {.penalty_nats = 2.0});
+  const GrownTree grown = grow_trees(rays, kUnitBox, {.penalty_nats = 2.0}, 1).front();
   std::size_t last = ~std::size_t{0};
   for (const double penalty : {2.0, 4.0, 8.0, 16.0, 1e9}) {
     const std::size_t splits = kept_splits(grown, penalty);

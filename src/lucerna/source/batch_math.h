@@ -127,4 +127,25 @@ LUCERNA_ALWAYS_INLINE inline double azimuth(double y, double x) {
   return y < 0.0 ? -half : half;
 }
 
+/// Natural logarithm of 1e-300 < x < 1e300, to 2e-15 of 1 + its size: with x = 2^k m, m nearest to 1, the
+/// series of ln m = 2 artanh((m - 1) / (m + 1)).
+LUCERNA_ALWAYS_INLINE inline double logarithm(double x) {
+  // The bits of sqrt(1/2) less those of 1: m lies between it and sqrt(2).
+  constexpr std::uint64_t kOne = 0x3FF0000000000000u, kHalfway = 0x3FE6A09E667F3BCDu;
+  const std::uint64_t bits = std::bit_cast<std::uint64_t>(x) + (kOne - kHalfway), power = bits >> 52;
+  const double m = std::bit_cast<double>((bits & 0x000FFFFFFFFFFFFFu) + kHalfway);
+  // An integer as a double: the low bits of 2^52.
+  const double k = std::bit_cast<double>(power | 0x4330000000000000u) - (4503599627370496.0 + 1023.0);
+  const double s = (m - 1.0) / (m + 1.0), z = s * s;
+  double p = 2.0 / 17.0;
+  p = p * z + 2.0 / 15.0;
+  p = p * z + 2.0 / 13.0;
+  p = p * z + 2.0 / 11.0;
+  p = p * z + 2.0 / 9.0;
+  p = p * z + 2.0 / 7.0;
+  p = p * z + 2.0 / 5.0;
+  p = p * z + 2.0 / 3.0;
+  return k * std::numbers::ln2 + (2.0 * s + s * z * p);
+}
+
 }  // namespace lucerna::batch

@@ -99,5 +99,14 @@ TEST(BatchMath, AzimuthsAreThoseOfTheLibrary) {
   EXPECT_EQ(batch::azimuth(-1.0, -1.0), -0.75 * std::numbers::pi);
 }
 
+TEST(BatchMath, LogarithmsAreThoseOfTheLibrary) {
+  for (int i = 0; i < 200000; ++i) {
+    Rng rng(7, static_cast<std::uint64_t>(i));
+    const double x = std::exp((i % 2 == 0 ? 2.0 : 1200.0) * (rng.uniform() - 0.5));
+    ASSERT_NEAR(batch::logarithm(x), std::log(x), 4e-15 * (1.0 + std::abs(std::log(x)))) << x;
+  }
+  EXPECT_EQ(batch::logarithm(1.0), 0.0);
+}
+
 }  // namespace
 }  // namespace lucerna

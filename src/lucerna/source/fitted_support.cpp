@@ -27,9 +27,9 @@ FittedSupport::FittedSupport(const RayBlock& rays, std::span<const float> weight
   for (ChartItems& c : p.charts) {
     const double share = c.weight / total / on_.support.etendue_ratio() / trees;
     charts_.push_back({c.chart, share, {}});
-    for (int t = 0; t < trees; ++t) {
-      const GrowOptions grow{.penalty_nats = kQuickPenaltyNats, .tree_number = static_cast<std::uint64_t>(t)};
-      const DensityTree tree = prune_tree(grow_tree(c.items, c.box, grow), kQuickPenaltyNats);
+    const GrowOptions grow{.penalty_nats = kQuickPenaltyNats};
+    for (const GrownTree& grown : grow_trees(c.items, c.box, grow, static_cast<std::size_t>(trees))) {
+      const DensityTree tree = prune_tree(grown, kQuickPenaltyNats);
       leaves_ += tree.leaves();
       charts_.back().trees.emplace_back(tree, c.box);
     }

@@ -16,6 +16,8 @@ inline constexpr double kQuickPenaltyNats = 6.0;
 /// judged by and what tells overlapping layers apart. Immutable once made; thread safe.
 class FittedSupport {
  public:
+  /// Nothing at all.
+  FittedSupport() = default;
   /// Only rays that the support carries are in it; `weight` as for project().
   FittedSupport(const RayBlock& rays, std::span<const float> weight, BoundedSupport on, double tolerance_mm,
                 int trees = 1);

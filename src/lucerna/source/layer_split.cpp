@@ -75,16 +75,21 @@ double expectation(const Halves& h, const Numbers& first, const Numbers& second,
   return weight > 0.0 ? sum / weight : 0.0;
 }
 
-/// A density of each half, of the rays' parts in one layer.
-std::array<FittedSupport, 2> maximisation(const Halves& h, const Numbers& part, bool second,
-                                          const BoundedSupport& on, double tolerance_mm) {
-  const auto fit = [&](std::size_t k) {
-    return FittedSupport(h.rays[k], parted(h.rays[k], part[k], second), on, tolerance_mm);
-  };
-  return {fit(0), fit(1)};
+/// Densities of each half, of the rays' parts in the first layer and, where there is one, in the second. All
+/// at once.
+using Fitted = std::array<FittedSupport, 2>;
+std::vector<Fitted> maximisation(const Halves& h, const Numbers& part, const BoundedSupport& first,
+                                 const BoundedSupport* second, double tolerance_mm) {
+  std::vector<Fitted> layers(second ? 2 : 1);
+  parallel_blocks(2 * layers.size(), 1, [&](std::size_t i, std::size_t) {
+    const std::size_t layer = i / 2, k = i % 2;
+    layers[layer][k] = FittedSupport(h.rays[k], parted(h.rays[k], part[k], layer == 1),
+                                     layer == 0 ? first : *second, tolerance_mm);
+  });
+  return layers;
 }
 
-Numbers crossed(const Halves& h, const std::array<FittedSupport, 2>& fitted) {
+Numbers crossed(const Halves& h, const Fitted& fitted) {
   return {densities(h.rays[0], fitted[1]), densities(h.rays[1], fitted[0])};
 }
 
@@ -145,6 +150,66 @@ std::vector<float> LayerSplit::second_parts(const RayBlock& rays) const {
   return out;
 }
 
+/// The first support alone, and what it leaves to a second.
+struct LayerSplitter {
+  const Halves& halves;
+  const BoundedSupport& first;
+  double tolerance_mm;
+  Numbers alone, part;  // density of every ray; its part that light from anywhere explains better
+  double leaves = 0.0, share = 0.0;
+
+  LayerSplitter(const Halves& h, const BoundedSupport& first_support, double tolerance)
+      : halves(h), first(first_support), tolerance_mm(tolerance) {
+    constexpr double kFirstGuess = 0.05;
+    for (std::size_t k = 0; k < 2; ++k) part[k].assign(h.rays[k].size(), 0.0);
+    const Fitted single = maximisation(h, part, first, nullptr, tolerance_mm).front();
+    leaves = static_cast<double>(single[0].leaves() + single[1].leaves());
+    alone = crossed(h, single);
+    share = kFirstGuess;
+    Numbers one = alone;
+    for (int step = 0; step < kFirstSteps; ++step) {
+      share = expectation(h, one, h.plain, share, part);
+      if (step % 3 == 2) one = crossed(h, maximisation(h, part, first, nullptr, tolerance_mm).front());
+    }
+  }
+
+  /// Rays, weighted by how badly the first support explains them.
+  RayBlock odd_rays() const {
+    RayBlock odd;
+    for (std::size_t k = 0; k < 2; ++k) {
+      RayBlock weighted = halves.rays[k];
+      weighted.weight = parted(halves.rays[k], part[k], true);
+      odd.append(weighted);
+    }
+    return odd;
+  }
+
+  /// The rays shared out between the first support and `second`; nothing if that is not worth its leaves.
+  std::optional<LayerSplit> with(const BoundedSupport& second, Progress& progress) const {
+    LayerSplit split;
+    split.second_ = second;
+    Numbers its_part = part, one, two;
+    double its_share = share, more_leaves = -leaves;
+    for (int step = 0; step < kSteps; ++step) {
+      if (progress.stop_requested()) throw Interrupted();
+      const auto fitted = maximisation(halves, its_part, first, &second, tolerance_mm);
+      one = crossed(halves, fitted[0]), two = crossed(halves, fitted[1]);
+      its_share = expectation(halves, one, two, its_share, its_part);
+      if (step < kSteps - 1) continue;
+      for (std::size_t layer = 0; layer < 2; ++layer) {
+        for (const FittedSupport& f : fitted[layer]) more_leaves += static_cast<double>(f.leaves());
+        split.densities_[layer] = {fitted[layer][0], fitted[layer][1]};
+      }
+    }
+    const auto [nats, error] = gain(halves, logs(halves, alone, two, 0.0), logs(halves, one, two, its_share));
+    const auto rays = static_cast<double>(halves.rays[0].size() + halves.rays[1].size());
+    const bool worth = nats * rays > kQuickPenaltyNats * more_leaves;
+    if (its_share < kLeastShare || nats < kClear * error || !worth) return std::nullopt;
+    split.gain_nats_ = nats, split.gain_error_ = error, split.second_share_ = its_share;
+    return split;
+  }
+};
+
 std::optional<LayerSplit> split_layers(const RayBlock& rays, const SearchResult& first,
                                        const BoundingSurface& surface, std::uint64_t seed,
                                        Progress& progress) {
@@ -153,52 +218,15 @@ std::optional<LayerSplit> split_layers(const RayBlock& rays, const SearchResult&
   const RaySummary summary = summarize(some);
   const Vec3 focus_mm = summary.virtual_focus ? summary.virtual_focus->point_mm : Vec3{};
   const double tolerance_mm = rounding_mm(some, focus_mm);
-  const Halves h = halves_of(some, focus_mm, tolerance_mm);
-  Numbers part;
-  for (std::size_t k = 0; k < 2; ++k) part[k].assign(h.rays[k].size(), 0.0);
-  const auto single = maximisation(h, part, false, first.best.on, tolerance_mm);
-  const Numbers alone = crossed(h, single);
-  double more_leaves = -static_cast<double>(single[0].leaves() + single[1].leaves());
-  // Against light from anywhere: what does the first support explain badly?
-  double share = 0.05;
-  Numbers one = alone;
-  for (int step = 0; step < kFirstSteps; ++step) {
-    share = expectation(h, one, h.plain, share, part);
-    if (step % 3 == 2) one = crossed(h, maximisation(h, part, false, first.best.on, tolerance_mm));
-  }
-  if (share < kLeastShare) return std::nullopt;
-  RayBlock odd;
-  for (std::size_t k = 0; k < 2; ++k) {
-    RayBlock weighted = h.rays[k];
-    weighted.weight = parted(h.rays[k], part[k], true);
-    odd.append(weighted);
-  }
-  const auto with = [&](const BoundedSupport& second) -> std::optional<LayerSplit> {
-    LayerSplit split;
-    split.second_ = second;
-    Numbers its_part = part, two;
-    double its_share = share, leaves = more_leaves;
-    for (int step = 0; step < kSteps; ++step) {
-      if (progress.stop_requested()) throw Interrupted();
-      const auto a = maximisation(h, its_part, false, first.best.on, tolerance_mm);
-      const auto b = maximisation(h, its_part, true, second, tolerance_mm);
-      one = crossed(h, a), two = crossed(h, b);
-      its_share = expectation(h, one, two, its_share, its_part);
-      if (step < kSteps - 1) continue;
-      split.densities_ = {{{a[0], a[1]}, {b[0], b[1]}}};
-      for (std::size_t k = 0; k < 2; ++k) leaves += static_cast<double>(a[k].leaves() + b[k].leaves());
-    }
-    const auto [nats, error] = gain(h, logs(h, alone, two, 0.0), logs(h, one, two, its_share));
-    const bool worth = nats * static_cast<double>(some.size()) > kQuickPenaltyNats * leaves;
-    if (its_share < kLeastShare || nats < kClear * error || !worth) return std::nullopt;
-    split.gain_nats_ = nats, split.gain_error_ = error, split.second_share_ = its_share;
-    return split;
-  };
+  const Halves halves = halves_of(some, focus_mm, tolerance_mm);
+  const LayerSplitter splitter(halves, first.best.on, tolerance_mm);
+  if (splitter.share < kLeastShare) return std::nullopt;
+  const RayBlock odd = splitter.odd_rays();
   SearchResult found = search_support(odd, surface, seed + 1, progress);
   // Most of what is odd is no second source: that shows before the support is exact.
-  if (found.degenerate || !with(found.best.on)) return std::nullopt;
+  if (found.degenerate || !splitter.with(found.best.on, progress)) return std::nullopt;
   polish(found, odd, seed + 1, progress);
-  return with(found.best.on);
+  return splitter.with(found.best.on, progress);
 }
 
 }  // namespace lucerna

@@ -27,8 +27,7 @@ class LayerSplit {
   std::vector<float> second_parts(const RayBlock& rays) const;
 
  private:
-  friend std::optional<LayerSplit> split_layers(const RayBlock&, const SearchResult&, const BoundingSurface&,
-                                                std::uint64_t, Progress&);
+  friend struct LayerSplitter;
   double gain_nats_ = 0.0, gain_error_ = 0.0, second_share_ = 0.0;
   BoundedSupport second_;
   // Densities made from two halves of the rays, averaged.

@@ -53,13 +53,8 @@ double choose_penalty(const RayBlock& rays, const BoundedSupport& on, double tol
     const auto judge = std::find_if(q.charts.begin(), q.charts.end(),
                                     [&](const ChartItems& c) { return c.chart == chart.chart; });
     if (judge == q.charts.end()) continue;
-    std::vector<GrownTree> grown;
-    for (int t = 0; t < trees; ++t) {
-      grown.push_back(grow_tree(chart.items, chart.box,
-                                {.penalty_nats = kPenalties.front(),
-                                 .tree_number = static_cast<std::uint64_t>(t),
-                                 .coarse_cuts = trees > 1}));
-    }
+    const GrowOptions grow{.penalty_nats = kPenalties.front(), .coarse_cuts = trees > 1};
+    const auto grown = grow_trees(chart.items, chart.box, grow, static_cast<std::size_t>(trees));
     for (std::size_t k = 0; k < kPenalties.size(); ++k) {
       std::vector<TreeLookup> lookups;
       for (const GrownTree& g : grown) lookups.emplace_back(prune_tree(g, kPenalties[k]), chart.box);
