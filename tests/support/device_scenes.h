@@ -146,32 +146,62 @@ struct RayPairs {
   double most_mm = 0.0, most_direction = 0.0;
 };
 
-/// Runs whose counts differ hold at least that many rays that only one of the two has.
+/// Pairs the rays of two traces of one scene, run by run. Where one of the two has a ray less, the next that
+/// both have is looked for.
+class RayPairing {
+ public:
+  RayPairing(const TraceResult& a, const TraceResult& b) : a_(a.out_rays), b_(b.out_rays) {}
+
+  /// Rays [i, i_end) of the first and [j, j_end) of the second.
+  void add(std::size_t i, std::size_t i_end, std::size_t j, std::size_t j_end) {
+    pairs_.rays += i_end - i;
+    while (i < i_end && j < j_end) {
+      if (!same(i, j)) {
+        std::size_t skip_i = 1, skip_j = 1;
+        for (std::size_t s = 1; s <= kLookAhead; ++s) {
+          const bool both = i + s < i_end && j + s < j_end && same(i + s, j + s);
+          if (!both && !(i + s < i_end && same(i + s, j)) && !(j + s < j_end && same(i, j + s))) continue;
+          skip_i = both || (i + s < i_end && same(i + s, j)) ? s : 0;
+          skip_j = both || skip_i == 0 ? s : 0;
+          break;
+        }
+        pairs_.differ += std::max(skip_i, skip_j);
+        i += skip_i;
+        j += skip_j;
+        continue;
+      }
+      pairs_.most_mm = std::max(pairs_.most_mm, apart_mm(i, j));
+      pairs_.most_direction = std::max(pairs_.most_direction, turn(i++, j++));
+    }
+    pairs_.differ += (i_end - i) + (j_end - j);
+  }
+  const RayPairs& pairs() const { return pairs_; }
+
+ private:
+  static constexpr std::size_t kLookAhead = 4;
+  double apart_mm(std::size_t i, std::size_t j) const { return length(a_.origin_mm(i) - b_.origin_mm(j)); }
+  double turn(std::size_t i, std::size_t j) const {
+    return length(a_.direction(i).vec() - b_.direction(j).vec());
+  }
+  /// Else other hits than rounding explains: a ray that grazes an edge takes another way.
+  bool same(std::size_t i, std::size_t j) const { return apart_mm(i, j) <= 1e-4 && turn(i, j) <= 1e-5; }
+
+  const RayBlock &a_, &b_;
+  RayPairs pairs_;
+};
+
 inline RayPairs compare_rays(const TraceResult& a, const TraceResult& b) {
-  RayPairs p;
+  RayPairing pairing(a, b);
   std::size_t i = 0, j = 0, k = 0;
   for (const OutRun& run : a.out_runs) {
     while (k < b.out_runs.size() && b.out_runs[k].block < run.block) j += b.out_runs[k++].rays;
-    const bool pairs =
-        k < b.out_runs.size() && b.out_runs[k].block == run.block && b.out_runs[k].rays == run.rays;
-    for (std::uint32_t n = 0; pairs && n < run.rays; ++n) {
-      const Vec3 from = a.out_rays.origin_mm(i + n) - b.out_rays.origin_mm(j + n);
-      const double mm = length(from);
-      const double turn = length(a.out_rays.direction(i + n).vec() - b.out_rays.direction(j + n).vec());
-      // Other hits than rounding explains: a ray that grazes an edge takes another way.
-      if (mm > 1e-4 || turn > 1e-5) {
-        ++p.differ;
-      } else {
-        p.most_mm = std::max(p.most_mm, mm);
-        p.most_direction = std::max(p.most_direction, turn);
-      }
-    }
-    p.rays += run.rays;
-    p.differ += pairs ? 0 : 1;
+    const bool both = k < b.out_runs.size() && b.out_runs[k].block == run.block;
+    const std::size_t others = both ? b.out_runs[k++].rays : 0;
+    pairing.add(i, i + run.rays, j, j + others);
     i += run.rays;
-    if (k < b.out_runs.size() && b.out_runs[k].block == run.block) j += b.out_runs[k++].rays;
+    j += others;
   }
-  return p;
+  return pairing.pairs();
 }
 
 }  // namespace lucerna::test

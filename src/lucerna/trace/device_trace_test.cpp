@@ -116,9 +116,8 @@ TEST(DeviceTrace, TheKernelOfAllFeaturesTracesPlainScenesToTheBit) {
   }
 }
 
-// Embree rounds what it finds to float32, the device's tree does not: after the second reflection a few rays
-// of 10^4 are more than 1e-4 mm apart. A ray that only one of the two loses shifts the others of its run,
-// which then count as well.
+// Embree rounds what it finds to float32, the device's tree does not: after the second reflection a few rays of
+// 10^4 are more than 1e-4 mm apart.
 TEST(DeviceTrace, BodiesAgreeRayByRayWithEmbree) {
   try {
     const BodyTracer there({{.mesh = test::box_mesh({1, 1, 1})}});
@@ -139,7 +138,7 @@ TEST(DeviceTrace, BodiesAgreeRayByRayWithEmbree) {
     std::printf("%zu of %zu rays differ, the others by at most %.2g mm and %.2g\n", p.differ, p.rays,
                 p.most_mm, p.most_direction);
     EXPECT_GT(p.rays, 3000u);
-    EXPECT_LE(p.differ, p.rays / 200);
+    EXPECT_LE(p.differ, p.rays / 1000);
     expect_closed(device);
     const Ledger a = ledger(cpu), b = ledger(device);
     for (std::size_t cause = 0; cause < a.absorbed.size(); ++cause) {
