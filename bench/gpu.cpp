@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tracing on CUDA devices: rays per second of the three scenes, from a model that is sampled on the device
 // and from a ray file that is sent to it, and what the parts cost: drawing alone, drawing and counting,
-// drawing and tracing. Usage: bench_gpu [rays in millions = 1000] [cells ... = 1024 2048]
+// drawing and tracing; then what mirrors that are no height field, bodies, glasses and tents cost. Usage:
+// bench_gpu [rays in millions = 1000] [cells ... = 1024 2048]
 #include <fmt/format.h>
 
 #include <chrono>
 #include <cstdlib>
 #include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "lucerna/reflector/faceted_surface.h"
 #include "lucerna/reflector/height_field.h"
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/draw_rays.h"
@@ -66,6 +72,46 @@ void rebuild(Accelerator& device, const Scene& scene, int cells) {
   fmt::print("{:4} cells a side: new shape sent and its tree made in {:.3f} ms\n", cells, 1e3 * best);
 }
 
+/// The mirror of `placed` as a smooth mesh of n x n squares over its rectangle or the circle's square.
+Body mesh_of(const PlacedReflector& placed, std::uint32_t n) {
+  auto mesh = std::make_shared<Mesh>();
+  const Aperture& aperture = placed.reflector.aperture;
+  for (std::uint32_t i = 0; i < (n + 1) * (n + 1); ++i) {
+    const double x = (2.0 * (i % (n + 1)) / n - 1.0) * aperture.half_x_mm();
+    const double y = (2.0 * (i / (n + 1)) / n - 1.0) * aperture.half_y_mm();
+    mesh->vertices_mm.push_back({x, y, placed.reflector.surface->at(x, y).z_mm});
+    if (i % (n + 1) == n || i / (n + 1) == n) continue;
+    mesh->triangles.push_back({i, i + 1, i + n + 2});
+    mesh->triangles.push_back({i, i + n + 2, i + n + 1});
+  }
+  Body body;
+  body.mesh = mesh;
+  body.world_from_body = placed.world_from_reflector;
+  body.reflectance = placed.reflectance;
+  body.smooth_below_deg = 30.0;
+  return body;
+}
+
+/// Scenes that need more than the plain kernel, beside the plain one that they are made of.
+std::vector<std::pair<std::string, Scene>> other_scenes(const Scene& plain) {
+  const PlacedReflector& mirror = plain.reflectors[0];
+  std::vector<std::pair<std::string, Scene>> all{{"plain", plain}};
+  const auto add = [&](const char* name) -> Scene& { return all.emplace_back(name, plain).second; };
+  add("swept curve, 256 points").reflectors[0].reflector = deep_ellipse_reflector(15.0, 120.0, 60.0);
+  add("flat facets of 4 mm").reflectors[0].reflector.surface = std::make_shared<FacetedSurface>(
+      mirror.reflector.surface, 4.0, std::numeric_limits<double>::infinity());
+  add("with a cover glass").glasses = {
+      {.aperture = Aperture::circle(1000.0),
+       .world_from_glass = Frame::from_axis(Direction{}, 0.0, {0.0, 0.0, 300.0})}};
+  for (const std::uint32_t n : {32U, 512U}) {
+    Scene& scene = add(n == 32 ? "mesh of 2 k triangles" : "mesh of 0.5 M triangles");
+    scene.reflectors.clear();
+    scene.bodies = {mesh_of(mirror, n)};
+  }
+  add("tents").far_fields[0].tent = true;
+  return all;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -90,4 +136,10 @@ int main(int argc, char** argv) {
     for (const bench::Case& c : bench::kCases) run(devices, c, cells, rays, file, model);
   }
   for (const int cells : sizes) rebuild(*devices[0], bench::scene_of(bench::kCases[0], file), cells);
+  fmt::print("what a scene has more, from the model, M rays/s\n");
+  Scene drawn = bench::scene_of(bench::kCases[0], file);
+  drawn.sources[0].rays = model;
+  for (const auto& [name, scene] : other_scenes(drawn)) {
+    fmt::print("{:24} {:10.1f}\n", name, 1e-6 * rate(devices, scene, sizes[0], rays));
+  }
 }
