@@ -109,6 +109,8 @@ void fit_to_size(AdaptiveData& data, const std::vector<GrownLayer>& grown, const
     double low = setting.penalty_nats, high = low;
     data.layers = pruned(grown, low, trees);
     if (fits(data, max_bytes)) return;
+    // So many rays that two trees were enough need no smoothing: leaves are better spent on one.
+    if (trees > 1 && setting.trees == 2) continue;
     // Rougher trees than this are worse than fewer of them.
     const double most = trees > 1 ? 3.0 * setting.penalty_nats : 1e9;
     do {

@@ -8,6 +8,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/huge_pages.h"
+#include "lucerna/core/parallel.h"
 #include "lucerna/core/vector_clones.h"
 #include "lucerna/source/number_batch.h"
 #include "lucerna/source/support_batch.h"
@@ -152,8 +153,13 @@ void AdaptiveModel::build_sampler() {
   LUCERNA_CHECK(!leaves_.empty(), "an adaptive model of {} layers has no leaf", data_.layers.size());
   leaves_.front().first = 0;
   leaves_.push_back({});  // where the last one ends: 2^32, as 32 bits have it
+  // One more, as the search looks ahead.
+  last_bits_.reserve(leaves_.size());
+  advise_huge_pages(last_bits_.data(), last_bits_.capacity() * sizeof(std::uint32_t));
+  last_bits_.assign(leaves_.size(), ~std::uint32_t{0});
+  for (std::size_t k = 0; k + 1 < leaves_.size(); ++k) last_bits_[k] = leaves_[k + 1].first - 1;
   unsigned bits = 1;
-  while (bits < 24 && (std::size_t{1} << bits) < 4 * leaves_.size()) ++bits;
+  while (bits < 24 && (std::size_t{1} << bits) < leaves_.size()) ++bits;
   guide_shift_ = 32 - bits;
   guide_.reserve(std::size_t{1} << bits);
   advise_huge_pages(guide_.data(), guide_.capacity() * sizeof(std::uint32_t));
@@ -171,26 +177,43 @@ std::size_t AdaptiveModel::leaf_of(std::uint32_t bits) const {
 
 Ray AdaptiveModel::sample(const std::array<double, 4>& u) const { return sample_adaptive(view(), u); }
 
-/// Chooses the leaves of kSupportBatch rays and their numbers in them.
-void AdaptiveModel::choose(const Sequence& sequence, std::uint64_t first, Chosen& to) const {
-  std::array<BitColumn, 4> bits;
-  number_batch(sequence, first, bits);
-  // A leaf is a jump in memory: where the guide points is asked for ahead, for the whole batch at once.
-  for (std::size_t i = 0; i < kSupportBatch; ++i) {
-    const SamplerLeaf* leaf = &leaves_[guide_[bits[0][i] >> guide_shift_]];
-    __builtin_prefetch(leaf);
-    __builtin_prefetch(leaf + 1);
+/// Chooses the leaves of the rays of some batches and their numbers in them. A leaf is a jump in memory: step
+/// by step all rays ask for what they read in the next step, and no branch hangs on what is read.
+void AdaptiveModel::choose(const Sequence& sequence, std::uint64_t first, std::size_t batches,
+                           Piece& to) const {
+  std::array<std::array<BitColumn, 4>, kPieceBatches> bits;
+  std::array<BitColumn, kPieceBatches> leaf;
+  for (std::size_t b = 0; b < batches; ++b) {
+    number_batch(sequence, first + b * kSupportBatch, bits[b]);
+    for (const std::uint32_t u : bits[b][0]) __builtin_prefetch(&guide_[u >> guide_shift_]);
   }
-  LeafBatch leaves;
-  for (std::size_t i = 0; i < kSupportBatch; ++i) {
-    const std::size_t k = leaf_of(bits[0][i]);
-    const SamplerLeaf& leaf = leaves_[k];
-    for (std::size_t d = 0; d < 4; ++d) leaves.low[d][i] = leaf.low[d], leaves.width[d][i] = leaf.width[d];
-    leaves.first[i] = leaf.first;
-    leaves.length[i] = leaves_[k + 1].first - leaf.first;
-    to.place[i] = leaf.place;
+  const std::uint32_t* last = last_bits_.data();
+  for (std::size_t b = 0; b < batches; ++b) {
+    for (std::size_t i = 0; i < kSupportBatch; ++i) {
+      const std::uint32_t u = bits[b][0][i];
+      std::uint32_t k = guide_[u >> guide_shift_];
+      // Nearly always one of the first three.
+      k += (u > last[k] ? 1u : 0u) + (u > last[k + 1] ? 1u : 0u);
+      while (u > last[k]) ++k;
+      leaf[b][i] = k;
+      const char* at = reinterpret_cast<const char*>(&leaves_[k]);
+      __builtin_prefetch(at);
+      __builtin_prefetch(at + sizeof(SamplerLeaf) - 1);
+    }
   }
-  place_in_leaves(bits, leaves, to.c);
+  for (std::size_t b = 0; b < batches; ++b) {
+    LeafBatch columns;
+    for (std::size_t i = 0; i < kSupportBatch; ++i) {
+      const std::uint32_t k = leaf[b][i];
+      const SamplerLeaf& from = leaves_[k];
+      for (std::size_t d = 0; d < 4; ++d)
+        columns.low[d][i] = from.low[d], columns.width[d][i] = from.width[d];
+      columns.first[i] = from.first;
+      columns.length[i] = last[k] - from.first + 1;
+      to[b].place[i] = from.place;
+    }
+    place_in_leaves(bits[b], columns, to[b].c);
+  }
 }
 
 void AdaptiveModel::make(std::uint32_t place, const std::array<BatchColumn, 4>& c, std::size_t n,
@@ -203,10 +226,10 @@ void AdaptiveModel::make(std::uint32_t place, const std::array<BatchColumn, 4>& 
 /// support of many charts are full too.
 void AdaptiveModel::emit_piece(const Sequence& sequence, std::uint64_t first, std::size_t at, std::size_t n,
                                RayBlock& out) const {
-  std::array<Chosen, kPieceBatches> chosen;
+  Piece chosen;
   std::vector<std::uint32_t> order(n), count(places_.size() + 1, 0);
+  choose(sequence, first + at, block_count(n, kSupportBatch), chosen);
   for (std::size_t b = 0; b * kSupportBatch < n; ++b) {
-    choose(sequence, first + at + b * kSupportBatch, chosen[b]);
     const std::size_t size = std::min(kSupportBatch, n - b * kSupportBatch);
     for (std::size_t i = 0; i < size; ++i) ++count[chosen[b].place[i] + 1];
   }

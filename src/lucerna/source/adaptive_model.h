@@ -118,7 +118,8 @@ class AdaptiveModel final : public SourceModel {
     std::array<std::uint32_t, kSupportBatch> place;
   };
   static constexpr std::size_t kPieceBatches = 8;
-  void choose(const Sequence& sequence, std::uint64_t first, Chosen& to) const;
+  using Piece = std::array<Chosen, kPieceBatches>;
+  void choose(const Sequence& sequence, std::uint64_t first, std::size_t batches, Piece& to) const;
   void make(std::uint32_t place, const std::array<BatchColumn, 4>& c, std::size_t n, RayBatch& rays) const;
   void emit_piece(const Sequence& sequence, std::uint64_t first, std::size_t at, std::size_t n,
                   RayBlock& out) const;
@@ -127,6 +128,7 @@ class AdaptiveModel final : public SourceModel {
   std::vector<Place> places_;
   std::vector<SamplerLeaf> leaves_;  // and one more that only ends the last
   std::vector<std::uint32_t> guide_;
+  std::vector<std::uint32_t> last_bits_;  // the last value that chooses each leaf: the search reads only this
   std::vector<SamplerPlace> sampler_places_;
   unsigned guide_shift_ = 31;
   bool has_etendue_ = true;
