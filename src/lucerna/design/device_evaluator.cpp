@@ -57,6 +57,9 @@ Evaluation DeviceEvaluator::evaluate_family(const DesignShape& design, const Sha
   auto* const c = room<double>(coefficients_, m);
   a.upload(0, c, shape.coefficients().data(), m * sizeof(double));
   launch.view.shape.coefficients = c;
+  auto* const near = room<double>(near_bends_, shape.near_bends().size());
+  a.upload(0, near, shape.near_bends().data(), shape.near_bends().size() * sizeof(double));
+  launch.view.shape.near_bends = near;
   auto* const table = room<ReflectanceEntry>(reflectance_, reflectance.table().size());
   a.upload(0, table, reflectance.table().data(), reflectance.table().size() * sizeof(ReflectanceEntry));
   launch.view.reflectance = table;

@@ -43,9 +43,11 @@ struct Path {
 /// Along a ray, f(t) = q(t) - s(x(t), y(t)) with q the quadratic of the base paraboloid. Where |s''| <= B
 /// along every direction, f(t + tau) >= f + f' tau - A tau^2 with A = c2 + B |d_xy|^2 / 2: the positive root
 /// of the right side never passes the first zero of f, and converges to it quadratically. So the first hit is
-/// found without hierarchy or sampling, however often the ray crosses. Where the bounds show that f falls all
-/// the way to its only zero, the steps of the paraboloid's own curvature are taken instead, which need about
-/// two looks. The band of s skips the air above the surface at once. Immutable, thread safe.
+/// found without hierarchy or sampling, however often the ray crosses. A has two values: B for the cells
+/// about the place, good for so many cells, and for the whole surface; the longest step is taken. Where the
+/// bounds show that f falls all the way to its only zero, the steps of the paraboloid's own curvature are
+/// taken instead, which need about two looks. The band of s skips the air above the surface at once.
+/// Immutable, thread safe.
 template <class Shape>
 class SmoothTracer {
  public:
@@ -119,6 +121,12 @@ class SmoothTracer {
     t1 = std::min(t1, std::max(a, b));
   }
 
+  /// Positive root of f + df t - a t^2.
+  LUCERNA_HD static double zero_ahead(double f, double df, double a) {
+    const double w = std::sqrt(std::max(0.0, df * df + 4.0 * a * f));
+    return df > 0.0 ? (df + w) / (2.0 * a) : 2.0 * f / (w - df);
+  }
+
   /// `slope` is f' where the ray starts on the surface.
   LUCERNA_HD Found first_hit(const Vec3& o, const Vec3& d, bool on_surface, double slope) const {
     double t = 0.0, t_end = std::numeric_limits<double>::infinity();
@@ -127,6 +135,7 @@ class SmoothTracer {
     const double across = d.x * d.x + d.y * d.y;
     const double c0 = o.z - k_ * (o.x * o.x + o.y * o.y), c1 = d.z - 2.0 * k_ * (o.x * d.x + o.y * d.y);
     const double c2 = k_ * across + 1e-30, bend = c2 + 0.5 * shape_.bend_bound * across;
+    const double cell_t = shape_.cell_mm() / (std::sqrt(across) + 1e-30);
     const HeightRange& band = shape_.band;
     // q is above the band between `rise` and `fall`.
     double rise = 0.0, fall = -1.0;
@@ -139,7 +148,6 @@ class SmoothTracer {
     // Beyond `low` the ray is below the band.
     const double under = c0 - band.low_mm, low_root = c1 * c1 + 4.0 * c2 * under;
     const double low = low_root > 0.0 ? (c1 + std::sqrt(low_root)) / (2.0 * c2) : -1.0;
-    const double rising_bend = std::max(0.0, 2.0 * (bend - 2.0 * c2));  // f'' is at most this
     double side = on_surface ? 1.0 : 0.0;  // +1 in front of the mirror, -1 behind it; set by the first look
     bool only_one = false;                 // f falls from here to its only zero: plain steps may overshoot
     bool known = on_surface;               // f and df of this place are known without a look
@@ -152,8 +160,9 @@ class SmoothTracer {
         known = false;
       }
       if (t > t_end && !only_one) return {};
+      const double at_x = o.x + t * d.x, at_y = o.y + t * d.y;
       if (!known) {
-        const ShapeOffset s = shape_.offset(o.x + t * d.x, o.y + t * d.y);
+        const ShapeOffset s = shape_.offset(at_x, at_y);
         f = c0 + t * (c1 - t * c2) - s.s;
         df = c1 - 2.0 * t * c2 - (s.sx * d.x + s.sy * d.y);
         if (side == 0.0) side = f < 0.0 ? -1.0 : 1.0;
@@ -174,10 +183,23 @@ class SmoothTracer {
         t = hit_t;
         only_one = false;
       }
-      if (side > 0.0 && df < 0.0 && low > t && df + rising_bend * (low - t) < 0.0) only_one = true;
-      const double a = only_one ? c2 : (side > 0.0 ? bend : std::max(bend - 2.0 * c2, 1e-30));
-      const double w = std::sqrt(std::max(0.0, df * df + 4.0 * a * f));
-      const double ahead = df > 0.0 ? (df + w) / (2.0 * a) : 2.0 * f / (w - df);
+      const double* const near = shape_.near_bends_at(at_x, at_y);
+      const double behind = side > 0.0 ? 0.0 : 2.0 * c2;  // there the base bends the other way
+      // On a stretch as long as `good`, |f''| is at most twice `most`.
+      double good = near_cells(0) * cell_t, most = c2 + 0.5 * near[0] * across;
+      if (side > 0.0 && df < 0.0 && low > t) {
+        const double falls = 2.0 * ((low - t < good ? most : bend) - 2.0 * c2);
+        if (df + std::max(0.0, falls) * (low - t) < 0.0) only_one = true;
+      }
+      double ahead = only_one ? zero_ahead(f, df, c2) : 0.0;
+      for (int size = 0; !only_one && size <= kNearSizes; ++size) {
+        const double zero = zero_ahead(f, df, std::max(most - behind, 1e-30));
+        ahead = std::max(ahead, std::min(zero, good));
+        if (zero <= good) break;
+        const bool last = size + 1 >= kNearSizes;
+        good = last ? std::numeric_limits<double>::infinity() : near_cells(size + 1) * cell_t;
+        most = last ? bend : c2 + 0.5 * near[size + 1] * across;
+      }
       if (!(ahead > 0.0) && !only_one) return {What::failed, t};
       t += ahead;
     }

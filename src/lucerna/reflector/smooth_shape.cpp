@@ -15,6 +15,26 @@ HeightRange hull(const std::vector<double>& c) {
   return {*low, *high};
 }
 
+/// The greatest of each cell's neighbourhoods, cells x kNearSizes.
+std::vector<double> greatest_near(const std::vector<double>& bends, int nx, int ny) {
+  std::vector<double> out;
+  for (int j = 0; j < ny; ++j) {
+    for (int i = 0; i < nx; ++i) {
+      for (int k = 0; k < kNearSizes; ++k) {
+        const int size = near_cells(k);
+        double most = 0.0;
+        for (int v = std::max(0, j - size); v <= std::min(ny - 1, j + size); ++v) {
+          for (int u = std::max(0, i - size); u <= std::min(nx - 1, i + size); ++u) {
+            most = std::max(most, bends[static_cast<std::size_t>(v * nx + u)]);
+          }
+        }
+        out.push_back(most);
+      }
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 BsplineShape::BsplineShape(double focal_mm, KnotRow row_x, KnotRow row_y, std::vector<double> coefficients)
@@ -25,19 +45,27 @@ BsplineShape::BsplineShape(double focal_mm, KnotRow row_x, KnotRow row_y, std::v
   band_ = hull(c_);
   // Second derivatives of a B-spline are splines of lower degree on the differences of its coefficients, so
   // the largest differences bound them; a symmetric 2 x 2 matrix bends at most max(|xx|, |yy|) + |xy|.
-  double xx = 0.0, yy = 0.0, xy = 0.0;
   const auto c = [&](int i, int j) { return c_[static_cast<std::size_t>(j * nx + i)]; };
-  for (int j = 0; j < ny; ++j) {
-    for (int i = 0; i < nx; ++i) {
-      if (i > 0 && i + 1 < nx) xx = std::max(xx, std::abs(c(i - 1, j) - 2.0 * c(i, j) + c(i + 1, j)));
-      if (j > 0 && j + 1 < ny) yy = std::max(yy, std::abs(c(i, j - 1) - 2.0 * c(i, j) + c(i, j + 1)));
-      if (i > 0 && j > 0) {
-        xy = std::max(xy, std::abs(c(i, j) - c(i - 1, j) - c(i, j - 1) + c(i - 1, j - 1)));
+  const auto bend_of = [&](int i0, int j0) {
+    double xx = 0.0, yy = 0.0, xy = 0.0;
+    for (int j = j0; j < j0 + 4; ++j) {
+      for (int i = i0; i < i0 + 4; ++i) {
+        if (i > i0 + 1) xx = std::max(xx, std::abs(c(i - 2, j) - 2.0 * c(i - 1, j) + c(i, j)));
+        if (j > j0 + 1) yy = std::max(yy, std::abs(c(i, j - 2) - 2.0 * c(i, j - 1) + c(i, j)));
+        if (i > i0 && j > j0) {
+          xy = std::max(xy, std::abs(c(i, j) - c(i - 1, j) - c(i, j - 1) + c(i - 1, j - 1)));
+        }
       }
     }
+    return std::max(xx / (x_.step_mm * x_.step_mm), yy / (y_.step_mm * y_.step_mm)) +
+           xy / (x_.step_mm * y_.step_mm);
+  };
+  std::vector<double> bends;
+  for (int j = 0; j < y_.intervals; ++j) {
+    for (int i = 0; i < x_.intervals; ++i) bends.push_back(bend_of(i, j));
   }
-  bend_bound_ = std::max(xx / (x_.step_mm * x_.step_mm), yy / (y_.step_mm * y_.step_mm)) +
-                xy / (x_.step_mm * y_.step_mm);
+  bend_bound_ = *std::max_element(bends.begin(), bends.end());
+  near_bends_ = greatest_near(bends, x_.intervals, y_.intervals);
 }
 
 RevolutionShape::RevolutionShape(double focal_mm, KnotRow row, std::vector<double> coefficients)
@@ -46,11 +74,18 @@ RevolutionShape::RevolutionShape(double focal_mm, KnotRow row, std::vector<doubl
                 c_.size(), row_.coefficients());
   LUCERNA_CHECK(row_.start_mm == 0.0 && c_[0] == c_[2], "a profile that is not mirrored at the axis");
   band_ = hull(c_);
-  // Both principal bends of the swept surface, s'' and s' / r, are at most the largest |s''|.
-  for (std::size_t i = 1; i + 1 < c_.size(); ++i) {
-    bend_bound_ = std::max(bend_bound_, std::abs(c_[i - 1] - 2.0 * c_[i] + c_[i + 1]));
+  // Both principal bends of the swept surface, s'' and s' / r, are at most the largest |s''| from the axis to
+  // there.
+  double inner = 0.0;
+  std::vector<double> bends;
+  for (std::size_t i = 0; i + 3 < c_.size(); ++i) {
+    for (std::size_t k = i + 1; k < i + 3; ++k) {
+      inner = std::max(inner, std::abs(c_[k - 1] - 2.0 * c_[k] + c_[k + 1]) / (row_.step_mm * row_.step_mm));
+    }
+    bends.push_back(inner);
   }
-  bend_bound_ /= row_.step_mm * row_.step_mm;
+  bend_bound_ = inner;
+  near_bends_ = greatest_near(bends, row_.intervals, 1);
 }
 
 }  // namespace lucerna

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -24,8 +25,10 @@ class BsplineShape {
   const HeightRange& band() const { return band_; }
   /// Bound on the offset's second derivative along any unit direction of the xy plane.
   double bend_bound() const { return bend_bound_; }
+  /// The same within near_cells(size) cells of each cell of knots: cells row by row x kNearSizes.
+  const std::vector<double>& near_bends() const { return near_bends_; }
 
-  BsplineView view() const { return {focal_mm_, x_, y_, c_.data(), band_, bend_bound_}; }
+  BsplineView view() const { return {focal_mm_, x_, y_, c_.data(), band_, bend_bound_, near_bends_.data()}; }
 
  private:
   double focal_mm_;
@@ -33,6 +36,7 @@ class BsplineShape {
   std::vector<double> c_;
   HeightRange band_;
   double bend_bound_ = 0.0;
+  std::vector<double> near_bends_;
 };
 
 /// z = r^2 / (4 f) + cubic B-spline of r on uniform knots over [0, r_max], mirrored at the axis, so that the
@@ -48,8 +52,9 @@ class RevolutionShape {
   const std::vector<double>& coefficients() const { return c_; }
   const HeightRange& band() const { return band_; }
   double bend_bound() const { return bend_bound_; }
+  const std::vector<double>& near_bends() const { return near_bends_; }
 
-  RevolutionView view() const { return {focal_mm_, row_, c_.data(), band_, bend_bound_}; }
+  RevolutionView view() const { return {focal_mm_, row_, c_.data(), band_, bend_bound_, near_bends_.data()}; }
 
  private:
   double focal_mm_;
@@ -57,6 +62,7 @@ class RevolutionShape {
   std::vector<double> c_;
   HeightRange band_;
   double bend_bound_ = 0.0;
+  std::vector<double> near_bends_;
 };
 
 /// A smooth shape as tracers and exporters see a surface.

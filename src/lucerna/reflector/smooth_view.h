@@ -30,6 +30,10 @@ struct ShapeLocal {
   double along_x = 0.0, along_y = 0.0;
 };
 
+/// Sizes of neighbourhoods that bounds on the bend are known for, in cells of knots on each side.
+inline constexpr int kNearSizes = 2;
+LUCERNA_HD constexpr int near_cells(int size) { return size == 0 ? 1 : 3; }
+
 /// BsplineShape's height and derivatives.
 struct BsplineView {
   static constexpr int kSupport = 16;
@@ -42,6 +46,15 @@ struct BsplineView {
   HeightRange band;
   /// Bound on the offset's second derivative along any unit direction of the xy plane.
   double bend_bound = 0.0;
+  /// The same about each cell, row by row: within near_cells(0) cells of it, near_cells(1), ...
+  const double* near_bends = nullptr;
+
+  LUCERNA_HD const double* near_bends_at(double x, double y) const {
+    const int cell = row_y.place(y).first * row_x.intervals + row_x.place(x).first;
+    return near_bends + kNearSizes * cell;
+  }
+  /// Least width of a cell.
+  LUCERNA_HD double cell_mm() const { return row_x.step_mm < row_y.step_mm ? row_x.step_mm : row_y.step_mm; }
 
   LUCERNA_HD ShapeOffset offset(double x, double y) const {
     const KnotRow::Place px = row_x.place(x), py = row_y.place(y);
@@ -127,6 +140,12 @@ struct RevolutionView {
   const double* coefficients = nullptr;
   HeightRange band;
   double bend_bound = 0.0;
+  const double* near_bends = nullptr;
+
+  LUCERNA_HD const double* near_bends_at(double x, double y) const {
+    return near_bends + kNearSizes * row.place(std::sqrt(x * x + y * y)).first;
+  }
+  LUCERNA_HD double cell_mm() const { return row.step_mm; }
 
   /// Offset from the base paraboloid at a radius, and its slope.
   LUCERNA_HD std::array<double, 2> offset_at(double r) const {
