@@ -27,6 +27,11 @@ constexpr double kGrowShare = 0.7;
 /// trees than the likelihood of single rays does (docs/algorithms/adaptive.md has the figures).
 constexpr double kDeeper = 0.7;
 
+/// Of two trees the first offers all cuts. The penalty is chosen for a quarter of them: four times as many
+/// find as much by chance with ln 4 nats more.
+constexpr std::size_t kFineOfTwo = 1;
+constexpr double kFineNats = 1.3862943611198906;
+
 /// A layer whose trees are grown and not yet pruned.
 struct GrownLayer {
   AdaptiveLayer layer;  // charts without nodes
@@ -55,7 +60,7 @@ GrownLayer grown_layer(Projection& p, const Support& support, double total_weigh
     if (c.weight < kSmallestShare * total_weight) continue;
     progress.step("compress: trees", static_cast<std::uint64_t>(&c - p.charts.data()), p.charts.size());
     grown.layer.charts.push_back({c.chart, c.weight, c.box, {}});
-    const GrowOptions grow{.penalty_nats = penalty, .coarse_cuts = trees > 1};
+    const GrowOptions grow{.penalty_nats = penalty, .fine_trees = trees > 2 ? 0u : kFineOfTwo};
     grown.trees.push_back(grow_trees(c.items, c.box, grow, static_cast<std::size_t>(trees)));
     c.items = {};
   }
@@ -70,6 +75,7 @@ std::vector<AdaptiveLayer> pruned(const std::vector<GrownLayer>& grown, double p
   struct Pruning {
     const GrownTree* from;
     DensityTree* to;
+    double penalty;
   };
   std::vector<AdaptiveLayer> layers;
   for (const GrownLayer& g : grown) layers.push_back(g.layer);
@@ -79,11 +85,14 @@ std::vector<AdaptiveLayer> pruned(const std::vector<GrownLayer>& grown, double p
       const auto& from = grown[k].trees[i];
       auto& to = layers[k].charts[i].trees;
       to.resize(std::min<std::size_t>(from.size(), static_cast<std::size_t>(trees)));
-      for (std::size_t t = 0; t < to.size(); ++t) all.push_back({&from[t], &to[t]});
+      for (std::size_t t = 0; t < to.size(); ++t) {
+        const bool fine = from.size() == 2 && t < kFineOfTwo;
+        all.push_back({&from[t], &to[t], penalty + (fine ? kFineNats : 0.0)});
+      }
     }
   }
   parallel_blocks(all.size(), 1,
-                  [&](std::size_t i, std::size_t) { *all[i].to = prune_tree(*all[i].from, penalty); });
+                  [&](std::size_t i, std::size_t) { *all[i].to = prune_tree(*all[i].from, all[i].penalty); });
   return layers;
 }
 
@@ -109,7 +118,8 @@ void fit_to_size(AdaptiveData& data, const std::vector<GrownLayer>& grown, const
     double low = setting.penalty_nats, high = low;
     data.layers = pruned(grown, low, trees);
     if (fits(data, max_bytes)) return;
-    // So many rays that two trees were enough need no smoothing: leaves are better spent on one.
+    // So many rays that two trees were enough need no smoothing: leaves are better spent on one, which has
+    // all cuts.
     if (trees > 1 && setting.trees == 2) continue;
     // Rougher trees than this are worse than fewer of them.
     const double most = trees > 1 ? 3.0 * setting.penalty_nats : 1e9;

@@ -250,7 +250,7 @@ Grower::Choice Grower::choose(std::span<const TreeItem> items, const TreeBox& bo
   Choice choice{below[kTreeCuts][0], {}, at.blind, false};
   if (counts.squares <= 0.0 || choice.weight * choice.weight < kSmallestNode * counts.squares) return choice;
   const double scale = choice.weight / counts.squares;
-  const bool all = !options.coarse_cuts || items.size() > kAllCuts;
+  const bool all = tree < options.fine_trees || items.size() > kAllCuts;
   choice.cut = best_cut(below, scale, box, at.path, tree, all);
   choice.splits = true;
   if (choice.cut.gain_nats >= options.penalty_nats) {

@@ -111,8 +111,9 @@ struct GrowOptions {
   double penalty_nats = 4.0;
   /// Trees of different numbers offer different cuts, so that their average is smoother than each.
   std::uint64_t tree_number = 0;
-  /// Where true, small nodes offer a quarter of the cuts (needed for averages; a little faster).
-  bool coarse_cuts = true;
+  /// Trees below this number offer all cuts everywhere; small nodes of the others a quarter of them (needed
+  /// for averages; faster).
+  std::uint64_t fine_trees = 0;
 };
 
 /// Splits `box` by the likelihood of `items` (which it reorders) until nothing is gained: histograms of 64

@@ -120,6 +120,19 @@ TEST(AdaptiveTree, TreesOfDifferentNumbersCutDifferently) {
   }
 }
 
+TEST(AdaptiveTree, FineTreesAreOfferedAllCuts) {
+  const auto hill = [](const TreeItem& i) { return static_cast<double>(i.c[0]); };
+  auto rays = items(10000, hill);
+  const auto trees = grow_trees(rays, kUnitBox, {.penalty_nats = 4.0, .fine_trees = 1}, 2);
+  const auto alone = grow_trees(rays, kUnitBox, {.penalty_nats = 4.0, .fine_trees = 1}, 1);
+  EXPECT_EQ(prune_tree(trees[0], 4.0), prune_tree(alone.front(), 4.0));
+  const auto coarse = grow_trees(rays, kUnitBox, {.penalty_nats = 4.0, .tree_number = 1}, 1);
+  EXPECT_EQ(prune_tree(trees[1], 4.0), prune_tree(coarse.front(), 4.0));
+  // More is offered at the first node, so more is gained there.
+  EXPECT_GE(trees[0].nodes.front().gain_nats, trees[1].nodes.front().gain_nats);
+  EXPECT_NE(prune_tree(trees[0], 4.0).nodes, prune_tree(trees[1], 4.0).nodes);
+}
+
 TEST(AdaptiveTree, PruningKeepsWhatPays) {
   auto rays = items(50000, [](const TreeItem& i) { return 0.5 + 0.5 * static_cast<double>(i.c[0]); });
   const GrownTree grown = grow_trees(rays, kUnitBox, {.penalty_nats = 2.0}, 1).front();

@@ -38,7 +38,7 @@ class LayerSplit {
 /// of their own, expectation-maximisation shares the rays out between the two (each half of some rays judged
 /// by densities made from the other half), and the mixture must be clearly likelier than the first support
 /// alone. Nothing if it is not. Depends on rays and seed alone. Cost: 0.2 s where the first support explains
-/// all, else 2 to 4 s, whatever the number of rays.
+/// all, else 1 to 3 s, whatever the number of rays.
 std::optional<LayerSplit> split_layers(const RayBlock& rays, const SearchResult& first,
                                        const BoundingSurface& surface, std::uint64_t seed,
                                        Progress& progress);

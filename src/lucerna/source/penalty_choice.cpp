@@ -53,7 +53,7 @@ double choose_penalty(const RayBlock& rays, const BoundedSupport& on, double tol
     const auto judge = std::find_if(q.charts.begin(), q.charts.end(),
                                     [&](const ChartItems& c) { return c.chart == chart.chart; });
     if (judge == q.charts.end()) continue;
-    const GrowOptions grow{.penalty_nats = kPenalties.front(), .coarse_cuts = trees > 1};
+    const GrowOptions grow{.penalty_nats = kPenalties.front(), .fine_trees = trees > 1 ? 0u : 1u};
     const auto grown = grow_trees(chart.items, chart.box, grow, static_cast<std::size_t>(trees));
     for (std::size_t k = 0; k < kPenalties.size(); ++k) {
       std::vector<TreeLookup> lookups;

@@ -38,12 +38,12 @@ struct SearchResult {
 /// Finds the support that makes the density of `rays` simplest: places and sizes of every kind are proposed
 /// from the rays' virtual focus, mean direction, principal axes and `surface`, each is judged by held-out
 /// likelihood on some ten thousand rays, and the best few race: they are moved, turned and scaled.
-/// Depends on rays and seed alone. Cost: 2 to 3 s of one core, whatever the number of rays.
+/// Depends on rays and seed alone. Cost: about 1 s of one core, whatever the number of rays.
 SearchResult search_support(const RayBlock& rays, const BoundingSurface& surface, std::uint64_t seed,
                             Progress& progress);
 
 /// The last, exact steps of a search among the same rays with the same seed: on more rays until nothing
-/// gains, then support_polish.h. Nothing where the rays have no étendue. Cost: 3 to 5 s of one core.
+/// gains, then support_polish.h. Nothing where the rays have no étendue. Cost: 1 to 3 s of one core.
 void polish(SearchResult& found, const RayBlock& rays, std::uint64_t seed, Progress& progress);
 
 /// Length below which a distance is rounding of the ray file, mm.
