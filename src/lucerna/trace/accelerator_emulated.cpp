@@ -33,11 +33,9 @@ class EmulatedAccelerator final : public Accelerator {
   }
   void release_host(void* host) noexcept override { std::free(host); }
 
-  void upload(int, void* device, const void* host, std::size_t bytes) override {
-    std::memcpy(device, host, bytes);
-  }
+  void upload(int, void* device, const void* host, std::size_t bytes) override { copy(device, host, bytes); }
   void download(int, void* host, const void* device, std::size_t bytes) override {
-    std::memcpy(host, device, bytes);
+    copy(host, device, bytes);
   }
   void fill(int, void* device, unsigned char byte, std::size_t bytes) override {
     std::memset(device, byte, bytes);
@@ -63,6 +61,11 @@ class EmulatedAccelerator final : public Accelerator {
   void wait(int) override {}
 
  private:
+  /// Nothing may come from or go to nowhere, as an empty vector's data.
+  static void copy(void* to, const void* from, std::size_t bytes) {
+    if (bytes > 0) std::memcpy(to, from, bytes);
+  }
+
   template <SceneFeatures kFeatures>
   static void trace_all(const LaunchView& v) {
     for (std::size_t block = 0; block < v.blocks; ++block) {
