@@ -162,7 +162,7 @@ void DeviceScene::add_mirror(const PlacedReflector& placed, int cells) {
                                                static_cast<std::size_t>(m.facets.rows));
     view_.features |= kExactMirrors;
   } else {
-    h = add_field(HeightField(reflector, cells), m.field);
+    h = add_field(HeightField(reflector, cells), length(placed.world_from_reflector.origin_mm()), m.field);
   }
   mirrors_.push_back(m);
   hierarchies_.push_back(h);
@@ -170,7 +170,7 @@ void DeviceScene::add_mirror(const PlacedReflector& placed, int cells) {
   if (is_field(mirrors_.size() - 1)) rebuild(mirrors_.size() - 1);
 }
 
-HierarchyView DeviceScene::add_field(const HeightField& field, FieldView& view) {
+HierarchyView DeviceScene::add_field(const HeightField& field, double away_mm, FieldView& view) {
   HierarchyView h;
   h.vertices = put(field.vertices().data(), field.vertices().size());
   h.leaf_is_mirror = put(field.leaf_is_mirror().data(), field.leaf_is_mirror().size());
@@ -183,7 +183,7 @@ HierarchyView DeviceScene::add_field(const HeightField& field, FieldView& view) 
   h.levels = static_cast<std::int32_t>(field.level_offsets().size());
   h.step_x = field.step_x_mm();
   h.step_y = field.step_y_mm();
-  view = view_of(field);
+  view = view_of(field, away_mm);
   view.vertices = &h.vertices->z_mm;
   view.nodes = &h.nodes->a;
   return h;

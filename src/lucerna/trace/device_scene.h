@@ -41,7 +41,7 @@ class DeviceScene {
   SourceView source_view(const PlacedSource& source, double ray_flux);
   void add_mirror(const PlacedReflector& placed, int cells);
   /// Uploads a field and makes `view` of it; its tree is still to be made.
-  HierarchyView add_field(const HeightField& field, FieldView& view);
+  HierarchyView add_field(const HeightField& field, double away_mm, FieldView& view);
   bool is_field(std::size_t m) const { return hierarchies_[m].cells > 0; }
   void add_bodies(const Scene& scene);
   void add_glasses(const Scene& scene);

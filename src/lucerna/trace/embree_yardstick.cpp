@@ -108,7 +108,8 @@ struct EmbreeYardstick::Device {
       rtcIntersect16(valid, scene_, &context, &packet);
       for (std::size_t k = 0; k < 16; ++k) {
         const bool met = valid[k] != 0 && packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
-        hits.t[i + k] = packet.ray.tfar[k];
+        hits.t[i + k] = hits.past[i + k] = packet.ray.tfar[k];
+        hits.start[i + k] = 0.0F;
         const float per = met ? -1.0F / packet.hit.Ng_z[k] : 0.0F;
         hits.gx[i + k] = packet.hit.Ng_x[k] * per;
         hits.gy[i + k] = packet.hit.Ng_y[k] * per;

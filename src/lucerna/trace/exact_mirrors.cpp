@@ -11,7 +11,8 @@ void meet_all(const View& view, const LocalRays& rays, std::size_t n, LocalHits&
     const ExactHit hit = meet(view, {rays.x[i], rays.y[i], rays.z[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]},
                               rays.on_mirror[i] != 0);
     hits.state[i] = hit.state;
-    hits.t[i] = hit.t;
+    hits.t[i] = hits.past[i] = hit.t;
+    hits.start[i] = 0.0F;
     hits.gx[i] = hit.gx;
     hits.gy[i] = hit.gy;
     hits.gz[i] = hit.gz;

@@ -11,6 +11,8 @@ namespace lucerna {
 namespace {
 
 inline constexpr float kFar = 1e18f;
+/// A ray that is farther from a mirror's box than this passes it.
+inline constexpr float kFarStart = 1e12f;
 
 /// A component that is nearly 0 counts as a tiny positive one; its sign is the reciprocal's everywhere.
 inline constexpr float kNoDirection = 1e-20f;
@@ -42,9 +44,11 @@ struct LaneRays {
   Mask on_mirror;
 };
 struct LaneHits {
-  Float t, gx, gy;
+  Float past, gx, gy;
   Int state;
   Float gz = 1.0f;  ///< always, of height fields
+  Float start = 0.0f;
+  LUCERNA_HD Float t() const { return start + past; }
 };
 
 /// kLanes rays on their way through one field.
@@ -71,7 +75,7 @@ class Packet {
       // Lanes that cross the surface wait here for the others: Newton's steps then serve all at once.
       if (!any(node_) && any(met_)) settle();
     }
-    return {hit_t_, hit_gx_, hit_gy_, hit_state_};
+    return {hit_t_, hit_gx_, hit_gy_, hit_state_, 1.0f, shift_};
   }
 
  private:
@@ -88,9 +92,11 @@ class Packet {
     const Float my = select(abs(dy_) < Float(kNoDirection), 1e-6f * (f_.y1 - f_.y0), 0.0f);
     const Float ax = (Float(f_.x0) - mx - ox_) * idx_, bx = (Float(f_.x1) + mx - ox_) * idx_;
     const Float ay = (Float(f_.y0) - my - oy_) * idy_, by = (Float(f_.y1) + my - oy_) * idy_;
-    const Float t0 = max(max(min(ax, bx), min(ay, by)), 0.0f);
+    const Float over_region = max(min(ax, bx), min(ay, by));
+    start_at_the_box(over_region);
+    const Float t0 = max(over_region - shift_, 0.0f);
     // A little past the region, so that its last border is crossed like any other.
-    const Float t1 = fma(min(min(max(ax, bx), max(ay, by)), kFar), 1.00001f, 1e-4f);
+    const Float t1 = fma(min(min(max(ax, bx), max(ay, by)) - shift_, kFar), 1.00001f, 1e-4f);
     u0_ = oz_ - f_.q0 - ox_ * (Float(f_.qx) + f_.qxx * ox_ + f_.qxy * oy_) -
           oy_ * (Float(f_.qy) + f_.qyy * oy_);
     u1_ = dz_ - dx_ * (Float(f_.qx) + 2.0f * f_.qxx * ox_ + f_.qxy * oy_) -
@@ -111,6 +117,17 @@ class Packet {
     next_end_ = select(upper.exist & lower.exist, min(lower.high, t1), -1.0f);
     node_ = leaf_ = met_ = mask_of(0);
     start(lanes);
+  }
+
+  /// Moves starts along their rays to where these enter the box about the mirror, so that all that follows is
+  /// rounded as numbers of the mirror's size are, from however far a ray may come.
+  LUCERNA_HD void start_at_the_box(Float over_region) {
+    const Float idz = reciprocal_of(dz_, 0.5f * (f_.z0 + f_.z1) - oz_);
+    const Float enter = max(over_region, min((Float(f_.z0) - oz_) * idz, (Float(f_.z1) - oz_) * idz));
+    shift_ = select((Float(0.0f) < enter) & (enter < Float(kFarStart)) & ~on_mirror_, enter, 0.0f);
+    ox_ = fma(shift_, dx_, ox_);
+    oy_ = fma(shift_, dy_, oy_);
+    oz_ = fma(shift_, dz_, oz_);
   }
 
   /// Lanes of `m` begin their interval, or the next one if it is empty.
@@ -211,11 +228,9 @@ class Packet {
       prefetch(f_.vertices, first + row, down);
     }
     level_ = select(enter & ~down, level_ - Int(1), level_);
-#ifndef NOLOOK
     // Where there is no mirror the ray may have gone through the surface unseen.
     const Mask unseen = skip & (e < Float(0.0f));
     if (any(unseen)) look_at_side(unseen, te);
-#endif
     if (any(skip)) skip_node(skip, nx, ny, tx, ty, te);
   }
 
@@ -417,7 +432,7 @@ class Packet {
   }
 
   const FieldView& f_;
-  Float ox_, oy_, oz_, dx_, dy_, dz_, idx_, idy_;
+  Float ox_, oy_, oz_, dx_, dy_, dz_, idx_, idy_, shift_;
   Float u0_, u1_, u2_;
   Float begin_, end_, next_begin_, next_end_;
   Float t_ = 0.0f, side_ = 1.0f, leaf_end_ = 0.0f, met_end_ = 0.0f;
@@ -442,7 +457,9 @@ inline void intersect(const FieldView& field, const LocalRays& rays, size_t n, L
     const size_t left = n - i;
     const uint32_t lanes = left >= static_cast<size_t>(kLanes) ? (1u << kLanes) - 1u : (1u << left) - 1u;
     const LaneHits hit = Packet(field, load_rays(rays, i)).run(mask_of(lanes));
-    store(hits.t + i, hit.t);
+    store(hits.t + i, hit.t());
+    store(hits.start + i, hit.start);
+    store(hits.past + i, hit.past);
     store(hits.gx + i, hit.gx);
     store(hits.gy + i, hit.gy);
     store(hits.gz + i, hit.gz);
@@ -484,9 +501,9 @@ LUCERNA_HD inline LaneRays reflected(const LaneRays& ray, const LaneHits& hit, F
   const Float rx = fma(twice, hit.gx, ray.dx), ry = fma(twice, hit.gy, ray.dy), rz = ray.dz - twice * hit.gz;
   const Float unit = Float(1.0f) / sqrt(rx * rx + ry * ry + rz * rz);
   cosine = abs(across) / sqrt(n2);
-  return {fma(hit.t, ray.dx, ray.x),
-          fma(hit.t, ray.dy, ray.y),
-          fma(hit.t, ray.dz, ray.z),
+  return {fma(hit.past, ray.dx, fma(hit.start, ray.dx, ray.x)),
+          fma(hit.past, ray.dy, fma(hit.start, ray.dy, ray.y)),
+          fma(hit.past, ray.dz, fma(hit.start, ray.dz, ray.z)),
           rx * unit,
           ry * unit,
           rz * unit,
@@ -496,8 +513,8 @@ LUCERNA_HD inline LaneRays reflected(const LaneRays& ray, const LaneHits& hit, F
 inline void reflect_rays(const FrameView& k, const LocalRays& rays, const LocalHits& hits, size_t n,
                          WorldRays& out, float* cosine) {
   for (size_t i = 0; i < n; i += static_cast<size_t>(kLanes)) {
-    const LaneHits hit{load(hits.t + i), load(hits.gx + i), load(hits.gy + i), load(hits.state + i),
-                       load(hits.gz + i)};
+    const LaneHits hit{load(hits.past + i),  load(hits.gx + i), load(hits.gy + i),
+                       load(hits.state + i), load(hits.gz + i), load(hits.start + i)};
     const Mask m = hit.state == Int(kFront);
     Float c;
     const LaneRays r = in_frame(k, reflected(load_rays(rays, i), hit, c));

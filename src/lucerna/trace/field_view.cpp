@@ -6,7 +6,7 @@
 
 namespace lucerna {
 
-FieldView view_of(const HeightField& field) {
+FieldView view_of(const HeightField& field, double away_mm) {
   static_assert(sizeof(FieldVertex) == 3 * sizeof(float) && sizeof(FieldNode) == 4 * sizeof(float));
   FieldView v{};
   v.vertices = &field.vertices().front().z_mm;
@@ -33,7 +33,13 @@ FieldView view_of(const HeightField& field) {
   // each.
   const double x = std::abs(field.region().x0_mm), y = std::abs(field.region().y0_mm);
   const double extent = std::min(x, y), height = std::abs(q.at(x, y).z_mm) + std::abs(q.at(-x, y).z_mm);
-  v.slack = static_cast<float>(4e-7 * (extent + height));
+  v.slack = static_cast<float>(4e-7 * (extent + height + away_mm));
+  const auto far_x = static_cast<float>(std::max(x, std::abs(field.region().x1_mm)));
+  const auto far_y = static_cast<float>(std::max(y, std::abs(field.region().y1_mm)));
+  const float reach = std::abs(q.cx) * far_x + std::abs(q.cy) * far_y + std::abs(q.cxx) * far_x * far_x +
+                      std::abs(q.cxy) * far_x * far_y + std::abs(q.cyy) * far_y * far_y;
+  v.z0 = q.c0 - reach + v.low - v.slack;
+  v.z1 = q.c0 + reach + v.high + v.slack;
   v.round = field.aperture().shape() == ApertureShape::circle;
   v.half_x = static_cast<float>(field.aperture().half_x_mm());
   v.half_y = static_cast<float>(field.aperture().half_y_mm());

@@ -20,6 +20,7 @@ struct FieldView {
   int32_t levels;         ///< of nodes
   int32_t blocks;         ///< leaf squares a side, of 8 x 8 cells
   float x0, y0, x1, y1;   ///< region
+  float z0, z1;           ///< heights that hold the mirror
   float step_x, step_y;
   float q0, qx, qy, qxx, qxy, qyy;  ///< quadric
   float low, high;                  ///< band of heights over the quadric
@@ -41,6 +42,10 @@ enum : int32_t { kMiss = 0, kFront = 1, kBack = 2 };
 /// Where they meet it.
 struct LocalHits {
   alignas(64) float t[kBatch];
+  /// t in two parts: the way to where the mirror's box begins, and from there. The place is o + start d,
+  /// rounded,
+  /// + past d; o + t d is off by what t rounds.
+  alignas(64) float start[kBatch], past[kBatch];
   /// A normal there of any length, towards the front: (-gx, -gy, gz). A height field's is its gradient and 1.
   alignas(64) float gx[kBatch], gy[kBatch], gz[kBatch];
   alignas(64) int32_t state[kBatch];  ///< kMiss, kFront, kBack

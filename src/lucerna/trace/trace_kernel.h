@@ -133,7 +133,7 @@ LUCERNA_HD inline FirstHit first_hit(const LaunchView& v, const LaneRays& ray, s
     LaneRays local = in_frame(v.mirrors[m].mirror_from_world, ray);
     local.on_mirror = {m == last};
     const LaneHits hit = meet<kFeatures>(v.mirrors[m], local);
-    if (hit.state.v == kMiss || (first.mirror >= 0 && !(hit.t.v < first.hit.t.v))) continue;
+    if (hit.state.v == kMiss || (first.mirror >= 0 && !(hit.t().v < first.hit.t().v))) continue;
     first.mirror = m;
     first.local = local;
     first.hit = hit;
@@ -217,7 +217,7 @@ LUCERNA_HD inline void follow(const LaunchView& v, LaneRays ray, float flux, Ref
     key.bounce = bounce;
     if constexpr (kMeetsOthers) {
       const double nearest =
-          first.mirror < 0 ? static_cast<double>(FLT_MAX) : static_cast<double>(first.hit.t.v);
+          first.mirror < 0 ? static_cast<double>(FLT_MAX) : static_cast<double>(first.hit.t().v);
       const Encounter e = meet_obstacles(v, world_ray(ray), nearest, reflections, key);
       if (e.met) {
         if (e.reflected && reflections == v.max_bounces) return lose_to_bounce_limit(flux, counters);

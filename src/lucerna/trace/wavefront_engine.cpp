@@ -40,11 +40,12 @@ class WavefrontEngine final : public TraceEngine {
     }
     for (std::size_t i = 0; i < scene.reflectors.size(); ++i) {
       const PlacedReflector& r = scene.reflectors[i];
-      mirrors_.push_back({fields_[i] ? view_of(*fields_[i]) : FieldView{},
-                          facets_[i] ? facets_[i]->view() : FacetView{},
-                          r.reflector.curve ? view_of(*r.reflector.curve, r.reflector.aperture) : CurveView{},
-                          view_of(r.world_from_reflector), view_of(r.world_from_reflector.inverse()),
-                          &r.reflectance, 1e-3 * r.slope_error_mrad});
+      mirrors_.push_back(
+          {fields_[i] ? view_of(*fields_[i], length(r.world_from_reflector.origin_mm())) : FieldView{},
+           facets_[i] ? facets_[i]->view() : FacetView{},
+           r.reflector.curve ? view_of(*r.reflector.curve, r.reflector.aperture) : CurveView{},
+           view_of(r.world_from_reflector), view_of(r.world_from_reflector.inverse()), &r.reflectance,
+           1e-3 * r.slope_error_mrad});
     }
   }
 
