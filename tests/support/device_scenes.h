@@ -17,16 +17,19 @@
 /// What both the CPU's stand-in for a GPU and real GPUs are tested with.
 namespace lucerna::test {
 
-/// A lamp in a deep mirror with a second mirror across its light, and every kind of detector.
+/// A lamp in a deep mirror with a second mirror across its light and a third along it, which is met on both
+/// sides, and every kind of detector.
 inline Scene scene_of(std::shared_ptr<const RaySource> rays) {
   const Reflector deep = profile_reflector({{0.0, 0.0}, {10.0, 3.0}, {20.0, 4.0}, {30.0, 12.0}, {45.0, 40.0}},
                                            Aperture::circle(90.0, 8.0));
   const Reflector flat = conic_reflector(ConicPreset::parabola, 200.0, 0.0, Aperture::rectangle(30.0, 40.0));
   Scene scene;
   scene.sources = {{std::move(rays), Frame::from_axis(Direction::from({1, 2, 3}), 0.3, {1, 0, 0}), 800.0}};
-  scene.reflectors = {{deep, Frame::from_axis(Direction::from({0.1, 0, -1}), 0.0, {0, 0, 15}),
-                       Reflectance({{0.0, 0.9}, {45.0, 0.8}, {80.0, 0.95}}), 0.0},
-                      {flat, Frame::from_axis(Direction{}, 0.0, {10, 0, -50}), Reflectance(0.7), 3.0}};
+  scene.reflectors = {
+      {deep, Frame::from_axis(Direction::from({0.1, 0, -1}), 0.0, {0, 0, 15}),
+       Reflectance({{0.0, 0.9}, {45.0, 0.8}, {80.0, 0.95}}), 0.0},
+      {flat, Frame::from_axis(Direction{}, 0.0, {10, 0, -50}), Reflectance(0.7), 3.0},
+      {flat, Frame::from_axis(Direction::from({1, 0, 0.3}), 0.0, {-20, 0, -60}), Reflectance(0.6), 0.0}};
   scene.far_fields = {{"far", 5.0, 1.0}, {"coarse", 30.0, 10.0}};
   scene.planes = {{"road", {Frame::from_axis(Direction{}, 0.0, {0, 0, -3000}), 9000.0, 9000.0, 50, 40}}};
   scene.luminances = {
