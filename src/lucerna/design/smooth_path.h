@@ -159,7 +159,10 @@ class SmoothTracer {
         t = fall;
         known = false;
       }
-      if (t > t_end && !only_one) return {};
+      if (t > t_end) {
+        if (!only_one) return {};
+        t = t_end;  // beyond it nothing is known of s, and if f has not fallen to 0 here, there is no hit
+      }
       const double at_x = o.x + t * d.x, at_y = o.y + t * d.y;
       if (!known) {
         const ShapeOffset s = shape_.offset(at_x, at_y);
@@ -169,6 +172,7 @@ class SmoothTracer {
         f *= side;
         df *= side;
         if (!only_one) f = std::max(0.0, f);
+        if (only_one && t == t_end && f > kTouch_mm) return {};
       }
       known = false;
       if (std::abs(f) <= kTouch_mm && df < 0.0) {
