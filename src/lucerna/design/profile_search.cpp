@@ -106,8 +106,7 @@ class Search {
     return from;
   }
 
-  /// Traces some candidates, from `first` on; what the round before the last found is forgotten, as fewer
-  /// rays tell less. Returns their number.
+  /// Traces some candidates, from `first` on. Returns their number.
   std::size_t trace(const std::vector<Candidate>& candidates, int round, std::size_t first) {
     const auto& [shapes, rays] = kRounds[static_cast<std::size_t>(round)];
     const std::size_t last = std::min({candidates.size(), static_cast<std::size_t>(shapes), first + kBatch});
@@ -133,12 +132,9 @@ class Search {
     std::stable_sort(traced_.begin(), traced_.end(), [](const Traced& a, const Traced& b) {
       return a.round != b.round ? a.round > b.round : cheaper(a.candidate, b.candidate);
     });
-    traced_.erase(
-        std::remove_if(traced_.begin(), traced_.end(), [&](const Traced& t) { return t.round + 1 < round; }),
-        traced_.end());
     return n;
   }
-  /// Of the last two rounds, the last first, each by cost.
+  /// The last round first, each by cost.
   const std::vector<Traced>& traced() const { return traced_; }
   ProfileProgress progress(std::uint64_t rays) const {
     return {traced_.front().candidate.shape, traced_.front().candidate.cost, evaluations_, rays, total_rays_};
@@ -264,9 +260,7 @@ std::vector<FitStart> profile_search(const FitProblem& problem, const DesignShap
   std::vector<Candidate> candidates = search.first();
   whole = true;
   for (int round = 0; round < static_cast<int>(kRounds.size()) && whole; ++round) {
-    // Where all rays are spent, one more round is all that is left to learn.
     const auto r = static_cast<std::size_t>(round);
-    if (round > 1 && std::min(rays, kRounds[r - 2].rays) == std::min(rays, kRounds[r].rays)) break;
     candidates = search.hop(std::move(candidates));
     for (std::size_t at = 0; whole;) {
       const std::size_t n = search.trace(candidates, round, at);

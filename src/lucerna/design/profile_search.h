@@ -29,9 +29,9 @@ inline constexpr int kProfileEvaluations = 11;
 /// Basins of a mirror of revolution, the cheapest first: up to 3000 shapes about the given one are fitted on
 /// a table of what its zones throw (zone_table.h), the best hop on from where they ended, and those ahead are
 /// traced. What the trace shows beside the table (second reflections), light and derivatives, is added to the
-/// table near there, and the hops go on: space mapping (Bandler et al. 2004), six rounds of fewer shapes and
-/// more rays (at most `rays`). Deterministic: the same for any number
-/// of threads. Costs about eight seconds of processor time with 2^20 rays. Ends early, with `whole` false,
+/// table near there, and the hops go on: space mapping (Bandler et al. 2004), two rounds: few shapes,
+/// then fewer with more rays (at most `rays`). Deterministic: the same for any number
+/// of threads. Costs about ten seconds of processor time with 2^22 rays. Ends early, with `whole` false,
 /// where `watch` says so.
 std::vector<FitStart> profile_search(const FitProblem& problem, const DesignShape& shape, std::uint64_t rays,
                                      const ProfileWatch& watch, bool& whole);
