@@ -122,8 +122,9 @@ class Packet {
   /// Moves starts along their rays to where these enter the box about the mirror, so that all that follows is
   /// rounded as numbers of the mirror's size are, from however far a ray may come.
   LUCERNA_HD void start_at_the_box(Float over_region) {
-    const Float idz = reciprocal_of(dz_, 0.5f * (f_.z0 + f_.z1) - oz_);
-    const Float enter = max(over_region, min((Float(f_.z0) - oz_) * idz, (Float(f_.z1) - oz_) * idz));
+    const float z0 = f_.q0 - f_.reach + f_.low - f_.slack, z1 = f_.q0 + f_.reach + f_.high + f_.slack;
+    const Float idz = reciprocal_of(dz_, 0.5f * (z0 + z1) - oz_);
+    const Float enter = max(over_region, min((Float(z0) - oz_) * idz, (Float(z1) - oz_) * idz));
     shift_ = select((Float(0.0f) < enter) & (enter < Float(kFarStart)) & ~on_mirror_, enter, 0.0f);
     ox_ = fma(shift_, dx_, ox_);
     oy_ = fma(shift_, dy_, oy_);

@@ -36,10 +36,8 @@ FieldView view_of(const HeightField& field, double away_mm) {
   v.slack = static_cast<float>(4e-7 * (extent + height + away_mm));
   const auto far_x = static_cast<float>(std::max(x, std::abs(field.region().x1_mm)));
   const auto far_y = static_cast<float>(std::max(y, std::abs(field.region().y1_mm)));
-  const float reach = std::abs(q.cx) * far_x + std::abs(q.cy) * far_y + std::abs(q.cxx) * far_x * far_x +
-                      std::abs(q.cxy) * far_x * far_y + std::abs(q.cyy) * far_y * far_y;
-  v.z0 = q.c0 - reach + v.low - v.slack;
-  v.z1 = q.c0 + reach + v.high + v.slack;
+  v.reach = std::abs(q.cx) * far_x + std::abs(q.cy) * far_y + std::abs(q.cxx) * far_x * far_x +
+            std::abs(q.cxy) * far_x * far_y + std::abs(q.cyy) * far_y * far_y;
   v.round = field.aperture().shape() == ApertureShape::circle;
   v.half_x = static_cast<float>(field.aperture().half_x_mm());
   v.half_y = static_cast<float>(field.aperture().half_y_mm());

@@ -20,9 +20,9 @@ struct FieldView {
   int32_t levels;         ///< of nodes
   int32_t blocks;         ///< leaf squares a side, of 8 x 8 cells
   float x0, y0, x1, y1;   ///< region
-  float z0, z1;           ///< heights that hold the mirror
   float step_x, step_y;
   float q0, qx, qy, qxx, qxy, qyy;  ///< quadric
+  float reach;                      ///< the quadric stays within this of q0 over the region
   float low, high;                  ///< band of heights over the quadric
   float slack;                      ///< rounding of a height over the quadric
   bool round;                       ///< aperture: a circle of half_x, or a rectangle
