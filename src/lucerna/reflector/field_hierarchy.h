@@ -25,6 +25,17 @@ struct FieldNode {
   float a = 0.0F, b = 0.0F, c = 0.0F, e = -1.0F;
 };
 
+/// What a leaf square of cells has of the mirror: some, none but it lies in the hole or along the rim, where
+/// rays come by on their way to it, or none and no ray that meets the mirror need come by (an aperture without
+/// its hole is convex).
+enum class LeafKind : std::uint8_t { beyond, mirror, bare };
+
+/// The slab over a leaf square, and a bound on its gradient: nowhere longer than `steepness`.
+struct FieldLeaf {
+  FieldNode slab;
+  float steepness = 0.0F;
+};
+
 /// Cells per side of a leaf square.
 inline constexpr int kFieldBlock = 8;
 
@@ -53,8 +64,8 @@ struct FieldRow {
 #define LUCERNA_KEEP_LOOP
 #endif
 
-/// The slab over leaf square (bx, by) of a grid of `cells` a side.
-LUCERNA_HD inline FieldNode field_leaf(const FieldVertex* vertices, int cells, float step_x_mm,
+/// Leaf square (bx, by) of a grid of `cells` a side.
+LUCERNA_HD inline FieldLeaf field_leaf(const FieldVertex* vertices, int cells, float step_x_mm,
                                        float step_y_mm, std::size_t bx, std::size_t by) {
   using detail::greatest, detail::least;
   constexpr std::size_t k = kFieldBlock;
@@ -66,11 +77,11 @@ LUCERNA_HD inline FieldNode field_leaf(const FieldVertex* vertices, int cells, f
   // Heights over that plane, and how far a cell's edges can bend away from their chords: at most a quarter of
   // the greatest difference between a slope and the chord's, in each direction. By column, so that compilers
   // see vectors.
-  float low[k + 1], high[k + 1], bend_x[k], bend_y[k + 1];
+  float low[k + 1], high[k + 1], bend_x[k], bend_y[k + 1], slope_x[k + 1], slope_y[k + 1];
   for (std::size_t i = 0; i <= k; ++i) {
     low[i] = FLT_MAX;
     high[i] = -FLT_MAX;
-    bend_y[i] = 0.0F;
+    bend_y[i] = slope_x[i] = slope_y[i] = 0.0F;
   }
   for (std::size_t i = 0; i < k; ++i) bend_x[i] = 0.0F;
   detail::FieldRow rows[2];
@@ -82,6 +93,8 @@ LUCERNA_HD inline FieldNode field_leaf(const FieldVertex* vertices, int cells, f
       const float r = row.z[i] - dx * static_cast<float>(i) - dy * static_cast<float>(j);
       low[i] = least(low[i], r);
       high[i] = greatest(high[i], r);
+      slope_x[i] = greatest(slope_x[i], std::abs(row.p[i]));
+      slope_y[i] = greatest(slope_y[i], std::abs(row.q[i]));
     }
     LUCERNA_KEEP_LOOP
     for (std::size_t i = 0; i < k; ++i) {
@@ -100,13 +113,20 @@ LUCERNA_HD inline FieldNode field_leaf(const FieldVertex* vertices, int cells, f
     low[0] = least(low[0], low[i]);
     high[0] = greatest(high[0], high[i]);
     bend_y[0] = greatest(bend_y[0], bend_y[i]);
+    slope_x[0] = greatest(slope_x[0], slope_x[i]);
+    slope_y[0] = greatest(slope_y[0], slope_y[i]);
     if (i < k) bend_x[0] = greatest(bend_x[0], bend_x[i]);
   }
   const float half = 0.5F * static_cast<float>(k);
   // A hair more for the rounding of these sums.
   const float slack = 1e-6F * (std::abs(low[0]) + std::abs(high[0])) + FLT_MIN;
-  return {0.5F * (low[0] + high[0]) + half * (dx + dy), dx / step_x_mm, dy / step_y_mm,
-          0.5F * (high[0] - low[0]) + 0.25F * (bend_x[0] + bend_y[0]) + slack};
+  // An edge is a cubic: its slope is within that of its ends and 3 chord - (both), which is at most thrice
+  // the greatest bend steeper than an end. Across, the other edges' bends add their difference.
+  const float steep_x = (slope_x[0] + 3.0F * bend_x[0] + 0.5F * bend_y[0]) / step_x_mm;
+  const float steep_y = (slope_y[0] + 3.0F * bend_y[0] + 0.5F * bend_x[0]) / step_y_mm;
+  return {{0.5F * (low[0] + high[0]) + half * (dx + dy), dx / step_x_mm, dy / step_y_mm,
+           0.5F * (high[0] - low[0]) + 0.25F * (bend_x[0] + bend_y[0]) + slack},
+          (1.0F + 1e-5F) * std::sqrt(steep_x * steep_x + steep_y * steep_y)};
 }
 
 #undef LUCERNA_KEEP_LOOP

@@ -56,13 +56,16 @@ HeightField::HeightField(const Reflector& reflector, int cells)
     size += n * n;
   }
   nodes_.resize(size);
-  leaf_is_mirror_.resize(blocks * blocks);
+  leaf_kinds_.resize(blocks * blocks);
   const double bx = static_cast<double>(step_x_mm_) * kBlock, by = static_cast<double>(step_y_mm_) * kBlock;
   for (std::size_t iy = 0; iy < blocks; ++iy) {
     for (std::size_t ix = 0; ix < blocks; ++ix) {
       const double x = region_.x0_mm + bx * static_cast<double>(ix),
                    y = region_.y0_mm + by * static_cast<double>(iy);
-      leaf_is_mirror_[iy * blocks + ix] = aperture_.misses({x, x + bx, y, y + by}) ? 0 : 1;
+      const Rectangle square{x, x + bx, y, y + by};
+      leaf_kinds_[iy * blocks + ix] = !aperture_.misses(square)                   ? LeafKind::mirror
+                                      : radius_range(square).least_mm <= rim_mm() ? LeafKind::bare
+                                                                                  : LeafKind::beyond;
     }
   }
   fit_quadric(*reflector.surface);
@@ -116,16 +119,20 @@ void HeightField::sample(const HeightSurface& surface) {
 
 void HeightField::rebuild() {
   const auto blocks = static_cast<std::size_t>(cells_ / kBlock);
+  std::vector<float> steepness(blocks, 0.0F);  // by row of squares
   parallel_blocks(blocks, 4, [&](std::size_t first, std::size_t last) {
     for (std::size_t by = first; by < last; ++by) {
       for (std::size_t bx = 0; bx < blocks; ++bx) {
         const std::size_t i = by * blocks + bx;
-        nodes_[i] = leaf_is_mirror_[i] != 0
-                        ? field_leaf(vertices_.data(), cells_, step_x_mm_, step_y_mm_, bx, by)
-                        : FieldNode{};
+        nodes_[i] = FieldNode{};
+        if (leaf_kinds_[i] == LeafKind::beyond) continue;
+        const FieldLeaf leaf = field_leaf(vertices_.data(), cells_, step_x_mm_, step_y_mm_, bx, by);
+        if (leaf_kinds_[i] == LeafKind::mirror) nodes_[i] = leaf.slab;
+        steepness[by] = std::max(steepness[by], leaf.steepness);
       }
     }
   });
+  steepness_ = *std::max_element(steepness.begin(), steepness.end());
   for (std::size_t level = 1; level < offsets_.size(); ++level) {
     const std::size_t n = blocks >> level;
     FieldNode* const out = &nodes_[static_cast<std::size_t>(offsets_[level])];

@@ -52,12 +52,19 @@ class HeightField {
   const std::vector<FieldNode>& nodes() const { return nodes_; }
   /// Index of the first node of each level; the last level has one node.
   const std::vector<std::int32_t>& level_offsets() const { return offsets_; }
-  /// By leaf square, row after row: 0 where no part of the mirror is.
-  const std::vector<std::uint8_t>& leaf_is_mirror() const { return leaf_is_mirror_; }
+  /// By leaf square, row after row.
+  const std::vector<LeafKind>& leaf_kinds() const { return leaf_kinds_; }
   /// Height over the quadric lies in [low, high] wherever the mirror is.
   const HeightRange& band() const { return band_; }
+  /// The gradient of the height over the quadric is nowhere longer within rim_mm() of the axis.
+  float steepness() const { return steepness_; }
+  /// Every cell of the mirror ends within this distance of the axis.
+  double rim_mm() const {
+    return 1.0001 * aperture_.outer_radius_mm() + static_cast<double>(step_x_mm_ + step_y_mm_);
+  }
 
-  /// Makes nodes and band again after `vertices()` changed. Same bits for any number of threads. O(cells^2).
+  /// Makes nodes, band and steepness again after `vertices()` changed. Same bits for any number of threads.
+  /// O(cells^2).
   void rebuild();
 
   /// The surface of cubic pieces at (x, y), clamped to the region: what the fast tracers hit.
@@ -74,9 +81,10 @@ class HeightField {
   Quadric quadric_;
   std::vector<FieldVertex> vertices_;
   std::vector<FieldNode> nodes_;
-  std::vector<std::uint8_t> leaf_is_mirror_;
+  std::vector<LeafKind> leaf_kinds_;
   std::vector<std::int32_t> offsets_;
   HeightRange band_;
+  float steepness_ = 0.0F;
 };
 
 }  // namespace lucerna

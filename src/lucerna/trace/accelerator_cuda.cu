@@ -34,20 +34,18 @@ __global__ void rebuild_level_kernel(const __grid_constant__ HierarchyView h, in
 }
 
 /// One block of kThreads threads.
-__global__ void band_kernel(const __grid_constant__ HierarchyView h, std::size_t leaves) {
+__global__ void bounds_kernel(const __grid_constant__ HierarchyView h, std::size_t leaves) {
   __shared__ double lows[kThreads], highs[kThreads];
-  double low = DBL_MAX, high = -DBL_MAX;
-  for (std::size_t i = threadIdx.x; i < leaves; i += kThreads) widen_band(h, i, low, high);
-  lows[threadIdx.x] = low;
-  highs[threadIdx.x] = high;
+  __shared__ float steepness[kThreads];
+  FieldBounds bounds = no_bounds();
+  for (std::size_t i = threadIdx.x; i < leaves; i += kThreads) widen(bounds, h, i);
+  lows[threadIdx.x] = bounds.low;
+  highs[threadIdx.x] = bounds.high;
+  steepness[threadIdx.x] = bounds.steepness;
   __syncthreads();
   if (threadIdx.x != 0) return;
-  for (unsigned i = 1; i < kThreads; ++i) {
-    low = lows[i] < low ? lows[i] : low;
-    high = highs[i] > high ? highs[i] : high;
-  }
-  h.band[0] = low;
-  h.band[1] = high;
+  for (unsigned i = 1; i < kThreads; ++i) widen(bounds, {lows[i], highs[i], steepness[i]});
+  *h.bounds = bounds;
 }
 
 class CudaAccelerator final : public Accelerator {
@@ -122,7 +120,7 @@ class CudaAccelerator final : public Accelerator {
       check(cudaGetLastError());
       if (level == 0) leaves = nodes;
     }
-    band_kernel<<<1, kThreads, 0, streams_[stream]>>>(h, leaves);
+    bounds_kernel<<<1, kThreads, 0, streams_[stream]>>>(h, leaves);
     check(cudaGetLastError());
   }
   void* native_stream(int stream) const override { return streams_[stream]; }

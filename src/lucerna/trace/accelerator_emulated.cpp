@@ -50,11 +50,9 @@ class EmulatedAccelerator final : public Accelerator {
       const std::size_t n = static_cast<std::size_t>(h.cells / kFieldBlock) >> level;
       for (std::size_t i = 0; i < n * n; ++i) rebuild_node(h, level, i);
     }
-    double low = std::numeric_limits<double>::max(), high = -low;
+    *h.bounds = no_bounds();
     const std::size_t blocks = static_cast<std::size_t>(h.cells / kFieldBlock);
-    for (std::size_t i = 0; i < blocks * blocks; ++i) widen_band(h, i, low, high);
-    h.band[0] = low;
-    h.band[1] = high;
+    for (std::size_t i = 0; i < blocks * blocks; ++i) widen(*h.bounds, h, i);
   }
 
   void* native_stream(int) const override { return nullptr; }

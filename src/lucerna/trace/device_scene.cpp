@@ -173,11 +173,13 @@ void DeviceScene::add_mirror(const PlacedReflector& placed, int cells) {
 HierarchyView DeviceScene::add_field(const HeightField& field, double away_mm, FieldView& view) {
   HierarchyView h;
   h.vertices = put(field.vertices().data(), field.vertices().size());
-  h.leaf_is_mirror = put(field.leaf_is_mirror().data(), field.leaf_is_mirror().size());
+  h.leaf_kinds = put(field.leaf_kinds().data(), field.leaf_kinds().size());
   buffers_.emplace_back(accelerator_, field.nodes().size() * sizeof(FieldNode));
   h.nodes = buffers_.back().as<FieldNode>();
-  buffers_.emplace_back(accelerator_, 2 * sizeof(double));
-  h.band = buffers_.back().as<double>();
+  buffers_.emplace_back(accelerator_, field.leaf_kinds().size() * sizeof(float));
+  h.steepness = buffers_.back().as<float>();
+  buffers_.emplace_back(accelerator_, sizeof(FieldBounds));
+  h.bounds = buffers_.back().as<FieldBounds>();
   std::copy(field.level_offsets().begin(), field.level_offsets().end(), h.offsets);
   h.cells = field.cells();
   h.levels = static_cast<std::int32_t>(field.level_offsets().size());
@@ -191,12 +193,13 @@ HierarchyView DeviceScene::add_field(const HeightField& field, double away_mm, F
 
 void DeviceScene::rebuild(std::size_t m) {
   accelerator_.rebuild(0, hierarchies_[m]);
-  double band[2];
-  accelerator_.download(0, band, hierarchies_[m].band, sizeof band);
+  FieldBounds bounds;
+  accelerator_.download(0, &bounds, hierarchies_[m].bounds, sizeof bounds);
   accelerator_.wait(0);
-  bands_[m] = {band[0], band[1]};
-  mirrors_[m].field.low = static_cast<float>(band[0]);
-  mirrors_[m].field.high = static_cast<float>(band[1]);
+  bands_[m] = {bounds.low, bounds.high};
+  mirrors_[m].field.low = static_cast<float>(bounds.low);
+  mirrors_[m].field.high = static_cast<float>(bounds.high);
+  mirrors_[m].field.steepness = bounds.steepness;
   if (device_mirrors_ == nullptr) return;
   accelerator_.upload(0, device_mirrors_ + m, &mirrors_[m], sizeof(MirrorView));
   accelerator_.wait(0);

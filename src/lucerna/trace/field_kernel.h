@@ -17,6 +17,12 @@ inline constexpr float kFarStart = 1e12f;
 /// A component that is nearly 0 counts as a tiny positive one; its sign is the reciprocal's everywhere.
 inline constexpr float kNoDirection = 1e-20f;
 
+/// What a ray must fall or rise faster than the surface: the rounding of both slopes, many times over.
+inline constexpr float kSlopeSlack = 1e-4f;
+/// Of a falling ray: guesses by the planes of leaf squares, and the most steps on the surface itself before
+/// it is sent down the tree like any other.
+inline constexpr int kPlaneGuesses = 2, kMostFalls = 6;
+
 /// 1 / d. A ray that runs along a grid line belongs to the cells towards the middle of the grid, `inward` of
 /// it: so it is in the grid on its borders too.
 LUCERNA_HD inline Float reciprocal_of(Float d, Float inward) {
@@ -69,7 +75,8 @@ class Packet {
     hit_t_ = kFar;
     hit_gx_ = hit_gy_ = 0.0f;
     prepare(lanes);
-    while (any(node_ | leaf_ | met_)) {
+    while (any(falling_ | node_ | leaf_ | met_)) {
+      if (any(falling_)) fall();
       while (any(node_)) node_step();
       while (any(leaf_)) leaf_step();
       // Lanes that cross the surface wait here for the others: Newton's steps then serve all at once.
@@ -79,8 +86,19 @@ class Packet {
   }
 
  private:
+  /// A place of the surface, over the quadric.
+  struct Piece {
+    Float z, gx, gy;
+  };
+  /// Adini's piece of one cell (HeightField), over the quadric.
+  struct Cell {
+    Float z00, z10, z01, z11, p00, p10, p01, p11, q00, q10, q01, q11;
+  };
+
   /// Height of the ray over the quadric at distance t.
   LUCERNA_HD Float over(Float t) const { return fma(fma(u2_, t, u1_), t, u0_); }
+  /// How fast that grows.
+  LUCERNA_HD Float rise(Float t) const { return fma(2.0f * u2_, t, u1_); }
   LUCERNA_HD Float middle() const { return 0.5f * (f_.low + f_.high); }
   LUCERNA_HD Float half() const { return 0.5f * (f_.high - f_.low); }
 
@@ -94,9 +112,10 @@ class Packet {
     const Float ay = (Float(f_.y0) - my - oy_) * idy_, by = (Float(f_.y1) + my - oy_) * idy_;
     const Float over_region = max(min(ax, bx), min(ay, by));
     start_at_the_box(over_region);
-    const Float t0 = max(over_region - shift_, 0.0f);
+    Float t0 = max(over_region - shift_, 0.0f);
     // A little past the region, so that its last border is crossed like any other.
-    const Float t1 = fma(min(min(max(ax, bx), max(ay, by)) - shift_, kFar), 1.00001f, 1e-4f);
+    Float t1 = fma(min(min(max(ax, bx), max(ay, by)) - shift_, kFar), 1.00001f, 1e-4f);
+    if (f_.round) cut_to_rim(t0, t1);
     u0_ = oz_ - f_.q0 - ox_ * (Float(f_.qx) + f_.qxx * ox_ + f_.qxy * oy_) -
           oy_ * (Float(f_.qy) + f_.qyy * oy_);
     u1_ = dz_ - dx_ * (Float(f_.qx) + 2.0f * f_.qxx * ox_ + f_.qxy * oy_) -
@@ -115,8 +134,22 @@ class Packet {
     end_ = select(lower.exist, min(first_end, t1), -1.0f);
     next_begin_ = max(upper.high, t0);
     next_end_ = select(upper.exist & lower.exist, min(lower.high, t1), -1.0f);
-    node_ = leaf_ = met_ = mask_of(0);
+    node_ = leaf_ = met_ = falling_ = mask_of(0);
+    steepest_ = f_.steepness * sqrt(dx_ * dx_ + dy_ * dy_) + kSlopeSlack;
+    // What was just reflected and rises faster than any of the surface does not come back in this interval.
+    const Mask rising = on_mirror_ & (begin_ <= Float(0.0f)) & (steepest_ < min(rise(begin_), rise(end_)));
+    end_ = select(rising, -1.0f, end_);
     start(lanes);
+  }
+
+  /// Narrows t0 .. t1 to where the ray is over the disc of a round mirror; nothing is left if it passes
+  /// beside.
+  LUCERNA_HD void cut_to_rim(Float& t0, Float& t1) const {
+    const Float a = max(dx_ * dx_ + dy_ * dy_, 1e-12f), b = ox_ * dx_ + oy_ * dy_;
+    const Float disc = fma(b, b, a * (Float(f_.rim * f_.rim) - ox_ * ox_ - oy_ * oy_));
+    const Float root = sqrt(max(disc, 0.0f)), per_a = Float(1.0f) / a;
+    t0 = max(t0, (Float(0.0f) - b - root) * per_a);
+    t1 = select(Float(0.0f) <= disc, min(t1, (root - b) * per_a), -1.0f);
   }
 
   /// Moves starts along their rays to where these enter the box about the mirror, so that all that follows is
@@ -138,7 +171,15 @@ class Packet {
     end_ = select(empty, next_end_, end_);
     next_end_ = select(empty, -1.0f, next_end_);
     m = m & (begin_ < end_);
-    if (!any(m)) return;
+    // A ray that falls faster than any of the surface does meets it once or not at all.
+    const Mask starts = on_mirror_ & (begin_ <= Float(0.0f));
+    const Mask falls = m & ~starts & (max(rise(begin_), rise(end_)) < Float(0.0f) - steepest_);
+    falling_ = falling_ | falls;
+    if (any(m & ~falls)) walk(m & ~falls);
+  }
+
+  /// Sends the lanes of `m` down the tree from the beginning of their interval.
+  LUCERNA_HD void walk(Mask m) {
     t_ = select(m, begin_, t_);
     const Float u = over(t_) - middle();
     // On which side of the surface the ray is: plain outside the band, else it must be looked up; a ray just
@@ -164,6 +205,61 @@ class Packet {
     bx_ = select(m, shift_right(cx, Int(3)), bx_);
     by_ = select(m, shift_right(cy, Int(3)), by_);
     node_ = node_ | m;
+  }
+
+  /// Settles the lanes of falling_: the ray's height over the surface falls all through the interval, so that
+  /// Newton's method finds the only zero or that there is none, and needs the tree's leaves for its first
+  /// guesses only.
+  LUCERNA_HD void fall() {
+    const Mask m = falling_;
+    falling_ = mask_of(0);
+    Float t = 0.5f * (begin_ + end_);
+    for (int i = 0; i < kPlaneGuesses; ++i) t = closer(t, leaf_plane(t));
+    Int ix, iy;
+    cell_at(t, ix, iy);
+    Cell k = cell(ix, iy);
+    // Lanes stop one by one, each where it would alone: a ray's hit must not depend on its neighbours.
+    Mask moving = m, met = mask_of(0), none = mask_of(0);
+    for (int i = 0; i < kMostFalls && any(moving); ++i) {
+      const Piece p = piece(k, t, ix, iy);
+      const Float f = over(t) - p.z;
+      const Mask close = abs(f) <= Float(f_.slack);
+      const Mask apart = ((t <= begin_) & (f < Float(0.0f))) | ((end_ <= t) & (Float(0.0f) < f));
+      met = met | (moving & close);
+      none = none | (moving & apart & ~close);
+      t = select(moving, closer(t, p), t);
+      moving = moving & ~(met | none);
+      Int jx, jy;
+      cell_at(t, jx, jy);
+      const Mask elsewhere = moving & ~((ix == jx) & (iy == jy));
+      if (!any(elsewhere)) continue;
+      ix = select(elsewhere, jx, ix);
+      iy = select(elsewhere, jy, iy);
+      k = cell(ix, iy);
+    }
+    side_ = select(met, 1.0f, side_);
+    const Mask over_now = (met & ~hit(met, t, piece(k, t, ix, iy))) | none;
+    end_ = select(over_now, -1.0f, end_);
+    if (any(over_now)) start(over_now);
+    if (any(moving)) walk(moving);
+  }
+
+  /// One of Newton's steps towards where the ray meets `p`, within the interval.
+  LUCERNA_HD Float closer(Float t, const Piece& p) const {
+    const Float f = over(t) - p.z, df = rise(t) - p.gx * dx_ - p.gy * dy_;
+    return min(max(t - f / min(df, Float(0.0f) - kSlopeSlack), begin_), end_);
+  }
+
+  /// The plane of the leaf square at t; none where that has no mirror.
+  LUCERNA_HD Piece leaf_plane(Float t) const {
+    Int ix, iy;
+    cell_at(t, ix, iy);
+    const Int bx = shift_right(ix, Int(3)), by = shift_right(iy, Int(3));
+    Float a, b, c, e;
+    gather4(f_.nodes, shift_left(by * Int(f_.blocks) + bx, Int(2)), a, b, c, e);
+    const Float x = fma(to_float(shift_left(bx, Int(3)) + Int(4)), f_.step_x, f_.x0),
+                y = fma(to_float(shift_left(by, Int(3)) + Int(4)), f_.step_y, f_.y0);
+    return {fma(b, fma(t, dx_, ox_) - x, fma(c, fma(t, dy_, oy_) - y, a)), b, c};
   }
 
   /// Does the ray leave the band on the other side at the end of its interval?
@@ -351,13 +447,6 @@ class Packet {
     return fma(u, chord, z0) + u * w * (w * (g0 - chord) - u * (g1 - chord));
   }
 
-  struct Piece {
-    Float z, gx, gy;
-  };
-  /// Adini's piece of one cell (HeightField), over the quadric.
-  struct Cell {
-    Float z00, z10, z01, z11, p00, p10, p01, p11, q00, q10, q01, q11;
-  };
   LUCERNA_HD Cell cell(Int ix, Int iy) const {
     const Int row = Int((f_.blocks * 8 + 1) * 3);
     const Int a = iy * row + ix * Int(3), b = a + row;
@@ -413,14 +502,7 @@ class Packet {
       t = min(max(t - f / select(abs(df) < Float(1e-20f), 1e-20f, df), t_), segment);
     }
     const Piece p = piece(k, t, ix_, iy_);
-    const Float x = fma(t, dx_, ox_), y = fma(t, dy_, oy_), r2 = x * x + y * y;
-    const Mask in_round = r2 <= Float(f_.half_x * f_.half_x);
-    const Mask in_box = (abs(x) <= Float(f_.half_x)) & (abs(y) <= Float(f_.half_y));
-    const Mask there = m & (Float(f_.hole * f_.hole) <= r2) & (f_.round ? in_round : in_box);
-    hit_t_ = select(there, t, hit_t_);
-    hit_gx_ = select(there, Float(f_.qx) + 2.0f * f_.qxx * x + f_.qxy * y + p.gx, hit_gx_);
-    hit_gy_ = select(there, Float(f_.qy) + f_.qxy * x + 2.0f * f_.qyy * y + p.gy, hit_gy_);
-    hit_state_ = select(there, select(Float(0.0f) < side_, Int(kFront), Int(kBack)), hit_state_);
+    const Mask there = hit(m, t, p);
     // Through the hole or past the rim: on, on the other side.
     const Mask on = m & ~there;
     if (!any(on)) return;
@@ -432,13 +514,27 @@ class Packet {
     leaf_crosses_ = (leaf_crosses_ & ~on) | (crosses_ & on);
   }
 
+  /// Notes that the lanes of `m` meet the surface at t, where it has a mirror; returns where that is.
+  LUCERNA_HD Mask hit(Mask m, Float t, const Piece& p) {
+    const Float x = fma(t, dx_, ox_), y = fma(t, dy_, oy_), r2 = x * x + y * y;
+    const Mask in_round = r2 <= Float(f_.half_x * f_.half_x);
+    const Mask in_box = (abs(x) <= Float(f_.half_x)) & (abs(y) <= Float(f_.half_y));
+    const Mask there = m & (Float(f_.hole * f_.hole) <= r2) & (f_.round ? in_round : in_box);
+    hit_t_ = select(there, t, hit_t_);
+    hit_gx_ = select(there, Float(f_.qx) + 2.0f * f_.qxx * x + f_.qxy * y + p.gx, hit_gx_);
+    hit_gy_ = select(there, Float(f_.qy) + f_.qxy * x + 2.0f * f_.qyy * y + p.gy, hit_gy_);
+    hit_state_ = select(there, select(Float(0.0f) < side_, Int(kFront), Int(kBack)), hit_state_);
+    return there;
+  }
+
   const FieldView& f_;
   Float ox_, oy_, oz_, dx_, dy_, dz_, idx_, idy_, shift_;
   Float u0_, u1_, u2_;
   Float begin_, end_, next_begin_, next_end_;
+  Float steepest_;
   Float t_ = 0.0f, side_ = 1.0f, leaf_end_ = 0.0f, met_end_ = 0.0f;
   Int level_{0}, bx_{0}, by_{0}, ix_{0}, iy_{0};
-  Mask on_mirror_, node_, leaf_, met_, crosses_ = mask_of(0), leaf_crosses_ = mask_of(0);
+  Mask on_mirror_, falling_, node_, leaf_, met_, crosses_ = mask_of(0), leaf_crosses_ = mask_of(0);
   Float hit_t_, hit_gx_, hit_gy_;
   Int hit_state_;
 };

@@ -29,6 +29,8 @@ FieldView view_of(const HeightField& field, double away_mm) {
   v.qyy = q.cyy;
   v.low = static_cast<float>(field.band().low_mm);
   v.high = static_cast<float>(field.band().high_mm);
+  v.rim = static_cast<float>(field.rim_mm());
+  v.steepness = field.steepness();
   // Heights of ray and quadric are sums of a few float32 terms of this size; their rounding is about an ulp
   // each.
   const double x = std::abs(field.region().x0_mm), y = std::abs(field.region().y0_mm);

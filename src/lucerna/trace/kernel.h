@@ -24,6 +24,8 @@ struct FieldView {
   float q0, qx, qy, qxx, qxy, qyy;  ///< quadric
   float reach;                      ///< the quadric stays within this of q0 over the region
   float low, high;                  ///< band of heights over the quadric
+  float rim;                        ///< cells of a round mirror end within this distance of the axis
+  float steepness;                  ///< no gradient over the quadric is longer, as far as the rim
   float slack;                      ///< rounding of a height over the quadric
   bool round;                       ///< aperture: a circle of half_x, or a rectangle
   float half_x, half_y, hole;       ///< half sizes and the hole's radius

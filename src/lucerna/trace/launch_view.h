@@ -136,13 +136,20 @@ struct LaunchView {
   OutRay* out_rays = nullptr;
 };
 
+/// What a height field's leaves hold together, over its quadric (HeightField).
+struct FieldBounds {
+  double low = 0.0, high = 0.0;
+  float steepness = 0.0F;
+};
+
 /// The tree over a height field, to be made again from its vertices.
 struct HierarchyView {
   const FieldVertex* vertices = nullptr;
   FieldNode* nodes = nullptr;
-  const std::uint8_t* leaf_is_mirror = nullptr;
-  /// Two numbers: low, high.
-  double* band = nullptr;
+  const LeafKind* leaf_kinds = nullptr;
+  /// By leaf square.
+  float* steepness = nullptr;
+  FieldBounds* bounds = nullptr;
   std::int32_t offsets[16] = {};
   std::int32_t cells = 0, levels = 0;
   float step_x = 0.0F, step_y = 0.0F;

@@ -294,20 +294,32 @@ LUCERNA_HD inline void rebuild_node(const HierarchyView& h, int level, std::size
   FieldNode* const out = h.nodes + h.offsets[level] + i;
   if (level > 0) {
     *out = field_parent(h.nodes + h.offsets[level - 1], 2 * n, h.step_x, h.step_y, level, i % n, i / n);
-  } else {
-    *out = h.leaf_is_mirror[i] != 0 ? field_leaf(h.vertices, h.cells, h.step_x, h.step_y, i % n, i / n)
-                                    : FieldNode{};
+    return;
   }
+  FieldLeaf leaf;
+  if (h.leaf_kinds[i] != LeafKind::beyond)
+    leaf = field_leaf(h.vertices, h.cells, h.step_x, h.step_y, i % n, i / n);
+  *out = h.leaf_kinds[i] == LeafKind::mirror ? leaf.slab : FieldNode{};
+  h.steepness[i] = leaf.steepness;
 }
 
-/// Widens [low, high] by what leaf `i` of a field holds.
-LUCERNA_HD inline void widen_band(const HierarchyView& h, std::size_t i, double& low, double& high) {
+/// Bounds of nothing, to be widened.
+LUCERNA_HD inline FieldBounds no_bounds() { return {DBL_MAX, -DBL_MAX, 0.0F}; }
+
+LUCERNA_HD inline void widen(FieldBounds& bounds, const FieldBounds& by) {
+  bounds.low = by.low < bounds.low ? by.low : bounds.low;
+  bounds.high = by.high > bounds.high ? by.high : bounds.high;
+  bounds.steepness = by.steepness > bounds.steepness ? by.steepness : bounds.steepness;
+}
+
+/// Widens `bounds` by what leaf `i` of a field holds.
+LUCERNA_HD inline void widen(FieldBounds& bounds, const HierarchyView& h, std::size_t i) {
   const FieldNode& leaf = h.nodes[i];
+  bounds.steepness = h.steepness[i] > bounds.steepness ? h.steepness[i] : bounds.steepness;
   if (leaf.e < 0.0F) return;
   const double reach = static_cast<double>(field_reach(leaf, h.step_x, h.step_y));
-  const double a = static_cast<double>(leaf.a) - reach, b = static_cast<double>(leaf.a) + reach;
-  low = a < low ? a : low;
-  high = b > high ? b : high;
+  const double a = static_cast<double>(leaf.a);
+  widen(bounds, {a - reach, a + reach, 0.0F});
 }
 
 }  // namespace
