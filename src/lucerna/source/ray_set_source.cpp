@@ -60,22 +60,28 @@ void RaySetSource::emit(const Sequence& sequence, std::uint64_t first, RayBlock&
   // The visit as if every block were full; the numbers that the last, short block lacks are passed over by
   // giving it the last place of the visit: block `blocks_ - 1` is swapped with whatever the steps put there.
   const std::uint64_t last_visited = (start + (blocks_ - 1) * stride_) % blocks_;
-  for (std::size_t i = 0; i < out.size(); ++i) {
+  const auto block_of = [&](std::uint64_t j) {
+    const std::uint64_t block = (start + (j / kRun) * stride_) % blocks_;
+    return block == blocks_ - 1 ? last_visited : block == last_visited ? blocks_ - 1 : block;
+  };
+  for (std::size_t i = 0; i < out.size();) {
     const std::uint64_t j = (first + i) % n;
-    std::uint64_t block = (start + (j / kRun) * stride_) % blocks_;
-    if (block == blocks_ - 1) {
-      block = last_visited;
-    } else if (block == last_visited) {
-      block = blocks_ - 1;
-    }
-    const auto k = static_cast<std::size_t>(block * kRun + j % kRun);
-    out.x_mm[i] = in.x_mm[k];
-    out.y_mm[i] = in.y_mm[k];
-    out.z_mm[i] = in.z_mm[k];
-    out.kx[i] = in.kx[k];
-    out.ky[i] = in.ky[k];
-    out.kz[i] = in.kz[k];
-    out.weight[i] = static_cast<float>(weight_scale_ * static_cast<double>(in.weight[k]));
+    const auto from = static_cast<std::size_t>(block_of(j) * kRun + j % kRun);
+    const auto count =
+        static_cast<std::size_t>(std::min({kRun - j % kRun, std::uint64_t{out.size() - i}, n - j}));
+    const auto copy = [&](const std::vector<float>& a, std::vector<float>& b) {
+      std::copy_n(a.begin() + static_cast<std::ptrdiff_t>(from), count,
+                  b.begin() + static_cast<std::ptrdiff_t>(i));
+    };
+    copy(in.x_mm, out.x_mm);
+    copy(in.y_mm, out.y_mm);
+    copy(in.z_mm, out.z_mm);
+    copy(in.kx, out.kx);
+    copy(in.ky, out.ky);
+    copy(in.kz, out.kz);
+    for (std::size_t k = 0; k < count; ++k)
+      out.weight[i + k] = static_cast<float>(weight_scale_ * static_cast<double>(in.weight[from + k]));
+    i += count;
   }
 }
 

@@ -11,6 +11,8 @@ namespace lucerna {
 
 /// Rays of a batch; arrays are padded to a whole number of vectors.
 inline constexpr size_t kBatch = 512;
+/// Room behind a batch for the rest of a vector that is written whole.
+inline constexpr size_t kBatchEnd = 16;
 
 /// A HeightField as a kernel reads it.
 struct FieldView {
@@ -55,14 +57,30 @@ struct LocalHits {
 
 /// Rays in the luminaire frame, with what they carry.
 struct WorldRays {
-  alignas(64) float x[kBatch], y[kBatch], z[kBatch];
-  alignas(64) float dx[kBatch], dy[kBatch], dz[kBatch];
+  static constexpr size_t kSize = kBatch + kBatchEnd;
+  alignas(64) float x[kSize], y[kSize], z[kSize];
+  alignas(64) float dx[kSize], dy[kSize], dz[kSize];
   /// In mean rays.
-  alignas(64) float flux[kBatch];
-  /// Mirror that the ray was last reflected by, -1 if none.
-  alignas(64) int32_t mirror[kBatch];
+  alignas(64) float flux[kSize];
+  /// Mirror that the ray was last reflected by, below 0 if none.
+  alignas(64) int32_t mirror[kSize];
   /// Number within the batch as it was emitted.
-  alignas(64) int32_t number[kBatch];
+  alignas(64) int32_t number[kSize];
+};
+
+/// Rays as a source gives them, in its frame.
+struct RayArrays {
+  const float *x, *y, *z, *dx, *dy, *dz, *weight;
+};
+
+/// What becomes of a ray: the number of the mirror that reflects it, or one of these.
+enum : int32_t { kLeaves = -1, kGone = -2, kOnBody = -3 };
+
+/// What one mirror does to the rays of a batch, in units (units.h) and in numbers of rays.
+struct MirrorSums {
+  int64_t face, back;  ///< absorbed by its reflectance, and by its back
+  int64_t lost;        ///< of rays that would be reflected once too often
+  int64_t lost_rays, reflections;
 };
 
 /// A rotation by rows and a translation, in float: out = m p + v.
@@ -82,6 +100,18 @@ struct Kernels {
   /// Reflected rays, in the luminaire frame, for lanes whose hit is kFront; also the cosine of incidence.
   void (*reflect)(const FrameView& world_from_local, const LocalRays& rays, const LocalHits& hits, size_t n,
                   WorldRays& out, float* cosine);
+  /// Rays of a source, numbered and in the luminaire frame, n <= kBatch; `ray_flux` is what a weight of 1
+  /// carries, in mean rays. Returns their flux in units; `all_finite` says whether all numbers are.
+  int64_t (*enter)(const FrameView& world_from_source, const RayArrays& in, size_t n, double ray_flux,
+                   WorldRays& out, bool& all_finite);
+  /// Takes off what mirror `mirror` absorbs of the rays that it meets and notes their fates, which stay as
+  /// they are where it meets none. Ray i was reflected reflections[i] times, `most` is all that it may be; a
+  /// front reflects kept[i] of it.
+  MirrorSums (*settle_fates)(const LocalHits& hits, const int32_t* reflections, int32_t most,
+                             const double* kept, int32_t mirror, size_t n, float* flux, int32_t* fate);
+  /// Moves the rays that leave behind the `out_count` of `out`, drops those that are gone, and closes the
+  /// gaps; returns how many stay.
+  size_t (*part)(WorldRays& rays, const int32_t* fate, size_t n, WorldRays& out, size_t& out_count);
   /// Type C cell of each direction, as FarFieldGrid::cell has it.
   void (*far_field_cells)(const WorldRays& rays, size_t n, int32_t c_count, int32_t gamma_count,
                           int32_t* cell);

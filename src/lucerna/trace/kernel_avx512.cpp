@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/trace/field_kernel.h"
+#include "lucerna/trace/wavefront_kernel.h"
 
 namespace lucerna {
 
 const Kernels& avx512_kernels() {
-  static constexpr Kernels kernels{"avx512", to_local, intersect, reflect_rays, far_field_cells};
+  static constexpr Kernels kernels{"avx512", to_local,     intersect, reflect_rays,
+                                   enter,    settle_fates, part,      far_field_cells};
   return kernels;
 }
 

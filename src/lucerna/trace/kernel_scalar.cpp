@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #define LUCERNA_ONE_LANE
 #include "lucerna/trace/field_kernel.h"
+#include "lucerna/trace/wavefront_kernel.h"
 
 namespace lucerna {
 
 const Kernels& scalar_kernels() {
-  static constexpr Kernels kernels{"scalar", to_local, intersect, reflect_rays, far_field_cells};
+  static constexpr Kernels kernels{"scalar", to_local,     intersect, reflect_rays,
+                                   enter,    settle_fates, part,      far_field_cells};
   return kernels;
 }
 

@@ -91,6 +91,8 @@ LUCERNA_HD inline Int gather(const int32_t* p, Int i) {
   return Int(p[i.v]);
 #endif
 }
+LUCERNA_HD inline Float compress(Mask, Float a) { return a; }
+LUCERNA_HD inline Int compress(Mask, Int a) { return a; }
 LUCERNA_HD inline Int float_bits(Float a) {
 #if defined(__CUDA_ARCH__)
   return Int(__float_as_int(a.v));

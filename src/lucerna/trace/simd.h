@@ -80,6 +80,9 @@ inline Int load(const int32_t* p) { return _mm512_loadu_si512(p); }
 inline void store(int32_t* p, Int a) { _mm512_storeu_si512(p, a.v); }
 inline Int gather(const int32_t* p, Int i) { return _mm512_i32gather_epi32(i.v, p, 4); }
 inline Int float_bits(Float a) { return _mm512_castps_si512(a.v); }
+/// The lanes of `m`, moved together to the front; what follows is anything.
+inline Float compress(Mask m, Float a) { return _mm512_maskz_compress_ps(m.m, a.v); }
+inline Int compress(Mask m, Int a) { return _mm512_maskz_compress_epi32(m.m, a.v); }
 
 /// p[i] .. p[i + 3] of every lane by whole loads and a transpose: a third of the time of four gathers here.
 template <typename Load>
@@ -163,6 +166,28 @@ inline Int load(const int32_t* p) { return _mm256_loadu_si256(reinterpret_cast<c
 inline void store(int32_t* p, Int a) { _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), a.v); }
 inline Int gather(const int32_t* p, Int i) { return _mm256_i32gather_epi32(p, i.v, 4); }
 inline Int float_bits(Float a) { return _mm256_castps_si256(a.v); }
+
+/// For each set of eight lanes their numbers, a byte each, the lowest first.
+struct LaneNumbers {
+  uint64_t of[256] = {};
+  constexpr LaneNumbers() {
+    for (uint32_t m = 0; m < 256; ++m) {
+      int at = 0;
+      for (uint64_t lane = 0; lane < 8; ++lane) {
+        if ((m >> lane & 1u) != 0) of[m] |= lane << 8 * at++;
+      }
+    }
+  }
+};
+inline constexpr LaneNumbers kLaneNumbers;
+
+inline Float compress(Mask m, Float a) {
+  const __m128i lanes = _mm_cvtsi64_si128(static_cast<int64_t>(kLaneNumbers.of[bits(m)]));
+  return _mm256_permutevar8x32_ps(a.v, _mm256_cvtepu8_epi32(lanes));
+}
+inline Int compress(Mask m, Int a) {
+  return _mm256_castps_si256(compress(m, Float(_mm256_castsi256_ps(a.v))).v);
+}
 
 /// p[i] .. p[i + 3] of every lane by whole loads and a transpose.
 template <typename Load>
@@ -328,6 +353,16 @@ inline void store(int32_t* p, Int a) {
 }
 inline Int gather(const int32_t* p, Int k) {
   return lanes<Int>([&](int i) { return p[k.v[i]]; });
+}
+template <class V>
+inline V compress(Mask m, V a) {
+  V r = a;
+  int at = 0;
+  for (int i = 0; i < kLanes; ++i) {
+    r.v[at] = a.v[i];
+    at += m.m[i] & 1;
+  }
+  return r;
 }
 inline Int float_bits(Float a) {
   return lanes<Int>([&](int i) {

@@ -3,8 +3,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <optional>
+#include <span>
 
 #include "lucerna/core/error.h"
 #include "lucerna/reflector/height_field.h"
@@ -77,9 +79,6 @@ class WavefrontEngine final : public TraceEngine {
     const Reflectance* reflectance;
     double slope_error_rad;
   };
-  /// What becomes of a ray that no mirror reflects.
-  static constexpr std::int32_t kLeaves = -1, kGone = -2, kOnBody = -3;
-
   /// All rays of one run on their way.
   struct Batch {
     WorldRays rays;
@@ -109,35 +108,33 @@ class WavefrontEngine final : public TraceEngine {
   }
 
   /// Rays of `in` to the luminaire frame; returns how many have finite numbers.
-  static std::size_t emit(const RayBlock& in, const Frame& frame, double ray_flux, WorldRays& out,
-                          Tally& tally) {
-    LUCERNA_CHECK(in.size() <= kBatch, "{} rays", in.size());
-    const FrameView k = view_of(frame);
-    std::size_t n = 0;
-    for (std::size_t i = 0; i < in.size(); ++i) {
-      const float x = in.x_mm[i], y = in.y_mm[i], z = in.z_mm[i], dx = in.kx[i], dy = in.ky[i], dz = in.kz[i];
-      out.x[n] = k.m[0] * x + k.m[1] * y + k.m[2] * z + k.v[0];
-      out.y[n] = k.m[3] * x + k.m[4] * y + k.m[5] * z + k.v[1];
-      out.z[n] = k.m[6] * x + k.m[7] * y + k.m[8] * z + k.v[2];
-      out.dx[n] = k.m[0] * dx + k.m[1] * dy + k.m[2] * dz;
-      out.dy[n] = k.m[3] * dx + k.m[4] * dy + k.m[5] * dz;
-      out.dz[n] = k.m[6] * dx + k.m[7] * dy + k.m[8] * dz;
-      out.flux[n] = static_cast<float>(static_cast<double>(in.weight[i]) * ray_flux);
-      out.mirror[n] = -1;
-      out.number[n] = static_cast<std::int32_t>(i);
-      tally.emitted += units(out.flux[n]);
-      if (std::isfinite(x + y + z + dx + dy + dz)) {
-        ++n;
-      } else {
-        lose(LostCause::not_finite, out.flux[n], tally);
-      }
+  std::size_t emit(const RayBlock& in, const Frame& frame, double ray_flux, WorldRays& out,
+                   Tally& tally) const {
+    const std::size_t n = in.size();
+    LUCERNA_CHECK(n <= kBatch, "{} rays", n);
+    const RayArrays arrays{in.x_mm.data(), in.y_mm.data(), in.z_mm.data(),  in.kx.data(),
+                           in.ky.data(),   in.kz.data(),   in.weight.data()};
+    bool all_finite = true;
+    tally.emitted += kernels_.enter(view_of(frame), arrays, n, ray_flux, out, all_finite);
+    tally.rays += n;
+    if (all_finite) return n;
+    alignas(64) std::int32_t fate[kBatch];
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool finite =
+          std::isfinite(in.x_mm[i] + in.y_mm[i] + in.z_mm[i] + in.kx[i] + in.ky[i] + in.kz[i]);
+      fate[i] = finite ? 0 : kGone;
+      if (!finite) lose(LostCause::not_finite, out.flux[i], tally);
     }
-    tally.rays += in.size();
-    return n;
+    WorldRays none;
+    std::size_t none_count = 0;
+    const std::size_t stay = kernels_.part(out, fate, n, none, none_count);
+    for (std::size_t i = 0; i < stay; ++i) out.mirror[i] = -1;
+    return stay;
   }
 
   void follow(Batch& batch, std::size_t n, const SourceRun& run, TraceScratch& scratch, Tally& tally) const {
-    std::vector<Meeting> meetings(mirrors_.size());
+    const auto memory = std::make_unique_for_overwrite<Meeting[]>(mirrors_.size());
+    const std::span<Meeting> meetings(memory.get(), mirrors_.size());
     for (int bounce = 0; n > 0; ++bounce) {
       const std::size_t left_before = batch.out_count;
       meet(batch.rays, n, meetings);
@@ -148,12 +145,21 @@ class WavefrontEngine final : public TraceEngine {
           tilt(mirrors_[m].slope_error_rad, batch.rays, n, run, bounce, meetings[m].hits);
       }
       n = sort_out(batch, n, meetings, {run.sequence_seed, run.first, bounce}, tally);
-      for (std::size_t i = left_before; i < batch.out_count; ++i) {
-        const bool direct = reflections(batch, batch.out, i, bounce) == 0;
-        (direct ? tally.out_direct : tally.out_reflected) += units(batch.out.flux[i]);
-      }
+      count_leaving(batch, left_before, bounce, tally);
     }
     detect(batch.out, batch.out_count, scratch, tally);
+  }
+
+  /// Adds what left in step `bounce`, all of `out` from `first` on, to the ledger.
+  void count_leaving(const Batch& batch, std::size_t first, int bounce, Tally& tally) const {
+    std::int64_t direct = 0, all = 0;
+    for (std::size_t i = first; i < batch.out_count; ++i) {
+      const std::int64_t u = units(batch.out.flux[i]);
+      all += u;
+      direct += reflections(batch, batch.out, i, bounce) == 0 ? u : 0;
+    }
+    tally.out_direct += direct;
+    tally.out_reflected += all - direct;
   }
 
   /// Gives all that left to the detectors.
@@ -198,7 +204,7 @@ class WavefrontEngine final : public TraceEngine {
   }
 
   /// First hits with every mirror; where a ray meets several, all but the nearest become misses.
-  void meet(const WorldRays& rays, std::size_t n, std::vector<Meeting>& meetings) const {
+  void meet(const WorldRays& rays, std::size_t n, std::span<Meeting> meetings) const {
     for (std::size_t m = 0; m < mirrors_.size(); ++m) {
       kernels_.to_local(mirrors_[m].mirror_from_world, rays, n, static_cast<std::int32_t>(m),
                         meetings[m].rays);
@@ -222,7 +228,7 @@ class WavefrontEngine final : public TraceEngine {
   }
 
   /// First hits with bodies; mirrors behind them become misses.
-  void meet_bodies(Batch& batch, std::size_t n, int bounce, std::vector<Meeting>& meetings) const {
+  void meet_bodies(Batch& batch, std::size_t n, int bounce, std::span<Meeting> meetings) const {
     for (std::size_t i = 0; i < n; ++i) {
       double nearest = std::numeric_limits<float>::max();
       for (const Meeting& m : meetings) {
@@ -236,7 +242,7 @@ class WavefrontEngine final : public TraceEngine {
   }
 
   /// First hits with cover glasses; mirrors and bodies behind them become misses.
-  void meet_glasses(Batch& batch, std::size_t n, std::vector<Meeting>& meetings) const {
+  void meet_glasses(Batch& batch, std::size_t n, std::span<Meeting> meetings) const {
     for (std::size_t i = 0; i < n; ++i) {
       double nearest = std::numeric_limits<float>::max();
       for (const Meeting& m : meetings) {
@@ -319,55 +325,46 @@ class WavefrontEngine final : public TraceEngine {
 
   /// Reflects what was reflected, moves what leaves to `out`, and closes the gaps; returns how many rays
   /// stay.
-  std::size_t sort_out(Batch& batch, std::size_t n, const std::vector<Meeting>& meetings,
+  std::size_t sort_out(Batch& batch, std::size_t n, std::span<const Meeting> meetings,
                        const ReflectionKey& first, Tally& tally) const {
     const int bounce = first.bounce;
     WorldRays& rays = batch.rays;
-    alignas(64) std::int32_t mirror[kBatch];
-    for (std::size_t i = 0; i < n; ++i) mirror[i] = kLeaves;
+    alignas(64) std::int32_t fate[kBatch], reflected[kBatch];
+    for (std::size_t i = 0; i < n; ++i) {
+      fate[i] = kLeaves;
+      reflected[i] = reflections(batch, rays, i, bounce);
+    }
     for (std::size_t m = 0; m < mirrors_.size(); ++m) {
       const LocalHits& hits = meetings[m].hits;
       kernels_.reflect(mirrors_[m].world_from_mirror, meetings[m].rays, hits, n, rays, batch.cosine);
-      const bool constant = mirrors_[m].reflectance->is_constant();
-      const double at_any_angle = mirrors_[m].reflectance->at(1.0);
-      for (std::size_t i = 0; i < n; ++i) {
-        if (hits.state[i] == kMiss) continue;
-        mirror[i] = static_cast<std::int32_t>(m);
-        if (hits.state[i] == kBack) {
-          tally.absorbed[static_cast<std::size_t>(MirrorLoss::back)] += units(rays.flux[i]);
-          mirror[i] = kGone;
-        } else if (!may_reflect(batch, i, bounce, tally)) {
-          mirror[i] = kGone;
-        } else {
-          const double kept =
-              constant ? at_any_angle : mirrors_[m].reflectance->at(static_cast<double>(batch.cosine[i]));
-          absorb(rays.flux[i], kept, static_cast<std::size_t>(MirrorLoss::face), tally);
-          ++tally.reflections;
+      alignas(64) double kept[kBatch];
+      const Reflectance& reflectance = *mirrors_[m].reflectance;
+      if (reflectance.is_constant()) {
+        std::fill_n(kept, n, reflectance.at(1.0));
+      } else {
+        for (std::size_t i = 0; i < n; ++i) {
+          kept[i] = hits.state[i] == kFront ? reflectance.at(static_cast<double>(batch.cosine[i])) : 1.0;
         }
       }
-    }
-    for (std::size_t i = 0; !bodies().empty() && i < n; ++i) {
-      if (batch.body[i]) mirror[i] = leave_body(batch, i, first, tally);
+      const MirrorSums sums = kernels_.settle_fates(hits, reflected, max_bounces_, kept,
+                                                    static_cast<std::int32_t>(m), n, rays.flux, fate);
+      tally.absorbed[static_cast<std::size_t>(MirrorLoss::face)] += sums.face;
+      tally.absorbed[static_cast<std::size_t>(MirrorLoss::back)] += sums.back;
+      tally.lost[static_cast<std::size_t>(LostCause::bounce_limit)] += sums.lost;
+      tally.lost_rays[static_cast<std::size_t>(LostCause::bounce_limit)] +=
+          static_cast<std::uint64_t>(sums.lost_rays);
+      tally.reflections += static_cast<std::uint64_t>(sums.reflections);
     }
     for (std::size_t i = 0; !glasses().empty() && i < n; ++i) {
-      if (batch.glass[i]) mirror[i] = leave_glass(batch, i, first, tally);
+      if (fate[i] >= 0) ++batch.reflections[static_cast<std::size_t>(rays.number[i])];
     }
-    std::size_t stay = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (mirror[i] == kGone) continue;
-      WorldRays& to = mirror[i] == kLeaves ? batch.out : rays;
-      const std::size_t k = mirror[i] == kLeaves ? batch.out_count++ : stay++;
-      to.x[k] = rays.x[i];
-      to.y[k] = rays.y[i];
-      to.z[k] = rays.z[i];
-      to.dx[k] = rays.dx[i];
-      to.dy[k] = rays.dy[i];
-      to.dz[k] = rays.dz[i];
-      to.flux[k] = rays.flux[i];
-      to.mirror[k] = mirror[i];
-      to.number[k] = rays.number[i];
+    for (std::size_t i = 0; !bodies().empty() && i < n; ++i) {
+      if (batch.body[i]) fate[i] = leave_body(batch, i, first, tally);
     }
-    return stay;
+    for (std::size_t i = 0; !glasses().empty() && i < n; ++i) {
+      if (batch.glass[i]) fate[i] = leave_glass(batch, i, first, tally);
+    }
+    return kernels_.part(rays, fate, n, batch.out, batch.out_count);
   }
 
   const Scene& scene_;
