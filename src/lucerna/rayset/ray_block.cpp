@@ -2,17 +2,32 @@
 #include "lucerna/rayset/ray_block.h"
 
 #include "lucerna/core/error.h"
+#include "lucerna/core/huge_pages.h"
 
 namespace lucerna {
 
+namespace {
+
+/// Rays are drawn from all over a set, in short runs.
+void make_room(std::vector<float>& array, std::size_t n) {
+  if (n <= array.capacity()) return;
+  array.reserve(n);
+  advise_huge_pages(array.data() + array.size(), (n - array.size()) * sizeof(float));
+}
+
+}  // namespace
+
 void RayBlock::resize(std::size_t n, std::size_t columns) {
-  for (auto* array : {&x_mm, &y_mm, &z_mm, &kx, &ky, &kz, &weight}) array->resize(n);
+  for (auto* array : {&x_mm, &y_mm, &z_mm, &kx, &ky, &kz, &weight}) {
+    if (array->empty()) make_room(*array, n);
+    array->resize(n);
+  }
   extra.resize(columns);
   for (auto& column : extra) column.resize(n);
 }
 
 void RayBlock::reserve(std::size_t n) {
-  for (auto* array : {&x_mm, &y_mm, &z_mm, &kx, &ky, &kz, &weight}) array->reserve(n);
+  for (auto* array : {&x_mm, &y_mm, &z_mm, &kx, &ky, &kz, &weight}) make_room(*array, n);
   for (auto& column : extra) column.reserve(n);
 }
 

@@ -84,24 +84,31 @@ inline Int float_bits(Float a) { return _mm512_castps_si512(a.v); }
 inline Float compress(Mask m, Float a) { return _mm512_maskz_compress_ps(m.m, a.v); }
 inline Int compress(Mask m, Int a) { return _mm512_maskz_compress_epi32(m.m, a.v); }
 
-/// p[i] .. p[i + 3] of every lane by whole loads and a transpose: a third of the time of four gathers here.
-template <typename Load>
-inline void transposed(Int i, Load four_at, Float& a, Float& b, Float& c, Float& d) {
+/// Four numbers of every lane, from each of kRows arrays, by whole loads and a transpose: a third of the time
+/// of gathers here. `four_at(row, place)` reads them.
+template <int kRows, typename Load>
+inline void transposed(Int i, Load four_at, Float (&out)[kRows][4]) {
   alignas(64) int32_t k[16];
   _mm512_store_si512(k, i.v);
-  const auto row = [&](int n) {
-    __m512 r = _mm512_castps128_ps512(four_at(k[n]));
-    r = _mm512_insertf32x4(r, four_at(k[n + 4]), 1);
-    r = _mm512_insertf32x4(r, four_at(k[n + 8]), 2);
-    return _mm512_insertf32x4(r, four_at(k[n + 12]), 3);
-  };
-  const __m512 q0 = row(0), q1 = row(1), q2 = row(2), q3 = row(3);
-  const __m512 l01 = _mm512_unpacklo_ps(q0, q1), l23 = _mm512_unpacklo_ps(q2, q3);
-  const __m512 h01 = _mm512_unpackhi_ps(q0, q1), h23 = _mm512_unpackhi_ps(q2, q3);
-  a = _mm512_shuffle_ps(l01, l23, 0x44);
-  b = _mm512_shuffle_ps(l01, l23, 0xEE);
-  c = _mm512_shuffle_ps(h01, h23, 0x44);
-  d = _mm512_shuffle_ps(h01, h23, 0xEE);
+  // Places go through memory: taken out of the vector one by one they cost more than all that is read there.
+  asm("" : "+m"(k));
+  __m512 q[kRows][4];
+  for (int n = 0; n < 4; ++n) {
+    for (int r = 0; r < kRows; ++r) {
+      q[r][n] = _mm512_castps128_ps512(four_at(r, k[n]));
+      q[r][n] = _mm512_insertf32x4(q[r][n], four_at(r, k[n + 4]), 1);
+      q[r][n] = _mm512_insertf32x4(q[r][n], four_at(r, k[n + 8]), 2);
+      q[r][n] = _mm512_insertf32x4(q[r][n], four_at(r, k[n + 12]), 3);
+    }
+  }
+  for (int r = 0; r < kRows; ++r) {
+    const __m512 l01 = _mm512_unpacklo_ps(q[r][0], q[r][1]), l23 = _mm512_unpacklo_ps(q[r][2], q[r][3]);
+    const __m512 h01 = _mm512_unpackhi_ps(q[r][0], q[r][1]), h23 = _mm512_unpackhi_ps(q[r][2], q[r][3]);
+    out[r][0] = _mm512_shuffle_ps(l01, l23, 0x44);
+    out[r][1] = _mm512_shuffle_ps(l01, l23, 0xEE);
+    out[r][2] = _mm512_shuffle_ps(h01, h23, 0x44);
+    out[r][3] = _mm512_shuffle_ps(h01, h23, 0xEE);
+  }
 }
 inline __m128 three_at(const float* p) { return _mm_maskz_loadu_ps(7, p); }
 
@@ -189,21 +196,26 @@ inline Int compress(Mask m, Int a) {
   return _mm256_castps_si256(compress(m, Float(_mm256_castsi256_ps(a.v))).v);
 }
 
-/// p[i] .. p[i + 3] of every lane by whole loads and a transpose.
-template <typename Load>
-inline void transposed(Int i, Load four_at, Float& a, Float& b, Float& c, Float& d) {
+/// Four numbers of every lane, from each of kRows arrays, by whole loads and a transpose.
+template <int kRows, typename Load>
+inline void transposed(Int i, Load four_at, Float (&out)[kRows][4]) {
   alignas(32) int32_t k[8];
   _mm256_store_si256(reinterpret_cast<__m256i*>(k), i.v);
-  const auto row = [&](int n) {
-    return _mm256_insertf128_ps(_mm256_castps128_ps256(four_at(k[n])), four_at(k[n + 4]), 1);
-  };
-  const __m256 q0 = row(0), q1 = row(1), q2 = row(2), q3 = row(3);
-  const __m256 l01 = _mm256_unpacklo_ps(q0, q1), l23 = _mm256_unpacklo_ps(q2, q3);
-  const __m256 h01 = _mm256_unpackhi_ps(q0, q1), h23 = _mm256_unpackhi_ps(q2, q3);
-  a = _mm256_shuffle_ps(l01, l23, 0x44);
-  b = _mm256_shuffle_ps(l01, l23, 0xEE);
-  c = _mm256_shuffle_ps(h01, h23, 0x44);
-  d = _mm256_shuffle_ps(h01, h23, 0xEE);
+  asm("" : "+m"(k));
+  __m256 q[kRows][4];
+  for (int n = 0; n < 4; ++n) {
+    for (int r = 0; r < kRows; ++r) {
+      q[r][n] = _mm256_insertf128_ps(_mm256_castps128_ps256(four_at(r, k[n])), four_at(r, k[n + 4]), 1);
+    }
+  }
+  for (int r = 0; r < kRows; ++r) {
+    const __m256 l01 = _mm256_unpacklo_ps(q[r][0], q[r][1]), l23 = _mm256_unpacklo_ps(q[r][2], q[r][3]);
+    const __m256 h01 = _mm256_unpackhi_ps(q[r][0], q[r][1]), h23 = _mm256_unpackhi_ps(q[r][2], q[r][3]);
+    out[r][0] = _mm256_shuffle_ps(l01, l23, 0x44);
+    out[r][1] = _mm256_shuffle_ps(l01, l23, 0xEE);
+    out[r][2] = _mm256_shuffle_ps(h01, h23, 0x44);
+    out[r][3] = _mm256_shuffle_ps(h01, h23, 0xEE);
+  }
 }
 inline __m128 three_at(const float* p) { return _mm_maskload_ps(p, _mm_setr_epi32(-1, -1, -1, 0)); }
 
@@ -375,23 +387,27 @@ inline Int float_bits(Float a) {
 #endif
 
 #if (defined(__AVX2__) || defined(__AVX512F__)) && !defined(LUCERNA_ONE_LANE) && !defined(__CUDACC__)
-/// p[i] .. p[i + 3] of every lane.
-inline void gather4(const float* p, Int i, Float& a, Float& b, Float& c, Float& d) {
-  transposed(
-      i, [p](int32_t k) { return _mm_loadu_ps(p + k); }, a, b, c, d);
+/// p[r][i] .. p[r][i + 3] of every lane, for each r.
+template <int kRows>
+inline void gather4(const float* const (&p)[kRows], Int i, Float (&out)[kRows][4]) {
+  transposed<kRows>(
+      i, [&p](int r, int32_t k) { return _mm_loadu_ps(p[r] + k); }, out);
 }
 /// p[i] .. p[i + 2] of every lane; reads nothing behind them.
 inline void gather3(const float* p, Int i, Float& a, Float& b, Float& c) {
-  Float none;
-  transposed(
-      i, [p](int32_t k) { return three_at(p + k); }, a, b, c, none);
+  Float out[1][4];
+  transposed<1>(
+      i, [p](int, int32_t k) { return three_at(p + k); }, out);
+  a = out[0][0];
+  b = out[0][1];
+  c = out[0][2];
 }
 #else
-LUCERNA_HD inline void gather4(const float* p, Int i, Float& a, Float& b, Float& c, Float& d) {
-  a = gather(p, i);
-  b = gather(p + 1, i);
-  c = gather(p + 2, i);
-  d = gather(p + 3, i);
+template <int kRows>
+LUCERNA_HD inline void gather4(const float* const (&p)[kRows], Int i, Float (&out)[kRows][4]) {
+  for (int r = 0; r < kRows; ++r) {
+    for (int c = 0; c < 4; ++c) out[r][c] = gather(p[r] + c, i);
+  }
 }
 LUCERNA_HD inline void gather3(const float* p, Int i, Float& a, Float& b, Float& c) {
   a = gather(p, i);
@@ -399,6 +415,17 @@ LUCERNA_HD inline void gather3(const float* p, Int i, Float& a, Float& b, Float&
   c = gather(p + 2, i);
 }
 #endif
+
+/// p[i] .. p[i + 3] of every lane.
+LUCERNA_HD inline void gather4(const float* p, Int i, Float& a, Float& b, Float& c, Float& d) {
+  const float* const rows[1] = {p};
+  Float out[1][4];
+  gather4(rows, i, out);
+  a = out[0][0];
+  b = out[0][1];
+  c = out[0][2];
+  d = out[0][3];
+}
 
 LUCERNA_HD inline bool any(Mask a) { return bits(a) != 0; }
 
@@ -408,6 +435,7 @@ LUCERNA_HD inline void prefetch([[maybe_unused]] const float* p, [[maybe_unused]
 #if !defined(LUCERNA_ONE_LANE) && !defined(__CUDACC__)
   alignas(64) int32_t k[kLanes];
   store(k, i);
+  asm("" : "+m"(k));
   for (uint32_t left = bits(m); left != 0; left &= left - 1) __builtin_prefetch(p + k[__builtin_ctz(left)]);
 #endif
 }
