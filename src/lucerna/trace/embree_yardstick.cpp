@@ -61,83 +61,83 @@ struct EmbreeYardstick::Device {
   /// All rays, at most `bounces` reflections; bins at one degree.
   void trace(const RayBlock& source, double lift_mm, int bounces, std::span<double> bins) const {
     const Kernels& kernels = best_kernels();
-    const FrameView same{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
-    auto rays = std::make_unique<WorldRays>();
-    auto local = std::make_unique<LocalRays>();
-    auto hits = std::make_unique<LocalHits>();
+    const FrameView lifted{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, static_cast<float>(lift_mm)}};
+    auto batch = std::make_unique<Batch>();
+    std::fill(std::begin(batch->kept), std::end(batch->kept), 0.9);
     for (std::size_t first = 0; first < source.size(); first += kBatch) {
       std::size_t n = std::min(kBatch, source.size() - first);
-      for (std::size_t i = 0; i < n; ++i) {
-        rays->x[i] = source.x_mm[first + i];
-        rays->y[i] = source.y_mm[first + i];
-        rays->z[i] = source.z_mm[first + i] + static_cast<float>(lift_mm);
-        rays->dx[i] = source.kx[first + i];
-        rays->dy[i] = source.ky[first + i];
-        rays->dz[i] = source.kz[first + i];
-        rays->flux[i] = 1.0F;
-        rays->mirror[i] = -1;
-      }
-      for (int bounce = 0; n > 0; ++bounce)
-        n = step(kernels, same, *rays, *local, *hits, n, bounce < bounces, bins);
+      const RayArrays arrays{&source.x_mm[first],  &source.y_mm[first], &source.z_mm[first],
+                             &source.kx[first],    &source.ky[first],   &source.kz[first],
+                             &source.weight[first]};
+      bool all_finite = true;
+      kernels.enter(lifted, arrays, n, 1.0, batch->rays, all_finite);
+      batch->out_count = 0;
+      for (int bounce = 0; n > 0; ++bounce) n = step(kernels, *batch, n, bounce, bounces);
+      kernels.far_field_cells(batch->out, batch->out_count, 360, 181, batch->number);
+      for (std::size_t i = 0; i < batch->out_count; ++i)
+        bins[static_cast<std::size_t>(batch->number[i])] += static_cast<double>(batch->out.flux[i]);
     }
   }
 
-  std::size_t step(const Kernels& kernels, const FrameView& same, WorldRays& rays, LocalRays& local,
-                   LocalHits& hits, std::size_t n, bool reflect, std::span<double> bins) const {
+  /// What one batch of rays needs: all but the search for hits is done by the kernels that our tracer uses
+  /// too.
+  struct Batch {
+    WorldRays rays, out;
+    LocalRays local;
+    LocalHits hits;
+    std::size_t out_count = 0;
+    alignas(64) float cosine[kBatch];
+    alignas(64) double kept[kBatch];
+    /// Of reflections, then of far-field cells.
+    alignas(64) std::int32_t number[kBatch];
+    alignas(64) std::int32_t fate[kBatch];
+  };
+
+  std::size_t step(const Kernels& kernels, Batch& batch, std::size_t n, int bounce, int bounces) const {
+    const FrameView same{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+    kernels.to_local(same, batch.rays, n, 0, batch.local);
+    for (std::size_t i = 0; i < n; i += 16) meet(batch.local, i, n, batch.hits);
+    std::fill_n(batch.number, n, bounce);
+    std::fill_n(batch.fate, n, kLeaves);
+    kernels.reflect(same, batch.local, batch.hits, n, batch.rays, batch.cosine);
+    kernels.settle_fates(batch.hits, batch.number, bounces, batch.kept, 0, n, batch.rays.flux, batch.fate);
+    return kernels.part(batch.rays, batch.fate, n, batch.out, batch.out_count);
+  }
+
+  /// First hits of rays i .. i + 15.
+  void meet(const LocalRays& rays, std::size_t i, std::size_t n, LocalHits& hits) const {
     alignas(64) RTCRayHit16 packet;
     alignas(64) int valid[16];
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    kernels.to_local(same, rays, n, 0, local);
-    for (std::size_t i = 0; i < n; i += 16) {
-      for (std::size_t k = 0; k < 16; ++k) {
-        valid[k] = i + k < n ? -1 : 0;
-        packet.ray.org_x[k] = rays.x[i + k];
-        packet.ray.org_y[k] = rays.y[i + k];
-        packet.ray.org_z[k] = rays.z[i + k];
-        packet.ray.dir_x[k] = rays.dx[i + k];
-        packet.ray.dir_y[k] = rays.dy[i + k];
-        packet.ray.dir_z[k] = rays.dz[i + k];
-        packet.ray.tnear[k] = rays.mirror[i + k] == 0 ? 1e-3F : 0.0F;
-        packet.ray.tfar[k] = 1e18F;
-        packet.ray.time[k] = 0.0F;
-        packet.ray.mask[k] = 0xFFFFFFFFU;
-        packet.ray.flags[k] = 0;
-        packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-      }
-      rtcIntersect16(valid, scene_, &context, &packet);
-      for (std::size_t k = 0; k < 16; ++k) {
-        const bool met = valid[k] != 0 && packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
-        hits.t[i + k] = hits.past[i + k] = packet.ray.tfar[k];
-        hits.start[i + k] = 0.0F;
-        const float per = met ? -1.0F / packet.hit.Ng_z[k] : 0.0F;
-        hits.gx[i + k] = packet.hit.Ng_x[k] * per;
-        hits.gy[i + k] = packet.hit.Ng_y[k] * per;
-        hits.gz[i + k] = 1.0F;
-        const float towards = -packet.hit.Ng_x[k] * per * rays.dx[i + k] -
-                              packet.hit.Ng_y[k] * per * rays.dy[i + k] + rays.dz[i + k];
-        hits.state[i + k] = !met ? kMiss : towards < 0.0F ? kFront : kBack;
-      }
+    for (std::size_t k = 0; k < 16; ++k) {
+      valid[k] = i + k < n ? -1 : 0;
+      packet.ray.org_x[k] = rays.x[i + k];
+      packet.ray.org_y[k] = rays.y[i + k];
+      packet.ray.org_z[k] = rays.z[i + k];
+      packet.ray.dir_x[k] = rays.dx[i + k];
+      packet.ray.dir_y[k] = rays.dy[i + k];
+      packet.ray.dir_z[k] = rays.dz[i + k];
+      packet.ray.tnear[k] = rays.on_mirror[i + k] != 0 ? 1e-3F : 0.0F;
+      packet.ray.tfar[k] = 1e18F;
+      packet.ray.time[k] = 0.0F;
+      packet.ray.mask[k] = 0xFFFFFFFFU;
+      packet.ray.flags[k] = 0;
+      packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
     }
-    alignas(64) float cosine[kBatch];
-    alignas(64) std::int32_t cell[kBatch];
-    kernels.far_field_cells(rays, n, 360, 181, cell);
-    if (reflect) kernels.reflect(same, local, hits, n, rays, cosine);
-    std::size_t stay = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (hits.state[i] == kMiss)
-        bins[static_cast<std::size_t>(cell[i])] += static_cast<double>(rays.flux[i]);
-      if (hits.state[i] != kFront || !reflect) continue;
-      rays.x[stay] = rays.x[i];
-      rays.y[stay] = rays.y[i];
-      rays.z[stay] = rays.z[i];
-      rays.dx[stay] = rays.dx[i];
-      rays.dy[stay] = rays.dy[i];
-      rays.dz[stay] = rays.dz[i];
-      rays.flux[stay] = 0.9F * rays.flux[i];
-      rays.mirror[stay++] = 0;
+    rtcIntersect16(valid, scene_, &context, &packet);
+    for (std::size_t k = 0; k < 16; ++k) {
+      const bool met = valid[k] != 0 && packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
+      hits.t[i + k] = hits.past[i + k] = packet.ray.tfar[k];
+      hits.start[i + k] = 0.0F;
+      const float per = met ? -1.0F / packet.hit.Ng_z[k] : 0.0F;
+      hits.gx[i + k] = packet.hit.Ng_x[k] * per;
+      hits.gy[i + k] = packet.hit.Ng_y[k] * per;
+      hits.gz[i + k] = 1.0F;
+      const float towards = -packet.hit.Ng_x[k] * per * rays.dx[i + k] -
+                            packet.hit.Ng_y[k] * per * rays.dy[i + k] + rays.dz[i + k];
+      hits.state[i + k] = !met ? kMiss : towards < 0.0F ? kFront : kBack;
     }
-    return stay;
   }
 
   double build_s = 0.0;
