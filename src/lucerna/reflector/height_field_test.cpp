@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lucerna/core/random.h"
@@ -51,6 +52,36 @@ TEST(HeightField, AQuadricIsExactToRounding) {
   const auto [z, g] = worst(HeightField(r, 64), *r.surface);
   EXPECT_LT(z, 1e-7);
   EXPECT_LT(g, 1e-8);
+}
+
+/// The longest gradient over the quadric at random places within the rim.
+double steepest(const HeightField& field) {
+  Rng rng(3, 0);
+  double most = 0.0;
+  for (int i = 0; i < 50000; ++i) {
+    const double x = 80.0 * rng.uniform() - 40.0, y = 80.0 * rng.uniform() - 40.0;
+    if (std::hypot(x, y) > field.rim_mm()) continue;
+    const SurfacePoint a = field.at(x, y), q = field.quadric().at(x, y);
+    most = std::max(most, std::hypot(a.dzdx - q.dzdx, a.dzdy - q.dzdy));
+  }
+  return most;
+}
+
+// Of a smooth mirror with a hole, and of one whose heights and slopes have nothing to do with each other.
+TEST(HeightField, SteepnessBoundsEveryGradient) {
+  HeightField field({std::make_shared<Pillows>(), Aperture::circle(80.0, 20.0)}, 128);
+  const double smooth = steepest(field);
+  EXPECT_GE(static_cast<double>(field.steepness()), smooth);
+  EXPECT_LT(static_cast<double>(field.steepness()), 1.3 * smooth);
+  Rng rng(4, 0);
+  for (FieldVertex& v : field.vertices()) {
+    v = {static_cast<float>(rng.uniform()), static_cast<float>(4.0 * rng.uniform() - 2.0),
+         static_cast<float>(4.0 * rng.uniform() - 2.0)};
+  }
+  field.rebuild();
+  const double rough = steepest(field);
+  EXPECT_GT(rough, 2.0);
+  EXPECT_GE(static_cast<double>(field.steepness()), rough);
 }
 
 // Every slab of every level holds the cubic pieces that the tracers hit.

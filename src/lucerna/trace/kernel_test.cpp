@@ -11,12 +11,15 @@
 #include <cmath>
 #include <cstdlib>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/random.h"
 #include "lucerna/trace/far_field.h"
 #include "lucerna/trace/field_view.h"
 #include "lucerna/trace/reference_tracer.h"
+#include "lucerna/trace/units.h"
 #include "tests/support/available_kernels.h"
 #include "tests/support/random_direction.h"
 #include "tests/support/test_mirrors.h"
@@ -260,6 +263,183 @@ TEST(Kernels, ScalarAgreesRayByRayWithEveryInstructionSet) {
     // Rays that graze: their distance is the less certain the flatter they are.
     EXPECT_LE(static_cast<double>(differ), 1e-4 * static_cast<double>(rays)) << kernels->isa;
     RecordProperty(kernels->isa, std::to_string(differ) + " of " + std::to_string(rays));
+  }
+}
+
+/// Rays whose hits with two fields differ; `reflected` counts those that start on the mirror.
+struct Disagreements {
+  std::size_t rays = 0, hits = 0, reflected = 0, differ = 0;
+  Disagreements& operator+=(const Disagreements& o) {
+    rays += o.rays;
+    hits += o.hits;
+    reflected += o.reflected;
+    differ += o.differ;
+    return *this;
+  }
+};
+
+/// Rays from everywhere, and what becomes of those that are reflected, with two views of one mirror.
+Disagreements compare(const Kernels& kernels, const FieldView& a, const FieldView& b, int batches) {
+  auto in = std::make_unique<LocalRays>();
+  auto first = std::make_unique<Reflected>(), second = std::make_unique<Reflected>();
+  Disagreements d;
+  Rng rng(23, 0);
+  for (int batch = 0; batch < batches; ++batch) {
+    fill_rays(rng, *in);
+    for (const bool reflected : {false, true}) {
+      reflect_all(kernels, a, *in, *first);
+      reflect_all(kernels, b, *in, *second);
+      for (std::size_t i = 0; i < kBatch; ++i) {
+        ++d.rays;
+        d.reflected += in->on_mirror[i] != 0;
+        d.hits += first->hits.state[i] != kMiss;
+        const bool both_miss = first->hits.state[i] == kMiss && second->hits.state[i] == kMiss;
+        d.differ += first->hits.state[i] != second->hits.state[i] ||
+                    (!both_miss && std::abs(first->hits.t[i] - second->hits.t[i]) > 1e-3F);
+      }
+      if (reflected) break;
+      for (std::size_t i = 0; i < kBatch; ++i) {
+        if (second->hits.state[i] != kFront) continue;
+        const WorldRays& r = second->rays;
+        in->x[i] = r.x[i];
+        in->y[i] = r.y[i];
+        in->z[i] = r.z[i];
+        in->dx[i] = r.dx[i];
+        in->dy[i] = r.dy[i];
+        in->dz[i] = r.dz[i];
+        in->on_mirror[i] = 1;
+      }
+    }
+  }
+  return d;
+}
+
+/// What skips the tree because it falls or rises faster than the surface, against what the tree finds;
+/// `bound` is said to be the surface's steepness.
+Disagreements against_tree(const Kernels& kernels, const HeightField& field, float bound) {
+  FieldView tried = view_of(field), by_tree = tried;
+  tried.steepness = bound;
+  by_tree.steepness = 1e9F;
+  return compare(kernels, tried, by_tree, 20);
+}
+
+// On a rough surface a bound that does not hold is found out.
+TEST(Kernels, WhatSkipsTheTreeMeetsWhatTheTreeFinds) {
+  HeightField rough(height_fields().front(), 64);
+  Rng rng(29, 0);
+  for (FieldVertex& v : rough.vertices()) v.z_mm = static_cast<float>(2.0 * rng.uniform());
+  rough.rebuild();
+  for (const Kernels* kernels : available_kernels()) {
+    Disagreements all = against_tree(*kernels, rough, rough.steepness());
+    for (const Reflector& mirror : height_fields()) {
+      const HeightField field(mirror, 256);
+      all += against_tree(*kernels, field, field.steepness());
+    }
+    EXPECT_GT(all.hits, 30000u);
+    EXPECT_GT(all.reflected, 5000u);
+    EXPECT_LE(static_cast<double>(all.differ), 3e-5 * static_cast<double>(all.rays)) << kernels->isa;
+    const Disagreements wrong = against_tree(*kernels, rough, 0.1F);
+    EXPECT_GT(static_cast<double>(wrong.differ), 5e-4 * static_cast<double>(wrong.rays)) << kernels->isa;
+  }
+}
+
+TEST(Kernels, RaysEnterInTheLuminairesFrameAndNothingIsMissed) {
+  constexpr std::size_t kRays = 509;
+  const FrameView turned{{0, -1, 0, 1, 0, 0, 0, 0, 1}, {1, 2, 3}};
+  Rng rng(7, 0);
+  std::vector<std::vector<float>> in(7, std::vector<float>(kRays));
+  for (auto& array : in) {
+    for (float& x : array) x = static_cast<float>(rng.uniform());
+  }
+  const RayArrays arrays{in[0].data(), in[1].data(), in[2].data(), in[3].data(),
+                         in[4].data(), in[5].data(), in[6].data()};
+  for (const Kernels* kernels : available_kernels()) {
+    auto out = std::make_unique<WorldRays>();
+    bool all_finite = false;
+    const std::int64_t units = kernels->enter(turned, arrays, kRays, 0.75, *out, all_finite);
+    EXPECT_TRUE(all_finite);
+    double flux = 0.0;
+    for (std::size_t i = 0; i < kRays; ++i) {
+      EXPECT_FLOAT_EQ(out->x[i], 1.0F - in[1][i]) << kernels->isa;
+      EXPECT_FLOAT_EQ(out->y[i], 2.0F + in[0][i]);
+      EXPECT_FLOAT_EQ(out->z[i], 3.0F + in[2][i]);
+      EXPECT_FLOAT_EQ(out->dx[i], -in[4][i]);
+      EXPECT_FLOAT_EQ(out->dy[i], in[3][i]);
+      EXPECT_FLOAT_EQ(out->dz[i], in[5][i]);
+      EXPECT_FLOAT_EQ(out->flux[i], 0.75F * in[6][i]);
+      EXPECT_EQ(out->number[i], static_cast<int>(i));
+      EXPECT_EQ(out->mirror[i], -1);
+      flux += static_cast<double>(out->flux[i]);
+    }
+    EXPECT_NEAR(static_cast<double>(units), flux * kUnitsPerRay, kRays);
+    for (const std::size_t lane : {std::size_t{0}, std::size_t{100}, kRays - 1}) {
+      for (std::size_t a = 0; a < 6; ++a) {
+        const float before = std::exchange(in[a][lane], a % 2 == 0 ? NAN : INFINITY);
+        kernels->enter(turned, arrays, kRays, 0.75, *out, all_finite);
+        EXPECT_FALSE(all_finite) << kernels->isa << ", array " << a << ", ray " << lane;
+        in[a][lane] = before;
+      }
+    }
+  }
+}
+
+TEST(Kernels, FatesAddUpAndPartingKeepsTheOrder) {
+  constexpr std::size_t kRays = 509;
+  Rng rng(8, 0);
+  auto hits = std::make_unique<LocalHits>();
+  auto rays = std::make_unique<WorldRays>();
+  std::vector<std::int32_t> reflections(kRays), fate(kRays);
+  std::vector<double> kept(kRays);
+  for (std::size_t i = 0; i < kRays; ++i) {
+    hits->state[i] = static_cast<std::int32_t>(3.0 * rng.uniform());
+    reflections[i] = static_cast<std::int32_t>(3.0 * rng.uniform());
+    fate[i] = i % 7 == 0 ? 4 : kLeaves;  // some met mirror 4 before
+    if (fate[i] == 4) hits->state[i] = kMiss;
+    kept[i] = rng.uniform();
+    rays->flux[i] = static_cast<float>(2.0 * rng.uniform());
+    rays->number[i] = static_cast<std::int32_t>(1000 + i);
+    for (float* array : {rays->x, rays->y, rays->z, rays->dx, rays->dy, rays->dz})
+      array[i] = static_cast<float>(rng.uniform());
+  }
+  for (const Kernels* kernels : available_kernels()) {
+    auto now = std::make_unique<WorldRays>(*rays);
+    std::vector<std::int32_t> fates = fate;
+    const MirrorSums sums =
+        kernels->settle_fates(*hits, reflections.data(), 2, kept.data(), 5, kRays, now->flux, fates.data());
+    double before = 0.0, after = 0.0;
+    std::int64_t lost_rays = 0, reflected = 0;
+    std::vector<std::size_t> stay, leave;
+    for (std::size_t i = 0; i < kRays; ++i) {
+      before += static_cast<double>(rays->flux[i]);
+      const bool front = hits->state[i] == kFront, last = front && reflections[i] == 2;
+      const std::int32_t expected = hits->state[i] == kMiss ? fate[i] : front && !last ? 5 : kGone;
+      ASSERT_EQ(fates[i], expected) << kernels->isa << ", ray " << i;
+      EXPECT_FLOAT_EQ(now->flux[i], rays->flux[i] * (expected == 5 ? static_cast<float>(kept[i]) : 1.0F));
+      if (expected != kGone) after += static_cast<double>(now->flux[i]);
+      lost_rays += last;
+      reflected += expected == 5;
+      if (expected >= 0) stay.push_back(i);
+      if (expected == kLeaves) leave.push_back(i);
+    }
+    EXPECT_EQ(sums.lost_rays, lost_rays);
+    EXPECT_EQ(sums.reflections, reflected);
+    EXPECT_NEAR(static_cast<double>(sums.face + sums.back + sums.lost), (before - after) * kUnitsPerRay,
+                2.0 * kRays);
+    auto out = std::make_unique<WorldRays>();
+    const WorldRays settled = *now;
+    std::size_t out_count = 2;
+    ASSERT_EQ(kernels->part(*now, fates.data(), kRays, *out, out_count), stay.size()) << kernels->isa;
+    ASSERT_EQ(out_count, 2 + leave.size());
+    const auto same = [&](const WorldRays& a, std::size_t i, std::size_t of) {
+      return a.number[i] == settled.number[of] && a.x[i] == settled.x[of] && a.y[i] == settled.y[of] &&
+             a.z[i] == settled.z[of] && a.dx[i] == settled.dx[of] && a.dy[i] == settled.dy[of] &&
+             a.dz[i] == settled.dz[of] && a.flux[i] == settled.flux[of];
+    };
+    for (std::size_t k = 0; k < stay.size(); ++k) {
+      EXPECT_TRUE(same(*now, k, stay[k])) << kernels->isa << ", ray " << k;
+      EXPECT_EQ(now->mirror[k], fates[stay[k]]);
+    }
+    for (std::size_t k = 0; k < leave.size(); ++k) EXPECT_TRUE(same(*out, 2 + k, leave[k])) << kernels->isa;
   }
 }
 
