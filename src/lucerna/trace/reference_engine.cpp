@@ -33,9 +33,10 @@ class ReferenceEngine final : public TraceEngine {
     rays.resize(run.count, 0);
     source.rays->emit(Sequence(kind_, run.sequence_seed), run.first, rays);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      trace_ray(source.world_from_source.ray(rays.ray(i)),
-                to_units(static_cast<double>(rays.weight[i]) * numbering_.ray_flux(run.source)),
-                {run.sequence_seed, run.first + i, 0}, scratch, tally);
+      trace_ray(
+          source.world_from_source.ray(rays.ray(i)),
+          std::llround(static_cast<double>(rays.weight[i]) * numbering_.ray_flux(run.source) * kUnitsPerRay),
+          {run.sequence_seed, run.first + i, 0}, scratch, tally);
     }
   }
 

@@ -24,10 +24,6 @@ struct Counters {
   LUCERNA_HD void add(LedgerSum which, std::int64_t units) { sum[which] += units; }
 };
 
-LUCERNA_HD inline std::int64_t units_of(float flux) {
-  return static_cast<std::int64_t>(static_cast<double>(flux) * kUnitsPerRay + 0.5);
-}
-
 /// A ray as a source emits it: float32 as in a ray file, in the source's frame.
 struct Emitted {
   LaneRays ray;

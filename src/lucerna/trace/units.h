@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cmath>
 #include <cstdint>
+
+#include "lucerna/core/host_device.h"
 
 namespace lucerna {
 
@@ -13,8 +14,10 @@ namespace lucerna {
 inline constexpr double kUnitsPerRay = 0x1p26;
 inline constexpr std::uint64_t kMostRays = std::uint64_t{1} << 34;
 
-/// A ray's flux, in mean rays, as whole units.
-inline std::int64_t to_units(double rays) { return std::llround(rays * kUnitsPerRay); }
+/// A ray's flux >= 0, in mean rays, as whole units. Static: kernels of each instruction set have their own copy.
+LUCERNA_HD static inline std::int64_t units_of(float flux) {
+  return static_cast<std::int64_t>(static_cast<double>(flux) * kUnitsPerRay + 0.5);
+}
 
 /// Rays per block: the unit that is drawn, traced and given to one replicate.
 inline constexpr std::uint64_t kBlockRays = 512;

@@ -98,12 +98,8 @@ class WavefrontEngine final : public TraceEngine {
     LocalHits hits;
   };
 
-  static std::int64_t units(float flux) {
-    return static_cast<std::int64_t>(static_cast<double>(flux) * kUnitsPerRay + 0.5);
-  }
-
   static void lose(LostCause cause, float flux, Tally& tally) {
-    tally.lost[static_cast<std::size_t>(cause)] += units(flux);
+    tally.lost[static_cast<std::size_t>(cause)] += units_of(flux);
     ++tally.lost_rays[static_cast<std::size_t>(cause)];
   }
 
@@ -154,7 +150,7 @@ class WavefrontEngine final : public TraceEngine {
   void count_leaving(const Batch& batch, std::size_t first, int bounce, Tally& tally) const {
     std::int64_t direct = 0, all = 0;
     for (std::size_t i = first; i < batch.out_count; ++i) {
-      const std::int64_t u = units(batch.out.flux[i]);
+      const std::int64_t u = units_of(batch.out.flux[i]);
       all += u;
       direct += reflections(batch, batch.out, i, bounce) == 0 ? u : 0;
     }
@@ -171,7 +167,7 @@ class WavefrontEngine final : public TraceEngine {
       kernels_.far_field_cells(out, n, static_cast<std::int32_t>(grid.c_count()),
                                static_cast<std::int32_t>(grid.gamma_count()), cell);
       std::int64_t* const bins = tally.bins[d].data();
-      for (std::size_t i = 0; i < n; ++i) bins[cell[i]] += units(out.flux[i]);
+      for (std::size_t i = 0; i < n; ++i) bins[cell[i]] += units_of(out.flux[i]);
     }
     if (!looks_at_places()) return;
     // Rays leave after different numbers of reflections; by number they are in the order they were emitted
@@ -183,7 +179,7 @@ class WavefrontEngine final : public TraceEngine {
     for (std::size_t k = 0; k < n; ++k) {
       const std::size_t i = order[k];
       leave({{out.x[i], out.y[i], out.z[i]}, Direction::from({out.dx[i], out.dy[i], out.dz[i]})},
-            units(out.flux[i]), scratch, tally);
+            units_of(out.flux[i]), scratch, tally);
     }
   }
 
@@ -273,9 +269,9 @@ class WavefrontEngine final : public TraceEngine {
 
   /// Takes `1 - kept` off the flux of a ray.
   static void absorb(float& flux, double kept, std::size_t cause, Tally& tally) {
-    const std::int64_t before = units(flux);
+    const std::int64_t before = units_of(flux);
     flux = static_cast<float>(static_cast<double>(flux) * kept);
-    tally.absorbed[cause] += before - units(flux);
+    tally.absorbed[cause] += before - units_of(flux);
   }
 
   static void put(WorldRays& rays, std::size_t i, const Ray& ray) {

@@ -7,15 +7,10 @@
 
 #include "lucerna/trace/kernel.h"
 #include "lucerna/trace/simd.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 namespace {
-
-inline constexpr double kKernelUnits = 67108864.0;  // kUnitsPerRay
-
-inline int64_t whole_units(float flux) {
-  return static_cast<int64_t>(static_cast<double>(flux) * kKernelUnits + 0.5);
-}
 
 inline int64_t enter(const FrameView& k, const RayArrays& in, size_t n, double ray_flux, WorldRays& out,
                      bool& all_finite) {
@@ -36,7 +31,7 @@ inline int64_t enter(const FrameView& k, const RayArrays& in, size_t n, double r
   }
   for (size_t i = 0; i < n; ++i) {
     out.flux[i] = static_cast<float>(static_cast<double>(in.weight[i]) * ray_flux);
-    units += whole_units(out.flux[i]);
+    units += units_of(out.flux[i]);
   }
   all_finite = odd == 0;
   return units;
@@ -49,9 +44,9 @@ inline MirrorSums settle_fates(const LocalHits& hits, const int32_t* reflections
     const int32_t front = hits.state[i] == kFront ? 1 : 0, back = hits.state[i] == kBack ? 1 : 0;
     const int32_t last = reflections[i] == most ? front : 0, goes_on = front - last;
     const float after = static_cast<float>(static_cast<double>(flux[i]) * kept[i]);
-    const int64_t units = whole_units(flux[i]);
+    const int64_t units = units_of(flux[i]);
     flux[i] = goes_on != 0 ? after : flux[i];
-    sum.face += units - whole_units(flux[i]);
+    sum.face += units - units_of(flux[i]);
     sum.back += back != 0 ? units : 0;
     sum.lost += last != 0 ? units : 0;
     sum.lost_rays += last;
