@@ -319,6 +319,31 @@ class WavefrontEngine final : public TraceEngine {
     return kOnBody;
   }
 
+  /// Reflects what met mirror `m`, less what that absorbs, and notes its fate; `reflected` is how often
+  /// before.
+  void reflect_off(std::size_t m, const Meeting& meeting, std::size_t n, const std::int32_t* reflected,
+                   Batch& batch, std::int32_t* fate, Tally& tally) const {
+    const LocalHits& hits = meeting.hits;
+    kernels_.reflect(mirrors_[m].world_from_mirror, meeting.rays, hits, n, batch.rays, batch.cosine);
+    alignas(64) double kept[kBatch];
+    const Reflectance& reflectance = *mirrors_[m].reflectance;
+    if (reflectance.is_constant()) {
+      std::fill_n(kept, n, reflectance.at(1.0));
+    } else {
+      for (std::size_t i = 0; i < n; ++i) {
+        kept[i] = hits.state[i] == kFront ? reflectance.at(static_cast<double>(batch.cosine[i])) : 1.0;
+      }
+    }
+    const MirrorSums sums = kernels_.settle_fates(hits, reflected, max_bounces_, kept,
+                                                  static_cast<std::int32_t>(m), n, batch.rays.flux, fate);
+    tally.absorbed[static_cast<std::size_t>(MirrorLoss::face)] += sums.face;
+    tally.absorbed[static_cast<std::size_t>(MirrorLoss::back)] += sums.back;
+    const auto limit = static_cast<std::size_t>(LostCause::bounce_limit);
+    tally.lost[limit] += sums.lost;
+    tally.lost_rays[limit] += static_cast<std::uint64_t>(sums.lost_rays);
+    tally.reflections += static_cast<std::uint64_t>(sums.reflections);
+  }
+
   /// Reflects what was reflected, moves what leaves to `out`, and closes the gaps; returns how many rays
   /// stay.
   std::size_t sort_out(Batch& batch, std::size_t n, std::span<const Meeting> meetings,
@@ -330,27 +355,8 @@ class WavefrontEngine final : public TraceEngine {
       fate[i] = kLeaves;
       reflected[i] = reflections(batch, rays, i, bounce);
     }
-    for (std::size_t m = 0; m < mirrors_.size(); ++m) {
-      const LocalHits& hits = meetings[m].hits;
-      kernels_.reflect(mirrors_[m].world_from_mirror, meetings[m].rays, hits, n, rays, batch.cosine);
-      alignas(64) double kept[kBatch];
-      const Reflectance& reflectance = *mirrors_[m].reflectance;
-      if (reflectance.is_constant()) {
-        std::fill_n(kept, n, reflectance.at(1.0));
-      } else {
-        for (std::size_t i = 0; i < n; ++i) {
-          kept[i] = hits.state[i] == kFront ? reflectance.at(static_cast<double>(batch.cosine[i])) : 1.0;
-        }
-      }
-      const MirrorSums sums = kernels_.settle_fates(hits, reflected, max_bounces_, kept,
-                                                    static_cast<std::int32_t>(m), n, rays.flux, fate);
-      tally.absorbed[static_cast<std::size_t>(MirrorLoss::face)] += sums.face;
-      tally.absorbed[static_cast<std::size_t>(MirrorLoss::back)] += sums.back;
-      tally.lost[static_cast<std::size_t>(LostCause::bounce_limit)] += sums.lost;
-      tally.lost_rays[static_cast<std::size_t>(LostCause::bounce_limit)] +=
-          static_cast<std::uint64_t>(sums.lost_rays);
-      tally.reflections += static_cast<std::uint64_t>(sums.reflections);
-    }
+    for (std::size_t m = 0; m < mirrors_.size(); ++m)
+      reflect_off(m, meetings[m], n, reflected, batch, fate, tally);
     for (std::size_t i = 0; !glasses().empty() && i < n; ++i) {
       if (fate[i] >= 0) ++batch.reflections[static_cast<std::size_t>(rays.number[i])];
     }
