@@ -3,16 +3,22 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
+#include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/design/device_evaluator.h"
 #include "lucerna/design/evaluation_sums.h"
+#include "lucerna/design/hit_kernels.h"
 
 namespace lucerna {
 
 namespace {
+
+static_assert(kBlockRays <= kHitBatch);
 
 /// Sums of the rays of one task.
 struct TaskSums {
@@ -37,16 +43,115 @@ struct TaskSums {
   Row row(int bin) const { return {jacobian + static_cast<std::size_t>(bin) * coefficients}; }
 };
 
-template <class View>
-void trace_block(const EvaluationView<View>& view, const DesignRays::Block& block, TaskSums& sums) {
-  Path<View> path;
-  for (std::size_t i = 0; i < kBlockRays; ++i) {
-    const double weight = block.weight[i];
-    sums.weight += weight;
-    view.trace({block.x_mm[i], block.y_mm[i], block.z_mm[i]}, {block.kx[i], block.ky[i], block.kz[i]}, weight,
-               path, sums);
+/// Traces blocks of rays, all rays of a block one reflection at a time.
+template <class Shape>
+class BlockTracer {
+ public:
+  using Hit = typename Path<Shape>::Hit;
+
+  explicit BlockTracer(const EvaluationView<Shape>& view)
+      : view_(view), mirror_(hit_mirror(view.shape, view.aperture)) {}
+
+  void add(const DesignRays::Block& block, TaskSums& sums) {
+    follow(block);
+    for (std::size_t i = 0; i < kBlockRays; ++i) {
+      const double weight = block.weight[i];
+      sums.weight += weight;
+      path_.end = paths_[i].end;
+      path_.origin = paths_[i].origin;
+      path_.direction = paths_[i].direction;
+      path_.hits = paths_[i].hits;
+      std::size_t at = paths_[i].last;
+      for (int k = path_.hits; k-- > 0; at = hits_[at].before) {
+        path_.hit[static_cast<std::size_t>(k)] = hits_[at].hit;
+      }
+      view_.count(path_, weight, sums);
+    }
   }
-}
+
+ private:
+  struct State {
+    Vec3 origin, direction;
+    PathEnd end = PathEnd::direct;
+    int hits = 0;
+    std::size_t last = 0;
+  };
+  struct LinkedHit {
+    Hit hit;
+    std::size_t before;
+  };
+
+  /// The paths of a block's rays.
+  void follow(const DesignRays::Block& block) {
+    hit_count_ = 0;
+    std::size_t n = kBlockRays;
+    for (std::size_t i = 0; i < n; ++i) {
+      paths_[i] = {{block.x_mm[i], block.y_mm[i], block.z_mm[i]}, {block.kx[i], block.ky[i], block.kz[i]}};
+      ray_[i] = i;
+      put(i, paths_[i], 0.0, 0.0);
+    }
+    while (n > 0) {
+      search(n);
+      std::size_t left = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        if (goes_on(i, paths_[ray_[i]])) {
+          ray_[left] = ray_[i];
+          put(left++, paths_[ray_[i]], 1.0, -hits_[hit_count_ - 1].hit.m);  // reflection turns f' round
+        }
+      }
+      n = left;
+    }
+  }
+
+  void put(std::size_t i, const State& s, double on_mirror, double slope) {
+    rays_.x[i] = s.origin.x;
+    rays_.y[i] = s.origin.y;
+    rays_.z[i] = s.origin.z;
+    rays_.dx[i] = s.direction.x;
+    rays_.dy[i] = s.direction.y;
+    rays_.dz[i] = s.direction.z;
+    rays_.on_mirror[i] = on_mirror;
+    rays_.slope[i] = slope;
+  }
+
+  void search(std::size_t n) {
+    if constexpr (std::is_same_v<Shape, BsplineView>) {
+      kernels_.bspline(mirror_, rays_, n, ends_);
+    } else {
+      kernels_.revolution(mirror_, rays_, n, ends_);
+    }
+  }
+
+  bool goes_on(std::size_t i, State& s) {
+    const std::int32_t what = ends_.what[i];
+    if (what == kHitNothing) {
+      s.end = s.hits == 0 ? PathEnd::direct : PathEnd::reflected;
+      return false;
+    }
+    if (what != kHitFront || s.hits == kMostPathHits) {
+      s.end = what == kHitBack ? PathEnd::back : PathEnd::lost;
+      return false;
+    }
+    if (hit_count_ == hits_.size()) hits_.resize(hits_.size() + kBlockRays);
+    LinkedHit& hit = hits_[hit_count_];
+    hit.before = s.last;
+    reflect_path(view_.shape, ends_.t[i], s.origin, s.direction, hit.hit);
+    s.last = hit_count_++;
+    ++s.hits;
+    return true;
+  }
+
+  const EvaluationView<Shape>& view_;
+  decltype(hit_mirror(Shape(), std::declval<Aperture>())) mirror_;
+  const HitKernels& kernels_ = best_hit_kernels();
+  HitRays rays_{};
+  HitEnds ends_;
+  std::array<State, kBlockRays> paths_;
+  std::array<std::size_t, kBlockRays> ray_;
+  std::vector<LinkedHit> hits_;  ///< the first hit_count_ are of this block
+  std::size_t hit_count_ = 0;
+  Path<Shape> path_;
+};
 
 /// Jacobians that are summed apart: by the number of rays alone, so that the sums never depend on threads.
 /// Each is as large as the result, so few rays get few.
@@ -85,13 +190,12 @@ Evaluation evaluate_family(const DesignShape& design, const Shape& shape, const 
     const std::size_t each = options.derivatives ? kDesignTasks / groups : 1;
     const std::size_t coefficients = shape.coefficients().size();
     if (options.derivatives) jacobians[group].assign(bins.size() * coefficients, 0.0);
+    const auto tracer = std::make_unique<BlockTracer<decltype(shape.view())>>(view);
     for (std::size_t r = group * each; r < (group + 1) * each; ++r) {
       sums[r].flux.assign(bins.size(), 0.0);
       if (options.derivatives) sums[r].jacobian = jacobians[group].data();
       sums[r].coefficients = coefficients;
-      for (std::uint64_t b = 0; b < per_task; ++b) {
-        trace_block(view, rays.block(b * kDesignTasks + r), sums[r]);
-      }
+      for (std::uint64_t b = 0; b < per_task; ++b) tracer->add(rays.block(b * kDesignTasks + r), sums[r]);
     }
   });
   const EvaluationSums all = total(sums, bins.size());

@@ -41,6 +41,12 @@ struct EvaluationView {
   LUCERNA_HD void trace(const Vec3& origin, const Vec3& direction, double weight, Path<Shape>& path,
                         Sums& sums) const {
     SmoothTracer<Shape>(shape, aperture).trace(origin, direction, path);
+    count(path, weight, sums);
+  }
+
+  /// What a path of `weight` adds to `sums`.
+  template <class Sums>
+  LUCERNA_HD void count(const Path<Shape>& path, double weight, Sums& sums) const {
     const double kept = weight * reflected_share(path);
     sums.ended(path.end, kept, weight - kept);
     const bool counts = path.end == PathEnd::reflected || (path.end == PathEnd::direct && direct_light);

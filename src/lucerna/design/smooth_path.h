@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "lucerna/core/direction.h"
 #include "lucerna/core/host_device.h"
+#include "lucerna/design/first_hit.h"
+#include "lucerna/design/one_lane.h"
 #include "lucerna/reflector/aperture.h"
 #include "lucerna/reflector/smooth_view.h"
 
@@ -37,185 +38,95 @@ struct Path {
   Vec3 origin, direction;
 };
 
+LUCERNA_HD inline HitRow hit_row(const KnotRow& row) {
+  return {row.start_mm, 1.0 / row.step_mm, row.intervals};
+}
+/// The mirror as the searches of first_hit.h read it.
+LUCERNA_HD inline BsplineHitTable hit_table(const BsplineView& s) {
+  return {hit_row(s.row_x), hit_row(s.row_y), s.coefficients, s.near_bends};
+}
+LUCERNA_HD inline RevolutionHitTable hit_table(const RevolutionView& s) {
+  return {hit_row(s.row), s.coefficients, s.near_bends};
+}
+template <class Shape>
+LUCERNA_HD auto hit_mirror(const Shape& shape, const Aperture& a) {
+  using Table = decltype(hit_table(shape));
+  return HitMirror<Table>{hit_table(shape),
+                          0.25 / shape.focal_mm,
+                          shape.band.low_mm,
+                          shape.band.high_mm,
+                          shape.bend_bound,
+                          shape.cell_mm(),
+                          a.shape() == ApertureShape::circle,
+                          a.half_x_mm(),
+                          a.half_y_mm(),
+                          a.hole_radius_mm()};
+}
+
+/// Where a ray goes on after meeting the mirror, and what it met.
+template <class Shape>
+LUCERNA_HD void reflect_path(const Shape& shape, double t, Vec3& o, Vec3& d, typename Path<Shape>::Hit& hit) {
+  const double x = o.x + t * d.x, y = o.y + t * d.y;
+  hit.local = shape.local(x, y);
+  hit.d = d;
+  hit.x = x;
+  hit.y = y;
+  hit.t = t;
+  hit.g = {-hit.local.hx, -hit.local.hy, 1.0};
+  hit.m = dot(d, hit.g);
+  o = {x, y, o.z + t * d.z};
+  d = d - (2.0 * hit.m / dot(hit.g, hit.g)) * hit.g;
+}
+
 /// Traces rays through one mirror (Shape: a view of smooth_view.h) z = r^2 / (4 f) + s(x, y) over an
-/// aperture, all in the mirror's frame.
-///
-/// Along a ray, f(t) = q(t) - s(x(t), y(t)) with q the quadratic of the base paraboloid. Where |s''| <= B
-/// along every direction, f(t + tau) >= f + f' tau - A tau^2 with A = c2 + B |d_xy|^2 / 2: the positive root
-/// of the right side never passes the first zero of f, and converges to it quadratically. So the first hit is
-/// found without hierarchy or sampling, however often the ray crosses. A has two values: B for the cells
-/// about the place, good for so many cells, and for the whole surface; the longest step is taken. Where the
-/// bounds show that f falls all the way to its only zero, the steps of the paraboloid's own curvature are
-/// taken instead, which need about two looks. The band of s skips the air above the surface at once.
-/// Immutable, thread safe.
+/// aperture, all in the mirror's frame, one at a time. Immutable, thread safe.
 template <class Shape>
 class SmoothTracer {
  public:
   LUCERNA_HD SmoothTracer(const Shape& shape, const Aperture& aperture)
-      : shape_(shape), aperture_(aperture), k_(0.25 / shape.focal_mm) {}
+      : shape_(shape), mirror_(hit_mirror(shape, aperture)) {}
 
   /// Follows a ray to its end.
   LUCERNA_HD void trace(Vec3 o, Vec3 d, Path<Shape>& path) const {
     path.hits = 0;
-    bool on_surface = false;
+    bool on_mirror = false;
     double slope = 0.0;
     for (;;) {
-      const Found found = first_hit(o, d, on_surface, slope);
-      if (found.what == What::nothing) {
+      double t = 0.0;
+      const int32_t what = first_hit(o, d, on_mirror, slope, t);
+      if (what == kHitNothing) {
         path.end = path.hits == 0 ? PathEnd::direct : PathEnd::reflected;
         path.origin = o;
         path.direction = d;
         return;
       }
-      if (found.what == What::back || found.what == What::failed || path.hits == kMostPathHits) {
-        path.end = found.what == What::back ? PathEnd::back : PathEnd::lost;
+      if (what != kHitFront || path.hits == kMostPathHits) {
+        path.end = what == kHitBack ? PathEnd::back : PathEnd::lost;
         return;
       }
-      typename Path<Shape>::Hit& hit = path.hit[static_cast<std::size_t>(path.hits++)];
-      const double x = o.x + found.t * d.x, y = o.y + found.t * d.y;
-      hit.local = shape_.local(x, y);
-      hit.d = d;
-      hit.x = x;
-      hit.y = y;
-      hit.t = found.t;
-      hit.g = {-hit.local.hx, -hit.local.hy, 1.0};
-      hit.m = dot(d, hit.g);
-      o = {x, y, o.z + found.t * d.z};
-      d = d - (2.0 * hit.m / dot(hit.g, hit.g)) * hit.g;
-      on_surface = true;
+      auto& hit = path.hit[static_cast<std::size_t>(path.hits++)];
+      reflect_path(shape_, t, o, d, hit);
+      on_mirror = true;
       slope = -hit.m;  // reflection turns f' round
     }
   }
 
  private:
-  enum class What { nothing, front, back, failed };
-  struct Found {
-    What what = What::nothing;
-    double t = 0.0;
-  };
+  using Table = decltype(hit_table(Shape()));
 
-  /// Part of the ray over the aperture's outer outline.
-  LUCERNA_HD void clip(const Vec3& o, const Vec3& d, double& t0, double& t1) const {
-    if (aperture_.shape() == ApertureShape::circle) {
-      const double a = d.x * d.x + d.y * d.y + 1e-30, b = o.x * d.x + o.y * d.y;
-      const double r = aperture_.half_x_mm(), c = o.x * o.x + o.y * o.y - r * r;
-      const double root = b * b - a * c;
-      if (root < 0.0) {
-        t1 = -1.0;
-        return;
-      }
-      t0 = std::max(t0, (-b - std::sqrt(root)) / a);
-      t1 = std::min(t1, (-b + std::sqrt(root)) / a);
-      return;
+  /// `slope` is f' where the ray starts on the mirror.
+  LUCERNA_HD int32_t first_hit(const Vec3& o, const Vec3& d, bool on_mirror, double slope, double& t) const {
+    HitSearch<OneLane, Table> search;
+    const OneLane from[3] = {o.x, o.y, o.z}, along[3] = {d.x, d.y, d.z};
+    if (!search.begin(mirror_, from, along, on_mirror ? 1.0 : 0.0, slope).m) return kHitNothing;
+    while (!search.step(mirror_).m) {
     }
-    slab(o.x, d.x, aperture_.half_x_mm(), t0, t1);
-    slab(o.y, d.y, aperture_.half_y_mm(), t0, t1);
+    t = search.t().v;
+    return static_cast<int32_t>(search.what().v);
   }
-  LUCERNA_HD static void slab(double o, double d, double half, double& t0, double& t1) {
-    if (d == 0.0) {
-      if (std::abs(o) > half) t1 = -1.0;
-      return;
-    }
-    const double a = (-half - o) / d, b = (half - o) / d;
-    t0 = std::max(t0, std::min(a, b));
-    t1 = std::min(t1, std::max(a, b));
-  }
-
-  /// Positive root of f + df t - a t^2.
-  LUCERNA_HD static double zero_ahead(double f, double df, double a) {
-    const double w = std::sqrt(std::max(0.0, df * df + 4.0 * a * f));
-    return df > 0.0 ? (df + w) / (2.0 * a) : 2.0 * f / (w - df);
-  }
-
-  /// `slope` is f' where the ray starts on the surface.
-  LUCERNA_HD Found first_hit(const Vec3& o, const Vec3& d, bool on_surface, double slope) const {
-    double t = 0.0, t_end = std::numeric_limits<double>::infinity();
-    clip(o, d, t, t_end);
-    if (!(t <= t_end)) return {};
-    const double across = d.x * d.x + d.y * d.y;
-    const double c0 = o.z - k_ * (o.x * o.x + o.y * o.y), c1 = d.z - 2.0 * k_ * (o.x * d.x + o.y * d.y);
-    const double c2 = k_ * across + 1e-30, bend = c2 + 0.5 * shape_.bend_bound * across;
-    const double cell_t = shape_.cell_mm() / (std::sqrt(across) + 1e-30);
-    const HeightRange& band = shape_.band;
-    // q is above the band between `rise` and `fall`.
-    double rise = 0.0, fall = -1.0;
-    const double above = c0 - band.high_mm, root = c1 * c1 + 4.0 * c2 * above;
-    if (root > 0.0) {
-      const double w = std::sqrt(root);
-      rise = c1 > 0.0 ? -2.0 * above / (c1 + w) : (c1 - w) / (2.0 * c2);
-      fall = c1 > 0.0 ? (c1 + w) / (2.0 * c2) : 2.0 * above / (w - c1);
-    }
-    // Beyond `low` the ray is below the band.
-    const double under = c0 - band.low_mm, low_root = c1 * c1 + 4.0 * c2 * under;
-    const double low = low_root > 0.0 ? (c1 + std::sqrt(low_root)) / (2.0 * c2) : -1.0;
-    double side = on_surface ? 1.0 : 0.0;  // +1 in front of the mirror, -1 behind it; set by the first look
-    bool only_one = false;                 // f falls from here to its only zero: plain steps may overshoot
-    bool known = on_surface;               // f and df of this place are known without a look
-    double f = 0.0, df = on_surface ? slope : 0.0;
-    constexpr int kMostSteps = 200;
-    for (int step = 0; step < kMostSteps; ++step) {
-      if (!only_one && t >= rise && t < fall) {
-        side = 1.0;
-        t = fall;
-        known = false;
-      }
-      if (t > t_end) {
-        if (!only_one) return {};
-        t = t_end;  // beyond it nothing is known of s, and if f has not fallen to 0 here, there is no hit
-      }
-      const double at_x = o.x + t * d.x, at_y = o.y + t * d.y;
-      if (!known) {
-        const ShapeOffset s = shape_.offset(at_x, at_y);
-        f = c0 + t * (c1 - t * c2) - s.s;
-        df = c1 - 2.0 * t * c2 - (s.sx * d.x + s.sy * d.y);
-        if (side == 0.0) side = f < 0.0 ? -1.0 : 1.0;
-        f *= side;
-        df *= side;
-        if (!only_one) f = std::max(0.0, f);
-        if (only_one && t == t_end && f > kTouch_mm) return {};
-      }
-      known = false;
-      if (std::abs(f) <= kTouch_mm && df < 0.0) {
-        const double hit_t = t - f / df;
-        const double x = o.x + hit_t * d.x, y = o.y + hit_t * d.y;
-        const double hole = aperture_.hole_radius_mm();
-        if (hit_t > t_end) return {};
-        if (x * x + y * y >= hole * hole) return {side > 0.0 ? What::front : What::back, hit_t};
-        side = -side;  // through the hole, to the other side
-        df = -df;
-        f = 0.0;
-        t = hit_t;
-        only_one = false;
-      }
-      const double* const near = shape_.near_bends_at(at_x, at_y);
-      const double behind = side > 0.0 ? 0.0 : 2.0 * c2;  // there the base bends the other way
-      // On a stretch as long as `good`, |f''| is at most twice `most`.
-      double good = near_cells(0) * cell_t, most = c2 + 0.5 * near[0] * across;
-      if (side > 0.0 && df < 0.0 && low > t) {
-        const double falls = 2.0 * ((low - t < good ? most : bend) - 2.0 * c2);
-        if (df + std::max(0.0, falls) * (low - t) < 0.0) only_one = true;
-      }
-      double ahead = only_one ? zero_ahead(f, df, c2) : 0.0;
-      for (int size = 0; !only_one && size <= kNearSizes; ++size) {
-        const double zero = zero_ahead(f, df, std::max(most - behind, 1e-30));
-        ahead = std::max(ahead, std::min(zero, good));
-        if (zero <= good) break;
-        const bool last = size + 1 >= kNearSizes;
-        good = last ? std::numeric_limits<double>::infinity() : near_cells(size + 1) * cell_t;
-        most = last ? bend : c2 + 0.5 * near[size + 1] * across;
-      }
-      if (!(ahead > 0.0) && !only_one) return {What::failed, t};
-      t += ahead;
-    }
-    return {What::failed, t};
-  }
-
-  /// Height above the surface at which a ray has arrived; a last Newton step follows.
-  static constexpr double kTouch_mm = 1e-7;
 
   Shape shape_;
-  Aperture aperture_;
-  double k_;
+  HitMirror<Table> mirror_;
 };
 
 /// Sensitivity of one figure of the leaving ray to a change of the surface at one of its hits: d(figure) =

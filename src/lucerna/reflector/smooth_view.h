@@ -8,6 +8,7 @@
 #include "lucerna/core/host_device.h"
 #include "lucerna/reflector/cubic_basis.h"
 #include "lucerna/reflector/height_surface.h"
+#include "lucerna/reflector/near_cells.h"
 
 namespace lucerna {
 
@@ -29,10 +30,6 @@ struct ShapeLocal {
   /// d(coordinate)/dx and /dy of the spline's argument, for revolution.
   double along_x = 0.0, along_y = 0.0;
 };
-
-/// Sizes of neighbourhoods that bounds on the bend are known for, in cells of knots on each side.
-inline constexpr int kNearSizes = 2;
-LUCERNA_HD constexpr int near_cells(int size) { return size == 0 ? 1 : 3; }
 
 /// BsplineShape's height and derivatives.
 struct BsplineView {

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/hit_kernels.h"
+
+#include <string_view>
+
+#include "lucerna/design/one_lane.h"
+
+namespace lucerna {
+
+const HitKernels& scalar_hit_kernels() {
+  static constexpr HitKernels kernels{"scalar", search_hits<OneLane, BsplineHitTable>,
+                                      search_hits<OneLane, RevolutionHitTable>};
+  return kernels;
+}
+
+const HitKernels* hit_kernels_named(const char* isa) {
+  const std::string_view name = isa;
+  if (name == "scalar") return &scalar_hit_kernels();
+#if defined(LUCERNA_X86_KERNELS)
+  if (name == "avx2" && __builtin_cpu_supports("avx2")) return &avx2_hit_kernels();
+  if (name == "avx512" && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512dq")) {
+    return &avx512_hit_kernels();
+  }
+#endif
+  return nullptr;
+}
+
+const HitKernels& best_hit_kernels() {
+  for (const char* isa : {"avx512", "avx2"}) {
+    if (const HitKernels* kernels = hit_kernels_named(isa)) return *kernels;
+  }
+  return scalar_hit_kernels();
+}
+
+}  // namespace lucerna
