@@ -244,11 +244,12 @@ FitRecord Fit::step(Progress& progress) {
       state_.costs = {equations_.cost};
     }
   }
-  Eigen::VectorXd move = damped_step(equations_, state_.lambda);
+  const Eigen::MatrixXd metric = step_metric(shape_, equations_);
+  Eigen::VectorXd move = damped_step(equations_, metric, state_.lambda);
   const double longest = kLongestStep * shape_.aperture().outer_radius_mm();
   while (!(move.cwiseAbs().maxCoeff() <= longest)) {
     state_.lambda *= 4.0;
-    move = damped_step(equations_, state_.lambda);
+    move = damped_step(equations_, metric, state_.lambda);
   }
   FitRecord record;
   record.stage = state_.stage;

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
@@ -11,6 +12,10 @@
 namespace lucerna {
 
 namespace {
+
+/// Of a free form's step, what tilts and heights count in `step_metric`, over the mean of the Hessian's
+/// diagonal: small, so that the first damping of a stage suits both families.
+constexpr double kTiltShare = 0.02, kHeightShare = 2e-4;
 
 /// 1 / measure per bin; 0 where a bin has none.
 Eigen::VectorXd weights(const TentBins& bins) {
@@ -88,12 +93,44 @@ NormalEquations normal_equations(const Evaluation& e, const Eigen::VectorXd& tar
   return out;
 }
 
-Eigen::VectorXd damped_step(const NormalEquations& equations, double lambda) {
-  Eigen::MatrixXd a = equations.hessian;
-  const Eigen::VectorXd diagonal = a.diagonal();
-  a.diagonal() += lambda * (diagonal.array() + 1e-2 * diagonal.mean() + 1e-300).matrix();
-  const Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> solver(a);
+Eigen::MatrixXd step_metric(const DesignShape& shape, const NormalEquations& equations) {
+  const Eigen::VectorXd diagonal = equations.hessian.diagonal();
+  const double mean = diagonal.mean();
+  const Eigen::VectorXd own = diagonal.array() + 1e-2 * mean + 1e-300;
+  const auto* const spline = std::get_if<BsplineShape>(&shape.family());
+  if (spline == nullptr) return own.asDiagonal();
+  const int nx = spline->row_x().coefficients(), ny = spline->row_y().coefficients();
+  const double step = std::min(spline->row_x().step_mm, spline->row_y().step_mm);
+  Eigen::MatrixXd metric = Eigen::MatrixXd::Zero(diagonal.size(), diagonal.size());
+  const auto tilt = [&](int a, int b, double step_mm) {
+    const double w = kTiltShare * mean * (step / step_mm) * (step / step_mm);
+    const auto i = shape.parameter_of()[static_cast<std::size_t>(a)];
+    const auto j = shape.parameter_of()[static_cast<std::size_t>(b)];
+    metric(i, i) += w;
+    metric(j, j) += w;
+    metric(i, j) -= w;
+    metric(j, i) -= w;
+  };
+  for (int v = 0; v < ny; ++v) {
+    for (int u = 0; u < nx; ++u) {
+      const int at = v * nx + u;
+      if (u + 1 < nx) tilt(at, at + 1, spline->row_x().step_mm);
+      if (v + 1 < ny) tilt(at, at + nx, spline->row_y().step_mm);
+    }
+  }
+  metric.diagonal() += kHeightShare * own;
+  return metric;
+}
+
+Eigen::VectorXd damped_step(const NormalEquations& equations, const Eigen::MatrixXd& metric, double lambda) {
+  const Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> solver(equations.hessian + lambda * metric);
   return -solver.solve(equations.gradient);
+}
+
+Eigen::VectorXd damped_step(const NormalEquations& equations, double lambda) {
+  const Eigen::VectorXd diagonal = equations.hessian.diagonal();
+  const Eigen::VectorXd own = diagonal.array() + 1e-2 * diagonal.mean() + 1e-300;
+  return damped_step(equations, own.asDiagonal(), lambda);
 }
 
 double next_lambda(double lambda, const NormalEquations& equations, const Eigen::VectorXd& step,

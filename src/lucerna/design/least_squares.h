@@ -45,6 +45,14 @@ NormalEquations normal_equations(const Evaluation& e, const Eigen::VectorXd& tar
 /// The step -(H + lambda D)^-1 g, D the diagonal of H and a little of its mean, so that parameters without
 /// light stay where they are.
 Eigen::VectorXd damped_step(const NormalEquations& equations, double lambda);
+/// The same with another D, symmetric and positive definite.
+Eigen::VectorXd damped_step(const NormalEquations& equations, const Eigen::MatrixXd& metric, double lambda);
+
+/// How a step of a shape's parameters is measured. The linear model holds as far as light moves by about a
+/// bin, and light moves with the mirror's slopes: of free forms D is the sum of squared differences of
+/// neighbouring coefficients, with a little of their own squares. Smooth changes may be long then while
+/// creases stay small. Of revolution D is the diagonal, as above.
+Eigen::MatrixXd step_metric(const DesignShape& shape, const NormalEquations& equations);
 
 /// The damping after a step that made the cost `cost`: Nielsen's rule, by how much of the gain that the
 /// equations predicted came true. No jumps, so that a narrow valley is not left at every other step.
