@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hidden reflectors: recovers mirrors of each family from their far field alone, starting from the plain
 // paraboloid, and prints what a re-trace with independent rays says of the result.
-//   bench_design [-nTARGETS] [-v] [--device cuda] [case ...]     cases: n10-near n10 n49-near n49-far
-//   n49-wild n400
+//   bench_design [-nTARGETS] [-v] [--first N] [--seed S] [--slower X] [--device cuda] [case ...]
+// cases: n10-near n10 n49-near n49-far n49-wild n400. --first: leaves out the targets before the N-th;
+// --seed: of the design's own random tries; --slower: X times the seconds, for a machine or build so much
+// slower
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -60,6 +62,14 @@ double seconds_since(std::chrono::steady_clock::time_point t) {
 }
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
+struct Run {
+  int targets = 10, first = 1;
+  std::uint64_t seed = 1;
+  double slower = 1.0;
+  bool verbose = false;
+  std::shared_ptr<Accelerator> device;
+};
+
 struct Outcome {
   double start = 0.0, error = 0.0, floor = 0.0, excess = 0.0, wall = 0.0, cpu = 0.0;
   double rays = 0.0;
@@ -114,8 +124,8 @@ TentBins window(const Suite& s, const DesignShape& truth, const DesignRays& rays
   return s.revolution ? ring_window(light, Direction()) : square_window(light, Direction());
 }
 
-bool solve(const Suite& s, std::uint64_t seed, bool verbose, const std::shared_ptr<Accelerator>& device,
-           Outcome& out) {
+/// Whether the start is as far from the hidden mirror of this seed as the suite asks for.
+bool solve(const Suite& s, std::uint64_t seed, const Run& run, bool only_look, Outcome& out) {
   const DesignShape truth = hidden(s, seed);
   DesignRays truth_rays({cylinder()}, Frame(), 1000 + seed);
   truth_rays.grow(kTruthRays);
@@ -140,13 +150,15 @@ bool solve(const Suite& s, std::uint64_t seed, bool verbose, const std::shared_p
                                    rough.flux, bins, TargetMode::absolute);
   out.start = start.relative_rms;
   if (out.start < s.low || out.start > s.high) return false;
+  if (only_look) return true;
 
   const auto clock = std::chrono::steady_clock::now();
   const double cpu = cpu_seconds();
   DesignRays rays({cylinder()}, Frame(), 5);
-  rays.evaluate_on(device);
+  rays.evaluate_on(run.device);
   problem.rays = &rays;
   problem.fruitless = s.restarts;
+  problem.seed = run.seed;
   const DesignShape begin = plain(s);
   const bool far = out.start > 0.2 || s.revolution;
   const std::vector<FitStage> stages = ladder(begin, bins, {LadderOptions{}.rays, far, 0});
@@ -155,7 +167,7 @@ bool solve(const Suite& s, std::uint64_t seed, bool verbose, const std::shared_p
     prepare_starts(problem, begin, stages, optimizer("auto"), search_costs,
                    [](const FitRecord&, const DesignShape&) { return true; });
   }
-  if (verbose) {
+  if (run.verbose) {
     for (const FitStart& f : problem.starts) {
       fmt::print("  start{} {:.4f}\n",
                  f.entry == FitEntry::few_knots ? " (plain)"
@@ -171,11 +183,11 @@ bool solve(const Suite& s, std::uint64_t seed, bool verbose, const std::shared_p
     return std::min(seconds_since(clock) - target_wall, (cpu_seconds() - cpu - target_cpu) / kTwoCores);
   };
   double last_step = 0.0;  // one more like it has to fit
-  while (!fit.done() && spent() + last_step < s.seconds) {
+  while (!fit.done() && spent() + last_step < run.slower * s.seconds) {
     const double before = spent();
     const FitRecord r = fit.step();
     last_step = spent() - before;
-    if (verbose) {
+    if (run.verbose) {
       fmt::print("  stage {} step {:2} rays {:8} error {:.5f} floor {:.5f} lambda {:.1e} {} {:.2f} s\n",
                  r.stage, r.step, r.rays, r.error, r.floor, r.lambda, r.accepted ? "" : "refused",
                  seconds_since(clock) - target_wall);
@@ -205,17 +217,18 @@ double median(std::vector<double> v) {
   return n % 2 == 1 ? v[n / 2] : 0.5 * (v[n / 2 - 1] + v[n / 2]);
 }
 
-void run(const Suite& s, int targets, bool verbose, const std::shared_ptr<Accelerator>& device) {
+void run(const Suite& s, const Run& run) {
   std::vector<Outcome> outcomes;
-  for (std::uint64_t seed = 1; static_cast<int>(outcomes.size()) < targets && seed < 400; ++seed) {
+  int target = 0;
+  for (std::uint64_t seed = 1; target < run.targets && seed < 400; ++seed) {
     Outcome o;
-    if (!solve(s, seed, verbose, device, o)) continue;
+    if (!solve(s, seed, run, target + 1 < run.first, o) || ++target < run.first) continue;
     outcomes.push_back(o);
     fmt::print(
         "{:9} target {:2} (seed {:3}): start {:6.2f} %  result {:7.3f} %  floor {:.3f} %  excess {:6.3f} %  "
         "{:6.2f} s, {:6.2f} s cpu  {:3} evaluations  {:.1f} M rays\n",
-        s.name, outcomes.size(), seed, 100 * o.start, 100 * o.error, 100 * o.floor, 100 * o.excess, o.wall,
-        o.cpu, o.evaluations, 1e-6 * o.rays);
+        s.name, target, seed, 100 * o.start, 100 * o.error, 100 * o.floor, 100 * o.excess, o.wall, o.cpu,
+        o.evaluations, 1e-6 * o.rays);
     std::fflush(stdout);
   }
   const auto of = [&](auto member) {
@@ -225,6 +238,7 @@ void run(const Suite& s, int targets, bool verbose, const std::shared_ptr<Accele
   };
   const std::vector<double> errors = of(&Outcome::error), walls = of(&Outcome::wall),
                             excess = of(&Outcome::excess);
+  if (outcomes.empty()) return;
   fmt::print(
       "{:9} median {:.3f} %, worst {:.3f} %; excess median {:.3f} %, worst {:.3f} %, bar {} %; seconds "
       "median {:.2f}, worst {:.2f}, bar {}\n\n",
@@ -244,14 +258,18 @@ int main(int argc, char** argv) {
       {"n49-wild", false, 4, 5.0, 0.5, 10.0, 0.015, 20, 6},
       {"n400", false, 17, 2.0, 0.0, 10.0, 0.02, 60, 4},
   };
-  int targets = 10;
-  bool verbose = false;
-  std::shared_ptr<Accelerator> device;
+  Run options;
   std::vector<std::string> names;
   for (int i = 1; i < argc; ++i) {
     const std::string a = argv[i];
     if (a == "-v") {
-      verbose = true;
+      options.verbose = true;
+    } else if (a == "--first" && i + 1 < argc) {
+      options.first = std::stoi(argv[++i]);
+    } else if (a == "--seed" && i + 1 < argc) {
+      options.seed = std::stoull(argv[++i]);
+    } else if (a == "--slower" && i + 1 < argc) {
+      options.slower = std::stod(argv[++i]);
     } else if (a == "--device" && i + 1 < argc && std::string(argv[i + 1]) == "cuda") {
       ++i;
       auto found = cuda_accelerators();
@@ -259,15 +277,14 @@ int main(int argc, char** argv) {
         fmt::print("{}\n", why_no_cuda());
         return 1;
       }
-      device = std::move(found.front());
+      options.device = std::move(found.front());
     } else if (a.rfind("-n", 0) == 0) {
-      targets = std::stoi(a.substr(2));
+      options.targets = std::stoi(a.substr(2));
     } else {
       names.push_back(a);
     }
   }
   for (const Suite& s : suites) {
-    if (names.empty() || std::find(names.begin(), names.end(), s.name) != names.end())
-      run(s, targets, verbose, device);
+    if (names.empty() || std::find(names.begin(), names.end(), s.name) != names.end()) run(s, options);
   }
 }
