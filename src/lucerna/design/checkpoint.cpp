@@ -11,7 +11,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr const char* kMagic = "lucerna-design-checkpoint-5";
+constexpr const char* kMagic = "lucerna-design-checkpoint-6";
 /// More numbers than any design has; keeps a damaged count from asking for memory.
 constexpr std::size_t kMostNumbers = 1 << 20;
 
@@ -86,13 +86,15 @@ void put(std::string& text, const char* name, const FitMark& m) {
 std::string checkpoint_text(const FitState& s, const std::string& key) {
   std::string text = fmt::format(
       "{}\nkey {}\nintervals_x {}\nintervals_y {}\nstage {}\nstep {}\nlambda {}\nevaluations {}\n"
-      "total_rays {}\nover_noise {}\nstarts {}\nfruitless {}\nrefused {}\n",
+      "total_rays {}\nover_noise {}\nstarts {}\nfruitless {}\nrefused {}\ntries {}\ntries_left {}\ntwin "
+      "{}\nto_beat {}\n",
       kMagic, key, s.intervals_x, s.intervals_y, s.stage, s.step, s.lambda, s.evaluations, s.total_rays,
-      s.over_noise, s.starts, s.fruitless, s.refused);
+      s.over_noise, s.starts, s.fruitless, s.refused, s.tries, s.tries_left, s.twin ? 1 : 0, s.to_beat);
   put(text, "parameters", s.parameters);
   put(text, "costs", s.costs);
   put(text, "gate", s.gate);
   put(text, "best", s.best);
+  put(text, "found", s.found);
   put(text, "search_costs", s.search_costs);
   return text + "end\n";
 }
@@ -117,10 +119,15 @@ FitState parse_checkpoint(const std::string& text, const std::string& key) {
   s.starts = in.number<int>("starts");
   s.fruitless = in.number<int>("fruitless");
   s.refused = in.number<int>("refused");
+  s.tries = in.number<int>("tries");
+  s.tries_left = in.number<int>("tries_left");
+  s.twin = in.number<int>("twin") != 0;
+  s.to_beat = in.number<double>("to_beat");
   s.parameters = in.numbers("parameters");
   s.costs = in.numbers("costs");
   s.gate = in.mark("gate");
   s.best = in.mark("best");
+  s.found = in.mark("found");
   s.search_costs = in.numbers("search_costs");
   in.expect("end");
   return s;

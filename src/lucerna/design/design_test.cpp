@@ -155,6 +155,49 @@ TEST(Design, ResumesInTheMiddleOfASearchToTheSameBits) {
   EXPECT_LT(resumed.history.size(), whole.history.size());
 }
 
+constexpr const char* kFreeForm = "family = \"bspline\"\nfocal_mm = 8\n";
+
+/// Takes a design up from what `chosen` says of its states, one for each figure, and expects the same bits.
+void expect_same_end(const DesignProblem& p, const std::function<int(const FitState&)>& chosen, int figures,
+                     DesignOptions options = tiny()) {
+  std::vector<std::string> from(static_cast<std::size_t>(figures));
+  const DesignResult whole =
+      design(p, options, no_progress(), [&](const FitRecord&, const DesignShape&, const std::string& state) {
+        const int figure = chosen(parse_checkpoint(state, state.substr(32, 16)));
+        if (figure >= 0) from[static_cast<std::size_t>(figure)] = state;
+      });
+  for (const std::string& state : from) {
+    ASSERT_FALSE(state.empty());
+    options.checkpoint = state;
+    const DesignResult resumed = design(p, options);
+    EXPECT_EQ(resumed.checkpoint, whole.checkpoint);
+    EXPECT_EQ(resumed.shape.parameters(), whole.shape.parameters());
+    EXPECT_LT(resumed.history.size(), whole.history.size());
+  }
+}
+
+TEST(Design, ResumesInTheMiddleOfATryToTheSameBits) {
+  const TempDir folder;
+  write_target(folder.path());
+  const DesignProblem p = problem(folder.path(), "intervals = [1, 1]\nattempts = 2\n", kFreeForm);
+  const auto within = [](const FitState& s) {
+    if (s.tries < 2 || s.step < 1) return -1;
+    return s.twin ? 1 : 0;
+  };
+  expect_same_end(p, within, 2);
+}
+
+TEST(Design, ResumesWhereKnotsHaveGrownToTheSameBits) {
+  const TempDir folder;
+  write_target(folder.path());
+  DesignProblem p = problem(folder.path(), "intervals = [1, 1]\n", kFreeForm);
+  p.growth = 1;
+  DesignOptions options = tiny();
+  options.most_rays = 1 << 16;
+  const auto grown = [](const FitState& s) { return s.intervals_x == 2 && s.step == 1 ? 0 : -1; };
+  expect_same_end(p, grown, 1, options);
+}
+
 /// Whatever looks for the basin, the light comes nearer to the target and stays whole.
 TEST(Design, EveryOptimizerIsSensible) {
   const TempDir folder;
@@ -220,8 +263,8 @@ TEST(Design, AFlatterMirrorDoesNotRisePastTheSource) {
 TEST(Design, ShapesAFreeFormMirrorAndKeepsItsSymmetry) {
   const TempDir folder;
   write_target(folder.path());
-  const DesignProblem p = problem(folder.path(), "intervals = [4, 4]\n[design.limits]\nsymmetry = \"both\"\n",
-                                  "family = \"bspline\"\nfocal_mm = 8\n");
+  const DesignProblem p =
+      problem(folder.path(), "intervals = [4, 4]\n[design.limits]\nsymmetry = \"both\"\n", kFreeForm);
   EXPECT_EQ(p.start.parameter_count(), 16u);
   DesignOptions options = small();
   options.most_rays = 1 << 16;

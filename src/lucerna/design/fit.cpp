@@ -8,7 +8,9 @@
 #include "lucerna/core/error.h"
 #include "lucerna/design/limits.h"
 #include "lucerna/design/roughness.h"
+#include "lucerna/design/twin.h"
 #include "lucerna/design/window.h"
+#include "lucerna/design/zero_etendue.h"
 
 namespace lucerna {
 
@@ -33,6 +35,27 @@ constexpr double kGain = 0.97;
 /// Knots (per direction) that a zero-etendue solution begins with: more only follow its facets.
 constexpr int kKnotsOfStarts = 4;
 
+/// A shape above so many times the noise at the gate, but with less than this error, is near the target in
+/// what seems another basin: the search looks for the right one, with so many tries before the fit goes on
+/// and so many in an attempt.
+constexpr double kSettledFloors = 1.15, kNearError = 0.06;
+constexpr int kTriesAtGate = 24, kTriesOfAttempt = 3;
+
+/// What a try has to make of the best cost before it to be looked at more closely.
+constexpr double kTryGain = 0.95;
+
+/// A try that ends with more than so many times the error to beat is so far off that its twin is too.
+constexpr double kTwinShare = 1.4;
+
+/// Size of a try's shake, in shakes of attempts.
+constexpr double kTryShakes = 2.0;
+
+/// Random streams of tries begin here, beyond those of attempts.
+constexpr std::uint64_t kTryStream = std::uint64_t{1} << 33;
+
+/// Rays that tell where the source is.
+constexpr std::uint64_t kSourceRays = 1 << 13;
+
 /// Longest change of a height in one step, over the mirror's radius: the model of a step is not good for
 /// more.
 constexpr double kLongestStep = 0.05;
@@ -41,12 +64,23 @@ Eigen::VectorXd to_eigen(const std::vector<double>& v) {
   return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
 }
 
+std::size_t count_search(const std::vector<FitStage>& stages) {
+  std::size_t n = 0;
+  while (n < stages.size() && stages[n].search) ++n;
+  LUCERNA_CHECK(n < stages.size(), "a fit without stages");
+  return n;
+}
+
 }  // namespace
 
 Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignShape& shape,
          std::vector<double> search_costs)
-    : problem_(problem), stages_(std::move(stages)), family_(shape), shape_(shape), bins_(problem.bins) {
-  LUCERNA_CHECK(!stages_.empty(), "a fit without stages");
+    : problem_(problem),
+      stages_(std::move(stages)),
+      search_stages_(count_search(stages_)),
+      family_(shape),
+      shape_(shape),
+      bins_(problem.bins) {
   if (problem_.starts.empty()) problem_.starts = {{shape}};
   state_.search_costs = std::move(search_costs);
   state_.evaluations = static_cast<int>(state_.search_costs.size());
@@ -58,6 +92,7 @@ Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignSh
          const FitState& state)
     : problem_(problem),
       stages_(std::move(stages)),
+      search_stages_(count_search(stages_)),
       family_(family),
       shape_(family_.refined(state.intervals_x, state.intervals_y).with(to_eigen(state.parameters))),
       state_(state),
@@ -66,15 +101,20 @@ Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignSh
 }
 
 std::size_t Fit::first_stage(int least_intervals) const {
-  std::size_t stage = 0;
+  std::size_t stage = search_stages_;
   while (stage + 1 < stages_.size() && !stages_[stage].gate && stages_[stage].intervals_x < least_intervals) {
     ++stage;
   }
   return stage;
 }
 
+std::size_t Fit::gate_stage() const {
+  const auto gate = std::find_if(stages_.begin(), stages_.end(), [](const FitStage& s) { return s.gate; });
+  return static_cast<std::size_t>(std::min(gate, stages_.end() - 1) - stages_.begin());
+}
+
 std::size_t Fit::stage_of(const FitStart& start) const {
-  if (start.entry == FitEntry::few_knots) return 0;
+  if (start.entry == FitEntry::few_knots) return search_stages_;
   if (start.entry == FitEntry::own_knots) return first_stage(kKnotsOfStarts);
   return stages_.size() - 1;
 }
@@ -113,6 +153,8 @@ void Fit::begin_stage(Progress& progress) {
   state_.parameters.assign(shape_.parameters().begin(), shape_.parameters().end());
   bins_ = rebinned(problem_.bins, s.widen, s.bins);
   target_ = problem_.target(bins_);
+  scale_.reset();
+  if (s.waves > 0.0) scale_.emplace(bins_, s.waves);
   now_ = evaluate_at(shape_);
   equations_ = equations_at(shape_, now_);
   ready_ = true;
@@ -125,7 +167,7 @@ bool Fit::stalled() const {
 }
 
 void Fit::finish_stage() {
-  const bool gate = stage().gate;
+  const bool gate = stage().gate, search = stage().search;
   const double floor = bin_error(now_, target_, bins_, problem_.mode).floor;
   state_.over_noise = std::sqrt(equations_.cost) / std::max(floor, 1e-12);
   ++state_.stage;
@@ -134,6 +176,10 @@ void Fit::finish_stage() {
   state_.costs.clear();
   state_.lambda = std::clamp(state_.lambda, 1e-4, 1e-2);
   ready_ = false;
+  if (search) {
+    if (!stage().search) pass_search();
+    return;
+  }
   if (gate && !pass_gate()) return;
   if (done()) pass_end();
 }
@@ -159,8 +205,7 @@ bool Fit::pass_gate() {
   const auto begun = static_cast<std::size_t>(state_.starts);
   if (state_.best.exists()) {
     if (better) return true;
-    ++state_.fruitless;
-    begin_again();
+    next_try();
     return false;
   }
   if (state_.gate.over_noise > kGateFloors && begun < std::min(problem_.compared, problem_.starts.size())) {
@@ -168,10 +213,69 @@ bool Fit::pass_gate() {
     begin_with(problem_.starts[begun].shape, stage_of(problem_.starts[begun]));
     return false;
   }
+  if (worth_searching()) {
+    if (state_.tries == 0) state_.tries_left = kTriesAtGate;
+    if (state_.tries_left > 0) {
+      next_try();
+      return false;
+    }
+  }
+  leave_gate();
+  return !done();
+}
+
+bool Fit::worth_searching() const {
+  return search_stages_ > 0 && problem_.fruitless > 0 && state_.gate.over_noise > kSettledFloors &&
+         state_.gate.cost < kNearError * kNearError;
+}
+
+void Fit::leave_gate() {
   take(state_.gate);
+  state_.stage = static_cast<int>(gate_stage()) + 1;
+  state_.step = 0;
   state_.over_noise = state_.gate.over_noise;
   equations_.cost = state_.gate.cost;  // the gate may be the last stage
-  return true;
+  if (done()) pass_end();
+}
+
+void Fit::next_try() {
+  if (state_.tries_left > 0) {
+    --state_.tries_left;
+    begin_try();
+  } else if (state_.best.exists()) {
+    ++state_.fruitless;
+    begin_again();
+  } else {
+    leave_gate();
+  }
+}
+
+/// First the best so far, whose cost the others have to beat, and whose twin may be the right one.
+void Fit::begin_try() {
+  const int number = state_.tries++;
+  if (number == 0) {
+    begin_with(shape_of(state_.best.exists() ? state_.best : state_.gate), search_stages_ - 1);
+    return;
+  }
+  const auto n = problem_.starts.size();
+  begin_with(problem_.starts[static_cast<std::size_t>(number) % n].shape, 0);
+  shake(kTryShakes * problem_.shake * shape_.aperture().outer_radius_mm(),
+        kTryStream + static_cast<std::uint64_t>(number));
+}
+
+void Fit::pass_search() {
+  const bool reference = state_.tries == 1 && !state_.twin;
+  if (reference) state_.to_beat = equations_.cost;
+  if (!state_.found.exists() || equations_.cost < state_.found.cost) state_.found = mark();
+  state_.twin = !state_.twin && equations_.cost < kTwinShare * kTwinShare * state_.to_beat;
+  if (state_.twin) {
+    begin_with(twin(shape_, point_source(*problem_.rays, kSourceRays).at_mm.z), search_stages_ - 1);
+  } else if (state_.found.cost < kTryGain * kTryGain * state_.to_beat) {
+    state_.to_beat = state_.found.cost;
+    begin_with(shape_of(state_.found), gate_stage());
+  } else {
+    next_try();
+  }
 }
 
 void Fit::pass_end() {
@@ -198,14 +302,22 @@ void Fit::begin_again() {
     begin_with(next.shape, stage_of(next));
     return;
   }
+  state_.tries_left = 0;
   if (attempt % 3 == 2) {
     begin_with(shape_of(state_.best), first_stage(stages_.back().intervals_x));
+  } else if (search_stages_ > 0) {
+    state_.tries_left = kTriesOfAttempt;
+    next_try();
+    return;
   } else {
     begin_with(problem_.starts[static_cast<std::size_t>(attempt) % n].shape, 0);
   }
-  Rng rng(problem_.seed, static_cast<std::uint64_t>(attempt));
-  const double size = problem_.shake * shape_.aperture().outer_radius_mm();
-  for (double& p : state_.parameters) p += size * (2.0 * rng.uniform() - 1.0);
+  shake(problem_.shake * shape_.aperture().outer_radius_mm(), static_cast<std::uint64_t>(attempt));
+}
+
+void Fit::shake(double size_mm, std::uint64_t stream) {
+  Rng rng(problem_.seed, stream);
+  for (double& p : state_.parameters) p += size_mm * (2.0 * rng.uniform() - 1.0);
   shape_ = shape_.with(to_eigen(state_.parameters));
 }
 
@@ -223,7 +335,9 @@ DesignShape Fit::best() const {
 }
 
 NormalEquations Fit::equations_at(const DesignShape& shape, const Evaluation& e) const {
-  NormalEquations equations = normal_equations(e, target_, bins_, problem_.mode);
+  NormalEquations equations =
+      scale_ ? normal_equations((*scale_)(e), scale_->flux(target_), bins_, problem_.mode)
+             : normal_equations(e, target_, bins_, problem_.mode);
   equations.cost += roughness(shape, stage().smoothing, &equations);
   if (problem_.limits) equations.cost += problem_.limits(shape, stage().rays, &equations);
   if (problem_.flux_weight > 0.0) {
@@ -283,7 +397,7 @@ FitRecord Fit::step(Progress& progress) {
   record.efficiency = now_.reflected + now_.direct;
   // At the noise of its own rays a stage has nothing left to learn that more rays would not teach better.
   const bool last = state_.stage + 1 == static_cast<int>(stages_.size());
-  const bool at_noise = !last && equations_.cost <= error.floor * error.floor;
+  const bool at_noise = !last && !scale_ && equations_.cost <= error.floor * error.floor;
   if (state_.step >= stage().most_steps || state_.refused >= kMostRefused || at_noise || stalled()) {
     finish_stage();
   }

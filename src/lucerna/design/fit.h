@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "lucerna/core/progress.h"
+#include "lucerna/design/large_scale.h"
 #include "lucerna/design/least_squares.h"
 
 namespace lucerna {
@@ -45,9 +47,10 @@ struct FitProblem {
   /// Rays that were traced to find them.
   std::uint64_t search_rays = 0;
   /// While the result is above the noise the fit begins again, with `starts` and the best so far by turns,
-  /// shaken; so many attempts in turn that bring nothing end it.
+  /// shaken (free forms: with tries of the search for basins and the best); so many attempts in turn that
+  /// bring nothing end it. 0: neither attempts nor a search.
   int fruitless = 6;
-  /// Size of the shakes, over the mirror's outer radius.
+  /// Size of the shakes, over the mirror's outer radius; those of the search are twice as wide.
   double shake = 0.02;
   std::uint64_t seed = 1;
 };
@@ -68,6 +71,10 @@ struct FitStage {
   bool gate = false;
   /// The knots are taken only where the stage before ended above the noise; else those of before stay.
   bool grow = false;
+  /// Large scales of the light weigh more (large_scale.h), by so many half waves; 0: all alike.
+  double waves = 0.0;
+  /// Of the search for other basins, which only its tries pass. Such stages come first.
+  bool search = false;
 };
 
 /// One line of a design's history.
@@ -109,6 +116,12 @@ struct FitState {
   int refused = 0;
   /// The best at the gate, and at the end of the ladder.
   FitMark gate, best;
+  /// Tries of the search so far, and how many more there may be now; whether the present one is the twin of
+  /// the one before; the best that any came to; and the cost that the next has to beat.
+  int tries = 0, tries_left = 0;
+  bool twin = false;
+  FitMark found;
+  double to_beat = 0.0;
   /// What a global search before the fit has paid for so far (optimizer.h).
   std::vector<double> search_costs;
 };
@@ -141,6 +154,16 @@ class Fit {
   void finish_stage();
   /// Whether the shape goes on beyond the gate.
   bool pass_gate();
+  /// Whether the gate's best seems near the target, yet not in the right basin.
+  bool worth_searching() const;
+  /// The next try of the search, or its end.
+  void next_try();
+  void begin_try();
+  /// What comes after the last of the search's stages.
+  void pass_search();
+  /// Goes on with the best at the gate.
+  void leave_gate();
+  void shake(double size_mm, std::uint64_t stream);
   void pass_end();
   void begin_again();
   FitMark mark() const;
@@ -148,7 +171,9 @@ class Fit {
   /// Goes back to a shape that was kept.
   void take(const FitMark& mark);
   NormalEquations equations_at(const DesignShape& shape, const Evaluation& e) const;
+  /// Of the ladder, after those of the search.
   std::size_t first_stage(int least_intervals) const;
+  std::size_t gate_stage() const;
   void begin_with(const DesignShape& start, std::size_t stage);
   std::size_t stage_of(const FitStart& start) const;
   const FitStage& stage() const { return stages_[static_cast<std::size_t>(state_.stage)]; }
@@ -157,12 +182,15 @@ class Fit {
 
   FitProblem problem_;
   std::vector<FitStage> stages_;
+  /// How many of them are the search's.
+  std::size_t search_stages_ = 0;
   DesignShape family_, shape_;
   FitState state_;
   /// Of the current stage; empty until it begins.
   bool ready_ = false;
   TentBins bins_;
   Eigen::VectorXd target_;
+  std::optional<LargeScale> scale_;
   Evaluation now_;
   NormalEquations equations_;
 };

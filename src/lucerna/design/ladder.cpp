@@ -30,7 +30,8 @@ class Stages {
     if (!all_.empty()) {
       const FitStage& last = all_.back();
       if (last.rays == stage.rays && last.bins == stage.bins && last.intervals_x == stage.intervals_x &&
-          last.intervals_y == stage.intervals_y && last.smoothing == stage.smoothing) {
+          last.intervals_y == stage.intervals_y && last.smoothing == stage.smoothing &&
+          last.waves == stage.waves) {
         all_.back().gate |= stage.gate;
         return;
       }
@@ -61,6 +62,25 @@ std::vector<FitStage> ladder_of_revolution(int n, int ny, int k, double smoothin
   return stages.take();
 }
 
+/// Most intervals with which the search for basins is made: more cannot be told apart by so few rays, and
+/// fewer than the shape's own would not show what its basin is worth.
+constexpr int kSearchKnots = 8;
+
+/// From light that costs the more the farther it has to go, to light nearly as it is.
+void add_search(const std::array<int, 2>& knots, int k, double smoothing, Stages& stages) {
+  if (std::max(knots[0], knots[1]) > kSearchKnots) return;
+  const auto add = [&](double waves, std::uint64_t rays, double share) {
+    const int bins = std::max(knots[0], knots[1]) <= 4 ? k / 3 : k / 2;
+    FitStage stage{knots[0], knots[1], bins, 1.0, rays, 30, 0.02, share * smoothing};
+    stage.waves = waves;
+    stage.search = true;
+    stages.add(stage);
+  };
+  add(1.0, two_to(14), 0.01);
+  add(3.0, two_to(14), 0.002);
+  add(8.0, two_to(15), 0.0);
+}
+
 }  // namespace
 
 std::vector<FitStage> ladder(const DesignShape& shape, const TentBins& bins, const LadderOptions& o) {
@@ -76,6 +96,7 @@ std::vector<FitStage> ladder(const DesignShape& shape, const TentBins& bins, con
   std::reverse(knots.begin(), knots.end());
   Stages stages(o.rays);
   if (o.far) {
+    add_search({nx, ny}, k, smoothing, stages);
     for (const auto& [x, y] : knots) {
       const int most = std::max(x, y);
       if (most > 6) break;
