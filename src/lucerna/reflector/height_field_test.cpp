@@ -69,7 +69,7 @@ double steepest(const HeightField& field) {
 
 // Of a smooth mirror with a hole, and of one whose heights and slopes have nothing to do with each other.
 TEST(HeightField, SteepnessBoundsEveryGradient) {
-  HeightField field({std::make_shared<Pillows>(), Aperture::circle(80.0, 20.0)}, 128);
+  HeightField field({std::make_shared<Pillows>(), Aperture::circle(80.0, 20.0)}, 1024);
   const double smooth = steepest(field);
   EXPECT_GE(static_cast<double>(field.steepness()), smooth);
   EXPECT_LT(static_cast<double>(field.steepness()), 1.3 * smooth);
