@@ -48,6 +48,7 @@ class Reader {
     expect(name);
     FitMark m;
     m.cost = value<double>();
+    m.merit = value<double>();
     m.over_noise = value<double>();
     m.intervals_x = value<int>();
     m.intervals_y = value<int>();
@@ -77,7 +78,8 @@ void put(std::string& text, const char* name, const std::vector<double>& v) {
 }
 
 void put(std::string& text, const char* name, const FitMark& m) {
-  text += fmt::format("{} {} {} {} {} ", name, m.cost, m.over_noise, m.intervals_x, m.intervals_y);
+  text +=
+      fmt::format("{} {} {} {} {} {} ", name, m.cost, m.merit, m.over_noise, m.intervals_x, m.intervals_y);
   put(text, "of", m.parameters);
 }
 

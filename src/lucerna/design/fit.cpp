@@ -60,6 +60,11 @@ constexpr std::uint64_t kSourceRays = 1 << 13;
 /// more.
 constexpr double kLongestStep = 0.05;
 
+/// FitProblem::flux_weight, where ends are compared: on the way light must not get lost for a little less
+/// error, but of two mirrors at the end the one whose light is right is wanted. A tenth of the light counts
+/// as 1 %.
+constexpr double kFluxWeightOfEnds = 0.01;
+
 Eigen::VectorXd to_eigen(const std::vector<double>& v) {
   return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
 }
@@ -181,11 +186,14 @@ void Fit::finish_stage() {
     return;
   }
   if (gate && !pass_gate()) return;
-  if (done()) pass_end();
+  if (done()) pass_end(mark());
 }
 
 FitMark Fit::mark() const {
-  return {equations_.cost, state_.over_noise, state_.intervals_x, state_.intervals_y, state_.parameters};
+  const double missing = 1.0 - now_.flux.sum() / problem_.flux_reference;
+  const double less = std::max(0.0, problem_.flux_weight - kFluxWeightOfEnds) * missing * missing;
+  return {equations_.cost,    state_.over_noise,  equations_.cost - less,
+          state_.intervals_x, state_.intervals_y, state_.parameters};
 }
 
 void Fit::take(const FitMark& mark) {
@@ -234,8 +242,7 @@ void Fit::leave_gate() {
   state_.stage = static_cast<int>(gate_stage()) + 1;
   state_.step = 0;
   state_.over_noise = state_.gate.over_noise;
-  equations_.cost = state_.gate.cost;  // the gate may be the last stage
-  if (done()) pass_end();
+  if (done()) pass_end(state_.gate);
 }
 
 void Fit::next_try() {
@@ -278,12 +285,11 @@ void Fit::pass_search() {
   }
 }
 
-void Fit::pass_end() {
-  const FitMark now = mark();
+void Fit::pass_end(const FitMark& now) {
   const bool first = !state_.best.exists();
-  const bool gained = first || now.cost < kGain * kGain * state_.best.cost;
+  const bool gained = first || now.merit < kGain * kGain * state_.best.merit;
   state_.fruitless = gained ? 0 : state_.fruitless + 1;
-  if (first || now.cost < state_.best.cost) state_.best = now;
+  if (first || now.merit < state_.best.merit) state_.best = now;
   begin_again();
 }
 

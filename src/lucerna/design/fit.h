@@ -92,6 +92,8 @@ struct FitRecord {
 /// A shape that a fit keeps, with its cost; without parameters: none yet.
 struct FitMark {
   double cost = 0.0, over_noise = 0.0;
+  /// What ends are compared by: the cost, with light beside the window weighed less than on the way.
+  double merit = 0.0;
   int intervals_x = 1, intervals_y = 1;
   std::vector<double> parameters;
   bool exists() const { return !parameters.empty(); }
@@ -164,7 +166,7 @@ class Fit {
   /// Goes on with the best at the gate.
   void leave_gate();
   void shake(double size_mm, std::uint64_t stream);
-  void pass_end();
+  void pass_end(const FitMark& now);
   void begin_again();
   FitMark mark() const;
   DesignShape shape_of(const FitMark& mark) const;
