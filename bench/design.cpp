@@ -182,11 +182,13 @@ bool solve(const Suite& s, std::uint64_t seed, const Run& run, bool only_look, O
   const auto spent = [&] {
     return std::min(seconds_since(clock) - target_wall, (cpu_seconds() - cpu - target_cpu) / kTwoCores);
   };
-  double last_step = 0.0;  // one more like it has to fit
-  while (!fit.done() && spent() + last_step < run.slower * s.seconds) {
+  double per_ray = 0.0;  // of the last step; one more has to fit
+  while (!fit.done() && spent() + per_ray * static_cast<double>(fit.next_rays()) < run.slower * s.seconds) {
     const double before = spent();
+    const std::uint64_t rays_before = fit.state().total_rays;
     const FitRecord r = fit.step();
-    last_step = spent() - before;
+    per_ray =
+        (spent() - before) / static_cast<double>(std::max<std::uint64_t>(r.total_rays - rays_before, 1));
     if (run.verbose) {
       fmt::print("  stage {} step {:2} rays {:8} error {:.5f} floor {:.5f} lambda {:.1e} {} {:.2f} s\n",
                  r.stage, r.step, r.rays, r.error, r.floor, r.lambda, r.accepted ? "" : "refused",

@@ -212,10 +212,10 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
   const std::uint64_t rays_before = state.total_rays;
   std::uint64_t rays_so_far = rays_before;
   DesignResult result{problem.start};
-  const auto stop = [&] {
+  const auto stop = [&](std::uint64_t next_rays) {
     if (progress.stop_requested()) {
       result.end = DesignEnd::interrupted;
-    } else if (time.spent(rays_so_far - rays_before)) {
+    } else if (time.spent(rays_so_far - rays_before, next_rays)) {
       result.end = DesignEnd::time;
     }
     return result.end != DesignEnd::converged;
@@ -227,7 +227,7 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
         result.history.push_back(record);
         rays_so_far = record.total_rays;
         if (observer) observer(record, best, checkpoint_text(state, key));
-        return !stop();
+        return !stop(record.rays);
       },
       progress);
   const auto conclude = [&] {
@@ -248,7 +248,7 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
   Fit fit = begun ? Fit(fit_data, stages, problem.start, state)
                   : Fit(fit_data, stages, problem.start, state.search_costs);
   while (!fit.done()) {
-    if (stop()) break;
+    if (stop(fit.next_rays())) break;
     const FitRecord record = fit.step(progress);
     rays_so_far = record.total_rays;
     result.history.push_back(record);

@@ -143,6 +143,9 @@ class Fit {
   /// One trial step (one evaluation with derivatives, two where a stage begins).
   FitRecord step(Progress& progress = no_progress());
 
+  /// How many rays that will trace.
+  std::uint64_t next_rays() const { return done() ? 0 : (ready_ ? 1 : 2) * stage().rays; }
+
   const DesignShape& shape() const { return shape_; }
   /// The best so far: of those that came to the end, else to the gate, else the shape now.
   DesignShape best() const;

@@ -16,13 +16,17 @@ class TimeBudget {
   TimeBudget(double time_s, std::uint64_t rays_after)
       : begin_(Clock::now()), last_(begin_), time_s_(time_s), rays_after_(static_cast<double>(rays_after)) {}
 
-  /// To be asked between steps, with the rays traced so far: whether one more step as long as the last would
-  /// leave too little. What follows may take a third of the time at most; what then does not fit is for
-  /// `affordable` to shorten.
-  bool spent(std::uint64_t rays) {
+  /// To be asked between steps, with the rays traced so far and those of the next step: whether that step, at
+  /// the rate of the last, would leave too little. What follows may take a third of the time at most; what
+  /// then does not fit is for `affordable` to shorten.
+  bool spent(std::uint64_t rays, std::uint64_t next_rays) {
     const Clock::time_point now = Clock::now();
-    const double elapsed = seconds(begin_, now), step = seconds(last_, now);
+    const double elapsed = seconds(begin_, now);
+    const double traced = static_cast<double>(std::max<std::uint64_t>(rays - last_rays_, 1));
+    const double step =
+        rays > last_rays_ ? seconds(last_, now) / traced * static_cast<double>(next_rays) : 0.0;
     last_ = now;
+    last_rays_ = rays;
     per_ray_s_ = rays > 0 ? elapsed / static_cast<double>(rays) : 0.0;
     return elapsed + step + std::min(rays_after_ * per_ray_s_, time_s_ / 3.0) > time_s_;
   }
@@ -41,6 +45,7 @@ class TimeBudget {
     return std::chrono::duration<double>(to - from).count();
   }
   Clock::time_point begin_, last_;
+  std::uint64_t last_rays_ = 0;
   double time_s_, rays_after_, per_ray_s_ = 0.0;
 };
 
