@@ -124,7 +124,11 @@ std::vector<FitStage> ladder(const DesignShape& shape, const TentBins& bins, con
   fine(o.growth, two_to(20), 0.01);
   // Many knots take up the noise of a million rays (400 parameters in 48 x 48 bins a sixth of its square),
   // and a start that is near gets there at once.
-  if (many || !o.far) fine(o.growth, two_to(22), 0.01);
+  if (many) {
+    fine(o.growth, two_to(22), 0.01);
+  } else if (!o.far) {
+    fine(o.growth, two_to(21), 0.01);
+  }
   return stages.take();
 }
 
