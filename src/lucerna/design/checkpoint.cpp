@@ -11,7 +11,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr const char* kMagic = "lucerna-design-checkpoint-6";
+constexpr const char* kMagic = "lucerna-design-checkpoint-7";
 /// More numbers than any design has; keeps a damaged count from asking for memory.
 constexpr std::size_t kMostNumbers = 1 << 20;
 
