@@ -352,8 +352,6 @@ NormalEquations Fit::equations_at(const DesignShape& shape, const Evaluation& e)
   return equations;
 }
 
-double Fit::error() const { return std::sqrt(equations_.cost); }
-
 FitRecord Fit::step(Progress& progress) {
   LUCERNA_CHECK(!done(), "a step after the last stage");
   if (!ready_) {

@@ -152,7 +152,6 @@ class Fit {
   /// Whether the best is as good as the noise of the last stage's rays lets one see.
   bool at_noise() const;
   const FitState& state() const { return state_; }
-  double error() const;
 
  private:
   void begin_stage(Progress& progress);

@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#include "lucerna/core/processor.h"
 #include "lucerna/design/one_lane.h"
 
 namespace lucerna {
@@ -17,11 +18,8 @@ const HitKernels* hit_kernels_named(const char* isa) {
   const std::string_view name = isa;
   if (name == "scalar") return &scalar_hit_kernels();
 #if defined(LUCERNA_X86_KERNELS)
-  if (name == "avx2" && __builtin_cpu_supports("avx2")) return &avx2_hit_kernels();
-  if (name == "avx512" && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512dq")) {
-    return &avx512_hit_kernels();
-  }
+  if (name == "avx2" && has_avx2()) return &avx2_hit_kernels();
+  if (name == "avx512" && has_avx512()) return &avx512_hit_kernels();
 #endif
   return nullptr;
 }

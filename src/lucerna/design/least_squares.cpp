@@ -93,15 +93,24 @@ NormalEquations normal_equations(const Evaluation& e, const Eigen::VectorXd& tar
   return out;
 }
 
-Eigen::MatrixXd step_metric(const DesignShape& shape, const NormalEquations& equations) {
+namespace {
+
+/// What each parameter's own square counts in a step: the Hessian's diagonal, and a little of its mean.
+Eigen::VectorXd own_squares(const NormalEquations& equations) {
   const Eigen::VectorXd diagonal = equations.hessian.diagonal();
-  const double mean = diagonal.mean();
-  const Eigen::VectorXd own = diagonal.array() + 1e-2 * mean + 1e-300;
+  return diagonal.array() + 1e-2 * diagonal.mean() + 1e-300;
+}
+
+}  // namespace
+
+Eigen::MatrixXd step_metric(const DesignShape& shape, const NormalEquations& equations) {
+  const Eigen::VectorXd own = own_squares(equations);
+  const double mean = equations.hessian.diagonal().mean();
   const auto* const spline = std::get_if<BsplineShape>(&shape.family());
   if (spline == nullptr) return own.asDiagonal();
   const int nx = spline->row_x().coefficients(), ny = spline->row_y().coefficients();
   const double step = std::min(spline->row_x().step_mm, spline->row_y().step_mm);
-  Eigen::MatrixXd metric = Eigen::MatrixXd::Zero(diagonal.size(), diagonal.size());
+  Eigen::MatrixXd metric = Eigen::MatrixXd::Zero(own.size(), own.size());
   const auto tilt = [&](int a, int b, double step_mm) {
     const double w = kTiltShare * mean * (step / step_mm) * (step / step_mm);
     const auto i = shape.parameter_of()[static_cast<std::size_t>(a)];
@@ -128,9 +137,7 @@ Eigen::VectorXd damped_step(const NormalEquations& equations, const Eigen::Matri
 }
 
 Eigen::VectorXd damped_step(const NormalEquations& equations, double lambda) {
-  const Eigen::VectorXd diagonal = equations.hessian.diagonal();
-  const Eigen::VectorXd own = diagonal.array() + 1e-2 * diagonal.mean() + 1e-300;
-  return damped_step(equations, own.asDiagonal(), lambda);
+  return damped_step(equations, own_squares(equations).asDiagonal(), lambda);
 }
 
 double next_lambda(double lambda, const NormalEquations& equations, const Eigen::VectorXd& step,

@@ -4,20 +4,9 @@
 #include <string_view>
 
 #include "lucerna/core/error.h"
+#include "lucerna/core/processor.h"
 
 namespace lucerna {
-
-namespace {
-
-#if defined(LUCERNA_X86_KERNELS)
-bool has_avx2() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
-bool has_avx512() {
-  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
-}
-#endif
-
-}  // namespace
 
 const Kernels& best_kernels() {
 #if defined(LUCERNA_X86_KERNELS)
