@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lucerna/core/estimate.h"
+#include "lucerna/design/error_boxes.h"
+#include "lucerna/design/target.h"
+
+namespace lucerna {
+
+/// What rays of one replicate leave: flux by cell of ErrorBoxes, and by how they ended, in any one unit.
+struct BoxSums {
+  /// Flux that leaves the luminaire, reflected or not.
+  std::vector<double> flux;
+  /// The part of it outside the rectangle that met no mirror.
+  double direct_outside = 0.0;
+  /// All ends of the emitted flux: emitted = out_direct + out_reflected + absorbed + back + bodies + lost.
+  double emitted = 0.0, out_direct = 0.0, out_reflected = 0.0;
+  double absorbed = 0.0, back = 0.0, bodies = 0.0, lost = 0.0;
+  std::uint64_t rays = 0;
+
+  BoxSums& operator+=(const BoxSums& other);
+};
+
+/// A relative l2 error with the noise taken out.
+struct BoxErrorEstimate {
+  /// |s f - t| / |t|, weighted by solid angle (or area).
+  double value = 0.0;
+  /// What the noise of f alone makes of it, from the scatter of the replicates.
+  double floor = 0.0;
+  /// sqrt(max(0, value^2 - floor^2)): what is left.
+  double excess = 0.0;
+  /// Of the excess; not a number where the noise is not known (fewer than two replicates).
+  double standard_error = 0.0;
+};
+
+/// The error of a design (docs/algorithms/design.md): every figure with its error.
+struct DesignError {
+  /// In 12 x 12, 24 x 24 and 48 x 48 boxes over the target's rectangle. The headline is c48.excess.
+  BoxErrorEstimate c12, c24, c48;
+  /// What the flux shares were multiplied with to stand beside the target at n = 48 (1 in absolute mode).
+  double scale = 1.0;
+  /// Share of the sources' flux in the rectangle.
+  Estimate in_rectangle;
+  /// Share of the sources' flux that leaves the luminaire but not into the rectangle, and the part of that
+  /// which met no mirror: no shape of the mirror can send it elsewhere, only stand in its way.
+  Estimate outside_share, outside_direct;
+  /// l2 over the cells outside, relative to the target's l2 in the rectangle, at the scale above.
+  BoxErrorEstimate outside;
+  /// Largest deviation of one of the 48 x 48 boxes as a share of the target's brightest box, with the
+  /// standard error of that box. Noise raises it: the largest of 2304 deviations.
+  Estimate worst_cell;
+  std::uint64_t rays = 0;
+};
+
+/// The target's flux per cell of the boxes: in its own unit by shape, as shares of `source_flux` in absolute
+/// mode. Throws InputError where the rectangle has no light.
+std::vector<double> box_target(const ErrorBoxes& boxes, const DesignTarget& target, double source_flux);
+
+/// The error of the light in `replicates` (independent, of equally many rays each; shares of what each
+/// emitted are taken) against `target` (flux per cell, box_target). With one replicate the noise counts as 0
+/// and standard errors are NaN. In shape mode each n has its own best scale: the one that makes the excess
+/// smallest. The excess' standard error is from the scatter of the replicates to second order (their pairs),
+/// about floor * (2 / cells)^(1/4) where there is only noise. Cost: replicates^2 * cells.
+DesignError box_error(const ErrorBoxes& boxes, std::span<const double> target,
+                      std::span<const BoxSums> replicates, TargetMode mode);
+
+/// The error of one light distribution against another as target, in the boxes of `reference`, by shape or
+/// absolute. `standard_error_cd` (layout of `test.cd`; empty = exact): of the test's independent values, for
+/// the floor. Throws InputError as target_rectangle, and where the units differ in absolute mode.
+DesignError box_error(const IntensityDistribution& reference, const IntensityDistribution& test,
+                      TargetMode mode, std::span<const double> standard_error_cd = {});
+
+}  // namespace lucerna
