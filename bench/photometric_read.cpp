@@ -56,9 +56,11 @@ int main(int argc, char** argv) {
   const int repeats = argc > 3 ? std::max(1, std::atoi(argv[3])) : 41;
   const PhotometricFile file = random_file(planes, gammas);
   fmt::print("{} x {} values, {} repeats\n", planes, gammas, repeats);
-  for (const auto& [name, format] :
+  for (const auto& named :
        {std::pair{"ies-2002", PhotometricFormat::ies_2002},
         std::pair{"ies-2019", PhotometricFormat::ies_2019}, std::pair{"ldt", PhotometricFormat::ldt}}) {
+    const auto name = named.first;  // clang 14 captures no structured bindings
+    const auto format = named.second;
     const bool ldt = format == PhotometricFormat::ldt;
     std::string text;
     const auto write = milliseconds(repeats, [&] { text = ldt ? ldt_text(file) : ies_text(file, format); });

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a model file: a whole file, and, since the checksum would stop nearly every such try at the door, sections as
-// they are behind it. Decoders return a model that draws finite rays, or throw InputError.
-// Input: a file that begins with the magic; else one byte (0 clusters, 1 adaptive) and sections of 4 bytes tag, 3 bytes length, bytes.
+// Any bytes as a model file: a whole file, and, since the checksum would stop nearly every such try at the
+// door, sections as they are behind it. Decoders return a model that draws finite rays, or throw InputError.
+// Input: a file that begins with the magic; else one byte (0 clusters, 1 adaptive) and sections of 4 bytes
+// tag, 3 bytes length, bytes.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

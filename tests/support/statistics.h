@@ -7,14 +7,14 @@
 #include <span>
 #include <vector>
 
-/// Statistical tests for the tests labelled `statistical`. One false-alarm level for the whole suite: at 1e-6 a red
-/// test means a bug, and seeds are fixed, so a green one stays green. Never re-seed to get green.
+/// Statistical tests for the tests labelled `statistical`. One false-alarm level for the whole suite: at 1e-6
+/// a red test means a bug, and seeds are fixed, so a green one stays green. Never re-seed to get green.
 namespace lucerna::test {
 
 inline constexpr double kFalseAlarm = 1e-6;
 
-/// Regularised upper incomplete gamma function Q(a, x): series below x < a + 1, Lentz's continued fraction above
-/// (Numerical Recipes, 3rd ed., section 6.2).
+/// Regularised upper incomplete gamma function Q(a, x): series below x < a + 1, Lentz's continued fraction
+/// above (Numerical Recipes, 3rd ed., section 6.2).
 inline double gamma_q(double a, double x) {
   if (x <= 0.0) return 1.0;
   const double front = std::exp(-x + a * std::log(x) - std::lgamma(a));
@@ -35,8 +35,8 @@ inline double gamma_q(double a, double x) {
   return front * h;
 }
 
-/// p-value of Pearson's chi-square for counts against expectations with the same total. Cells that expect fewer than 5
-/// are pooled; a hit where nothing is expected gives 0.
+/// p-value of Pearson's chi-square for counts against expectations with the same total. Cells that expect
+/// fewer than 5 are pooled; a hit where nothing is expected gives 0.
 inline double chi_square_p(std::span<const double> observed, std::span<const double> expected) {
   double chi2 = 0.0, pooled_observed = 0.0, pooled_expected = 0.0;
   int cells = 0;

@@ -28,7 +28,8 @@ TEST(Arguments, SizesAreDecimalOrBinaryAsWritten) {
 TEST(Arguments, RangesAreHalfOpen) {
   EXPECT_EQ(parse_range("1e3").last, 1000u);
   EXPECT_EQ(parse_range("5:1e3").first, 5u);
-  for (const char* bad : {"0", "5:5", "6:5", ":5", "5:", "a:b"}) EXPECT_THROW(parse_range(bad), UsageError) << bad;
+  for (const char* bad : {"0", "5:5", "6:5", ":5", "5:", "a:b"})
+    EXPECT_THROW(parse_range(bad), UsageError) << bad;
 }
 
 TEST(Arguments, NumbersAndRotations) {

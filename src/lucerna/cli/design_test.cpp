@@ -56,8 +56,8 @@ void write_project(const TempDir& dir, const std::string& design = "",
     spot.distribution.at(0, g) = 1000.0 * std::exp(-gamma * gamma / 200.0);
   }
   write_photometric_file(dir / "spot.ldt", spot, PhotometricFormat::ldt);
-  write_file(dir / "p.toml",
-             kScene + ("[target]\n" + target) + "[design]\nintervals = 3\nattempts = 1\ntime_s = 1e6\n" + design);
+  write_file(dir / "p.toml", kScene + ("[target]\n" + target) +
+                                 "[design]\nintervals = 3\nattempts = 1\ntime_s = 1e6\n" + design);
 }
 
 constexpr const char* kFast = "design p.toml --rays 8192 -o ";

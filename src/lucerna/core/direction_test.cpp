@@ -11,7 +11,9 @@ namespace {
 TEST(Direction, ReflectionKeepsLengthAndReturns) {
   Rng rng(1, 0);
   for (int i = 0; i < 1000; ++i) {
-    const auto draw = [&] { return Direction::from({rng.uniform() - 0.5, rng.uniform() - 0.5, rng.uniform() - 0.5}); };
+    const auto draw = [&] {
+      return Direction::from({rng.uniform() - 0.5, rng.uniform() - 0.5, rng.uniform() - 0.5});
+    };
     const Direction in = draw(), normal = draw();
     const Direction out = reflect(in, normal);
     EXPECT_NEAR(length(out), 1.0, 4e-15);

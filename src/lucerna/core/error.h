@@ -39,7 +39,8 @@ template <class... Args>
 [[noreturn]] void throw_input_error(std::string_view file, std::string_view place,
                                     fmt::format_string<Args...> text, Args&&... args) {
   const std::string what = fmt::format(text, std::forward<Args>(args)...);
-  throw InputError(place.empty() ? fmt::format("{}: {}", file, what) : fmt::format("{}: {}: {}", file, place, what));
+  throw InputError(place.empty() ? fmt::format("{}: {}", file, what)
+                                 : fmt::format("{}: {}: {}", file, place, what));
 }
 
 namespace detail {
@@ -48,11 +49,11 @@ namespace detail {
 
 }  // namespace lucerna
 
-/// An invariant of our own: always on; on failure throws std::logic_error with the condition and the values given,
-/// `LUCERNA_CHECK(i < n, "i = {}, n = {}", i, n)`. Never for bad input.
-#define LUCERNA_CHECK(condition, ...)                                                                \
-  do {                                                                                               \
-    if (!(condition)) [[unlikely]] {                                                                 \
-      ::lucerna::detail::check_failed(#condition, __FILE__, __LINE__, ::fmt::format(__VA_ARGS__));   \
-    }                                                                                                \
+/// An invariant of our own: always on; on failure throws std::logic_error with the condition and the values
+/// given, `LUCERNA_CHECK(i < n, "i = {}, n = {}", i, n)`. Never for bad input.
+#define LUCERNA_CHECK(condition, ...)                                                              \
+  do {                                                                                             \
+    if (!(condition)) [[unlikely]] {                                                               \
+      ::lucerna::detail::check_failed(#condition, __FILE__, __LINE__, ::fmt::format(__VA_ARGS__)); \
+    }                                                                                              \
   } while (false)

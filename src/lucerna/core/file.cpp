@@ -74,7 +74,8 @@ void write_file(const std::filesystem::path& path, std::string_view text) {
 
 InputFile::InputFile(const std::filesystem::path& path) : name_(path.string()) {
   struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) throw InputError(fmt::format("{}: cannot read: {}", name_, reason()));
+  if (::stat(path.c_str(), &status) != 0)
+    throw InputError(fmt::format("{}: cannot read: {}", name_, reason()));
   if (!S_ISREG(status.st_mode)) throw InputError(fmt::format("{}: cannot read: not a regular file", name_));
   size_ = static_cast<std::uint64_t>(status.st_size);
   file_.reset(std::fopen(path.c_str(), "rb"));
@@ -83,17 +84,18 @@ InputFile::InputFile(const std::filesystem::path& path) : name_(path.string()) {
 
 void InputFile::read_at(std::uint64_t offset, std::span<std::byte> out) const {
   if (offset > size_ || out.size() > size_ - offset) {
-    throw_input_error(name_, fmt::format("byte {}", offset), "{} bytes expected, the file ends at byte {}", out.size(),
-                      size_);
+    throw_input_error(name_, fmt::format("byte {}", offset), "{} bytes expected, the file ends at byte {}",
+                      out.size(), size_);
   }
   std::size_t done = 0;
   while (done < out.size()) {
-    const ssize_t got =
-        ::pread(::fileno(file_.get()), out.data() + done, out.size() - done, static_cast<off_t>(offset + done));
+    const ssize_t got = ::pread(::fileno(file_.get()), out.data() + done, out.size() - done,
+                                static_cast<off_t>(offset + done));
     if (got > 0) {
       done += static_cast<std::size_t>(got);
     } else if (got == 0) {
-      throw_input_error(name_, fmt::format("byte {}", offset + done), "the file became shorter while it was read");
+      throw_input_error(name_, fmt::format("byte {}", offset + done),
+                        "the file became shorter while it was read");
     } else if (errno != EINTR) {
       throw_input_error(name_, fmt::format("byte {}", offset + done), "cannot read: {}", reason());
     }
@@ -103,8 +105,8 @@ void InputFile::read_at(std::uint64_t offset, std::span<std::byte> out) const {
 std::string read_file(const std::filesystem::path& path, std::uint64_t max_bytes) {
   const InputFile file(path);
   if (file.size() > max_bytes) {
-    throw InputError(
-        fmt::format("{}: {} bytes, at most {} expected for a file of this kind", file.name(), file.size(), max_bytes));
+    throw InputError(fmt::format("{}: {} bytes, at most {} expected for a file of this kind", file.name(),
+                                 file.size(), max_bytes));
   }
   std::string text(file.size(), '\0');
   file.read_at(0, std::as_writable_bytes(std::span(text)));
@@ -114,7 +116,8 @@ std::string read_file(const std::filesystem::path& path, std::uint64_t max_bytes
 std::string sha256_of_file(const std::filesystem::path& path) {
   const InputFile file(path);
   const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
-  LUCERNA_CHECK(context && EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1, "SHA-256 is not available");
+  LUCERNA_CHECK(context && EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1,
+                "SHA-256 is not available");
   std::vector<std::byte> block(1 << 20);
   for (std::uint64_t offset = 0; offset < file.size(); offset += block.size()) {
     const std::span part(block.data(), std::min<std::uint64_t>(block.size(), file.size() - offset));

@@ -11,8 +11,9 @@
 
 namespace lucerna {
 
-/// A file being written: bytes go to a temporary name beside `path`, `commit` renames it. Without `commit` (an exception,
-/// an interrupt) nothing is left behind and an older file of that name is untouched. Not thread safe.
+/// A file being written: bytes go to a temporary name beside `path`, `commit` renames it. Without `commit`
+/// (an exception, an interrupt) nothing is left behind and an older file of that name is untouched. Not
+/// thread safe.
 class OutputFile {
  public:
   /// Throws InputError if the place cannot be written.
@@ -44,7 +45,8 @@ void write_file(const std::filesystem::path& path, std::string_view text);
 /// The whole of a small file. Throws InputError if it cannot be read or is larger than `max_bytes`.
 std::string read_file(const std::filesystem::path& path, std::uint64_t max_bytes);
 
-/// Reads a file from the front, with its size known before: what a streaming reader stands on. Not thread safe.
+/// Reads a file from the front, with its size known before: what a streaming reader stands on. Not thread
+/// safe.
 class InputFile {
  public:
   /// Throws InputError if it does not exist, is a directory or cannot be read.
@@ -53,7 +55,8 @@ class InputFile {
   std::uint64_t size() const { return size_; }
   const std::string& name() const { return name_; }
 
-  /// Reads exactly `out.size()` bytes at `offset`; throws InputError with offset, wanted and found if there are fewer.
+  /// Reads exactly `out.size()` bytes at `offset`; throws InputError with offset, wanted and found if there
+  /// are fewer.
   void read_at(std::uint64_t offset, std::span<std::byte> out) const;
 
  private:

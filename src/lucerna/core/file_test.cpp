@@ -58,7 +58,8 @@ TEST(InputFile, NamesWhatIsMissing) {
   std::array<std::byte, 4> four{};
   file.read_at(1, four);
   EXPECT_EQ(static_cast<char>(four[0]), '2');
-  for (const std::uint64_t offset : {2ull, 5ull, 6ull, ~0ull}) EXPECT_THROW(file.read_at(offset, four), InputError);
+  for (const std::uint64_t offset : {2ull, 5ull, 6ull, ~0ull})
+    EXPECT_THROW(file.read_at(offset, four), InputError);
   EXPECT_THROW(read_file(dir / "a", 4), InputError);
 }
 

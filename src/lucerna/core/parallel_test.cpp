@@ -33,7 +33,10 @@ TEST(Parallel, NoItemsIsNoCall) {
 }
 
 TEST(Parallel, ExceptionsReachTheCaller) {
-  EXPECT_THROW(parallel_blocks(100, 1, [](std::size_t i, std::size_t) { if (i == 57) throw InputError("57"); }),
+  EXPECT_THROW(parallel_blocks(100, 1,
+                               [](std::size_t i, std::size_t) {
+                                 if (i == 57) throw InputError("57");
+                               }),
                InputError);
 }
 

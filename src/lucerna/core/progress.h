@@ -17,7 +17,8 @@ class Progress {
   /// `done` of `total` units of `phase` are finished ("trace", "compress: octree"); total 0 = unknown.
   virtual void update(std::string_view phase, std::uint64_t done, std::uint64_t total) = 0;
 
-  /// True once the caller wants the work to end; the long call then throws `Interrupted` at its next safe place.
+  /// True once the caller wants the work to end; the long call then throws `Interrupted` at its next safe
+  /// place.
   virtual bool stop_requested() const = 0;
 
   /// Reports and stops if asked: what a loop calls between its blocks.

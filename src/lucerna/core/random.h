@@ -8,12 +8,14 @@
 
 namespace lucerna {
 
-/// Philox4x32-10: 128 random bits for every (key, counter), no state (Salmon, Moraes, Dror, Shaw, "Parallel random
-/// numbers: as easy as 1, 2, 3", SC 2011). Passes BigCrush; a few ns per call.
+/// Philox4x32-10: 128 random bits for every (key, counter), no state (Salmon, Moraes, Dror, Shaw, "Parallel
+/// random numbers: as easy as 1, 2, 3", SC 2011). Passes BigCrush; a few ns per call.
 LUCERNA_HD inline std::array<std::uint32_t, 4> philox4x32(std::uint64_t key, std::uint64_t counter_low,
-                                                           std::uint64_t counter_high) {
-  std::uint32_t c0 = static_cast<std::uint32_t>(counter_low), c1 = static_cast<std::uint32_t>(counter_low >> 32);
-  std::uint32_t c2 = static_cast<std::uint32_t>(counter_high), c3 = static_cast<std::uint32_t>(counter_high >> 32);
+                                                          std::uint64_t counter_high) {
+  std::uint32_t c0 = static_cast<std::uint32_t>(counter_low),
+                c1 = static_cast<std::uint32_t>(counter_low >> 32);
+  std::uint32_t c2 = static_cast<std::uint32_t>(counter_high),
+                c3 = static_cast<std::uint32_t>(counter_high >> 32);
   std::uint32_t k0 = static_cast<std::uint32_t>(key), k1 = static_cast<std::uint32_t>(key >> 32);
   for (int round = 0; round < 10; ++round) {
     const std::uint64_t p0 = std::uint64_t{0xD2511F53u} * c0;
@@ -31,9 +33,9 @@ LUCERNA_HD inline std::array<std::uint32_t, 4> philox4x32(std::uint64_t key, std
 /// 32 random bits to a double in [0, 1): multiples of 2^-32, never 1.
 LUCERNA_HD constexpr double unit_from_bits(std::uint32_t bits) { return bits * 0x1p-32; }
 
-/// The random numbers of one item (ray, sample, cell): a stream keyed by (seed, index), so that item `index` draws the
-/// same numbers on any thread, in any order, on any machine. `stream` keeps uses of one seed apart (emission, scatter).
-/// Cheap to make; not to be shared between threads.
+/// The random numbers of one item (ray, sample, cell): a stream keyed by (seed, index), so that item `index`
+/// draws the same numbers on any thread, in any order, on any machine. `stream` keeps uses of one seed apart
+/// (emission, scatter). Cheap to make; not to be shared between threads.
 class Rng {
  public:
   LUCERNA_HD Rng(std::uint64_t seed, std::uint64_t index, std::uint32_t stream = 0)

@@ -16,8 +16,8 @@ inline constexpr std::size_t kSobolDimensions = 12;
 namespace detail {
 
 /// A primitive polynomial over GF(2) of degree `s` with inner coefficients `a`, and its initial numbers `m`:
-/// the first rows of S. Joe and F. Y. Kuo, "Constructing Sobol sequences with better two-dimensional projections",
-/// SIAM J. Sci. Comput. 30 (2008).
+/// the first rows of S. Joe and F. Y. Kuo, "Constructing Sobol sequences with better two-dimensional
+/// projections", SIAM J. Sci. Comput. 30 (2008).
 struct SobolRow {
   std::uint32_t s, a;
   std::array<std::uint32_t, 6> m;
@@ -80,9 +80,9 @@ LUCERNA_HD constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   return (x >> 16) | (x << 16);
 }
 
-/// A hash in which bit k of the result depends on bits 0..k of `x` only: on bit-reversed numbers it is a nested uniform
-/// (Owen) scrambling. Form of S. Laine and T. Karras, "Stratified sampling for stochastic transparency", EGSR 2011;
-/// constants of N. Vegdahl, "Building a better LK hash", 2021.
+/// A hash in which bit k of the result depends on bits 0..k of `x` only: on bit-reversed numbers it is a
+/// nested uniform (Owen) scrambling. Form of S. Laine and T. Karras, "Stratified sampling for stochastic
+/// transparency", EGSR 2011; constants of N. Vegdahl, "Building a better LK hash", 2021.
 LUCERNA_HD constexpr std::uint32_t laine_karras_hash(std::uint32_t x, std::uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -104,10 +104,12 @@ LUCERNA_HD constexpr std::uint64_t mix_bits(std::uint64_t x) {
 
 }  // namespace detail
 
-/// Coordinate `dimension` (< kSobolDimensions) of point `index` of the Sobol sequence, Owen-scrambled with `seed`, as a
-/// 32-bit binary fraction. Points 2^32 and beyond start further independent scramblings. No state, thread safe.
-/// A. B. Owen, "Randomly permuted (t,m,s)-nets", 1995; B. Burley, "Practical hash-based Owen scrambling", JCGT 9(4), 2020.
-LUCERNA_HD inline std::uint32_t owen_sobol_bits(std::uint64_t index, std::uint32_t dimension, std::uint64_t seed) {
+/// Coordinate `dimension` (< kSobolDimensions) of point `index` of the Sobol sequence, Owen-scrambled with
+/// `seed`, as a 32-bit binary fraction. Points 2^32 and beyond start further independent scramblings. No
+/// state, thread safe. A. B. Owen, "Randomly permuted (t,m,s)-nets", 1995; B. Burley, "Practical hash-based
+/// Owen scrambling", JCGT 9(4), 2020.
+LUCERNA_HD inline std::uint32_t owen_sobol_bits(std::uint64_t index, std::uint32_t dimension,
+                                                std::uint64_t seed) {
   std::uint32_t x = 0;
 #if defined(__CUDA_ARCH__)
   const detail::SobolMatrix& matrix = detail::kSobolOnDevice[dimension];

@@ -39,6 +39,8 @@ LUCERNA_HD constexpr Vec3 cross(const Vec3& a, const Vec3& b) {
 LUCERNA_HD inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 
 /// True if no component is infinite or not a number.
-LUCERNA_HD inline bool is_finite(const Vec3& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+LUCERNA_HD inline bool is_finite(const Vec3& a) {
+  return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
 
 }  // namespace lucerna

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Evaluations of designs on CUDA devices. What a thread does is in evaluation_launch.h and evaluation_kernel.h.
+// Evaluations of designs on CUDA devices. What a thread does is in evaluation_launch.h and
+// evaluation_kernel.h.
 #include <cuda_runtime.h>
 
 #include "lucerna/design/evaluation_launch.h"

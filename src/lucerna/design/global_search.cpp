@@ -59,8 +59,8 @@ std::vector<double> SearchRun::costs(const std::vector<Eigen::VectorXd>& points)
 
 }  // namespace detail
 
-SearchResult global_search(GlobalMethod method, const SearchBox& box, const SearchOptions& options,
-                           const BatchCost& cost) {
+GlobalSearchResult global_search(GlobalMethod method, const SearchBox& box, const SearchOptions& options,
+                                 const BatchCost& cost) {
   detail::SearchRun run(box, options, cost);
   switch (method) {
     case GlobalMethod::tree:

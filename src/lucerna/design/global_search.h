@@ -34,7 +34,7 @@ struct SearchOptions {
   int most_evaluations = 1000;
 };
 
-struct SearchResult {
+struct GlobalSearchResult {
   Eigen::VectorXd best;
   double cost = 0.0;
   int evaluations = 0;
@@ -43,8 +43,8 @@ struct SearchResult {
 /// Looks for the least cost in the box; the centre is always among what is tried. What is asked next depends
 /// on the seed and the costs alone: a search that is given the same costs again asks the same points (how a
 /// checkpoint of costs resumes it). Costs that are not finite count as worse than any.
-SearchResult global_search(GlobalMethod method, const SearchBox& box, const SearchOptions& options,
-                           const BatchCost& cost);
+GlobalSearchResult global_search(GlobalMethod method, const SearchBox& box, const SearchOptions& options,
+                                 const BatchCost& cost);
 
 namespace detail {
 
@@ -60,7 +60,7 @@ class SearchRun {
   double used() const { return static_cast<double>(best_.evaluations) / options_.most_evaluations; }
   /// Costs of points in [-1, 1]^n (clipped to it); what the budget does not reach costs infinity.
   std::vector<double> costs(const std::vector<Eigen::VectorXd>& points);
-  const SearchResult& best() const { return best_; }
+  const GlobalSearchResult& best() const { return best_; }
   /// The best so far in [-1, 1]^n.
   const Eigen::VectorXd& best_point() const { return best_point_; }
 
@@ -68,7 +68,7 @@ class SearchRun {
   SearchBox box_;
   SearchOptions options_;
   const BatchCost& cost_;
-  SearchResult best_;
+  GlobalSearchResult best_;
   Eigen::VectorXd best_point_;
 };
 

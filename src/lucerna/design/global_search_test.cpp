@@ -85,7 +85,7 @@ TEST(GlobalSearch, SpendsTheBudgetAndStaysInTheBox) {
   for (const GlobalMethod method : kMethods) {
     for (const int budget : {1, 7, 500}) {
       std::vector<Eigen::VectorXd> seen;
-      const SearchResult result = global_search(method, box(3), {1, budget}, batch(&holes, &seen));
+      const GlobalSearchResult result = global_search(method, box(3), {1, budget}, batch(&holes, &seen));
       EXPECT_EQ(seen.size(), static_cast<std::size_t>(budget)) << to_string(method);
       EXPECT_EQ(result.evaluations, budget);
       EXPECT_EQ(seen[0], box(3).centre);
@@ -120,7 +120,7 @@ TEST(GlobalSearch, ShapesThatCannotBeAreWorseThanAny) {
     return costs;
   };
   for (const GlobalMethod method : kMethods) {
-    const SearchResult r = global_search(method, box(3), {1, 600}, half);
+    const GlobalSearchResult r = global_search(method, box(3), {1, 600}, half);
     EXPECT_TRUE(std::isfinite(r.cost)) << to_string(method);
     EXPECT_LE(r.best[0], 0.3) << to_string(method);
   }

@@ -196,9 +196,10 @@ double ShapeLimits::cost(const DesignShape& shape, std::span<const Limit* const>
   const std::vector<Place> look = places<Place>(shape, per_interval);
   for (const Limit* limit : limits) {
     if (limit->kind == Kind::height) {  // both ways from the middle of lowest and highest
-      const auto [low, high] = std::minmax_element(
-          look.begin(), look.end(),
-          [&](const Place& p, const Place& q) { return shape.at(p.x, p.y).z_mm < shape.at(q.x, q.y).z_mm; });
+      const auto ends = std::minmax_element(look.begin(), look.end(), [&](const Place& p, const Place& q) {
+        return shape.at(p.x, p.y).z_mm < shape.at(q.x, q.y).z_mm;
+      });
+      const auto low = ends.first, high = ends.second;  // clang 14 captures no structured bindings
       const double middle = 0.5 * (shape.at(low->x, low->y).z_mm + shape.at(high->x, high->y).z_mm);
       for (const Place& p : look) {
         const double off = shape.at(p.x, p.y).z_mm - middle,

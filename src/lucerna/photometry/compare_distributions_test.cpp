@@ -54,8 +54,8 @@ TEST(Wasserstein, TwoDiracsAreAsFarAsTheirAngle) {
   }
 }
 
-// A point at 10 degrees (the spot's sigma) beside the great circle of the tilt moves 1 - cos(10 deg) = 1.5 % less than
-// the tilt, and none moves more.
+// A point at 10 degrees (the spot's sigma) beside the great circle of the tilt moves 1 - cos(10 deg) = 1.5 %
+// less than the tilt, and none moves more.
 TEST(Wasserstein, TiltMovesTheLightByItsAngle) {
   for (const double tilt : {0.5, 2.0, 10.0, 60.0}) {
     const double distance = wasserstein_deg(spot(), rotated(spot(), {radians(tilt), 0.0, 0.0}));

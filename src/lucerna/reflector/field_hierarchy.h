@@ -26,8 +26,8 @@ struct FieldNode {
 };
 
 /// What a leaf square of cells has of the mirror: some, none but it lies in the hole or along the rim, where
-/// rays come by on their way to it, or none and no ray that meets the mirror need come by (an aperture without
-/// its hole is convex).
+/// rays come by on their way to it, or none and no ray that meets the mirror need come by (an aperture
+/// without its hole is convex).
 enum class LeafKind : std::uint8_t { beyond, mirror, bare };
 
 /// The slab over a leaf square, and a bound on its gradient: nowhere longer than `steepness`.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels of trace_kernel.h on CUDA devices. What a thread does is in the shared headers; here are memory,
-// streams, launches and the sums over a block of threads.
+// The kernels of trace_kernel.h on CUDA devices. What a thread does is in the shared headers; here are
+// memory, streams, launches and the sums over a block of threads.
 #include <cuda_runtime.h>
 
 #include <cfloat>
@@ -25,7 +25,8 @@ __global__ void __launch_bounds__(kThreads) trace_kernel(const __grid_constant__
   for (std::uint32_t k = threadIdx.x; k < kBlockRays; k += kThreads) {
     trace_number<kFeatures>(v, blockIdx.x, k, counters);
   }
-  add_block_sums(counters.sum, kLedgerSums, v.ledger + (v.first_block + blockIdx.x) % kReplicates * kLedgerSums);
+  add_block_sums(counters.sum, kLedgerSums,
+                 v.ledger + (v.first_block + blockIdx.x) % kReplicates * kLedgerSums);
 }
 
 __global__ void rebuild_level_kernel(const __grid_constant__ HierarchyView h, int level, std::size_t nodes) {

@@ -116,8 +116,8 @@ TEST(DeviceTrace, TheKernelOfAllFeaturesTracesPlainScenesToTheBit) {
   }
 }
 
-// Embree rounds what it finds to float32, the device's tree does not: after the second reflection a few rays of
-// 10^4 are more than 1e-4 mm apart.
+// Embree rounds what it finds to float32, the device's tree does not: after the second reflection a few rays
+// of 10^4 are more than 1e-4 mm apart.
 TEST(DeviceTrace, BodiesAgreeRayByRayWithEmbree) {
   try {
     const BodyTracer there({{.mesh = test::box_mesh({1, 1, 1})}});

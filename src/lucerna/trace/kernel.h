@@ -110,7 +110,7 @@ struct Kernels {
   MirrorSums (*settle_fates)(const LocalHits& hits, const int32_t* reflections, int32_t most,
                              const double* kept, int32_t mirror, size_t n, float* flux, int32_t* fate);
   /// Moves the rays that leave behind the `out_count` of `out`, drops those that are gone, and closes the
-  /// gaps; returns how many stay.
+  /// gaps; returns how many stay. Reads n fates and no more; whole vectors of the rays.
   size_t (*part)(WorldRays& rays, const int32_t* fate, size_t n, WorldRays& out, size_t& out_count);
   /// Type C cell of each direction, as FarFieldGrid::cell has it.
   void (*far_field_cells)(const WorldRays& rays, size_t n, int32_t c_count, int32_t gamma_count,

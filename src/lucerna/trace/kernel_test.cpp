@@ -110,28 +110,29 @@ TEST(Kernels, RaysAlongTheBordersOfTheAperture) {
 }
 
 #if defined(__linux__)
-/// A copy of floats whose last one ends where a page that may not be read begins.
+/// A copy of numbers whose last one ends where a page that may not be read begins.
+template <class T>
 class Fenced {
  public:
-  Fenced(const float* from, std::size_t n) {
+  Fenced(const T* from, std::size_t n) {
     const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-    const std::size_t bytes = (n * sizeof(float) + page - 1) / page * page;
+    const std::size_t bytes = (n * sizeof(T) + page - 1) / page * page;
     size_ = bytes + 2 * page;
     // Before it too: places off the grid may be below 0.
     start_ = static_cast<char*>(mmap(nullptr, size_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
     if (start_ == MAP_FAILED || mprotect(start_ + page, bytes, PROT_READ | PROT_WRITE) != 0) std::abort();
-    data_ = reinterpret_cast<float*>(start_ + page + bytes) - n;
+    data_ = reinterpret_cast<T*>(start_ + page + bytes) - n;
     std::copy_n(from, n, data_);
   }
   ~Fenced() { munmap(start_, size_); }
   Fenced(const Fenced&) = delete;
   Fenced& operator=(const Fenced&) = delete;
-  const float* data() const { return data_; }
+  const T* data() const { return data_; }
 
  private:
   char* start_;
   std::size_t size_;
-  float* data_;
+  T* data_;
 };
 
 // Lanes that are done keep places off the grid and gather along with the others: they must stay within the
@@ -164,6 +165,20 @@ TEST(Kernels, FinishedLanesReadWithinTheArrays) {
       for (std::size_t i = 0; i < kBatch; ++i) hits += out->state[i] != kMiss;
     }
     EXPECT_GT(hits, 20000u);
+  }
+}
+
+// An array of fates may end with the last of them, wherever in a vector that is.
+TEST(Kernels, PartingReadsNoFateBehindTheLast) {
+  const std::vector<std::int32_t> all(40, kLeaves);
+  for (const Kernels* kernels : available_kernels()) {
+    for (std::size_t n = 1; n <= all.size(); ++n) {
+      const Fenced fates(all.data(), n);
+      auto rays = std::make_unique<WorldRays>(), out = std::make_unique<WorldRays>();
+      std::size_t out_count = 0;
+      EXPECT_EQ(kernels->part(*rays, fates.data(), n, *out, out_count), 0u) << kernels->isa << ", " << n;
+      EXPECT_EQ(out_count, n) << kernels->isa;
+    }
   }
 }
 #endif

@@ -14,7 +14,8 @@ namespace lucerna {
 inline constexpr double kUnitsPerRay = 0x1p26;
 inline constexpr std::uint64_t kMostRays = std::uint64_t{1} << 34;
 
-/// A ray's flux >= 0, in mean rays, as whole units. Static: kernels of each instruction set have their own copy.
+/// A ray's flux >= 0, in mean rays, as whole units. Static: kernels of each instruction set have their own
+/// copy.
 LUCERNA_HD static inline std::int64_t units_of(float flux) {
   return static_cast<std::int64_t>(static_cast<double>(flux) * kUnitsPerRay + 0.5);
 }

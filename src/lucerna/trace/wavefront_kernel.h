@@ -57,12 +57,21 @@ inline MirrorSums settle_fates(const LocalHits& hits, const int32_t* reflections
   return sum;
 }
 
+/// The n fates at `fate`, in the first lanes: an array of them may end with the last.
+inline Int load_fates(const int32_t* fate, size_t n) {
+  if (n >= static_cast<size_t>(kLanes)) return load(fate);
+  alignas(64) int32_t lanes[kLanes];
+  for (size_t i = 0; i < static_cast<size_t>(kLanes); ++i)
+    lanes[i] = i < n ? fate[i] : static_cast<int32_t>(kGone);
+  return load(lanes);
+}
+
 inline size_t part(WorldRays& rays, const int32_t* fate, size_t n, WorldRays& out, size_t& out_count) {
   size_t stay = 0;
   for (size_t i = 0; i < n; i += static_cast<size_t>(kLanes)) {
     const size_t rest = n - i;
     const Mask lanes = mask_of(rest >= static_cast<size_t>(kLanes) ? (1u << kLanes) - 1u : (1u << rest) - 1u);
-    const Int f = load(fate + i);
+    const Int f = load_fates(fate + i, rest);
     const Mask leaves = lanes & (f == Int(kLeaves)), stays = lanes & ~(leaves | (f == Int(kGone)));
     // Whole vectors are written: what is behind the last lane is written over by the next, or padding.
     const auto move = [&](auto array) {
