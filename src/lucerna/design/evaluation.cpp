@@ -43,6 +43,22 @@ struct TaskSums {
   Row row(int bin) const { return {jacobian + static_cast<std::size_t>(bin) * coefficients}; }
 };
 
+/// The same with derivatives in blocks.
+struct SparseTaskSums : TaskSums {
+  SparseSums* blocks = nullptr;
+  std::uint32_t across = 1;
+
+  struct Row {
+    SparseSums* blocks;
+    std::uint32_t bin, across;
+    SparseSums::Block& block(const std::array<int, 2>& first) const {
+      return blocks->block(
+          bin, static_cast<std::uint32_t>(first[1]) * across + static_cast<std::uint32_t>(first[0]));
+    }
+  };
+  Row row(int bin) const { return {blocks, static_cast<std::uint32_t>(bin), across}; }
+};
+
 /// Traces blocks of rays, all rays of a block one reflection at a time.
 template <class Shape>
 class BlockTracer {
@@ -52,7 +68,8 @@ class BlockTracer {
   explicit BlockTracer(const EvaluationView<Shape>& view)
       : view_(view), mirror_(hit_mirror(view.shape, view.aperture)) {}
 
-  void add(const DesignRays::Block& block, TaskSums& sums) {
+  template <class Sums>
+  void add(const DesignRays::Block& block, Sums& sums) {
     follow(block);
     for (std::size_t i = 0; i < kBlockRays; ++i) {
       const double weight = block.weight[i];
@@ -161,7 +178,8 @@ std::size_t jacobian_groups(std::uint64_t rays) {
   return groups;
 }
 
-EvaluationSums total(const std::vector<TaskSums>& tasks, std::size_t bins) {
+template <class Sums>
+EvaluationSums total(const std::vector<Sums>& tasks, std::size_t bins) {
   EvaluationSums sums;
   for (std::vector<double>& flux : sums.flux) flux.assign(bins, 0.0);
   for (std::size_t t = 0; t < tasks.size(); ++t) {
@@ -202,6 +220,33 @@ Evaluation evaluate_family(const DesignShape& design, const Shape& shape, const 
   Evaluation e = evaluation_of(all);
   e.rays = per_task * kDesignTasks * kBlockRays;
   if (options.derivatives) e.jacobian = fold_jacobians(jacobians, bins.size(), design, 1.0 / all.weight);
+  return e;
+}
+
+/// With the derivatives in blocks.
+Evaluation evaluate_sparse(const DesignShape& design, const Reflectance& reflectance, const DesignRays& rays,
+                           const TentBins& bins, const EvaluationOptions& options) {
+  const auto& shape = std::get<BsplineShape>(design.family());
+  const std::uint64_t per_task = options.rays / kBlockRays / kDesignTasks;
+  const auto view = evaluation_view(shape, design.aperture(), reflectance, bins, options);
+  const auto across = static_cast<std::uint32_t>(shape.row_x().intervals);
+  const std::size_t groups = jacobian_groups(options.rays), each = kDesignTasks / groups;
+  std::vector<SparseSums> blocks(groups,
+                                 SparseSums(across * static_cast<std::uint32_t>(shape.row_y().intervals)));
+  std::vector<SparseTaskSums> sums(kDesignTasks);
+  parallel_blocks(groups, 1, [&](std::size_t group, std::size_t) {
+    const auto tracer = std::make_unique<BlockTracer<BsplineView>>(view);
+    for (std::size_t r = group * each; r < (group + 1) * each; ++r) {
+      sums[r].flux.assign(bins.size(), 0.0);
+      sums[r].blocks = &blocks[group];
+      sums[r].across = across;
+      for (std::uint64_t b = 0; b < per_task; ++b) tracer->add(rays.block(b * kDesignTasks + r), sums[r]);
+    }
+  });
+  const EvaluationSums all = total(sums, bins.size());
+  Evaluation e = evaluation_of(all);
+  e.rays = per_task * kDesignTasks * kBlockRays;
+  e.rows = sparse_jacobian(blocks, bins.size(), design, 1.0 / all.weight);
   return e;
 }
 
@@ -253,8 +298,13 @@ Evaluation evaluate(const DesignShape& shape, const Reflectance& reflectance, co
   LUCERNA_CHECK(options.rays <= rays.size() && options.rays >= kDesignTasks * kBlockRays, "{} rays of {}",
                 options.rays, rays.size());
   if (DeviceEvaluator* const device = rays.device()) {
-    return device->evaluate(shape, reflectance, rays, bins, options);
+    Evaluation e = device->evaluate(shape, reflectance, rays, bins, options);
+    if (!options.derivatives || !options.sparse) return e;
+    e.rows = e.jacobian.sparseView();
+    e.jacobian.resize(0, 0);
+    return e;
   }
+  if (options.derivatives && options.sparse) return evaluate_sparse(shape, reflectance, rays, bins, options);
   return std::visit(
       [&](const auto& s) { return evaluate_family(shape, s, reflectance, rays, bins, options); },
       shape.family());

@@ -7,6 +7,7 @@
 
 #include "lucerna/design/design_rays.h"
 #include "lucerna/design/design_shape.h"
+#include "lucerna/design/sparse_jacobian.h"
 #include "lucerna/design/tent_bins.h"
 #include "lucerna/trace/reflectance.h"
 
@@ -20,6 +21,8 @@ struct EvaluationOptions {
   std::uint64_t rays = 1 << 16;
   /// Also the derivatives; about twice the time.
   bool derivatives = true;
+  /// The derivatives as `Evaluation::rows` and not as `jacobian`; free forms only.
+  bool sparse = false;
   /// Light that misses the mirror counts too (it does in a luminaire; the hidden-reflector suite leaves it
   /// out, so that it cannot flatter the error).
   bool direct_light = true;
@@ -37,6 +40,8 @@ struct Evaluation {
   Eigen::VectorXd variance;
   /// d flux / d parameter; empty unless asked for.
   BinJacobian jacobian;
+  /// The same where it was asked for sparse.
+  SparseJacobian rows;
   /// Shares of the sources' flux: light that leaves after, and without, a reflection; that mirrors absorbed;
   /// that met the back; that was given up.
   double reflected = 0.0, direct = 0.0, absorbed = 0.0, back = 0.0, lost = 0.0;

@@ -17,8 +17,9 @@ namespace {
 /// diagonal: small, so that the first damping of a stage suits both families.
 constexpr double kTiltShare = 0.02, kHeightShare = 2e-4;
 
-/// 1 / measure per bin; 0 where a bin has none.
-Eigen::VectorXd weights(const TentBins& bins) {
+}  // namespace
+
+Eigen::VectorXd bin_weights(const TentBins& bins) {
   Eigen::VectorXd w(static_cast<Eigen::Index>(bins.size()));
   for (Eigen::Index i = 0; i < w.size(); ++i) {
     const double measure = bins.measure()[static_cast<std::size_t>(i)];
@@ -34,11 +35,9 @@ double best_scale(const Eigen::VectorXd& flux, const Eigen::VectorXd& target, co
   return own > 0.0 ? w.dot(flux.cwiseProduct(target)) / own : 1.0;
 }
 
-}  // namespace
-
 BinError bin_error(const Evaluation& e, const Eigen::VectorXd& target, const TentBins& bins,
                    TargetMode mode) {
-  const Eigen::VectorXd w = weights(bins);
+  const Eigen::VectorXd w = bin_weights(bins);
   BinError error;
   error.scale = best_scale(e.flux, target, w, mode);
   const double norm = w.dot(target.cwiseAbs2());
@@ -50,7 +49,7 @@ BinError bin_error(const Evaluation& e, const Eigen::VectorXd& target, const Ten
 
 NormalEquations normal_equations(const Evaluation& e, const Eigen::VectorXd& target, const TentBins& bins,
                                  TargetMode mode) {
-  const Eigen::VectorXd w = weights(bins);
+  const Eigen::VectorXd w = bin_weights(bins);
   const double norm = w.dot(target.cwiseAbs2());
   LUCERNA_CHECK(norm > 0.0, "a target without light in its window");
   const double scale = best_scale(e.flux, target, w, mode);
@@ -103,31 +102,37 @@ Eigen::VectorXd own_squares(const NormalEquations& equations) {
 
 }  // namespace
 
-Eigen::MatrixXd step_metric(const DesignShape& shape, const NormalEquations& equations) {
-  const Eigen::VectorXd own = own_squares(equations);
-  const double mean = equations.hessian.diagonal().mean();
-  const auto* const spline = std::get_if<BsplineShape>(&shape.family());
-  if (spline == nullptr) return own.asDiagonal();
-  const int nx = spline->row_x().coefficients(), ny = spline->row_y().coefficients();
-  const double step = std::min(spline->row_x().step_mm, spline->row_y().step_mm);
-  Eigen::MatrixXd metric = Eigen::MatrixXd::Zero(own.size(), own.size());
-  const auto tilt = [&](int a, int b, double step_mm) {
-    const double w = kTiltShare * mean * (step / step_mm) * (step / step_mm);
-    const auto i = shape.parameter_of()[static_cast<std::size_t>(a)];
-    const auto j = shape.parameter_of()[static_cast<std::size_t>(b)];
-    metric(i, i) += w;
-    metric(j, j) += w;
-    metric(i, j) -= w;
-    metric(j, i) -= w;
-  };
+void for_each_tilt(const BsplineShape& spline, const std::function<void(int, int, double)>& share) {
+  const int nx = spline.row_x().coefficients(), ny = spline.row_y().coefficients();
+  const double step = std::min(spline.row_x().step_mm, spline.row_y().step_mm);
+  const double in_x = kTiltShare * std::pow(step / spline.row_x().step_mm, 2);
+  const double in_y = kTiltShare * std::pow(step / spline.row_y().step_mm, 2);
   for (int v = 0; v < ny; ++v) {
     for (int u = 0; u < nx; ++u) {
       const int at = v * nx + u;
-      if (u + 1 < nx) tilt(at, at + 1, spline->row_x().step_mm);
-      if (v + 1 < ny) tilt(at, at + nx, spline->row_y().step_mm);
+      if (u + 1 < nx) share(at, at + 1, in_x);
+      if (v + 1 < ny) share(at, at + nx, in_y);
     }
   }
-  metric.diagonal() += kHeightShare * own;
+}
+
+Eigen::VectorXd own_share(const Eigen::VectorXd& diagonal) {
+  return kHeightShare * (diagonal.array() + 1e-2 * diagonal.mean() + 1e-300);
+}
+
+Eigen::MatrixXd step_metric(const DesignShape& shape, const NormalEquations& equations) {
+  const auto* const spline = std::get_if<BsplineShape>(&shape.family());
+  if (spline == nullptr) return own_squares(equations).asDiagonal();
+  const double mean = equations.hessian.diagonal().mean();
+  Eigen::MatrixXd metric = own_share(equations.hessian.diagonal()).asDiagonal();
+  for_each_tilt(*spline, [&](int a, int b, double share) {
+    const auto i = shape.parameter_of()[static_cast<std::size_t>(a)];
+    const auto j = shape.parameter_of()[static_cast<std::size_t>(b)];
+    metric(i, i) += share * mean;
+    metric(j, j) += share * mean;
+    metric(i, j) -= share * mean;
+    metric(j, i) -= share * mean;
+  });
   return metric;
 }
 
@@ -140,12 +145,15 @@ Eigen::VectorXd damped_step(const NormalEquations& equations, double lambda) {
   return damped_step(equations, own_squares(equations).asDiagonal(), lambda);
 }
 
+double next_lambda(double lambda, double predicted, double gained) {
+  return std::max(1e-7, lambda * std::max(0.2, 1.0 - std::pow(2.0 * gained / predicted - 1.0, 3)));
+}
+
 double next_lambda(double lambda, const NormalEquations& equations, const Eigen::VectorXd& step,
                    double cost) {
   const double predicted = -(equations.gradient.dot(step) * 2.0 +
                              step.dot(equations.hessian.selfadjointView<Eigen::Lower>() * step));
-  const double gain = (equations.cost - cost) / predicted;
-  return std::max(1e-7, lambda * std::max(0.2, 1.0 - std::pow(2.0 * gain - 1.0, 3)));
+  return next_lambda(lambda, predicted, equations.cost - cost);
 }
 
 }  // namespace lucerna

@@ -54,6 +54,19 @@ Eigen::VectorXd damped_step(const NormalEquations& equations, const Eigen::Matri
 /// creases stay small. Of revolution D is the diagonal, as above.
 Eigen::MatrixXd step_metric(const DesignShape& shape, const NormalEquations& equations);
 
+/// What the two parts of that metric count: share(a, b) for each pair of neighbouring coefficients of a free
+/// form, over the mean of the Hessian's diagonal; and each parameter's own square.
+void for_each_tilt(const BsplineShape& spline, const std::function<void(int a, int b, double share)>& share);
+Eigen::VectorXd own_share(const Eigen::VectorXd& diagonal);
+
+/// 1 / measure per bin; 0 where a bin has none.
+Eigen::VectorXd bin_weights(const TentBins& bins);
+/// What a result is multiplied by before it is compared.
+double best_scale(const Eigen::VectorXd& flux, const Eigen::VectorXd& target, const Eigen::VectorXd& weights,
+                  TargetMode mode);
+
+/// The damping after a step from which the equations predicted one gain and which brought another.
+double next_lambda(double lambda, double predicted, double gained);
 /// The damping after a step that made the cost `cost`: Nielsen's rule, by how much of the gain that the
 /// equations predicted came true. No jumps, so that a narrow valley is not left at every other step.
 double next_lambda(double lambda, const NormalEquations& equations, const Eigen::VectorXd& step, double cost);

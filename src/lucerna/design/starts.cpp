@@ -49,14 +49,12 @@ Direction bin_direction(const TentBins& bins, std::size_t i, const Vec3& from_mm
     const double gamma = bins.extent() * (static_cast<double>(i) + 0.5) / bins.count();
     return axes.direction(Direction::from_unit({std::sin(gamma), 0.0, std::cos(gamma)}));
   }
-  const double a = (2.0 * static_cast<double>(i % count) + 1.0) / bins.count() - 1.0;
-  const double b = (2.0 * static_cast<double>(i / count) + 1.0) / bins.count() - 1.0;
+  double slope = 0.0;
+  const double u = bins.view().axis_u.coordinate(static_cast<double>(i % count) + 0.5, slope);
+  const double v = bins.view().axis_v.coordinate(static_cast<double>(i / count) + 0.5, slope);
   if (bins.is_plane()) {
-    const Vec3 at =
-        axes.point({a * bins.extent() * bins.half_x_mm(), b * bins.extent() * bins.half_y_mm(), 0.0});
-    return Direction::from(at - from_mm);
+    return Direction::from(axes.point({u * bins.half_x_mm(), v * bins.half_y_mm(), 0.0}) - from_mm);
   }
-  const double u = a * bins.extent(), v = b * bins.extent();
   return axes.direction(Direction::from({u, v, std::sqrt(std::max(0.0, 1.0 - u * u - v * v))}));
 }
 

@@ -17,6 +17,31 @@ TentBins::TentBins(TentKind kind, const Frame& axes, double extent, int count) {
   view_.cell = (kind == TentKind::rings ? 1.0 : 2.0) * extent / count;
   view_.count = count;
   LUCERNA_CHECK(count >= 2 && extent > 0.0, "{} bins over {}", count, extent);
+  view_.axis_u = view_.axis_v = tent_axis(-extent, extent, count, 0, -extent, extent);
+}
+
+void TentBins::set_axes(const TentAxis& u, const TentAxis& v) {
+  LUCERNA_CHECK(u.count() == v.count() && u.count() == view_.count, "{} x {} cells", u.count(), v.count());
+  view_.axis_u = u;
+  view_.axis_v = v;
+}
+
+TentBins TentBins::graded(const Frame& axes, const TentAxis& u, const TentAxis& v) {
+  TentBins bins(TentKind::square, axes, 1.0, u.count());
+  bins.set_axes(u, v);
+  bins.measure_ = bins.flux_of([](const Direction&) { return 1.0; });
+  return bins;
+}
+
+TentBins TentBins::graded_plane(const Frame& axes, double half_x_mm, double half_y_mm, const TentAxis& u,
+                                const TentAxis& v) {
+  LUCERNA_CHECK(half_x_mm > 0.0 && half_y_mm > 0.0, "bins over {} x {} mm", half_x_mm, half_y_mm);
+  TentBins bins(TentKind::plane, axes, 1.0, u.count());
+  bins.view_.half_x_mm = half_x_mm;
+  bins.view_.half_y_mm = half_y_mm;
+  bins.set_axes(u, v);
+  bins.measure_ = bins.flux_on([](double, double) { return 1.0; });
+  return bins;
 }
 
 TentBins TentBins::square(const Frame& axes, double half_width, int count) {
@@ -84,39 +109,43 @@ std::vector<double> TentBins::flux_of(const std::function<double(const Direction
     }
     return flux;
   }
-  const int n = (view_.count + 1) * kFine;
-  const double step = view_.cell / kFine, start = -view_.extent - 0.5 * view_.cell;
+  over_grid(kFine, [&](double u, double v, double area) {
+    const double w2 = 1.0 - u * u - v * v;
+    if (w2 <= 0.0) return;
+    const double w = std::sqrt(w2);
+    add(Direction::from_unit({u, v, w}), area / w);
+  });
+  return flux;
+}
+
+void TentBins::over_grid(int fine, const std::function<void(double, double, double)>& visit) const {
+  const int n = (view_.count + 1) * fine;
+  const double step = 1.0 / fine;
   for (int j = 0; j < n; ++j) {
+    double dv = 0.0;
+    const double v = view_.axis_v.coordinate((j + 0.5) * step - 0.5, dv);
     for (int i = 0; i < n; ++i) {
-      const double u = start + (i + 0.5) * step, v = start + (j + 0.5) * step;
-      const double w2 = 1.0 - u * u - v * v;
-      if (w2 <= 0.0) continue;
-      const double w = std::sqrt(w2);
-      add(Direction::from_unit({u, v, w}), step * step / w);
+      double du = 0.0;
+      const double u = view_.axis_u.coordinate((i + 0.5) * step - 0.5, du);
+      visit(u, v, du * step * dv * step);
     }
   }
-  return flux;
 }
 
 std::vector<double> TentBins::flux_on(const std::function<double(double, double)>& density_per_mm2) const {
   LUCERNA_CHECK(view_.kind == TentKind::plane, "a density over directions");
   std::vector<double> flux(static_cast<std::size_t>(view_.count * view_.count), 0.0);
   constexpr int kFine = 8;
-  const int n = (view_.count + 1) * kFine;
-  const double step = view_.cell / kFine, start = -view_.extent - 0.5 * view_.cell;
-  const double area_mm2 = step * view_.half_x_mm * step * view_.half_y_mm;
   Deposit d;
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      const double u = start + (i + 0.5) * step, v = start + (j + 0.5) * step;
-      d.n = 0;
-      view_.deposit_grid(u, v, d);
-      const double value = area_mm2 * density_per_mm2(u * view_.half_x_mm, v * view_.half_y_mm);
-      for (std::size_t k = 0; k < static_cast<std::size_t>(d.n); ++k) {
-        flux[static_cast<std::size_t>(d.bin[k])] += d.weight[k] * value;
-      }
+  over_grid(kFine, [&](double u, double v, double area) {
+    d.n = 0;
+    view_.deposit_grid(u, v, d);
+    const double value =
+        area * view_.half_x_mm * view_.half_y_mm * density_per_mm2(u * view_.half_x_mm, v * view_.half_y_mm);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(d.n); ++k) {
+      flux[static_cast<std::size_t>(d.bin[k])] += d.weight[k] * value;
     }
-  }
+  });
   return flux;
 }
 

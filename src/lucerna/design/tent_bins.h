@@ -19,6 +19,12 @@ class TentBins {
   /// count x count bins over |u|, |v| <= half_width (0 < half_width <= 1); `axes` maps the window's frame
   /// (its z is the axis) into the frame of the directions that will be binned.
   static TentBins square(const Frame& axes, double half_width, int count);
+  /// Squares of direction cosines over the whole hemisphere about the axis, or of a plane (`half_x_mm`,
+  /// `half_y_mm` are the units of its coordinates): fine over a window, growing outwards. Both axes have the
+  /// same number of cells.
+  static TentBins graded(const Frame& axes, const TentAxis& u, const TentAxis& v);
+  static TentBins graded_plane(const Frame& axes, double half_x_mm, double half_y_mm, const TentAxis& u,
+                               const TentAxis& v);
   /// `count` bins over [0, gamma_max_rad], gamma_max <= pi.
   static TentBins rings(const Frame& axes, double gamma_max_rad, int count);
   /// count x count bins over |x| <= half_x_mm, |y| <= half_y_mm of the xy plane of `axes`; light counts that
@@ -33,6 +39,11 @@ class TentBins {
   int count() const { return view_.count; }
   std::size_t size() const { return measure_.size(); }
   const Frame& axes() const { return view_.axes; }
+  /// Whether a bin lies in the window, not in the cells that grow around it.
+  bool in_window(std::size_t bin) const {
+    const auto n = static_cast<std::size_t>(view_.count);
+    return inside(view_.axis_u, bin % n) && inside(view_.axis_v, bin / n);
+  }
   /// Half width in direction cosines, the largest gamma in radians, or what a plane was widened by.
   double extent() const { return view_.extent; }
   double half_x_mm() const { return view_.half_x_mm; }
@@ -64,6 +75,14 @@ class TentBins {
 
  private:
   TentBins(TentKind kind, const Frame& axes, double extent, int count);
+  static bool inside(const TentAxis& axis, std::size_t i) {
+    return axis.outer == 0 || (i >= static_cast<std::size_t>(axis.outer) &&
+                               i < static_cast<std::size_t>(axis.outer + axis.inner));
+  }
+  /// Points of a grid with `fine` to a cell along each axis, half a cell beyond the outermost, with their
+  /// areas.
+  void over_grid(int fine, const std::function<void(double u, double v, double area)>& visit) const;
+  void set_axes(const TentAxis& u, const TentAxis& v);
 
   TentBinsView view_;
   std::vector<double> measure_;

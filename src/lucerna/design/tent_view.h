@@ -8,6 +8,7 @@
 
 #include "lucerna/core/frame.h"
 #include "lucerna/core/host_device.h"
+#include "lucerna/design/tent_axis.h"
 
 namespace lucerna {
 
@@ -35,6 +36,7 @@ struct TentBinsView {
   double extent = 1.0;
   double cell = 1.0;
   int count = 2;
+  TentAxis axis_u, axis_v;                     // square and plane
   double half_x_mm = 1.0, half_y_mm = 1.0;     // plane
   double gamma_min = 0.0, sector_width = 1.0;  // zone
   int sectors = 1;
@@ -118,18 +120,19 @@ struct TentBinsView {
     deposit_grid(dot(p, axes.ex()) / half_x_mm, dot(p, axes.ey()) / half_y_mm, out);
   }
 
-  /// Tents of the grid of count x count cells over |u|, |v| <= extent.
+  /// Tents of the grid of count x count cells along both axes.
   LUCERNA_HD void deposit_grid(double window_u, double window_v, TentDeposit& out) const {
-    const double u = (window_u + extent) / cell + 0.5, v = (window_v + extent) / cell + 0.5;
+    double per_u = 0.0, per_v = 0.0;
+    const double u = axis_u.index(window_u, per_u) + 0.5, v = axis_v.index(window_v, per_v) + 0.5;
     if (!(u >= 0.0 && v >= 0.0 && u < count + 1 && v < count + 1)) return;
     const int i = static_cast<int>(u) - 1, j = static_cast<int>(v) - 1;
-    const double fu = u - (i + 1), fv = v - (j + 1), per = 1.0 / cell;
+    const double fu = u - (i + 1), fv = v - (j + 1);
     for (int b = 0; b < 2; ++b) {
       if (j + b < 0 || j + b >= count) continue;
-      const double wv = b == 0 ? 1.0 - fv : fv, dv = b == 0 ? -per : per;
+      const double wv = b == 0 ? 1.0 - fv : fv, dv = b == 0 ? -per_v : per_v;
       for (int a = 0; a < 2; ++a) {
         if (i + a < 0 || i + a >= count) continue;
-        const double wu = a == 0 ? 1.0 - fu : fu, du = a == 0 ? -per : per;
+        const double wu = a == 0 ? 1.0 - fu : fu, du = a == 0 ? -per_u : per_u;
         const auto n = static_cast<std::size_t>(out.n++);
         out.bin[n] = (j + b) * count + i + a;
         out.weight[n] = wu * wv;

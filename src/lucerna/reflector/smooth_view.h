@@ -116,13 +116,19 @@ struct BsplineView {
       }
     }
   }
-  /// row.add(coefficient k, a * u[k] + b * v[k]) for the kSupport coefficients at `local`.
+  /// row.add(coefficient k, a * u[k] + b * v[k]) for the kSupport coefficients at `local`; or all at once
+  /// into row.block(local.first), where a row has blocks.
   template <class Row>
   LUCERNA_HD void add(const Local& local, double a, const double* u, double b, const double* v,
                       const Row& row) const {
-    for (int j = 0; j < 4; ++j) {
-      const int first = (local.first[1] + j) * row_x.coefficients() + local.first[0];
-      for (int i = 0; i < 4; ++i) row.add(first + i, a * u[4 * j + i] + b * v[4 * j + i]);
+    if constexpr (requires { row.block(local.first); }) {  // a block of all that count
+      auto& block = row.block(local.first);
+      for (std::size_t k = 0; k < kSupport; ++k) block[k] += a * u[k] + b * v[k];
+    } else {
+      for (int j = 0; j < 4; ++j) {
+        const int first = (local.first[1] + j) * row_x.coefficients() + local.first[0];
+        for (int i = 0; i < 4; ++i) row.add(first + i, a * u[4 * j + i] + b * v[4 * j + i]);
+      }
     }
   }
 };
