@@ -1,38 +1,54 @@
 # SPDX-License-Identifier: Apache-2.0
 # The two commands of the README, and the longer suites. Each installs what is missing first (scripts/packages.sh).
-.PHONY: demo test test-report gallery test-slow test-asan bench packages build format clean
+# CUDA=1 compiles the CUDA back end too (needs nvcc).
+.PHONY: demo test check check-quick fuzz bench test-report test-slow gallery program packages format clean
 
 BUILD := build/release
 
-demo: build
+demo: program
 	scripts/demo.sh $(BUILD)/lucerna
 
-test: build
+test: program
+	cmake --build --preset release --target tests
 	ctest --preset release
 
-test-slow: build
-	ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -L slow
+# Every compiler and sanitizer, stage by stage (scripts/check.sh says which); a stage that passed for this commit is not run again.
+check: packages
+	scripts/check.sh $(STAGES)
 
-test-asan: packages
-	cmake --preset asan && cmake --build --preset asan && ctest --preset asan
+# Seconds to minutes: the form of the tree, clang-tidy on what changed.
+check-quick:
+	scripts/check.sh format tidy-changed tree
 
-# The HTML reports in a real browser: needs Chromium and two npm packages, which nothing else here does.
-test-report: build
-	scripts/packages.sh scripts/packages-report.txt
-	cd tests/report && npm ci --no-audit --no-fund && LUCERNA=$(abspath $(BUILD)/lucerna) npm test
+# make fuzz MINUTES=10: so many minutes for all targets together.
+MINUTES ?= 10
+fuzz: packages
+	scripts/packages.sh scripts/packages-check.txt
+	scripts/fuzz.sh $(MINUTES)
 
-# The pictures of the README, from reports in the same browser.
-gallery: build
-	scripts/packages.sh scripts/packages-report.txt
-	scripts/gallery.sh $(BUILD)/lucerna
-
-bench: build
+bench: program
+	cmake --build --preset release --target benchmarks
 	$(BUILD)/bench/bench_trace
 	$(BUILD)/bench/bench_read_write
 	$(BUILD)/bench/bench_quality led
 
-build: packages
-	cmake --preset release && cmake --build --preset release
+test-slow: program
+	cmake --build --preset release --target tests
+	ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -L slow
+
+# The HTML reports in a real browser: needs Chromium and two npm packages, which nothing else here does.
+test-report: program
+	scripts/packages.sh scripts/packages-report.txt
+	cd tests/report && npm ci --no-audit --no-fund && LUCERNA=$(abspath $(BUILD)/lucerna) npm test
+
+# The pictures of the README, from reports in the same browser.
+gallery: program
+	scripts/packages.sh scripts/packages-report.txt
+	scripts/gallery.sh $(BUILD)/lucerna
+
+program: packages
+	cmake --preset release -DLUCERNA_CUDA=$(if $(CUDA),ON,OFF)
+	cmake --build --preset release --target lucerna_cli
 
 packages:
 	scripts/packages.sh

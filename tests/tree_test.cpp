@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks on the source tree: includes point one way only, files stay short, every file carries its licence.
+// Checks on the source tree: includes point one way only, files stay short, every file carries its licence,
+// no two types of one namespace share a name; and on the docs: what they point to is there.
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "tests/support/paths.h"
+#include "tests/support/text_scan.h"
 
 namespace fs = std::filesystem;
 
@@ -47,15 +48,21 @@ std::vector<std::string> lines_of(const fs::path& file) {
   return lines;
 }
 
+/// The folder of an include of ours; empty for any other line.
+std::string included_folder(const std::string& line) {
+  const std::size_t word = line.find_first_not_of(" \t");
+  if (word == std::string::npos || line[word] != '#') return "";
+  const auto folders = lucerna::test::between(line, "include \"lucerna/", "/");
+  return folders.empty() ? "" : folders.front();
+}
+
 /// The folders that `lines` include and `folder` may not.
 std::vector<std::string> forbidden_includes(const std::string& folder,
                                             const std::vector<std::string>& lines) {
-  static const std::regex include(R"re(^\s*#\s*include\s+"lucerna/([a-z]+)/.*)re");
   std::vector<std::string> bad;
   for (const std::string& line : lines) {
-    std::smatch match;
-    if (!std::regex_match(line, match, include) || match[1] == folder) continue;
-    if (!kMayInclude.at(folder).contains(match[1])) bad.push_back(line);
+    const std::string to = included_folder(line);
+    if (!to.empty() && to != folder && !kMayInclude.at(folder).contains(to)) bad.push_back(line);
   }
   return bad;
 }
@@ -83,6 +90,109 @@ TEST(Tree, FilesAreShortAndLicensed) {
     ASSERT_FALSE(lines.empty()) << file;
     EXPECT_EQ(lines.front(), "// SPDX-License-Identifier: Apache-2.0") << file;
   }
+}
+
+/// The types that a header defines in a namespace, for all who include it: `struct Name {`, `enum class Name
+/// : base {` at the left margin. Names in `detail` and other inner namespaces count too.
+std::vector<std::string> types_of(const std::vector<std::string>& lines) {
+  std::vector<std::string> types;
+  for (const std::string& line : lines) {
+    for (const char* word : {"struct ", "class ", "enum class ", "enum "}) {
+      if (line.rfind(word, 0) != 0 || line.find('{') == std::string::npos) continue;
+      const std::size_t begin = std::string(word).size(), end = line.find_first_of(" :{<", begin);
+      if (end > begin && line.substr(begin, 6) != "class ") types.push_back(line.substr(begin, end - begin));
+    }
+  }
+  return types;
+}
+
+// Two classes of one name in one library: the linker takes one's functions for the other's, and says nothing.
+TEST(Tree, NoTwoHeadersDefineTypesOfOneName) {
+  // Two sides of an #if, never in one program.
+  const std::set<std::string> kTwoSides{"Float", "Int", "Mask", "Wide"};
+  std::map<std::string, fs::path> owner;
+  for (const fs::path& file : source_files()) {
+    if (file.extension() != ".h") continue;
+    for (const std::string& type : types_of(lines_of(file))) {
+      const auto [at, first] = owner.emplace(type, file);
+      if (!first && at->second != file && !kTwoSides.contains(type)) {
+        ADD_FAILURE() << type << " is in " << at->second << " and in " << file;
+      }
+    }
+  }
+  EXPECT_GT(owner.size(), 100u);
+}
+
+TEST(Tree, CheckSeesTypes) {
+  EXPECT_EQ(types_of({"struct A {", "class B final : public A {", "enum class C { one };", "class D;",
+                      "  struct E {", "template <class T>", "struct F {"}),
+            (std::vector<std::string>{"A", "B", "C", "F"}));
+}
+
+/// What a page of ours links to, as written: [text](target), not addresses of the web, nor places within the
+/// page.
+std::vector<std::string> links_of(const std::string& page) {
+  std::vector<std::string> links;
+  for (const std::string& target : lucerna::test::between(page, "](", ")")) {
+    if (target.find("://") == std::string::npos && target.rfind("#", 0) != 0)
+      links.push_back(target.substr(0, target.find('#')));
+  }
+  return links;
+}
+
+/// The files of ours that a page names in backquotes: those that begin with a folder of the tree and have an
+/// ending.
+std::vector<std::string> paths_of(const std::string& page) {
+  std::vector<std::string> paths;
+  for (const char* folder : {"src/", "tests/", "docs/", "scripts/", "cmake/", "fuzz/corpus", "bench/"}) {
+    for (const std::string& rest : lucerna::test::between(page, std::string("`") + folder, "`")) {
+      const bool plain =
+          rest.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./") ==
+          std::string::npos;
+      const std::size_t dot = rest.rfind('.');
+      if (plain && dot != std::string::npos && dot + 1 < rest.size()) paths.push_back(folder + rest);
+    }
+  }
+  return paths;
+}
+
+std::string text_of(const fs::path& file) {
+  std::string text;
+  for (const std::string& line : lines_of(file)) text += line + "\n";
+  return text;
+}
+
+std::vector<fs::path> pages() {
+  const fs::path root = lucerna::test::source_dir();
+  std::vector<fs::path> pages;
+  for (const auto& entry : fs::directory_iterator(root)) pages.push_back(entry.path());
+  for (const auto& entry : fs::recursive_directory_iterator(root / "docs")) pages.push_back(entry.path());
+  std::erase_if(pages, [](const fs::path& p) { return p.extension() != ".md"; });
+  return pages;
+}
+
+TEST(Docs, LinksAndPathsLeadSomewhere) {
+  std::size_t seen = 0;
+  for (const fs::path& page : pages()) {
+    const std::string text = text_of(page);
+    for (const std::string& link : links_of(text)) {
+      ++seen;
+      EXPECT_TRUE(fs::exists(page.parent_path() / link)) << page << " links to " << link;
+    }
+    for (const std::string& path : paths_of(text)) {
+      ++seen;
+      EXPECT_TRUE(fs::exists(lucerna::test::source_dir() / path)) << page << " names " << path;
+    }
+  }
+  EXPECT_GT(seen, 20u);
+}
+
+TEST(Docs, CheckSeesLinksAndPaths) {
+  const std::string page =
+      "[a](docs/a.md#part) [b](https://example.org) [c](#here) `tests/x_test.cpp` `src/lucerna` "
+      "`scripts/y.sh Z`";
+  EXPECT_EQ(links_of(page), (std::vector<std::string>{"docs/a.md"}));
+  EXPECT_EQ(paths_of(page), (std::vector<std::string>{"tests/x_test.cpp"}));
 }
 
 }  // namespace

@@ -70,6 +70,16 @@ std::uint64_t parse_size(std::string_view word) {
   refuse(word, "a size (such as 65536, 64k, 1MB, 64KiB)");
 }
 
+std::vector<std::string> parse_words(std::string_view word) {
+  std::vector<std::string> words;
+  for (std::string_view rest = word; !rest.empty();) {
+    const std::size_t comma = rest.find(',');
+    words.emplace_back(rest.substr(0, comma));
+    rest.remove_prefix(comma == std::string_view::npos ? rest.size() : comma + 1);
+  }
+  return words;
+}
+
 std::vector<double> parse_numbers(std::string_view word) {
   std::vector<double> values;
   std::string_view rest = word;

@@ -21,6 +21,9 @@ std::uint64_t parse_count(std::string_view word);
 /// A size in bytes: 65536, 64k, 1MB (decimal), 64KiB, 1MiB (binary).
 std::uint64_t parse_size(std::string_view word);
 
+/// Words separated by commas; none of an empty one.
+std::vector<std::string> parse_words(std::string_view word);
+
 /// Numbers separated by commas; with `n`, exactly that many.
 std::vector<double> parse_numbers(std::string_view word);
 std::vector<double> parse_numbers(std::string_view word, std::size_t n);

@@ -37,6 +37,8 @@ TEST(Arguments, NumbersAndRotations) {
   for (const char* bad : {"1,2", "1,2,3,4", "1,,3", "1,2,", ""}) {
     EXPECT_THROW(parse_numbers(bad, 3), UsageError) << bad;
   }
+  EXPECT_EQ(parse_words("x,kx,,flux"), (std::vector<std::string>{"x", "kx", "", "flux"}));
+  EXPECT_TRUE(parse_words("").empty());
   EXPECT_EQ(parse_rotation("z:90").vector({1, 0, 0}), (Vec3{0, 1, 0}));
   EXPECT_EQ(parse_rotation("-z:90").vector({1, 0, 0}), (Vec3{0, -1, 0}));
   EXPECT_EQ(parse_rotation("0,0,2:90").vector({1, 0, 0}), (Vec3{0, 1, 0}));

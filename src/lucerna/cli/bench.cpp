@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "lucerna/cli/arguments.h"
 #include "lucerna/cli/commands.h"
 #include "lucerna/core/error.h"
@@ -91,15 +93,14 @@ void run_bench(const BenchArguments& a, Session& session) {
 }  // namespace
 
 void add_bench(CLI::App& app, Session& session, int&) {
-  CLI::App& command = *app.add_subcommand("bench", "Measure how fast light is traced on this machine");
+  Command command(app, "bench", "Measure how fast light is traced on this machine");
   auto arguments = std::make_shared<BenchArguments>();
-  command.add_option("--device", arguments->device, "cpu, cuda or auto")->capture_default_str();
-  command.add_option("--rays", arguments->rays, "Rays a measurement")->capture_default_str();
-  command.add_option("--cells", arguments->cells, "Cells a side of the mirror, powers of two")
-      ->capture_default_str();
+  command.option("--device", arguments->device, "cpu, cuda or auto");
+  command.option("--rays", arguments->rays, "Rays a measurement");
+  command.option("--cells", arguments->cells, "Cells a side of the mirror, powers of two");
   session.add_json(command);
   session.add_common(command);
-  command.callback([arguments, &session] { run_bench(*arguments, session); });
+  command.on_run([arguments, &session] { run_bench(*arguments, session); });
 }
 
 }  // namespace lucerna::cli

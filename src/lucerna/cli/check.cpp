@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "lucerna/cli/commands.h"
 #include "lucerna/cli/photometric_arguments.h"
@@ -111,15 +112,15 @@ void check(const std::vector<std::string>& paths, const PhotometricArguments& ph
 }  // namespace
 
 void add_check(CLI::App& app, Session& session, int& exit_code) {
-  CLI::App& command = *app.add_subcommand("check", "Name every fault of files or folders with its place");
+  Command command(app, "check", "Name every fault of files or folders with its place");
   auto paths = std::make_shared<std::vector<std::string>>();
   auto photometric = std::make_shared<PhotometricArguments>();
-  command.add_option("FILE", *paths, "Files or folders")->required();
+  command.required("FILE", *paths, "Files or folders");
   photometric->add_read(command);
   session.add_json(command);
   session.add_strict(command);
   session.add_common(command);
-  command.callback(
+  command.on_run(
       [paths, photometric, &session, &exit_code] { check(*paths, *photometric, session, exit_code); });
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "lucerna/cli/commands.h"
 #include "lucerna/cli/compare_parts.h"
@@ -105,26 +106,22 @@ void compare(const CompareArguments& a, Session& session) {
 }  // namespace
 
 void add_compare(CLI::App& app, Session& session, int&) {
-  CLI::App& command =
-      *app.add_subcommand("compare", "Compare two ray sets or models, or two photometric files");
+  Command command(app, "compare", "Compare two ray sets or models, or two photometric files");
   auto arguments = std::make_shared<CompareArguments>();
   CompareArguments& a = *arguments;
-  command
-      .add_option("A", a.reference, "Reference: a ray file, model, IES or EULUMDAT file, folder of a trace")
-      ->required();
-  command.add_option("B", a.test, "Test: likewise")->required();
-  command.add_option("--rays", a.rays, "Rays drawn from a model")->capture_default_str();
-  command.add_option("--seed", a.seed, "Seed of those rays")->capture_default_str();
-  command.add_option(
-      "-o,--output", a.output,
-      "Folder for result.json and pictures (luminance images; of light distributions polar.svg)");
-  command.add_option("--cells-um", a.cells_um, "Cell sizes on the focus plane, um")->capture_default_str();
-  command.add_flag("--force", session.force, "Write into a folder that is not empty");
+  command.required("A", a.reference, "Reference: a ray file, model, IES or EULUMDAT file, folder of a trace");
+  command.required("B", a.test, "Test: likewise");
+  command.option("--rays", a.rays, "Rays drawn from a model");
+  command.option("--seed", a.seed, "Seed of those rays");
+  command.option("-o,--output", a.output,
+                 "Folder for result.json and pictures (luminance images; of light distributions polar.svg)");
+  command.option("--cells-um", a.cells_um, "Cell sizes on the focus plane, um");
+  command.flag("--force", session.force, "Write into a folder that is not empty");
   a.photometric.add_read(command);
   session.add_json(command);
   session.add_strict(command);
   session.add_common(command);
-  command.callback([arguments, &session] { compare(*arguments, session); });
+  command.on_run([arguments, &session] { compare(*arguments, session); });
 }
 
 }  // namespace lucerna::cli

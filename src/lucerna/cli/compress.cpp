@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "lucerna/cli/arguments.h"
 #include "lucerna/cli/commands.h"
 #include "lucerna/cli/model_report.h"
@@ -114,21 +116,20 @@ void compress(const CompressArguments& a, Session& session) {
 }  // namespace
 
 void add_compress(CLI::App& app, Session& session, int&) {
-  CLI::App& command = *app.add_subcommand("compress", "Make a small source model of ray files");
+  Command command(app, "compress", "Make a small source model of ray files");
   auto arguments = std::make_shared<CompressArguments>();
   CompressArguments& a = *arguments;
-  command.add_option("IN", a.inputs, "Ray files; several are superposed, their fluxes add")->required();
-  command.add_option("-o,--output", a.output, "The model file to write (.nfl)")->required();
-  command.add_option("--method", a.method, "adaptive, or clusters: the seed's anisotropic point lights")
-      ->capture_default_str();
-  command.add_option("--max-bytes", a.max_bytes, "Largest size of the file (64k, 1MB, 64KiB)");
-  command.add_option("--flux", a.flux, "Total flux, in the rays' unit, instead of what the files state");
-  command.add_option("--seed", a.seed, "Seed of the random choices")->capture_default_str();
-  command.add_option("--report", a.report, "Also write the report as one HTML file");
+  command.required("IN", a.inputs, "Ray files; several are superposed, their fluxes add");
+  command.required("-o,--output", a.output, "The model file to write (.nfl)");
+  command.option("--method", a.method, "adaptive, or clusters: the seed's anisotropic point lights");
+  command.option("--max-bytes", a.max_bytes, "Largest size of the file (64k, 1MB, 64KiB)");
+  command.option("--flux", a.flux, "Total flux, in the rays' unit, instead of what the files state");
+  command.option("--seed", a.seed, "Seed of the random choices");
+  command.option("--report", a.report, "Also write the report as one HTML file");
   session.add_json(command);
   session.add_strict(command);
   session.add_common(command);
-  command.callback([arguments, &session] { compress(*arguments, session); });
+  command.on_run([arguments, &session] { compress(*arguments, session); });
 }
 
 }  // namespace lucerna::cli

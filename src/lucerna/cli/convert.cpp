@@ -63,8 +63,7 @@ void convert_photometry(const ConvertArguments& a, Session& session) {
 void convert_rays(const ConvertArguments& a, Session& session) {
   const RayConversion conversion = conversion_of(a, session.strict);
   const std::string format = ray_format_for(a.output, a.to);
-  std::vector<std::string> columns;
-  if (!a.columns.empty()) columns = CLI::detail::split(a.columns, ',');
+  const std::vector<std::string> columns = parse_words(a.columns);
   const auto result = session.timed("convert", [&] {
     return convert_ray_file(a.input, a.output, format, conversion,
                             {.salvage = a.salvage, .format = a.from, .text_columns = columns},
@@ -88,30 +87,25 @@ void convert(const ConvertArguments& a, Session& session) {
 }  // namespace
 
 void add_convert(CLI::App& app, Session& session, int&) {
-  CLI::App& command =
-      *app.add_subcommand("convert", "Convert ray files (thin, turn, move) and photometric files");
+  Command command(app, "convert", "Convert ray files (thin, turn, move) and photometric files");
   auto arguments = std::make_shared<ConvertArguments>();
   ConvertArguments& a = *arguments;
-  command.add_option("IN", a.input, "The file to read")->required();
-  command.add_option("OUT", a.output, "The file to write")->required();
-  command.add_option("--from", a.from, "Read IN as this ray-file format, whatever its content says");
-  command.add_option("--to", a.to, "Format of OUT (default: by its ending)");
-  command.add_option("--rays", a.rays,
-                     "Keep so many rays, spread over the file; their flux stays that of all");
-  command.add_option("--seed", a.seed, "Seed of that choice")->capture_default_str();
-  command.add_option("--flux", a.flux, "Total flux to state, in the rays' unit");
-  command.add_option("--length-unit", a.length_unit, "Unit of lengths in OUT, where its format has a choice")
-      ->capture_default_str();
-  command.add_option("--columns", a.columns,
-                     "Columns of a text file without a header: x,y,z,kx,ky,kz,flux,...");
-  command.add_flag("--salvage", a.salvage, "Take what is whole of a damaged file");
-  command.add_option("--rotate", a.rotations, "Turn about an axis through the origin: z:90; may be repeated")
-      ->allow_extra_args(false);
-  command.add_option("--move", a.move, "Then move by X,Y,Z mm");
+  command.required("IN", a.input, "The file to read");
+  command.required("OUT", a.output, "The file to write");
+  command.option("--from", a.from, "Read IN as this ray-file format, whatever its content says");
+  command.option("--to", a.to, "Format of OUT (default: by its ending)");
+  command.option("--rays", a.rays, "Keep so many rays, spread over the file; their flux stays that of all");
+  command.option("--seed", a.seed, "Seed of that choice");
+  command.option("--flux", a.flux, "Total flux to state, in the rays' unit");
+  command.option("--length-unit", a.length_unit, "Unit of lengths in OUT, where its format has a choice");
+  command.option("--columns", a.columns, "Columns of a text file without a header: x,y,z,kx,ky,kz,flux,...");
+  command.flag("--salvage", a.salvage, "Take what is whole of a damaged file");
+  command.repeated("--rotate", a.rotations, "Turn about an axis through the origin: z:90; may be repeated");
+  command.option("--move", a.move, "Then move by X,Y,Z mm");
   a.photometric.add_read(command);
   session.add_strict(command);
   session.add_common(command);
-  command.callback([arguments, &session] { convert(*arguments, session); });
+  command.on_run([arguments, &session] { convert(*arguments, session); });
 }
 
 }  // namespace lucerna::cli

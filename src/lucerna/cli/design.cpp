@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "lucerna/cli/arguments.h"
 #include "lucerna/cli/commands.h"
 #include "lucerna/core/error.h"
@@ -152,23 +154,22 @@ void run_design(const DesignArguments& a, Session& session, int& exit_code) {
 }  // namespace
 
 void add_design(CLI::App& app, Session& session, int& exit_code) {
-  CLI::App& command = *app.add_subcommand("design", "Find the mirror that makes the project's target");
+  Command command(app, "design", "Find the mirror that makes the project's target");
   auto arguments = std::make_shared<DesignArguments>();
   DesignArguments& a = *arguments;
-  command.add_option("PROJECT", a.project, "Project file with [target] and [design]")->required();
-  command.add_option("-o,--output", a.output, "Folder for the results")->required();
-  command.add_option("--time", a.time, "Seconds after which to have stopped with the best so far");
-  command.add_option("--rays", a.rays,
-                     "Rays of the finest evaluations (default 2^20); four times as many judge");
-  command.add_option("--seed", a.seed, "Seed of the random numbers")->capture_default_str();
-  command.add_option("--device", a.device, "cpu, cuda or auto")->capture_default_str();
-  command.add_option("--report", a.report, "Also write the report as one HTML file");
-  command.add_flag("--tolerances", a.tolerances, "Try what a misplaced source and an inexact mirror change");
-  command.add_flag("--resume", a.resume, "Go on from the folder's checkpoint");
-  command.add_flag("--force", session.force, "Write into a folder that is not empty");
+  command.required("PROJECT", a.project, "Project file with [target] and [design]");
+  command.required("-o,--output", a.output, "Folder for the results");
+  command.option("--time", a.time, "Seconds after which to have stopped with the best so far");
+  command.option("--rays", a.rays, "Rays of the finest evaluations (default 2^20); four times as many judge");
+  command.option("--seed", a.seed, "Seed of the random numbers");
+  command.option("--device", a.device, "cpu, cuda or auto");
+  command.option("--report", a.report, "Also write the report as one HTML file");
+  command.flag("--tolerances", a.tolerances, "Try what a misplaced source and an inexact mirror change");
+  command.flag("--resume", a.resume, "Go on from the folder's checkpoint");
+  command.flag("--force", session.force, "Write into a folder that is not empty");
   session.add_json(command);
   session.add_common(command);
-  command.callback([arguments, &session, &exit_code] { run_design(*arguments, session, exit_code); });
+  command.on_run([arguments, &session, &exit_code] { run_design(*arguments, session, exit_code); });
 }
 
 }  // namespace lucerna::cli

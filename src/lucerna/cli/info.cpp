@@ -47,16 +47,15 @@ void info(const InfoArguments& a, Session& session) {
 }  // namespace
 
 void add_info(CLI::App& app, Session& session, int&) {
-  CLI::App& command = *app.add_subcommand("info", "Say what is in a ray file, model, IES or EULUMDAT file");
+  Command command(app, "info", "Say what is in a ray file, model, IES or EULUMDAT file");
   auto arguments = std::make_shared<InfoArguments>();
-  command.add_option("FILE", arguments->files, "Files")->required();
-  command.add_option("--format", arguments->format,
-                     "Read ray files as this format, whatever their content says");
+  command.required("FILE", arguments->files, "Files");
+  command.option("--format", arguments->format, "Read ray files as this format, whatever their content says");
   arguments->photometric.add_read(command);
   session.add_json(command);
   session.add_strict(command);
   session.add_common(command);
-  command.callback([arguments, &session] { info(*arguments, session); });
+  command.on_run([arguments, &session] { info(*arguments, session); });
 }
 
 }  // namespace lucerna::cli

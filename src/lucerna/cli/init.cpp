@@ -9,12 +9,12 @@
 namespace lucerna::cli {
 
 void add_init(CLI::App& app, Session& session, int&) {
-  CLI::App& command = *app.add_subcommand("init", "Write a commented project file");
+  Command command(app, "init", "Write a commented project file");
   auto output = std::make_shared<std::string>("project.toml");
-  command.add_option("-o,--output", *output, "Where")->capture_default_str();
-  command.add_flag("--force", session.force, "Replace the file if it is there");
+  command.option("-o,--output", *output, "Where");
+  command.flag("--force", session.force, "Replace the file if it is there");
   session.add_common(command);
-  command.callback([output, &session] {
+  command.on_run([output, &session] {
     session.start();
     if (!session.force && std::filesystem::exists(*output)) {
       throw InputError(fmt::format("{}: is there already; give --force to replace it", *output));

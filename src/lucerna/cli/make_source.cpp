@@ -66,31 +66,28 @@ void make_source(const MakeSourceArguments& a, Session& session) {
 }  // namespace
 
 void add_make_source(CLI::App& app, Session& session, int&) {
-  CLI::App& command = *app.add_subcommand("make-source", "Make a ray file of an exactly known source");
+  Command command(app, "make-source", "Make a ray file of an exactly known source");
   auto arguments = std::make_shared<MakeSourceArguments>();
   MakeSourceArguments& a = *arguments;
-  command
-      .add_option("KIND", a.kind,
-                  "point disk rectangle cylinder sphere filament led phong500 phong25 radial cosine")
-      ->required();
-  command.add_option("-o,--output", a.output, "The ray file to write")->required();
-  command.add_option("-n,--rays", a.count, "Number of rays")->required();
-  command.add_option("--to", a.to, "Format of the file (default: by its ending)");
-  command.add_option("--seed", a.seed, "Seed of the random numbers")->capture_default_str();
-  command.add_option("--sequence", a.sequence, "random or sobol")->capture_default_str();
-  command.add_option("--flux-lm", a.flux_lm, "Luminous flux (default 1000)");
-  command.add_option("--flux-w", a.flux_w, "Radiant flux, instead of a luminous one");
-  command.add_option("--radius-mm", a.radius, "disk, cylinder, sphere, filament, seed's sets");
-  command.add_option("--length-mm", a.length, "cylinder, filament");
-  command.add_option("--size-mm", a.size, "rectangle: X,Y");
-  command.add_option("--ghost-share", a.ghost_share,
-                     "filament: share of the flux in the bulb's mirror image");
-  command.add_option("--surface", a.surface,
-                     "Surface that the rays start on: none, sphere, cylinder, box, plane");
-  command.add_option("--surface-mm", a.surface_size,
-                     "Its size: sphere RADIUS, cylinder RADIUS,LENGTH, box X,Y,Z, plane its z");
+  command.required("KIND", a.kind,
+                   "point disk rectangle cylinder sphere filament led phong500 phong25 radial cosine");
+  command.required("-o,--output", a.output, "The ray file to write");
+  command.required("-n,--rays", a.count, "Number of rays");
+  command.option("--to", a.to, "Format of the file (default: by its ending)");
+  command.option("--seed", a.seed, "Seed of the random numbers");
+  command.option("--sequence", a.sequence, "random or sobol");
+  command.option("--flux-lm", a.flux_lm, "Luminous flux (default 1000)");
+  command.option("--flux-w", a.flux_w, "Radiant flux, instead of a luminous one");
+  command.option("--radius-mm", a.radius, "disk, cylinder, sphere, filament, seed's sets");
+  command.option("--length-mm", a.length, "cylinder, filament");
+  command.option("--size-mm", a.size, "rectangle: X,Y");
+  command.option("--ghost-share", a.ghost_share, "filament: share of the flux in the bulb's mirror image");
+  command.option("--surface", a.surface,
+                 "Surface that the rays start on: none, sphere, cylinder, box, plane");
+  command.option("--surface-mm", a.surface_size,
+                 "Its size: sphere RADIUS, cylinder RADIUS,LENGTH, box X,Y,Z, plane its z");
   session.add_common(command);
-  command.callback([arguments, &session] { make_source(*arguments, session); });
+  command.on_run([arguments, &session] { make_source(*arguments, session); });
 }
 
 }  // namespace lucerna::cli

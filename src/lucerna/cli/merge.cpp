@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "lucerna/cli/commands.h"
 #include "lucerna/cli/trace_output.h"
 #include "lucerna/trace/trace_file.h"
@@ -33,14 +35,14 @@ void run_merge(const MergeArguments& a, Session& session) {
 }  // namespace
 
 void add_merge(CLI::App& app, Session& session, int&) {
-  CLI::App& command = *app.add_subcommand("merge", "Add traces of ranges of rays (trace --rays A:B)");
+  Command command(app, "merge", "Add traces of ranges of rays (trace --rays A:B)");
   auto arguments = std::make_shared<MergeArguments>();
-  command.add_option("DIR", arguments->folders, "Folders that lucerna trace has written")->required();
-  command.add_option("-o,--output", arguments->output, "Folder for the sum")->required();
-  command.add_flag("--force", session.force, "Write into a folder that is not empty");
+  command.required("DIR", arguments->folders, "Folders that lucerna trace has written");
+  command.required("-o,--output", arguments->output, "Folder for the sum");
+  command.flag("--force", session.force, "Write into a folder that is not empty");
   session.add_json(command);
   session.add_common(command);
-  command.callback([arguments, &session] { run_merge(*arguments, session); });
+  command.on_run([arguments, &session] { run_merge(*arguments, session); });
 }
 
 }  // namespace lucerna::cli

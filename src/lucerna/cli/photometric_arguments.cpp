@@ -6,16 +6,12 @@
 
 namespace lucerna::cli {
 
-void PhotometricArguments::add_read(CLI::App& command) {
-  command
-      .add_option("--ies-turn", ies_turn, "IES files: 0: H = C, sizes swapped; 90: H = C - 90, sizes kept")
-      ->check(CLI::IsMember({"0", "90"}))
-      ->capture_default_str();
-  command
-      .add_option("--isym3", isym3,
-                  "Order of the planes in EULUMDAT files of symmetry 3: standard or reversed")
-      ->check(CLI::IsMember({"standard", "reversed"}))
-      ->capture_default_str();
+void PhotometricArguments::add_read(Command& command) {
+  command.option("--ies-turn", ies_turn, "IES files: 0: H = C, sizes swapped; 90: H = C - 90, sizes kept",
+                 {"0", "90"});
+  command.option("--isym3", isym3,
+                 "Order of the planes in EULUMDAT files of symmetry 3: standard or reversed",
+                 {"standard", "reversed"});
 }
 
 PhotometricReadOptions PhotometricArguments::read_options(bool strict) const {

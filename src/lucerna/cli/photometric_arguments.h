@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 
+#include "lucerna/cli/command.h"
 #include "lucerna/photometry/photometric_io.h"
 
 namespace lucerna::cli {
@@ -12,7 +13,7 @@ namespace lucerna::cli {
 struct PhotometricArguments {
   std::string ies_turn = "0", isym3 = "standard";
 
-  void add_read(CLI::App& command);
+  void add_read(Command& command);
   PhotometricReadOptions read_options(bool strict) const;
   PhotometricWriteOptions write_options() const;
 };

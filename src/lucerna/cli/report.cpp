@@ -48,16 +48,14 @@ void report(const ReportArguments& a, Session& session) {
 }  // namespace
 
 void add_report(CLI::App& app, Session& session, int&) {
-  CLI::App& command = *app.add_subcommand(
-      "report", "Write the report of a trace, a design or a source model as one HTML file");
+  Command command(app, "report", "Write the report of a trace, a design or a source model as one HTML file");
   auto arguments = std::make_shared<ReportArguments>();
   ReportArguments& a = *arguments;
-  command.add_option("DIR", a.input, "Folder that lucerna trace or design has written, or a model (.nfl)")
-      ->required();
-  command.add_option("-o,--output", a.output, "The HTML file")->required();
-  command.add_option("--rays", a.rays, "Ray files that a model is to be compared with");
+  command.required("DIR", a.input, "Folder that lucerna trace or design has written, or a model (.nfl)");
+  command.required("-o,--output", a.output, "The HTML file");
+  command.option("--rays", a.rays, "Ray files that a model is to be compared with");
   session.add_common(command);
-  command.callback([arguments, &session] { report(*arguments, session); });
+  command.on_run([arguments, &session] { report(*arguments, session); });
 }
 
 }  // namespace lucerna::cli

@@ -46,17 +46,17 @@ void sample(const SampleArguments& a, Session& session) {
 }  // namespace
 
 void add_sample(CLI::App& app, Session& session, int&) {
-  CLI::App& command = *app.add_subcommand("sample", "Draw rays from a model");
+  Command command(app, "sample", "Draw rays from a model");
   auto arguments = std::make_shared<SampleArguments>();
   SampleArguments& a = *arguments;
-  command.add_option("MODEL", a.model, "A model file (.nfl)")->required();
-  command.add_option("-o,--output", a.output, "The ray file to write")->required();
-  command.add_option("-n,--rays", a.count, "Number of rays")->required();
-  command.add_option("--to", a.to, "Format of the file (default: by its ending)");
-  command.add_option("--seed", a.seed, "Seed of the random numbers")->capture_default_str();
-  command.add_option("--sequence", a.sequence, "random or sobol")->capture_default_str();
+  command.required("MODEL", a.model, "A model file (.nfl)");
+  command.required("-o,--output", a.output, "The ray file to write");
+  command.required("-n,--rays", a.count, "Number of rays");
+  command.option("--to", a.to, "Format of the file (default: by its ending)");
+  command.option("--seed", a.seed, "Seed of the random numbers");
+  command.option("--sequence", a.sequence, "random or sobol");
   session.add_common(command);
-  command.callback([arguments, &session] { sample(*arguments, session); });
+  command.on_run([arguments, &session] { sample(*arguments, session); });
 }
 
 }  // namespace lucerna::cli

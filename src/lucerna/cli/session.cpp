@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "lucerna/cli/arguments.h"
@@ -70,17 +71,17 @@ void TerminalProgress::clear() {
   drawn_ = false;
 }
 
-void Session::add_common(CLI::App& command) {
-  command.add_option("--threads", threads, "Worker threads (default: all)")->check(CLI::Range(1, 4096));
-  command.add_flag("--quiet", quiet, "Print no progress and no summary");
+void Session::add_common(Command& command) {
+  command.option("--threads", threads, "Worker threads (default: all)", 1, 4096);
+  command.flag("--quiet", quiet, "Print no progress and no summary");
 }
 
-void Session::add_json(CLI::App& command) {
-  command.add_flag("--json", json, "Print one JSON object instead of text");
+void Session::add_json(Command& command) {
+  command.flag("--json", json, "Print one JSON object instead of text");
 }
 
-void Session::add_strict(CLI::App& command) {
-  command.add_flag("--strict", strict, "Refuse files that need a repair or raise a warning");
+void Session::add_strict(Command& command) {
+  command.flag("--strict", strict, "Refuse files that need a repair or raise a warning");
 }
 
 void Session::start() {

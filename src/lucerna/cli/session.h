@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "lucerna/cli/command.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/core/progress.h"
 
@@ -46,9 +48,9 @@ class Session {
   bool quiet = false, json = false, strict = false, force = false;
 
   /// Adds --threads and --quiet to a command.
-  void add_common(CLI::App& command);
-  void add_json(CLI::App& command);
-  void add_strict(CLI::App& command);
+  void add_common(Command& command);
+  void add_json(Command& command);
+  void add_strict(Command& command);
 
   /// To be called once all options are parsed and before any work.
   void start();

@@ -64,20 +64,20 @@ void run_trace(const TraceArguments& a, Session& session) {
 }  // namespace
 
 void add_trace(CLI::App& app, Session& session, int&) {
-  CLI::App& command = *app.add_subcommand("trace", "Trace a project's sources through its mirrors");
+  Command command(app, "trace", "Trace a project's sources through its mirrors");
   auto arguments = std::make_shared<TraceArguments>();
   TraceArguments& a = *arguments;
-  command.add_option("PROJECT", a.project, "Project file (see: lucerna init)")->required();
-  command.add_option("-o,--output", a.output, "Folder for the results")->required();
-  command.add_option("--rays", a.rays, "Number of rays, or a range A:B of ray numbers");
-  command.add_option("--seed", a.seed, "Seed of the random numbers")->capture_default_str();
-  command.add_option("--sequence", a.sequence, "random or sobol")->capture_default_str();
-  command.add_option("--device", a.device, "cpu, cuda or auto")->capture_default_str();
-  command.add_option("--report", a.report, "Also write the report as one HTML file");
-  command.add_flag("--force", session.force, "Write into a folder that is not empty");
+  command.required("PROJECT", a.project, "Project file (see: lucerna init)");
+  command.required("-o,--output", a.output, "Folder for the results");
+  command.option("--rays", a.rays, "Number of rays, or a range A:B of ray numbers");
+  command.option("--seed", a.seed, "Seed of the random numbers");
+  command.option("--sequence", a.sequence, "random or sobol");
+  command.option("--device", a.device, "cpu, cuda or auto");
+  command.option("--report", a.report, "Also write the report as one HTML file");
+  command.flag("--force", session.force, "Write into a folder that is not empty");
   session.add_json(command);
   session.add_common(command);
-  command.callback([arguments, &session] { run_trace(*arguments, session); });
+  command.on_run([arguments, &session] { run_trace(*arguments, session); });
 }
 
 }  // namespace lucerna::cli

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "lucerna/report/trace_files.h"
 #include "lucerna/trace/trace_file.h"
 

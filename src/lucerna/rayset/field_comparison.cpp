@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/rayset/field_comparison.h"
 
-#include <oneapi/tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,6 +8,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
+#include "lucerna/core/parallel_sort.h"
 #include "lucerna/core/random.h"
 #include "lucerna/rayset/view_window.h"
 
@@ -76,7 +75,7 @@ PlaneDifference difference_at(const std::vector<PlaneRay>& rays, double cell_um)
                   static_cast<std::uint32_t>(i)};
     }
   });
-  oneapi::tbb::parallel_sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
+  parallel_sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
     return std::tie(a.x, a.y, a.ray) < std::tie(b.x, b.y, b.ray);
   });
   Sums total;

@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <map>
 #include <numbers>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -16,6 +15,7 @@
 #include "lucerna/core/vec.h"
 #include "lucerna/reflector/smooth_shape.h"
 #include "lucerna/reflector/trough_surface.h"
+#include "tests/support/text_scan.h"
 
 namespace lucerna {
 namespace {
@@ -24,9 +24,9 @@ namespace {
 class StepFile {
  public:
   explicit StepFile(const std::string& text) {
-    const std::regex entity("#(\\d+)=([^;]*);");
-    for (std::sregex_iterator i(text.begin(), text.end(), entity), end; i != end; ++i) {
-      entities_[std::stoi((*i)[1])] = (*i)[2];
+    for (const std::string& entity : test::between(text, "\n#", ";")) {
+      const std::size_t equal = entity.find('=');
+      if (equal != std::string::npos) entities_[std::stoi(entity)] = entity.substr(equal + 1);
     }
     EXPECT_EQ(text.substr(0, 14), "ISO-10303-21;\n");
     EXPECT_NE(text.find("END-ISO-10303-21;"), std::string::npos);
@@ -44,36 +44,29 @@ class StepFile {
   /// Numbers of the entities that one refers to, in order.
   std::vector<int> references(int i) const {
     std::vector<int> out;
-    const std::regex reference("#(\\d+)");
     const std::string& text = at(i);
-    for (std::sregex_iterator k(text.begin(), text.end(), reference), end; k != end; ++k) {
-      out.push_back(std::stoi((*k)[1]));
+    for (std::size_t k = text.find('#'); k != std::string::npos; k = text.find('#', k + 1)) {
+      out.push_back(std::stoi(text.substr(k + 1, 12)));
     }
     return out;
   }
   Vec3 point(int i) const {
-    const std::vector<double> x = numbers(at(i).substr(at(i).find("(''") + 3));
+    const std::vector<double> x = test::numbers_in(at(i).substr(at(i).find("(''") + 3));
     return {x.at(0), x.at(1), x.at(2)};
   }
   /// The lists of plain numbers in an entity: multiplicities and knots.
   std::vector<std::vector<double>> lists(int i) const {
     std::vector<std::vector<double>> out;
-    const std::regex list("\\(([-0-9.E+,]+)\\)");
     const std::string& text = at(i);
-    for (std::sregex_iterator k(text.begin(), text.end(), list), end; k != end; ++k)
-      out.push_back(numbers((*k)[1]));
+    for (std::size_t k = text.find('('); k != std::string::npos; k = text.find('(', k + 1)) {
+      const std::size_t end = text.find_first_not_of("-0123456789.E+,", k + 1);
+      if (end != std::string::npos && end > k + 1 && text[end] == ')')
+        out.push_back(test::numbers_in(text.substr(k + 1, end - k - 1)));
+    }
     return out;
   }
 
  private:
-  static std::vector<double> numbers(const std::string& text) {
-    std::vector<double> out;
-    const std::regex number("[-+]?[0-9]+\\.?[0-9]*(E[-+]?[0-9]+)?");
-    for (std::sregex_iterator k(text.begin(), text.end(), number), end; k != end; ++k) {
-      out.push_back(std::atof(k->str().c_str()));
-    }
-    return out;
-  }
   std::map<int, std::string> entities_;
 };
 

@@ -2,6 +2,7 @@
 #include "lucerna/report/design_files.h"
 
 #include <charconv>
+#include <nlohmann/json.hpp>
 
 #include "lucerna/core/file.h"
 #include "lucerna/reflector/cad_export.h"

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "lucerna/core/error.h"
 #include "lucerna/report/svg_axes.h"

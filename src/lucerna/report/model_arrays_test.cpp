@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "lucerna/report/report_model.h"
 #include "lucerna/source/adaptive_compress.h"

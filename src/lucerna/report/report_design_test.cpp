@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "lucerna/photometry/beam.h"
 #include "lucerna/report/html_assets.h"

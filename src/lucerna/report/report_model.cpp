@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "lucerna/rayset/ray_statistics.h"
 #include "lucerna/report/html_assets.h"

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "lucerna/core/error.h"
 #include "lucerna/report/html_text.h"
@@ -11,6 +12,8 @@
 namespace lucerna {
 
 using Json = nlohmann::ordered_json;
+
+bool ResultFigures::has(const std::string& key) const { return json_.contains(Json::json_pointer(key)); }
 
 const Json& ResultFigures::at(const std::string& key) const {
   const Json::json_pointer pointer(key);

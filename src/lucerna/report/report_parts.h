@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace lucerna {
@@ -14,7 +14,7 @@ class ResultFigures {
  public:
   ResultFigures(const nlohmann::ordered_json& json, std::string file) : json_(json), file_(std::move(file)) {}
 
-  bool has(const std::string& key) const { return json_.contains(nlohmann::ordered_json::json_pointer(key)); }
+  bool has(const std::string& key) const;
   const nlohmann::ordered_json& at(const std::string& key) const;
   std::uint64_t count(const std::string& key) const;
   /// NaN for null.

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <regex>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "lucerna/core/error.h"
@@ -67,7 +67,10 @@ TEST(ReportTrace, IsOneWellFormedFileThatAsksNothingOfAnyNetwork) {
   EXPECT_LT(html.size(), 1'500'000u);
   EXPECT_TRUE(has(html, "default-src 'none'"));
   // Names that are no requests: XML namespaces.
-  std::string rest = std::regex_replace(html, std::regex("http://www\\.w3\\.org/[0-9a-z/]*"), "");
+  std::string rest = html;
+  const std::string space = "http://www.w3.org/";
+  for (std::size_t at = rest.find(space); at != std::string::npos; at = rest.find(space))
+    rest.erase(at, space.size());
   for (const char* part : {"http:", "https:", "//cdn", "@import", "src=\"", "<link", "<iframe", "fetch("}) {
     EXPECT_FALSE(has(rest, part)) << part << " at " << rest.substr(rest.find(part), 120);
   }

@@ -7,8 +7,9 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <regex>
 #include <set>
+
+#include "tests/support/text_scan.h"
 
 namespace lucerna {
 namespace {
@@ -93,10 +94,12 @@ TEST(SvgContour, LabelsNeverTouch) {
     labels.write(canvas, line, "50 %");
   }
   const std::string svg = canvas.str();
-  static const std::regex kBox(R"re(<rect x="([-.0-9]+)" y="([-.0-9]+)" width="([.0-9]+)" height="13.00")re");
   std::vector<std::array<double, 3>> boxes;
-  for (std::sregex_iterator it(svg.begin(), svg.end(), kBox), end; it != end; ++it)
-    boxes.push_back({std::stod((*it)[1]), std::stod((*it)[2]), std::stod((*it)[3])});
+  for (const std::string& rect : test::between(svg, "<rect", ">")) {
+    if (test::attribute_of(rect, "height") != "13.00") continue;
+    const auto number = [&](const char* name) { return std::stod(test::attribute_of(rect, name).value()); };
+    boxes.push_back({number("x"), number("y"), number("width")});
+  }
   EXPECT_GE(boxes.size(), 6u) << "there is room beside each other";
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {

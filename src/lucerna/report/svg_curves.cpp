@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "lucerna/core/error.h"
 #include "lucerna/report/svg_axes.h"

@@ -4,34 +4,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <regex>
 
 #include "lucerna/core/error.h"
+#include "tests/support/text_scan.h"
 
 namespace lucerna {
 namespace {
 
 /// The points of the first polyline of the colour.
-std::vector<std::pair<double, double>> line_of(const std::string& svg, const std::string& color) {
-  std::smatch m;
-  std::vector<std::pair<double, double>> points;
-  if (!std::regex_search(svg, m, std::regex("<polyline points=\"([^\"]*)\"[^>]*stroke=\"" + color + "\"")))
-    return points;
-  const std::string list = m[1];
-  static const std::regex kPair(R"((-?[\d.]+),(-?[\d.]+))");
-  for (std::sregex_iterator it(list.begin(), list.end(), kPair), end; it != end; ++it)
-    points.emplace_back(std::stod((*it)[1]), std::stod((*it)[2]));
-  return points;
+std::vector<test::TextPoint> line_of(const std::string& svg, const std::string& color) {
+  return test::polyline_of(svg, "stroke=\"" + color + "\"");
 }
 
 std::vector<double> axis_of(const std::string& svg, const std::string& name) {
-  std::smatch m;
-  std::vector<double> values;
-  if (!std::regex_search(
-          svg, m, std::regex("data-" + name + "=\"([-+.0-9e]+) ([-+.0-9e]+) ([-+.0-9e]+) ([-+.0-9e]+)")))
-    return values;
-  for (std::size_t i = 1; i <= 4; ++i) values.push_back(std::stod(m[i]));
-  return values;
+  return test::numbers_in(test::attribute_of(svg, "data-" + name).value_or(""));
 }
 
 TEST(SvgCurves, PointsLieWhereTheAxesSay) {
@@ -47,9 +33,9 @@ TEST(SvgCurves, PointsLieWhereTheAxesSay) {
   ASSERT_EQ(line.size(), 3u) << "zero has no place on a logarithmic axis";
   const std::vector<std::pair<double, double>> wanted{{0.0, 0.5}, {1.0, 5.0}, {3.0, 50.0}};
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(line[i].first, x[0] + (wanted[i].first - x[2]) / (x[3] - x[2]) * (x[1] - x[0]), 0.01);
+    EXPECT_NEAR(line[i].x, x[0] + (wanted[i].first - x[2]) / (x[3] - x[2]) * (x[1] - x[0]), 0.01);
     const double share = std::log(wanted[i].second / y[2]) / std::log(y[3] / y[2]);
-    EXPECT_NEAR(line[i].second, y[0] + share * (y[1] - y[0]), 0.01);
+    EXPECT_NEAR(line[i].y, y[0] + share * (y[1] - y[0]), 0.01);
   }
 }
 

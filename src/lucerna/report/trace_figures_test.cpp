@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "lucerna/photometry/flux.h"
 #include "lucerna/source/emitter.h"

@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"

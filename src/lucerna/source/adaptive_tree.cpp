@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/source/adaptive_tree.h"
 
-#include <oneapi/tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -288,7 +286,7 @@ void Grower::grow(std::span<TreeItem> items, const TreeBox& box, const Place& at
   if (right.empty())
     grow_half(false, out);
   else
-    oneapi::tbb::parallel_invoke([&] { grow_half(false, out); }, [&] { grow_half(true, right); });
+    parallel_invoke([&] { grow_half(false, out); }, [&] { grow_half(true, right); });
   for (std::size_t t = 0; t < out.size(); ++t) {
     GrownTree::Node& node = out[t][self[t]];
     node.right = static_cast<std::uint32_t>(out[t].size() - self[t]);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/source/cluster_build.h"
 
-#include <oneapi/tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,6 +12,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
+#include "lucerna/core/parallel_sort.h"
 #include "lucerna/source/cluster_removal.h"
 #include "lucerna/source/mesh_triangulation.h"
 
@@ -361,7 +360,7 @@ AssignedRays assign_rays(const PreparedRays& p, std::vector<std::uint32_t> kept)
     } else {
       for (std::size_t i = 0; i < members.size(); ++i) members[i] = {0, p.code[i], p.rays.weight[i]};
     }
-    oneapi::tbb::parallel_sort(members.begin(), members.end(), [](const Member& a, const Member& b) {
+    parallel_sort(members.begin(), members.end(), [](const Member& a, const Member& b) {
       return std::tie(a.cluster, a.code, a.weight) < std::tie(b.cluster, b.code, b.weight);
     });
     result.begin.assign(points.size() + 1, 0);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/source/cluster_octree.h"
 
-#include <oneapi/tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <limits>
 #include <tuple>
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
+#include "lucerna/core/parallel_sort.h"
 
 namespace lucerna {
 
@@ -116,7 +115,7 @@ PositionOctree build_position_octree(const RayBlock& rays, std::size_t min_rays,
     }
   });
   std::erase_if(keyed, [&](const Keyed& k) { return !(rays.weight[k.ray] > 0.0f); });
-  oneapi::tbb::parallel_sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
+  parallel_sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
     return std::tie(a.key, a.ray) < std::tie(b.key, b.ray);
   });
 

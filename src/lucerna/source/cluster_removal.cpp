@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/source/cluster_removal.h"
 
-#include <oneapi/tbb/parallel_sort.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -12,6 +10,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
+#include "lucerna/core/parallel_sort.h"
 #include "lucerna/source/cluster_directions.h"
 
 namespace lucerna {
@@ -161,7 +160,7 @@ Round measure(const MeshSurface& surface, const std::vector<Vec3>& points, std::
   round.density = mesh_density(round.mesh, triangle_areas(surface, round.mesh), std::move(all.shares),
                                std::move(all.weight));
   round.near = neighbourhood(round.mesh, round.density.hole);
-  oneapi::tbb::parallel_sort(rays.begin(), rays.end(), [](const ClusterRay& a, const ClusterRay& b) {
+  parallel_sort(rays.begin(), rays.end(), [](const ClusterRay& a, const ClusterRay& b) {
     return std::tie(a.cluster, a.code, a.arm_x, a.arm_y, a.arm_z, a.weight) <
            std::tie(b.cluster, b.code, b.arm_x, b.arm_y, b.arm_z, b.weight);
   });

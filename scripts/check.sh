@@ -1,0 +1,115 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# The gate: each stage in turn, one line each (stage, tests, failures, minutes). Usage: scripts/check.sh [STAGE...]; without one, all.
+# What passed for this commit is not run again (build/check/COMMIT/STAGE holds its line); changes that are not committed are, each time.
+# Logs: build/check/STAGE.log. Ends with 1 if a stage failed, after the others have run.
+#   format        clang-format changes nothing
+#   tidy          clang-tidy on every source, with the rule of 60 lines a function (tidy-changed: on those changed since $BASE)
+#   tree          layers, lengths, licences, one type a name
+#   docs          every link and path of the docs leads somewhere
+#   release       g++, everything with the benchmarks, all tests but the slow ones
+#   install       the program runs from where it was installed
+#   clang asan tsan   the same tests under those presets
+set -u
+cd "$(dirname "$0")/.."
+stages="${*:-format tidy tree docs release install clang asan tsan}"
+# `make` waits for two compilers at once on two cores; the presets' tests run two at a time too.
+jobs=${JOBS:-$(nproc)}
+base=${BASE:-origin/main}
+
+if [ -z "$(git status --porcelain --untracked-files=no)" ]; then
+  commit=$(git rev-parse --short=12 HEAD)
+else
+  commit=changed
+  rm -rf build/check/changed
+fi
+mkdir -p "build/check/$commit"
+
+sources() { git ls-files '*.cpp' | grep -v '^tests/report/'; }
+
+changed_sources() {
+  git rev-parse -q --verify "$base" >/dev/null || base=HEAD~1
+  from=$(git merge-base HEAD "$base" 2>/dev/null) || return 0
+  [ "$from" != "$(git rev-parse HEAD)" ] || from=HEAD~1
+  git diff --name-only --diff-filter=d "$from" -- '*.cpp'
+}
+
+# clang-tidy reads how clang would compile each file; nothing is built. Prints each finding once, though a header is read often.
+tidy() {
+  cmake --preset clang >/dev/null || return 1
+  xargs -r -n 1 -P "$jobs" clang-tidy -p build/clang --quiet 2>/dev/null >build/check/findings
+  grep -E '(warning|error): ' build/check/findings | sort -u >build/check/findings.once
+  cat build/check/findings.once
+  [ ! -s build/check/findings.once ]
+}
+
+build_and_test() {  # PRESET TARGETS...
+  preset=$1
+  shift
+  cmake --preset "$preset" >/dev/null && cmake --build --preset "$preset" -j "$jobs" --target "$@" && ctest --preset "$preset"
+}
+
+tree_tests() {  # FILTER
+  cmake --preset release >/dev/null && cmake --build --preset release -j "$jobs" --target tree_tests &&
+    build/release/tests/tree_tests --gtest_filter="$1"
+}
+
+installs() {
+  rm -rf build/check/installed
+  cmake --build --preset release -j "$jobs" --target lucerna_cli && cmake --install build/release --prefix build/check/installed &&
+    build/check/installed/bin/lucerna --version && build/check/installed/bin/lucerna init -o build/check/installed/lamp.toml &&
+    build/check/installed/bin/lucerna check build/check/installed/lamp.toml
+}
+
+stage() {
+  case $1 in
+    format) git ls-files '*.h' '*.cpp' '*.cu' | xargs clang-format --dry-run -Werror ;;
+    tidy) sources | tidy ;;
+    tidy-changed) changed_sources | tidy ;;
+    tree) tree_tests '-Docs.*' ;;
+    docs) tree_tests 'Docs.*' ;;
+    release) build_and_test release all benchmarks ;;
+    install) installs ;;
+    clang) build_and_test clang all benchmarks ;;
+    asan | tsan) build_and_test "$1" all ;;
+    *)
+      echo "no stage $1" >&2
+      return 2
+      ;;
+  esac
+}
+
+# Tests and failures as ctest or GoogleTest count them; for the others the number of complaints.
+counts() {  # LOG
+  if grep -q 'tests passed,' "$1"; then
+    sed -n 's/.*tests passed, \([0-9]*\) tests\{0,1\} failed out of \([0-9]*\).*/\2 \1/p' "$1" | tail -1
+  elif grep -q '^\[==========\] .* ran\.' "$1"; then
+    echo "$(sed -n 's/^\[==========\] \([0-9]*\) test.* ran\..*/\1/p' "$1") $(grep -c '^\[  FAILED  \] .*ms)$' "$1")"
+  else
+    echo "- $(grep -cE '(warning|error): ' "$1")"
+  fi
+}
+
+failed=0
+for name in $stages; do
+  done_line="build/check/$commit/$name"
+  if [ -s "$done_line" ]; then
+    cat "$done_line"
+    continue
+  fi
+  log=build/check/$name.log
+  start=$(date +%s)
+  stage "$name" >"$log" 2>&1
+  result=$?
+  seconds=$(($(date +%s) - start))
+  # shellcheck disable=SC2046  # two words are meant
+  set -- $(counts "$log")
+  line=$(printf '%-12s %5s tests %4s failed %3d.%d min  %s' "$name" "$1" "$2" $((seconds / 60)) $((seconds % 60 / 6)) "$commit")
+  if [ $result -eq 0 ]; then
+    echo "$line" | tee "$done_line"
+  else
+    echo "$line  FAILED, see $log"
+    failed=1
+  fi
+done
+exit $failed
