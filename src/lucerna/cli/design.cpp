@@ -40,8 +40,8 @@ DesignOptions design_options(const DesignArguments& a, const DesignProblem& prob
   options.seed = parse_count(a.seed);
   if (!a.time.empty()) options.time_s = parse_number(a.time);
   if (!a.rays.empty()) {
-    options.most_rays = parse_count(a.rays);
-    options.judge_rays = 4 * options.most_rays;
+    options.max_rays = parse_count(a.rays);
+    options.judge_rays = 4 * options.max_rays;
   }
   options.rays_after = default_ray_count(problem.project.scene);
   if (problem.tolerances) {
@@ -160,7 +160,7 @@ void add_design(CLI::App& app, Session& session, int& exit_code) {
   command.required("PROJECT", a.project, "Project file with [target] and [design]");
   command.required("-o,--output", a.output, "Folder for the results");
   command.option("--time", a.time, "Seconds after which to have stopped with the best so far");
-  command.option("--rays", a.rays, "Rays of the finest evaluations (default 2^20); four times as many judge");
+  command.option("--rays", a.rays, "Rays of the finest evaluations (default 2^23); four times as many judge");
   command.option("--seed", a.seed, "Seed of the random numbers");
   command.option("--device", a.device, "cpu, cuda or auto");
   command.option("--report", a.report, "Also write the report as one HTML file");

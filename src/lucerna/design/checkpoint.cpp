@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/checkpoint.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include "lucerna/core/error.h"
-#include "lucerna/design/design.h"
 
 namespace lucerna {
 
 namespace {
 
-constexpr const char* kMagic = "lucerna-design-checkpoint-7";
+constexpr const char* kMagic = "lucerna-design-checkpoint-8";
+constexpr const char* kSearchMagic = "lucerna-search-checkpoint-1";
 /// More numbers than any design has; keeps a damaged count from asking for memory.
 constexpr std::size_t kMostNumbers = 1 << 20;
 
@@ -55,6 +57,27 @@ class Reader {
     m.parameters = numbers("of");
     return m;
   }
+  FreeFormMark search_mark(const char* name) {
+    expect(name);
+    FreeFormMark m;
+    m.candidate = value<int>();
+    m.level = value<int>();
+    m.cost = value<double>();
+    m.over_noise = value<double>();
+    m.intervals_x = value<int>();
+    m.intervals_y = value<int>();
+    m.parameters = numbers("of");
+    return m;
+  }
+  /// Magic and key.
+  void header(const char* magic, const std::string& key) {
+    if (word() != magic) damaged("it does not begin like one");
+    expect("key");
+    if (word() != key) {
+      throw InputError(
+          "checkpoint: belongs to another project, seed, ray count or device; start without resuming");
+    }
+  }
 
  private:
   template <class T>
@@ -83,7 +106,45 @@ void put(std::string& text, const char* name, const FitMark& m) {
   put(text, "of", m.parameters);
 }
 
+void put(std::string& text, const char* name, const FreeFormMark& m) {
+  text += fmt::format("{} {} {} {} {} {} {} ", name, m.candidate, m.level, m.cost, m.over_noise,
+                      m.intervals_x, m.intervals_y);
+  put(text, "of", m.parameters);
+}
+
 }  // namespace
+
+std::string checkpoint_text(const FreeFormState& s, const std::string& key) {
+  std::string text = fmt::format(
+      "{}\nkey {}\nstep {}\nrefused {}\nlambda {}\nbegun {}\nfailed {}\nevaluations {}\n"
+      "total_rays {}\n",
+      kSearchMagic, key, s.step, s.refused, s.lambda, s.begun, s.failed, s.evaluations, s.total_rays);
+  put(text, "costs", s.costs);
+  put(text, "now", s.now);
+  text += fmt::format("done {}\n", s.done.size());
+  for (const FreeFormMark& m : s.done) put(text, "mark", m);
+  return text + "end\n";
+}
+
+FreeFormState parse_search_checkpoint(const std::string& text, const std::string& key) {
+  Reader in(text);
+  in.header(kSearchMagic, key);
+  FreeFormState s;
+  s.step = in.number<int>("step");
+  s.refused = in.number<int>("refused");
+  s.lambda = in.number<double>("lambda");
+  s.begun = in.number<int>("begun");
+  s.failed = in.number<int>("failed");
+  s.evaluations = in.number<int>("evaluations");
+  s.total_rays = in.number<std::uint64_t>("total_rays");
+  s.costs = in.numbers("costs");
+  s.now = in.search_mark("now");
+  const auto marks = in.number<std::size_t>("done");
+  if (marks > kMostNumbers) damaged("a count is out of range");
+  for (std::size_t i = 0; i < marks; ++i) s.done.push_back(in.search_mark("mark"));
+  in.expect("end");
+  return s;
+}
 
 std::string checkpoint_text(const FitState& s, const std::string& key) {
   std::string text = fmt::format(
@@ -103,12 +164,7 @@ std::string checkpoint_text(const FitState& s, const std::string& key) {
 
 FitState parse_checkpoint(const std::string& text, const std::string& key) {
   Reader in(text);
-  if (in.word() != kMagic) damaged("it does not begin like one");
-  in.expect("key");
-  if (in.word() != key) {
-    throw InputError(
-        "checkpoint: belongs to another project, seed, ray count or device; start without --resume");
-  }
+  in.header(kMagic, key);
   FitState s;
   s.intervals_x = in.number<int>("intervals_x");
   s.intervals_y = in.number<int>("intervals_y");
@@ -140,7 +196,9 @@ int checkpoint_evaluations(const std::string& text) {
   const std::size_t at = text.find(kKey);
   if (at == std::string::npos) damaged("it has no key");
   const std::size_t from = at + kKey.size(), end = text.find('\n', from);
-  const FitState state = parse_checkpoint(text, text.substr(from, end - from));
+  const std::string key = text.substr(from, end - from);
+  if (text.starts_with(kSearchMagic)) return parse_search_checkpoint(text, key).evaluations;
+  const FitState state = parse_checkpoint(text, key);
   return std::max(state.evaluations, static_cast<int>(state.search_costs.size()));
 }
 

@@ -10,6 +10,7 @@
 #include "lucerna/design/light_limits.h"
 #include "lucerna/design/limits.h"
 #include "lucerna/design/reach.h"
+#include "lucerna/design/search_mirror.h"
 #include "lucerna/design/time_budget.h"
 #include "lucerna/design/window.h"
 #include "lucerna/reflector/cad_export.h"
@@ -21,6 +22,9 @@ namespace {
 
 /// In shape mode a tenth of the light beside the window counts as an error of 4.5 %.
 constexpr double kFluxWeight = 0.2;
+/// Of free forms, whose search has starts that catch the light: a tenth of it beside the rectangle counts as
+/// an error of 1 %.
+constexpr double kFluxWeightOfSearch = 0.01;
 /// Rays that judge a result for which there is no time left.
 constexpr std::uint64_t kFewestJudgeRays = std::uint64_t{1} << 18;
 /// Rays that measure how much light leaves the mirror to begin with.
@@ -47,16 +51,16 @@ double share_behind(const DesignShape& shape, const DesignRays& rays) {
 constexpr double kMostBehind = 1e-3;
 
 /// All limits as one cost; empty without any. `rays` must outlive it.
-std::function<double(const DesignShape&, std::uint64_t, NormalEquations*)> limits_cost(
+std::function<double(const DesignShape&, std::uint64_t, ResidualRows*)> limits_cost(
     const DesignProblem& problem, const DesignRays& rays) {
   const ShapeLimits form(problem.limits, problem.start);
   const LightLimits light(problem.limits, problem.reflectance);
   if (form.empty() && light.empty()) return {};
   // The source is a body too: a limit must not be met by a mirror that has passed it.
   const double given = share_behind(problem.start, rays);
-  return [form, light, given, &rays](const DesignShape& shape, std::uint64_t n, NormalEquations* equations) {
+  return [form, light, given, &rays](const DesignShape& shape, std::uint64_t n, ResidualRows* rows) {
     const double past = std::max(0.0, share_behind(shape, rays) - given) / kMostBehind;
-    return form.cost(shape, equations) + light.cost(shape, rays, n, equations) + past * past;
+    return form.cost(shape, rows) + light.cost(shape, rays, n, rows) + past * past;
   };
 }
 
@@ -68,7 +72,7 @@ std::string problem_key(const DesignProblem& problem, const DesignOptions& optio
     design->erase("tolerances");  // a sweep after the fit
   }
   std::ostringstream text;
-  text << table << options.seed << ' ' << options.most_rays;
+  text << table << options.seed << ' ' << options.max_rays;
   // Sums on a device are rounded otherwise: taken up elsewhere, a design would not end at the same bits.
   if (options.accelerator) text << ' ' << options.accelerator->isa();
   std::uint64_t hash = 0xcbf29ce484222325ull;
@@ -195,6 +199,9 @@ FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& option
   LightLimits(problem.limits, problem.reflectance).check(problem.start, rays);
   fit.limits = limits_cost(problem, rays);
   fit.target = target_flux(problem.target, problem.world_from_mirror, rays.flux());
+  fit.rectangle = target_rectangle(problem.target);
+  fit.mirror_from_world = problem.world_from_mirror.inverse();
+  if (uses_free_form_search(problem)) fit.flux_weight *= kFluxWeightOfSearch / kFluxWeight;
   return fit;
 }
 
@@ -204,75 +211,27 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
   DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
   rays.evaluate_on(options.accelerator);
   FitProblem fit_data = fit_problem(problem, options, rays);
-  const std::vector<FitStage> stages =
-      ladder(problem.start, fit_data.bins, {options.most_rays, true, problem.growth});
-  const std::string key = problem_key(problem, options);
-  FitState state;
-  if (!options.checkpoint.empty()) state = parse_checkpoint(options.checkpoint, key);
-  const std::uint64_t rays_before = state.total_rays;
-  std::uint64_t rays_so_far = rays_before;
   DesignResult result{problem.start};
-  const auto stop = [&](std::uint64_t next_rays) {
-    if (progress.stop_requested()) {
-      result.end = DesignEnd::interrupted;
-    } else if (time.spent(rays_so_far - rays_before, next_rays)) {
-      result.end = DesignEnd::time;
-    }
-    return result.end != DesignEnd::converged;
-  };
-  const bool begun = !state.parameters.empty();  // before the fit there may be a search
-  const bool ready = prepare_starts(
-      fit_data, problem.start, stages, problem.optimizer, state.search_costs,
-      [&](const FitRecord& record, const DesignShape& best) {
-        result.history.push_back(record);
-        rays_so_far = record.total_rays;
-        if (observer) observer(record, best, checkpoint_text(state, key));
-        return !stop(record.rays);
-      },
-      progress);
-  const auto conclude = [&] {
-    std::uint64_t judge_rays = options.judge_rays;
-    if (result.end != DesignEnd::converged) {
-      judge_rays = time.affordable(judge_rays, options.rays_after, std::min(judge_rays, kFewestJudgeRays));
-    }
-    if (result.end == DesignEnd::interrupted) judge_rays = std::min(judge_rays, kFewestJudgeRays);
-    judge(problem, options, fit_data, judge_rays, result, progress);
-  };
-  if (!ready) {
-    result.shape = ShapeLimits(problem.limits, problem.start).nearest(fit_data.starts[0].shape);
-    result.checkpoint = checkpoint_text(state, key);
-    result.evaluations = static_cast<int>(state.search_costs.size());
-    conclude();
-    return result;
+  search_mirror({problem, options, problem_key(problem, options), time, progress, observer}, fit_data,
+                result);
+  result.shape = ShapeLimits(problem.limits, problem.start).nearest(result.shape);
+  std::uint64_t judge_rays = options.judge_rays;
+  if (result.end != DesignEnd::converged) {
+    judge_rays = time.affordable(judge_rays, options.rays_after, std::min(judge_rays, kFewestJudgeRays));
   }
-  Fit fit = begun ? Fit(fit_data, stages, problem.start, state)
-                  : Fit(fit_data, stages, problem.start, state.search_costs);
-  while (!fit.done()) {
-    if (stop(fit.next_rays())) break;
-    const FitRecord record = fit.step(progress);
-    rays_so_far = record.total_rays;
-    result.history.push_back(record);
-    progress.update("design", static_cast<std::uint64_t>(record.evaluations), 0);
-    if (observer) observer(record, fit.best(), checkpoint_text(fit.state(), key));
-  }
-  result.shape = ShapeLimits(problem.limits, problem.start).nearest(fit.best());
-  result.checkpoint = checkpoint_text(fit.state(), key);
-  const bool at_noise = fit.at_noise();
-  result.evaluations = fit.state().evaluations;
-  result.rays = fit.state().total_rays;
-  conclude();
-  if (result.end == DesignEnd::converged && !at_noise) {
-    result.remarks.push_back(fmt::format(
-        "ended before its time: {} further attempts in turn brought nothing better", fit.state().fruitless));
-  }
+  if (result.end == DesignEnd::interrupted) judge_rays = std::min(judge_rays, kFewestJudgeRays);
+  judge(problem, options, fit_data, judge_rays, result, progress);
   return result;
 }
 
 std::string history_csv(const std::vector<FitRecord>& history) {
-  std::string csv = "evaluations,stage,step,rays,total_rays,relative_rms,floor,lambda,accepted,efficiency\n";
+  std::string csv =
+      "evaluations,candidate,stage,step,rays,total_rays,relative_rms,floor,lambda,accepted,efficiency,in_"
+      "rectangle\n";
   for (const FitRecord& r : history) {
-    csv += fmt::format("{},{},{},{},{},{:.6g},{:.6g},{:.3g},{},{:.6g}\n", r.evaluations, r.stage, r.step,
-                       r.rays, r.total_rays, r.error, r.floor, r.lambda, r.accepted ? 1 : 0, r.efficiency);
+    csv += fmt::format("{},{},{},{},{},{},{:.6g},{:.6g},{:.3g},{},{:.6g},{:.6g}\n", r.evaluations,
+                       r.candidate, r.stage, r.step, r.rays, r.total_rays, r.error, r.floor, r.lambda,
+                       r.accepted ? 1 : 0, r.efficiency, r.in_rectangle);
   }
   return csv;
 }

@@ -19,8 +19,8 @@ struct DesignOptions {
   /// Wall time after which the design stops at the next step; nothing: the problem's own. It only stops:
   /// every decision depends on counts.
   std::optional<double> time_s;
-  /// Rays of an evaluation at the end of the ladder, at most: a free form's ends at 2^20.
-  std::uint64_t most_rays = std::uint64_t{1} << 22;
+  /// Rays of an evaluation at the end, at most.
+  std::uint64_t max_rays = std::uint64_t{1} << 23;
   /// Rays of the re-trace that judges the result, other than those it was fitted with. Where time ran out or
   /// the user asked to stop, fewer may be traced.
   std::uint64_t judge_rays = std::uint64_t{1} << 22;
@@ -72,14 +72,6 @@ FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& option
 /// min_efficiency and the reflectance contradict each other.
 DesignResult design(const DesignProblem& problem, const DesignOptions& options,
                     Progress& progress = no_progress(), const DesignObserver& observer = {});
-
-/// The state of a fit as text: whole numbers and hexadecimal floats, so that it reads back to the same bits.
-/// `key` says what problem it belongs to.
-std::string checkpoint_text(const FitState& state, const std::string& key);
-/// Throws InputError if the text is no checkpoint, damaged, or of another key.
-FitState parse_checkpoint(const std::string& text, const std::string& key);
-/// How many evaluations were made when a checkpoint was written. Throws InputError as above.
-int checkpoint_evaluations(const std::string& text);
 
 /// The history as CSV.
 std::string history_csv(const std::vector<FitRecord>& history);

@@ -51,9 +51,11 @@ DesignShape start_shape(const Reflector& reflector, const std::vector<int>& inte
   }
   const auto* s = dynamic_cast<const SmoothSurface<BsplineShape>*>(reflector.surface.get());
   if (s == nullptr) reader.fail("intervals", "this reflector family cannot be designed");
-  const int nx = intervals.empty() ? 8 : intervals[0];
-  const int ny = intervals.empty() ? 8 : (intervals.size() > 1 ? intervals[1] : nx);
   const BsplineShape& shape = s->shape();
+  // A mirror that comes with knots of its own keeps them: coarser ones would not be what was given.
+  const int nx = intervals.empty() ? std::max(8, shape.row_x().intervals) : intervals[0];
+  const int ny =
+      intervals.empty() ? std::max(8, shape.row_y().intervals) : (intervals.size() > 1 ? intervals[1] : nx);
   const DesignShape plain = DesignShape::bspline(shape.focal_mm(), reflector.aperture, nx, ny, symmetry);
   return plain.through([&](double x, double y) { return smooth_point(shape.view(), x, y).z_mm; });
 }
@@ -82,7 +84,8 @@ std::optional<int> read_attempts(TomlReader& reader) {
   return static_cast<int>(*n);
 }
 
-/// How often the knots may be doubled: bins hold about four numbers for each parameter then.
+/// How often the knots may be doubled, 0 where the project says how many: bins hold about four numbers for
+/// each parameter then.
 int doublings(const DesignShape& shape, int bins, bool told) {
   if (told || shape.is_revolution()) return 0;
   const int across = std::max(shape.intervals_x(), shape.intervals_y());
@@ -214,6 +217,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
           how,
           attempts,
           growth,
+          !intervals.empty(),
           tolerances};
 }
 

@@ -29,6 +29,8 @@ struct DesignProblem {
   int attempts = 6;
   /// How often the knots may be doubled beyond `start`'s: 0 where the project says how many there are to be.
   int growth = 0;
+  /// The project says how many knots there are to be.
+  bool fixed_knots = false;
   /// What to try around the result; nothing: no [design.tolerances].
   std::optional<ToleranceRanges> tolerances;
 };

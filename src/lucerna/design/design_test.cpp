@@ -8,6 +8,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
+#include "lucerna/design/checkpoint.h"
 #include "lucerna/photometry/binned_intensity.h"
 #include "lucerna/photometry/flux.h"
 #include "lucerna/photometry/photometric_io.h"
@@ -89,7 +90,7 @@ DesignProblem problem(
 DesignOptions small() {
   DesignOptions options;
   options.time_s = 1e6;
-  options.most_rays = 1 << 14;
+  options.max_rays = 1 << 14;
   options.judge_rays = 1 << 16;
   return options;
 }
@@ -97,7 +98,7 @@ DesignOptions small() {
 /// Where only the way counts.
 DesignOptions tiny() {
   DesignOptions options = small();
-  options.most_rays = 1 << 13;
+  options.max_rays = 1 << 13;
   return options;
 }
 
@@ -193,7 +194,7 @@ TEST(Design, ResumesWhereKnotsHaveGrownToTheSameBits) {
   DesignProblem p = problem(folder.path(), "intervals = [1, 1]\n", kFreeForm);
   p.growth = 1;
   DesignOptions options = tiny();
-  options.most_rays = 1 << 16;
+  options.max_rays = 1 << 16;
   const auto grown = [](const FitState& s) { return s.intervals_x == 2 && s.step == 1 ? 0 : -1; };
   expect_same_end(p, grown, 1, options);
 }
@@ -267,7 +268,7 @@ TEST(Design, ShapesAFreeFormMirrorAndKeepsItsSymmetry) {
       problem(folder.path(), "intervals = [4, 4]\n[design.limits]\nsymmetry = \"both\"\n", kFreeForm);
   EXPECT_EQ(p.start.parameter_count(), 16u);
   DesignOptions options = small();
-  options.most_rays = 1 << 16;
+  options.max_rays = 1 << 16;
   options.judge_rays = 1 << 18;
   const DesignResult result = design(p, options);
   EXPECT_LT(result.error.relative_rms, 0.5 * result.start_error.relative_rms);

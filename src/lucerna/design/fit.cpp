@@ -344,8 +344,10 @@ NormalEquations Fit::equations_at(const DesignShape& shape, const Evaluation& e)
   NormalEquations equations =
       scale_ ? normal_equations((*scale_)(e), scale_->flux(target_), bins_, problem_.mode)
              : normal_equations(e, target_, bins_, problem_.mode);
-  equations.cost += roughness(shape, stage().smoothing, &equations);
-  if (problem_.limits) equations.cost += problem_.limits(shape, stage().rays, &equations);
+  ResidualRows rows;
+  equations.cost += roughness(shape, stage().smoothing, &rows);
+  if (problem_.limits) equations.cost += problem_.limits(shape, stage().rays, &rows);
+  rows.add_to(equations);
   if (problem_.flux_weight > 0.0) {
     add_flux_term(e, problem_.flux_weight, problem_.flux_reference, equations);
   }

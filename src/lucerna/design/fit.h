@@ -8,7 +8,8 @@
 
 #include "lucerna/core/progress.h"
 #include "lucerna/design/large_scale.h"
-#include "lucerna/design/least_squares.h"
+#include "lucerna/design/residual_rows.h"
+#include "lucerna/design/target_rectangle.h"
 
 namespace lucerna {
 
@@ -37,9 +38,9 @@ struct FitProblem {
   /// In shape mode, where the scale is free, light beside the window would cost nothing: flux_weight * (1 -
   /// share in the window / flux_reference)^2 is added to the cost. Weight 0 = not.
   double flux_weight = 0.0, flux_reference = 1.0;
-  /// What the limits cost at a shape, to be added to the squared error: 0 where all are held. Adds gradient
-  /// and Hessian to `equations` unless null. Limits on light trace the first `rays` rays. Empty: no limits.
-  std::function<double(const DesignShape&, std::uint64_t rays, NormalEquations* equations)> limits;
+  /// What the limits cost at a shape, to be added to the squared error: 0 where all are held. Adds its
+  /// residuals to `rows` unless null. Limits on light trace the first `rays` rays. Empty: no limits.
+  std::function<double(const DesignShape&, std::uint64_t rays, ResidualRows* rows)> limits;
   /// Shapes to begin with, the most promising first; empty: the shape that the fit is made with.
   std::vector<FitStart> starts;
   /// So many of them are compared at the gate before the best goes on; further ones are the first attempts.
@@ -53,6 +54,9 @@ struct FitProblem {
   /// Size of the shakes, over the mirror's outer radius; those of the search are twice as wide.
   double shake = 0.02;
   std::uint64_t seed = 1;
+  /// Of the target, and where it is seen from.
+  TargetRectangle rectangle;
+  Frame mirror_from_world;
 };
 
 /// One step of the ladder from coarse to fine.
@@ -87,6 +91,9 @@ struct FitRecord {
   double lambda = 0.0;
   bool accepted = true;
   double efficiency = 0.0;
+  /// Of a search with several, the candidate; and the light in the target's rectangle.
+  int candidate = 0;
+  double in_rectangle = 0.0;
 };
 
 /// A shape that a fit keeps, with its cost; without parameters: none yet.

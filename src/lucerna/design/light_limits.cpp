@@ -37,20 +37,21 @@ Evaluation LightLimits::trace(const DesignShape& shape, const DesignRays& rays, 
 }
 
 double LightLimits::cost(const DesignShape& shape, const DesignRays& rays, std::uint64_t n,
-                         NormalEquations* equations) const {
+                         ResidualRows* rows) const {
   double cost = 0.0;
   if (glare_) {
-    const Evaluation e = trace(shape, rays, n, *zone_, equations != nullptr);
+    const Evaluation e = trace(shape, rays, n, *zone_, rows != nullptr);
     for (Eigen::Index b = 0; b < e.flux.size(); ++b) {
       const double per =
           1.0 / (kMargin * glare_->max_per_flux * zone_->measure()[static_cast<std::size_t>(b)]);
       const double excess = per * e.flux[b] - (1.0 - kMargin) / kMargin;
       if (excess <= 0.0) continue;
       cost += excess * excess;
-      if (equations == nullptr) continue;
-      const Eigen::VectorXd row = per * e.jacobian.row(b).transpose();
-      equations->gradient += excess * row;
-      equations->hessian.selfadjointView<Eigen::Lower>().rankUpdate(row);
+      if (rows == nullptr) continue;
+      rows->begin(excess);
+      for (Eigen::Index p = 0; p < e.jacobian.cols(); ++p) {
+        if (e.jacobian(b, p) != 0.0) rows->add(static_cast<int>(p), per * e.jacobian(b, p));
+      }
     }
   }
   if (min_efficiency_) {

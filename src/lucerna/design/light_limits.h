@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lucerna/design/design_limits.h"
-#include "lucerna/design/least_squares.h"
+#include "lucerna/design/residual_rows.h"
 
 namespace lucerna {
 
@@ -18,8 +18,7 @@ class LightLimits {
   /// degrees (gamma, C) about the mirror's axis, with exact derivatives; efficiency without (that it depends
   /// on the shape at all is a matter of bounces and of the mirror's back). Adds gradient and Hessian to
   /// `equations` unless null. Cost: one evaluation for each of the two.
-  double cost(const DesignShape& shape, const DesignRays& rays, std::uint64_t n,
-              NormalEquations* equations) const;
+  double cost(const DesignShape& shape, const DesignRays& rays, std::uint64_t n, ResidualRows* rows) const;
 
   /// What a shape's light is like.
   struct Measured {

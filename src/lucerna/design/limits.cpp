@@ -80,14 +80,10 @@ class Row {
     add(x, y - e, 0.0, -per * xy, -per * yy);
   }
 
-  /// Adds the hinge `excess`^2, whose gradient this row is.
-  void add_to(NormalEquations& equations, double excess) const {
-    for (std::size_t i = 0; i < index_.size(); ++i) {
-      equations.gradient[index_[i]] += excess * value_[i];
-      for (std::size_t k = 0; k < index_.size(); ++k) {
-        if (index_[k] <= index_[i]) equations.hessian(index_[i], index_[k]) += value_[i] * value_[k];
-      }
-    }
+  /// Adds the hinge `excess`, whose gradient this row is.
+  void add_to(ResidualRows& rows, double excess) const {
+    rows.begin(excess);
+    for (std::size_t i = 0; i < index_.size(); ++i) rows.add(index_[i], value_[i]);
   }
 
  private:
@@ -178,20 +174,20 @@ std::vector<const ShapeLimits::Limit*> ShapeLimits::all() const {
   return out;
 }
 
-double ShapeLimits::cost(const DesignShape& shape, NormalEquations* equations) const {
-  return cost(shape, all(), kCoarse, equations);
+double ShapeLimits::cost(const DesignShape& shape, ResidualRows* rows) const {
+  return cost(shape, all(), kCoarse, rows);
 }
 
 double ShapeLimits::cost(const DesignShape& shape, std::span<const Limit* const> limits, int per_interval,
-                         NormalEquations* equations) const {
+                         ResidualRows* rows) const {
   double cost = 0.0;
   const auto hinge = [&](double excess, const auto& fill) {
     if (!(excess > 0.0)) return;
     cost += excess * excess;
-    if (equations == nullptr) return;
+    if (rows == nullptr) return;
     Row row(shape);
     fill(row);
-    row.add_to(*equations, excess);
+    row.add_to(*rows, excess);
   };
   const std::vector<Place> look = places<Place>(shape, per_interval);
   for (const Limit* limit : limits) {
@@ -268,15 +264,27 @@ std::optional<DesignShape> ShapeLimits::solve(const DesignShape& shape,
   DesignShape now = shape;
   const auto n = static_cast<Eigen::Index>(shape.parameter_count());
   const auto equations_at = [&](const DesignShape& s) {
-    NormalEquations e{0.0, Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
-    e.cost = cost(s, limits, kFine, &e);
+    SparseEquations e;
+    e.gradient = Eigen::VectorXd::Zero(n);
+    e.hessian.resize(n, n);
+    ResidualRows rows;
+    e.cost = cost(s, limits, kFine, &rows);
+    rows.add_to(e);
     return e;
   };
-  NormalEquations equations = equations_at(now);
+  // Parameters that no limit reaches stay where they are.
+  const auto metric = [&](const SparseEquations& e) {
+    const Eigen::VectorXd diagonal = e.hessian.diagonal();
+    SparseSymmetric m(n, n);
+    m.setIdentity();
+    m.diagonal() = (diagonal.array() + 1e-2 * diagonal.mean() + 1e-300).matrix();
+    return m;
+  };
+  SparseEquations equations = equations_at(now);
   double lambda = 1e-3;
   for (int step = 0; step < kMostSteps && equations.cost > 1e-12 && lambda < 1e8; ++step) {
-    const DesignShape trial = now.with(now.parameters() + damped_step(equations, lambda));
-    NormalEquations next = equations_at(trial);
+    const DesignShape trial = now.with(now.parameters() + damped_step(equations, metric(equations), lambda));
+    SparseEquations next = equations_at(trial);
     if (next.cost < equations.cost) {
       now = trial;
       equations = std::move(next);

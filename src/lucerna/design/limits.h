@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lucerna/design/design_limits.h"
-#include "lucerna/design/least_squares.h"
+#include "lucerna/design/residual_rows.h"
 
 namespace lucerna {
 
@@ -23,8 +23,8 @@ class ShapeLimits {
 
   bool empty() const { return limits_.empty(); }
 
-  /// The cost of all limits, 0 where all are held; adds gradient and Hessian to `equations` unless null.
-  double cost(const DesignShape& shape, NormalEquations* equations) const;
+  /// The cost of all limits, 0 where all are held; adds its residuals to `rows` unless null.
+  double cost(const DesignShape& shape, ResidualRows* rows) const;
 
   /// True if every limit itself, without margin, is held on a fine grid.
   bool held(const DesignShape& shape) const;
@@ -56,7 +56,7 @@ class ShapeLimits {
   bool held(const DesignShape& shape, std::span<const Limit* const> limits) const;
   /// `per_interval`: places looked at in a knot interval.
   double cost(const DesignShape& shape, std::span<const Limit* const> limits, int per_interval,
-              NormalEquations* equations) const;
+              ResidualRows* rows) const;
   /// A shape that holds them, if Gauss-Newton on the costs alone finds one.
   std::optional<DesignShape> solve(const DesignShape& shape, std::span<const Limit* const> limits) const;
   std::vector<const Limit*> all() const;

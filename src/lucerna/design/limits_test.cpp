@@ -74,7 +74,9 @@ TEST(ShapeLimits, DerivativesAgreeWithCentralDifferences) {
       const ShapeLimits cost(limits[l], shape);
       const auto n = static_cast<Eigen::Index>(shape.parameter_count());
       NormalEquations e{0.0, Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
-      const double here = cost.cost(shape, &e);
+      ResidualRows rows;
+      const double here = cost.cost(shape, &rows);
+      rows.add_to(e);
       if (here == 0.0) continue;
       // Curvature keeps its direction and metric in the derivative: good enough for a step, not exact.
       const double within = l == 2 ? 0.3 : 1e-4;
@@ -221,7 +223,9 @@ TEST(LightLimits, GlareDerivativesAgreeWithCentralDifferences) {
   shape = shape.with(3.0 * shape.parameters());
   const auto n = static_cast<Eigen::Index>(shape.parameter_count());
   NormalEquations e{0.0, Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
-  ASSERT_GT(cost.cost(shape, light, 1 << 16, &e), 0.0);
+  ResidualRows rows;
+  ASSERT_GT(cost.cost(shape, light, 1 << 16, &rows), 0.0);
+  rows.add_to(e);
   Eigen::VectorXd difference(n);
   for (Eigen::Index p = 0; p < n; ++p) {
     Eigen::VectorXd x = shape.parameters();

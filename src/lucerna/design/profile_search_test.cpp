@@ -125,7 +125,7 @@ TEST(ProfileSearch, IsForMirrorsAndTargetsOfRevolution) {
   Lamp lamp;
   FitProblem problem{&lamp.rays, lamp.mirror, {}, lamp.bins, TargetMode::absolute, false};
   EXPECT_FALSE(can_search_profiles(problem, DesignShape::bspline(15, Aperture::circle(100), 4, 4)));
-  problem.limits = [](const DesignShape&, std::uint64_t, NormalEquations*) { return 0.0; };
+  problem.limits = [](const DesignShape&, std::uint64_t, ResidualRows*) { return 0.0; };
   EXPECT_FALSE(can_search_profiles(problem, Lamp::shaken(0.0, 1)));
   problem.limits = {};
   EXPECT_TRUE(can_search_profiles(problem, Lamp::shaken(0.0, 1)));

@@ -36,7 +36,9 @@ TEST(Roughness, ParaboloidsAreSmoothAndShakenShapesAreNot) {
 TEST(Roughness, GradientAndHessianAreThoseOfTheCost) {
   const DesignShape shape = shaken(DesignShape::bspline(10, Aperture::circle(40), 4, 4, ShapeSymmetry::both));
   NormalEquations equations = nothing(shape);
-  const double here = roughness(shape, 0.5, &equations);
+  ResidualRows rows;
+  const double here = roughness(shape, 0.5, &rows);
+  rows.add_to(equations);
   Eigen::VectorXd move(equations.gradient.size());
   Rng rng(4, 0);
   for (double& x : move) x = rng.uniform() - 0.5;

@@ -72,7 +72,7 @@ TEST(PlaneTarget, AMirrorIsShapedForARectangleOnTheFloor) {
   const TempDir folder;
   write_file(folder / "e.csv", "1\n");
   DesignOptions options;
-  options.most_rays = 1 << 14;
+  options.max_rays = 1 << 14;
   options.judge_rays = 1 << 17;
   const DesignProblem p = problem(folder.path(), kFloor, "intervals = 2\ntime_s = 1e6\n");
   const DesignResult result = design(p, options);

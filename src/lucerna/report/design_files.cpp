@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/report/design_files.h"
 
+
 #include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "lucerna/core/file.h"
+#include "lucerna/design/checkpoint.h"
 #include "lucerna/reflector/cad_export.h"
 #include "lucerna/reflector/step_export.h"
 #include "lucerna/report/trace_files.h"

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/free_form_fit.h"
+
+#include <cmath>
+#include <utility>
+
+#include "lucerna/design/roughness.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Width of the strip that stands for a rim, over the mirror's radius.
+constexpr double kRimShare = 0.02;
+/// Longest change of a height in one step, over the mirror's radius: the linear model is not good for more.
+constexpr double kMaxMove = 0.05;
+
+}  // namespace
+
+FreeFormFit::FreeFormFit(const FitProblem& problem, const FreeFormLevel& level, Progress& progress)
+    : problem_(problem),
+      level_(level),
+      bins_(graded_bins(problem.rectangle, problem.mirror_from_world, level.bins, level.widen)),
+      target_(problem.target(bins_)),
+      inside_(lucerna::in_rectangle(bins_, problem.rectangle)) {
+  problem_.rays->grow(level_.rays, progress);
+}
+
+FreeFormPoint FreeFormFit::at(DesignShape shape) const {
+  EvaluationOptions options;
+  options.rays = level_.rays;
+  options.direct_light = problem_.direct_light;
+  options.rim_mm = kRimShare * shape.aperture().outer_radius_mm();
+  options.sparse = true;
+  Evaluation light = evaluate(shape, problem_.reflectance, *problem_.rays, bins_, options);
+  SparseEquations equations = sparse_equations(light, target_, bins_, problem_.mode);
+  ResidualRows rows;
+  equations.cost += roughness(shape, level_.smoothing, &rows);
+  if (problem_.limits) equations.cost += problem_.limits(shape, level_.rays, &rows);
+  rows.add_to(equations);
+  if (problem_.flux_weight > 0.0) {
+    const double missing = 1.0 - inside_.dot(light.flux) / problem_.flux_reference;
+    Eigen::VectorXd slope = light.rows.transpose() * inside_ * (-1.0 / problem_.flux_reference);
+    equations.cost += problem_.flux_weight * missing * missing;
+    equations.gradient += problem_.flux_weight * missing * slope;
+    equations.products.push_back({std::move(slope), problem_.flux_weight});
+  }
+  light.rows.resize(0, 0);
+  return {std::move(shape), std::move(light), std::move(equations)};
+}
+
+bool FreeFormFit::step(FreeFormPoint& now, double& lambda) const {
+  const SparseSymmetric metric = sparse_step_metric(now.shape, now.equations);
+  const double longest = kMaxMove * now.shape.aperture().outer_radius_mm();
+  Eigen::VectorXd move = damped_step(now.equations, metric, lambda);
+  while (!(move.cwiseAbs().maxCoeff() <= longest)) {
+    lambda *= 4.0;
+    move = damped_step(now.equations, metric, lambda);
+  }
+  FreeFormPoint trial = at(now.shape.with(now.shape.parameters() + move));
+  if (!(trial.equations.cost < now.equations.cost)) {
+    lambda *= 5.0;
+    return false;
+  }
+  lambda = next_lambda(lambda, now.equations, move, trial.equations.cost);
+  now = std::move(trial);
+  return true;
+}
+
+BinError FreeFormFit::error(const FreeFormPoint& point) const {
+  return bin_error(point.light, target_, bins_, problem_.mode);
+}
+
+}  // namespace lucerna

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/free_form_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lucerna/core/error.h"
+#include "lucerna/core/random.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Levels of a search: rough, fine, to the end; the last is gone through again with more rays.
+constexpr int kLevels = 4, kEnd = 2, kMoreRays = 3;
+/// Knots of the rough level, at most.
+constexpr int kRoughIntervals = 32;
+/// The first candidates, over the aperture's radius: mirrors that spread light near the source, and mirrors
+/// whose rays cross farther from it. Others catch too little light or become walls.
+constexpr std::array<TransportChoice, 5> kFirst{
+    {{-1.0, 0.33}, {-1.0, 0.47}, {-1.0, 0.27}, {1.0, 0.75}, {1.0, 1.08}}};
+/// How many of them are fitted finely.
+constexpr int kFine = 2;
+/// A neighbour of the best goes on where its cost is at most so many times the best's at that level.
+constexpr double kWorthOn = 1.1;
+/// Farthest neighbour of the best: its vertex distance is within this factor.
+constexpr double kFarthest = 1.3;
+/// Candidates in turn that have no start, after which there are no others.
+constexpr int kMaxFailed = 8;
+/// Steps in turn, each five times as damped as the one before, after which a level is at its end.
+constexpr int kMaxRefused = 5;
+/// The squared error at the end is the noise's and this share more.
+constexpr double kNoiseShare = 0.1;
+/// A given mirror that is this near (relative error) goes on alone.
+constexpr double kNear = 0.03;
+/// Weight of roughness where slopes are measured in half widths of the target's rectangle: it keeps knots in
+/// order that little light falls on.
+constexpr double kSmoothing = 1e-6;
+/// Light that a start is made for, in rays.
+constexpr std::uint64_t kStartRays = std::uint64_t{1} << 19;
+constexpr int kStartBins = 36;
+constexpr double kStartWiden = 1.1;
+
+Eigen::VectorXd to_eigen(const std::vector<double>& v) {
+  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
+}
+
+/// Intervals along both sides where the longer has `most`.
+std::array<int, 2> intervals_of(const Aperture& a, int most) {
+  const double x = a.half_x_mm(), y = a.half_y_mm(), longer = std::max(x, y);
+  return {std::max(4, static_cast<int>(std::lround(most * x / longer))),
+          std::max(4, static_cast<int>(std::lround(most * y / longer)))};
+}
+
+}  // namespace
+
+FreeFormSearch::FreeFormSearch(const FitProblem& problem, const DesignShape& given, int max_intervals,
+                               std::uint64_t max_rays, FreeFormState state)
+    : problem_(problem),
+      given_(given),
+      max_intervals_(std::max({max_intervals, given.intervals_x(), given.intervals_y()})),
+      max_rays_(max_rays),
+      state_(std::move(state)) {}
+
+FreeFormLevel FreeFormSearch::level(int number) const {
+  const auto rays = [&](int doublings) { return std::min(max_rays_, std::uint64_t{1} << doublings); };
+  const double half = 0.5 * std::max(problem_.rectangle.width(), problem_.rectangle.height());
+  const double smoothing = problem_.rectangle.is_plane ? kSmoothing : kSmoothing / (half * half);
+  const int most = number == 0 ? std::min(kRoughIntervals, max_intervals_) : max_intervals_;
+  const auto [x, y] = intervals_of(given_.aperture(), most);
+  switch (number) {
+    case 0:
+      return {x, y, 64, 1.25, rays(18), 5, 0.05, smoothing};
+    case 1:
+      return {x, y, 84, 1.25, rays(20), 7, 0.05, smoothing};
+    case kEnd:
+      return {x, y, 108, 1.25, rays(22), 10, 0.01, smoothing};
+    default:
+      return {x, y, 120, 1.25, rays(23), 20, 0.005, smoothing};
+  }
+}
+
+FreeFormCandidate FreeFormSearch::candidate(int number) const {
+  if (number == 0) return {true, {}};
+  const double radius = given_.aperture().outer_radius_mm();
+  if (static_cast<std::size_t>(number) <= kFirst.size()) {
+    const TransportChoice& c = kFirst[static_cast<std::size_t>(number) - 1];
+    return {false, {c.sign, c.vertex_distance_mm * radius}};
+  }
+  // A neighbour of the best that is no neighbour of the given mirror.
+  Rng rng(problem_.seed, static_cast<std::uint64_t>(number), 77);
+  const FreeFormMark* best = best_of(kEnd);
+  const FreeFormCandidate about = candidate(best != nullptr && best->candidate > 0 ? best->candidate : 1);
+  const double factor = std::pow(kFarthest, 2.0 * rng.uniform() - 1.0);
+  return {false, {about.transport.sign, factor * about.transport.vertex_distance_mm}};
+}
+
+std::optional<DesignShape> FreeFormSearch::start_of(int number) const {
+  const FreeFormCandidate c = candidate(number);
+  if (c.given) return given_;
+  problem_.rays->grow(kStartRays);
+  const TentBins bins =
+      graded_bins(problem_.rectangle, problem_.mirror_from_world, kStartBins, kStartWiden, 0);
+  const TransportProblem transport{
+      problem_.rays,         kStartRays, problem_.reflectance.greatest(), problem_.direct_light,
+      problem_.target(bins), bins};
+  const FreeFormLevel rough = level(0);
+  const DesignShape family = DesignShape::bspline(given_.focal_mm(), given_.aperture(), rough.intervals_x,
+                                                  rough.intervals_y, given_.symmetry());
+  return transport_start(transport, family, c.transport);
+}
+
+const FreeFormMark* FreeFormSearch::best_of(int level) const {
+  const FreeFormMark* best = nullptr;
+  for (const FreeFormMark& m : state_.done) {
+    if (m.level == level && (best == nullptr || m.cost < best->cost)) best = &m;
+  }
+  return best;
+}
+
+bool FreeFormSearch::was_at(int candidate, int level) const {
+  return std::any_of(state_.done.begin(), state_.done.end(),
+                     [&](const FreeFormMark& m) { return m.candidate == candidate && m.level == level; });
+}
+
+const FreeFormMark* FreeFormSearch::next_promotion() const {
+  const int first = static_cast<int>(kFirst.size()) + 1;
+  const auto best_waiting = [&](int level) {
+    const FreeFormMark* best = nullptr;
+    for (const FreeFormMark& m : state_.done) {
+      if (m.level != level || m.parameters.empty() || was_at(m.candidate, level + 1)) continue;
+      if (best == nullptr || m.cost < best->cost) best = &m;
+    }
+    return best;
+  };
+  const auto count = [&](int level) {
+    return std::count_if(state_.done.begin(), state_.done.end(),
+                         [&](const FreeFormMark& m) { return m.level == level; });
+  };
+  const FreeFormMark* given = best_of(0);
+  const bool near = state_.begun == 1 && given != nullptr && given->cost < kNear * kNear;
+  if (state_.begun < first && !near && best_of(kEnd) == nullptr) return nullptr;
+  const FreeFormMark* rough = best_waiting(0);
+  if (rough != nullptr && count(1) < (near ? 1 : kFine)) return rough;
+  const FreeFormMark* fine = best_waiting(1);
+  const FreeFormMark *end = best_of(kEnd), *more = best_of(kMoreRays);
+  if (end == nullptr) return fine;
+  // The best goes on with more rays; then the others, while they may win, and neighbours.
+  if (more == nullptr || !was_at(end->candidate, kMoreRays)) return end;
+  if (state_.begun < first) return nullptr;
+  if (fine != nullptr && fine->cost < kWorthOn * best_of(1)->cost) return fine;
+  if (rough != nullptr && rough->cost < kWorthOn * best_of(0)->cost) return rough;
+  return nullptr;
+}
+
+DesignShape FreeFormSearch::shape_of(const FreeFormMark& mark) const {
+  return given_.refined(mark.intervals_x, mark.intervals_y).with(to_eigen(mark.parameters));
+}
+
+void FreeFormSearch::begin(const DesignShape& shape, int candidate, int number, Progress& progress) {
+  const FreeFormLevel l = level(number);
+  // Knots are refined, never coarsened.
+  const DesignShape fine = shape.intervals_x() >= l.intervals_x && shape.intervals_y() >= l.intervals_y
+                               ? shape
+                               : shape.refined(std::max(shape.intervals_x(), l.intervals_x),
+                                               std::max(shape.intervals_y(), l.intervals_y));
+  fit_.emplace(problem_, l, progress);
+  point_.emplace(fit_->at(fine));
+  ++state_.evaluations;
+  state_.total_rays += l.rays;
+  state_.now = {candidate, number, point_->equations.cost, 0.0, fine.intervals_x(), fine.intervals_y(), {}};
+  state_.step = 0;
+  state_.refused = 0;
+  state_.lambda = std::clamp(state_.lambda, 1e-4, 1e-2);
+  state_.costs = {point_->equations.cost};
+}
+
+void FreeFormSearch::choose(Progress& progress) {
+  while (true) {
+    if (const FreeFormMark* mark = next_promotion()) {
+      const FreeFormMark m = *mark;
+      begin(shape_of(m), m.candidate, m.level + 1, progress);
+      return;
+    }
+    const int number = state_.begun++;
+    if (const std::optional<DesignShape> start = start_of(number)) {
+      state_.failed = 0;
+      state_.lambda = FreeFormState{}.lambda;
+      begin(*start, number, 0, progress);
+      return;
+    }
+    // Without neighbours to try, the best at the end is all there is.
+    if (++state_.failed >= kMaxFailed) return;
+  }
+}
+
+bool FreeFormSearch::level_ended() const {
+  const FreeFormLevel l = level(state_.now.level);
+  if (state_.step >= l.max_steps || state_.refused >= kMaxRefused) return true;
+  const std::vector<double>& c = state_.costs;
+  return c.size() >= 3 && std::sqrt(c.back()) > (1.0 - l.min_gain) * std::sqrt(c[c.size() - 3]);
+}
+
+void FreeFormSearch::forget_what_cannot_win() {
+  for (FreeFormMark& m : state_.done) {
+    const FreeFormMark* best = best_of(m.level);
+    const bool passed = was_at(m.candidate, m.level + 1);
+    if (passed || (m.cost > kWorthOn * best->cost && best_of(kMoreRays) != nullptr && m.level < kEnd)) {
+      m.parameters.clear();
+    }
+  }
+}
+
+void FreeFormSearch::finish() {
+  state_.done.push_back(std::move(state_.now));
+  state_.now = {};
+  fit_.reset();
+  point_.reset();
+  forget_what_cannot_win();
+}
+
+FitRecord FreeFormSearch::step(Progress& progress) {
+  FitRecord record;
+  if (!state_.now.exists()) {
+    choose(progress);
+    if (!point_) {  // no candidate is left
+      record.evaluations = state_.evaluations;
+      record.total_rays = state_.total_rays;
+      return record;
+    }
+  } else {
+    if (!point_) {  // taken up again in the middle of a level
+      fit_.emplace(problem_, level(state_.now.level), progress);
+      point_.emplace(fit_->at(shape_of(state_.now)));
+    }
+    record.accepted = fit_->step(*point_, state_.lambda);
+    ++state_.evaluations;
+    ++state_.step;
+    state_.total_rays += level(state_.now.level).rays;
+    state_.refused = record.accepted ? 0 : state_.refused + 1;
+    if (record.accepted) state_.costs.push_back(point_->equations.cost);
+  }
+  const BinError error = fit_->error(*point_);
+  const Eigen::VectorXd& p = point_->shape.parameters();
+  state_.now.parameters.assign(p.begin(), p.end());
+  state_.now.cost = point_->equations.cost;
+  state_.now.over_noise = std::sqrt(state_.now.cost) / std::max(error.floor, 1e-12);
+  record.stage = state_.now.level;
+  record.step = state_.step;
+  record.candidate = state_.now.candidate;
+  record.rays = point_->light.rays;
+  record.total_rays = state_.total_rays;
+  record.evaluations = state_.evaluations;
+  record.error = error.relative_rms;
+  record.floor = error.floor;
+  record.lambda = state_.lambda;
+  record.efficiency = point_->light.reflected + point_->light.direct;
+  record.in_rectangle = fit_->in_rectangle(*point_);
+  if (level_ended()) finish();
+  return record;
+}
+
+bool FreeFormSearch::done() const {
+  if (state_.failed >= kMaxFailed) return true;
+  const FreeFormMark* best = best_of(kMoreRays);
+  return best != nullptr && best->over_noise * best->over_noise <= 1.0 + kNoiseShare;
+}
+
+std::uint64_t FreeFormSearch::next_rays() const {
+  if (state_.now.exists()) return (point_ ? 1 : 2) * level(state_.now.level).rays;
+  const FreeFormMark* next = next_promotion();
+  return 2 * level(next != nullptr ? next->level + 1 : 0).rays;
+}
+
+DesignShape FreeFormSearch::best() const {
+  const FreeFormMark* best = nullptr;
+  const auto better = [&](const FreeFormMark& m) {
+    return !m.parameters.empty() &&
+           (best == nullptr || m.level > best->level || (m.level == best->level && m.cost < best->cost));
+  };
+  for (const FreeFormMark& m : state_.done) {
+    if (better(m)) best = &m;
+  }
+  // The one at work only gets better; where it has come so far, it counts.
+  if (state_.now.exists() && !state_.now.parameters.empty() &&
+      (best == nullptr || best->candidate == state_.now.candidate || better(state_.now))) {
+    best = &state_.now;
+  }
+  return best != nullptr ? shape_of(*best) : given_;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lucerna/design/free_form_fit.h"
+#include "lucerna/design/transport_start.h"
+
+namespace lucerna {
+
+/// What a candidate begins with: the given mirror, or a point source's.
+struct FreeFormCandidate {
+  bool given = false;
+  TransportChoice transport;
+};
+
+/// A candidate that was fitted on a level.
+struct FreeFormMark {
+  int candidate = -1, level = -1;
+  /// What candidates are compared by: the cost.
+  double cost = 0.0;
+  /// Error over noise.
+  double over_noise = 0.0;
+  int intervals_x = 1, intervals_y = 1;
+  std::vector<double> parameters;
+  bool exists() const { return candidate >= 0; }
+};
+
+/// All that the next step depends on; a checkpoint holds exactly this.
+struct FreeFormState {
+  /// The candidate at work; without parameters: none, the next is chosen.
+  FreeFormMark now;
+  int step = 0, refused = 0;
+  double lambda = 1e-2;
+  std::vector<double> costs;
+  /// Candidates begun so far, and how many in turn had no start.
+  int begun = 0, failed = 0;
+  int evaluations = 0;
+  std::uint64_t total_rays = 0;
+  /// What came to the end of a level, in order; only marks that may still be taken up keep parameters.
+  std::vector<FreeFormMark> done;
+};
+
+/// Finds a free form by successive halving: candidates (the given mirror; a point source's mirrors of both
+/// signs at several vertex distances) are fitted roughly, the best of them finely, the best of these to the
+/// end; then, as long as there is time, neighbours of the best have their turn, and the best is fitted on
+/// with more rays. Knots are only ever refined. Every decision depends on the state alone: a search that is
+/// stopped after any step and taken up from its state goes on to the same bits.
+class FreeFormSearch {
+ public:
+  /// `given` with its own knots; `max_intervals`: knots along the longer side that the search may refine to
+  /// (those of `given` at least). `max_rays`: of an evaluation. `problem` must outlive it.
+  FreeFormSearch(const FitProblem& problem, const DesignShape& given, int max_intervals,
+                 std::uint64_t max_rays, FreeFormState state = {});
+
+  /// One trial step, or the beginning of a candidate.
+  FitRecord step(Progress& progress = no_progress());
+  /// Nothing is left to gain: the best is at the noise of the most rays.
+  bool done() const;
+  /// Rays that the next step will trace, at most.
+  std::uint64_t next_rays() const;
+
+  /// The best so far: of the finest level that any came to.
+  DesignShape best() const;
+  const FreeFormState& state() const { return state_; }
+
+ private:
+  FreeFormLevel level(int number) const;
+  FreeFormCandidate candidate(int number) const;
+  const FreeFormMark* best_of(int level) const;
+  bool was_at(int candidate, int level) const;
+  /// The next mark to be taken up a level; null where a new candidate is to begin.
+  const FreeFormMark* next_promotion() const;
+  void choose(Progress& progress);
+  void begin(const DesignShape& shape, int candidate, int level, Progress& progress);
+  void finish();
+  bool level_ended() const;
+  std::optional<DesignShape> start_of(int candidate) const;
+  DesignShape shape_of(const FreeFormMark& mark) const;
+  void forget_what_cannot_win();
+
+  const FitProblem& problem_;
+  DesignShape given_;
+  int max_intervals_;
+  std::uint64_t max_rays_;
+  FreeFormState state_;
+  std::optional<FreeFormFit> fit_;
+  std::optional<FreeFormPoint> point_;
+};
+
+}  // namespace lucerna

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/search_mirror.h"
+
+#include <algorithm>
+
+#include "lucerna/design/checkpoint.h"
+#include "lucerna/design/free_form_search.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Knots along the longer side where the project does not say how many: 2.5 mm on a mirror of 120 mm, which
+/// closes the image of a hole of 8 mm.
+constexpr int kMaxIntervals = 48;
+/// A mirror of so few knots is told to be one: its basins are searched on the ladder.
+constexpr int kFewIntervals = 10;
+
+/// Asks after every step whether to stop, and says why.
+class Stop {
+ public:
+  Stop(const SearchRun& run, std::uint64_t rays_before, DesignResult& result)
+      : run_(run), before_(rays_before), result_(result) {}
+
+  bool operator()(std::uint64_t total_rays, std::uint64_t next_rays) {
+    if (run_.progress.stop_requested()) {
+      result_.end = DesignEnd::interrupted;
+    } else if (run_.time.spent(total_rays - before_, next_rays)) {
+      result_.end = DesignEnd::time;
+    }
+    return result_.end != DesignEnd::converged;
+  }
+
+ private:
+  const SearchRun& run_;
+  std::uint64_t before_;
+  DesignResult& result_;
+};
+
+void search_free_form(const SearchRun& run, const FitProblem& fit, DesignResult& result) {
+  FreeFormState state;
+  if (!run.options.checkpoint.empty()) state = parse_search_checkpoint(run.options.checkpoint, run.key);
+  Stop stop(run, state.total_rays, result);
+  const int intervals = run.problem.fixed_knots ? 0 : kMaxIntervals;
+  FreeFormSearch search(fit, run.problem.start, intervals, run.options.max_rays, std::move(state));
+  while (!search.done() && !stop(search.state().total_rays, search.next_rays())) {
+    const FitRecord record = search.step(run.progress);
+    result.history.push_back(record);
+    run.progress.update("design", static_cast<std::uint64_t>(record.evaluations), 0);
+    if (run.observer) run.observer(record, search.best(), checkpoint_text(search.state(), run.key));
+  }
+  result.shape = search.best();
+  result.checkpoint = checkpoint_text(search.state(), run.key);
+  result.evaluations = search.state().evaluations;
+  result.rays = search.state().total_rays;
+}
+
+void search_on_ladder(const SearchRun& run, FitProblem& fit_data, DesignResult& result) {
+  const DesignProblem& problem = run.problem;
+  const std::vector<FitStage> stages =
+      ladder(problem.start, fit_data.bins, {run.options.max_rays, true, problem.growth});
+  FitState state;
+  if (!run.options.checkpoint.empty()) state = parse_checkpoint(run.options.checkpoint, run.key);
+  Stop stop(run, state.total_rays, result);
+  const bool begun = !state.parameters.empty();  // before the fit there may be a search
+  const auto watch = [&](const FitRecord& record, const DesignShape& best) {
+    result.history.push_back(record);
+    if (run.observer) run.observer(record, best, checkpoint_text(state, run.key));
+    return !stop(record.total_rays, record.rays);
+  };
+  if (!prepare_starts(fit_data, problem.start, stages, problem.optimizer, state.search_costs, watch,
+                      run.progress)) {
+    result.shape = fit_data.starts[0].shape;
+    result.checkpoint = checkpoint_text(state, run.key);
+    result.evaluations = static_cast<int>(state.search_costs.size());
+    return;
+  }
+  Fit fit = begun ? Fit(fit_data, stages, problem.start, state)
+                  : Fit(fit_data, stages, problem.start, state.search_costs);
+  while (!fit.done() && !stop(fit.state().total_rays, fit.next_rays())) {
+    const FitRecord record = fit.step(run.progress);
+    result.history.push_back(record);
+    run.progress.update("design", static_cast<std::uint64_t>(record.evaluations), 0);
+    if (run.observer) run.observer(record, fit.best(), checkpoint_text(fit.state(), run.key));
+  }
+  result.shape = fit.best();
+  result.checkpoint = checkpoint_text(fit.state(), run.key);
+  result.evaluations = fit.state().evaluations;
+  result.rays = fit.state().total_rays;
+  if (result.end == DesignEnd::converged && !fit.at_noise()) {
+    result.remarks.push_back(fmt::format(
+        "ended before its time: {} further attempts in turn brought nothing better", fit.state().fruitless));
+  }
+}
+
+}  // namespace
+
+bool uses_free_form_search(const DesignProblem& problem) {
+  const DesignShape& start = problem.start;
+  if (start.is_revolution() || start.is_trough() || problem.optimizer.name != "auto") return false;
+  return !problem.fixed_knots || std::max(start.intervals_x(), start.intervals_y()) > kFewIntervals;
+}
+
+void search_mirror(const SearchRun& run, FitProblem& fit, DesignResult& result) {
+  if (uses_free_form_search(run.problem)) {
+    search_free_form(run, fit, result);
+  } else {
+    search_on_ladder(run, fit, result);
+  }
+}
+
+}  // namespace lucerna
