@@ -15,9 +15,17 @@ endif()
 set(lucerna_common_headers <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory> <numbers>
     <numeric> <optional> <span> <string> <string_view> <utility> <variant> <vector> <fmt/format.h> <Eigen/Core>)
 
-# lucerna_precompile(TARGET HEADERS...): in files with options of their own they would be of no use.
+# g++ 12 forgets that what it precompiled is the system's, and prints its false alarms about std::string and std::vector
+# (GCC bug 105329 and others), which it keeps to itself otherwise. Builds without precompiled headers have these warnings.
+set(lucerna_false_alarms "")
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  set(lucerna_false_alarms -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread -Wno-maybe-uninitialized)
+endif()
+
+# lucerna_precompile(TARGET PRIVATE HEADERS...) or (TARGET REUSE_FROM OTHER), as target_precompile_headers has it.
 function(lucerna_precompile target)
   if(LUCERNA_PRECOMPILED_HEADERS)
-    target_precompile_headers(${target} PRIVATE ${ARGN})
+    target_compile_options(${target} PRIVATE ${lucerna_false_alarms})
+    target_precompile_headers(${target} ${ARGN})
   endif()
 endfunction()

@@ -55,10 +55,11 @@ tree_tests() {  # FILTER
 }
 
 installs() {
-  rm -rf build/check/installed
-  cmake --build --preset release -j "$jobs" --target lucerna_cli && cmake --install build/release --prefix build/check/installed &&
-    build/check/installed/bin/lucerna --version && build/check/installed/bin/lucerna init -o build/check/installed/lamp.toml &&
-    build/check/installed/bin/lucerna check build/check/installed/lamp.toml
+  place=build/check/installed
+  rm -rf "$place"
+  cmake --preset release >/dev/null && cmake --build --preset release -j "$jobs" --target lucerna_cli &&
+    cmake --install build/release --prefix "$place" && "$place/bin/lucerna" --version &&
+    "$place/bin/lucerna" make-source disk -n 1000 -o "$place/disk.tm25ray" && "$place/bin/lucerna" check "$place/disk.tm25ray"
 }
 
 stage() {

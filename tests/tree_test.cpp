@@ -3,6 +3,7 @@
 // no two types of one namespace share a name; and on the docs: what they point to is there.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -127,6 +128,48 @@ TEST(Tree, CheckSeesTypes) {
   EXPECT_EQ(types_of({"struct A {", "class B final : public A {", "enum class C { one };", "class D;",
                       "  struct E {", "template <class T>", "struct F {"}),
             (std::vector<std::string>{"A", "B", "C", "F"}));
+}
+
+/// Lines of the longest function, after the one that opens its body to the one that closes it. Goes by the
+/// form that clang-format gives: a line that ends with the list of parameters and a brace, and the first
+/// brace as far left as the function, two left of its body. clang-tidy counts more exactly (`make check
+/// STAGES=tidy`), but takes half an hour.
+std::size_t longest_function(const std::vector<std::string>& lines) {
+  const auto indent = [](const std::string& line) { return line.find_first_not_of(' '); };
+  std::size_t longest = 0;
+  for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
+    const std::string& line = lines[i];
+    const bool opens = line.ends_with(") {") || line.ends_with(") const {") ||
+                       line.ends_with(") override {") || line.ends_with(") const override {") ||
+                       line.ends_with(") noexcept {");
+    const std::size_t body = indent(lines[i + 1]);
+    if (!opens || body == std::string::npos || body < 2 || body > 6) continue;
+    const std::string start = line.substr(indent(line), 5);
+    const auto begins = [&](const char* word) { return start.starts_with(word); };
+    if (begins("if ") || begins("for ") || begins("while") || begins("switc") || begins("}")) continue;
+    for (std::size_t end = i + 1; end < lines.size(); ++end) {
+      if (indent(lines[end]) == body - 2 && lines[end][body - 2] == '}') {
+        longest = std::max(longest, end - i);
+        break;
+      }
+    }
+  }
+  return longest;
+}
+
+TEST(Tree, FunctionsAreShort) {
+  const std::set<std::string> kLonger{"project_template.cpp"};  // one string
+  for (const fs::path& file : source_files()) {
+    if (kLonger.contains(file.filename())) continue;
+    EXPECT_LE(longest_function(lines_of(file)), 60u) << file;
+  }
+}
+
+TEST(Tree, CheckSeesALongFunction) {
+  std::vector<std::string> lines{"int f(int a,", "      int b) {"};
+  lines.insert(lines.end(), 70, "  ++a;");
+  lines.insert(lines.end(), {"}", "int g() {", "  return 1;", "}"});
+  EXPECT_EQ(longest_function(lines), 71u);
 }
 
 /// What a page of ours links to, as written: [text](target), not addresses of the web, nor places within the

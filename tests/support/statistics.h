@@ -65,6 +65,26 @@ inline double chi_square_uniform_p(std::span<const double> observed) {
   return chi_square_p(observed, expected);
 }
 
+/// The power of a chi-square test: the root-mean-square relative deviation of the cells' true shares from the
+/// expected ones that is rejected in 999 of 1000 draws of `n` counts over `cells` equal cells. Smaller ones
+/// may pass. The statistic is then about normal with mean v + l and variance 2 v + 4 l, v = cells - 1, l = n
+/// times the deviation's square (P. B. Patnaik, Biometrika 36, 1949).
+inline double seen_deviation(double n, double cells) {
+  const double v = cells - 1.0;
+  double low = v, high = 1e3 * (v + 100.0);
+  for (int i = 0; i < 200; ++i) {
+    const double middle = 0.5 * (low + high);
+    (gamma_q(0.5 * v, 0.5 * middle) > kFalseAlarm ? low : high) = middle;
+  }
+  const double critical = high;
+  low = 0.0, high = 1e3 * critical;
+  for (int i = 0; i < 200; ++i) {
+    const double l = 0.5 * (low + high);
+    (v + l - 3.09 * std::sqrt(2.0 * v + 4.0 * l) < critical ? low : high) = l;
+  }
+  return std::sqrt(high / n);
+}
+
 /// Two-sided p-value of a standard normal deviate.
 inline double normal_p(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }
 

@@ -33,7 +33,8 @@ FitProblem oval_problem(DesignRays& rays) {
       const double u = d.x() / 0.25, v = d.y() / 0.15;
       return d.z() > 0.0 ? std::exp(-(u * u + v * v)) : 0.0;
     });
-    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(flux.data(), static_cast<Eigen::Index>(flux.size())));
+    return Eigen::VectorXd(
+        Eigen::Map<const Eigen::VectorXd>(flux.data(), static_cast<Eigen::Index>(flux.size())));
   };
   p.flux_weight = 0.01;
   p.flux_reference = 0.9;

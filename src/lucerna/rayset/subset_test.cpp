@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "lucerna/core/error.h"
@@ -64,6 +66,12 @@ TEST(RaySubsetStatistical, EveryRayIsAsLikely) {
   for (const double tenth : tenths) EXPECT_EQ(tenth, 7.0 * 2000.0);
   const std::vector<double> first_stretch(counts.begin(), counts.begin() + 14);
   EXPECT_GT(test::chi_square_uniform_p(first_stretch), test::kFalseAlarm);
+  // The first ray of 14 chosen too often: one cell of 14 that is off by d is off by d / sqrt(14), root mean
+  // square.
+  const double n = std::accumulate(first_stretch.begin(), first_stretch.end(), 0.0);
+  std::vector<double> wrong = first_stretch;
+  wrong[0] += 1.3 * test::seen_deviation(n, 14.0) * std::sqrt(14.0) * n / 14.0;
+  EXPECT_LT(test::chi_square_uniform_p(wrong), test::kFalseAlarm);
 }
 
 }  // namespace

@@ -55,6 +55,11 @@ struct FieldRow {
     }
   }
 };
+
+/// The greatest of n, moved to the front.
+LUCERNA_HD inline void greatest_first(float* x, std::size_t n) {
+  for (std::size_t i = 1; i < n; ++i) x[0] = greatest(x[0], x[i]);
+}
 }  // namespace detail
 
 // g++ unrolls loops of nine before it looks for vectors, and then finds none.
@@ -109,14 +114,12 @@ LUCERNA_HD inline FieldLeaf field_leaf(const FieldVertex* vertices, int cells, f
       bend_y[i] = greatest(bend_y[i], greatest(std::abs(before.q[i] - chord), std::abs(row.q[i] - chord)));
     }
   }
-  for (std::size_t i = 1; i <= k; ++i) {
-    low[0] = least(low[0], low[i]);
-    high[0] = greatest(high[0], high[i]);
-    bend_y[0] = greatest(bend_y[0], bend_y[i]);
-    slope_x[0] = greatest(slope_x[0], slope_x[i]);
-    slope_y[0] = greatest(slope_y[0], slope_y[i]);
-    if (i < k) bend_x[0] = greatest(bend_x[0], bend_x[i]);
-  }
+  for (std::size_t i = 1; i <= k; ++i) low[0] = least(low[0], low[i]);
+  detail::greatest_first(high, k + 1);
+  detail::greatest_first(bend_x, k);
+  detail::greatest_first(bend_y, k + 1);
+  detail::greatest_first(slope_x, k + 1);
+  detail::greatest_first(slope_y, k + 1);
   const float half = 0.5F * static_cast<float>(k);
   // A hair more for the rounding of these sums.
   const float slack = 1e-6F * (std::abs(low[0]) + std::abs(high[0])) + FLT_MIN;

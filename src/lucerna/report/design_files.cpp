@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/report/design_files.h"
 
-
 #include <charconv>
 #include <nlohmann/json.hpp>
 

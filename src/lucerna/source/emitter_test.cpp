@@ -42,6 +42,21 @@ double pair_p(const RayBlock& rays, const Coordinate& a, const Coordinate& b) {
   return test::chi_square_uniform_p(counts);
 }
 
+/// A coordinate whose density is off by `deviation`, root mean square: x^(1 + e) has the density 1 + e (1 +
+/// ln x) to first order, and the mean square of 1 + ln x is 1.
+Coordinate bent(const Coordinate& x, double deviation) {
+  return [=](const Ray& r) { return std::pow(std::max(0.0, x(r)), 1.0 + deviation); };
+}
+
+/// Both are uniform and independent, and the test would see if one were not: bent by 1.3 times the deviation
+/// that 20 x 20 cells show, which leaves room for what is lost inside a cell.
+void expect_uniform(const RayBlock& rays, const Coordinate& a, const Coordinate& b) {
+  const double wrong = 1.3 * test::seen_deviation(static_cast<double>(rays.size()), 400.0);
+  EXPECT_GT(pair_p(rays, a, b), test::kFalseAlarm);
+  EXPECT_LT(pair_p(rays, bent(a, wrong), b), test::kFalseAlarm) << "bent by " << wrong;
+  EXPECT_LT(pair_p(rays, a, bent(b, wrong)), test::kFalseAlarm) << "bent by " << wrong;
+}
+
 double turn(double x, double y) { return std::atan2(y, x) / (2.0 * std::numbers::pi) + 0.5; }
 double sine_squared(const Ray& r, const Vec3& normal) {
   const double c = dot(r.direction, normal);
@@ -55,9 +70,9 @@ TEST(EmitterStatistical, DiskIsUniformAndLambertianAndAnIsotropicOneIsRejected) 
   const RayBlock rays = draw({.kind = EmitterKind::disk, .radius_mm = 2.0});
   const Coordinate radius = [](const Ray& r) { return dot(r.origin_mm, r.origin_mm) / 4.0; };
   const Coordinate around = [](const Ray& r) { return turn(r.origin_mm.x, r.origin_mm.y); };
-  EXPECT_GT(pair_p(rays, radius, around), test::kFalseAlarm);
-  EXPECT_GT(pair_p(rays, kSineToZ, kAzimuth), test::kFalseAlarm);
-  EXPECT_GT(pair_p(rays, kSineToZ, radius), test::kFalseAlarm);
+  expect_uniform(rays, radius, around);
+  expect_uniform(rays, kSineToZ, kAzimuth);
+  expect_uniform(rays, kSineToZ, radius);
   // The wrong emitter: uniform per solid angle instead of Lambert's cosine.
   const RayBlock isotropic = draw({.kind = EmitterKind::point});
   EXPECT_LT(pair_p(isotropic, kSineToZ, kAzimuth), test::kFalseAlarm);
@@ -67,15 +82,14 @@ TEST(EmitterStatistical, RectangleIsUniformAndLambertian) {
   const RayBlock rays = draw({.kind = EmitterKind::rectangle, .size_mm = {4.0, 1.0}});
   const Coordinate x = [](const Ray& r) { return r.origin_mm.x / 4.0 + 0.5; };
   const Coordinate y = [](const Ray& r) { return r.origin_mm.y + 0.5; };
-  EXPECT_GT(pair_p(rays, x, y), test::kFalseAlarm);
-  EXPECT_GT(pair_p(rays, kSineToZ, kAzimuth), test::kFalseAlarm);
+  expect_uniform(rays, x, y);
+  expect_uniform(rays, kSineToZ, kAzimuth);
 }
 
 TEST(EmitterStatistical, PointIsIsotropic) {
   const RayBlock rays = draw({.kind = EmitterKind::point});
-  EXPECT_GT(pair_p(
-                rays, [](const Ray& r) { return 0.5 * (1.0 + r.direction.z()); }, kAzimuth),
-            test::kFalseAlarm);
+  expect_uniform(
+      rays, [](const Ray& r) { return 0.5 * (1.0 + r.direction.z()); }, kAzimuth);
 }
 
 TEST(EmitterStatistical, RoundBodiesAreUniformAndLambertianAboutTheirNormals) {
@@ -84,9 +98,9 @@ TEST(EmitterStatistical, RoundBodiesAreUniformAndLambertianAboutTheirNormals) {
     const Coordinate height = [&](const Ray& r) { return 0.5 * (1.0 + r.origin_mm.z / half_height); };
     const Coordinate around = [](const Ray& r) { return turn(r.origin_mm.x, r.origin_mm.y); };
     const Coordinate sine = [&](const Ray& r) { return sine_squared(r, normal(r)); };
-    EXPECT_GT(pair_p(rays, height, around), test::kFalseAlarm);
-    EXPECT_GT(pair_p(rays, height, sine), test::kFalseAlarm);
-    EXPECT_GT(pair_p(rays, around, sine), test::kFalseAlarm);
+    expect_uniform(rays, height, around);
+    expect_uniform(rays, height, sine);
+    expect_uniform(rays, around, sine);
     for (std::size_t i = 0; i < rays.size(); i += 97)
       EXPECT_GE(dot(rays.direction(i), normal(rays.ray(i))), -1e-6);
   };
@@ -109,6 +123,7 @@ TEST(EmitterStatistical, PhongLobesHaveTheirExponents) {
   EXPECT_LT(pair_p(p500, lobe(530.0), height), test::kFalseAlarm) << "a wrong exponent must be seen";
   const RayBlock p25 = draw({.kind = EmitterKind::phong25});
   EXPECT_GT(pair_p(p25, lobe(25.0), kAzimuth), test::kFalseAlarm);
+  EXPECT_LT(pair_p(p25, lobe(26.5), kAzimuth), test::kFalseAlarm) << "a wrong exponent must be seen";
 }
 
 /// Observed and expected counts of alternating cells, bright ones 1 and dim ones 0.25.
@@ -135,16 +150,19 @@ TEST(EmitterStatistical, PatternsAreTheOnesDocumented) {
   };
   EXPECT_GT(bands_p(EmitterKind::phong25), test::kFalseAlarm);
   EXPECT_LT(bands_p(EmitterKind::phong500), test::kFalseAlarm) << "a set without the pattern must be seen";
-  for (const EmitterKind kind : {EmitterKind::radial, EmitterKind::cosine}) {
-    const double p = pattern_p(
+  const auto sectors_p = [&](EmitterKind kind, bool shifted) {
+    return pattern_p(
         draw({.kind = kind}), 128,
         [&](const Ray& r) {
           const double azimuth = std::atan2(r.origin_mm.y, r.origin_mm.x) / (2.0 * std::numbers::pi);
           const int sector = std::min(static_cast<int>(16.0 * (azimuth < 0.0 ? azimuth + 1.0 : azimuth)), 15);
           return static_cast<std::size_t>(16 * band(r.origin_mm.z / 10.0, 8) + sector);
         },
-        [](std::size_t c) { return (c / 16 + c % 16) % 2 == 0; });
-    EXPECT_GT(p, test::kFalseAlarm) << to_string(kind);
+        [=](std::size_t c) { return (c / 16 + c % 16 + (shifted && c < 2 ? 1 : 0)) % 2 == 0; });
+  };
+  for (const EmitterKind kind : {EmitterKind::radial, EmitterKind::cosine}) {
+    EXPECT_GT(sectors_p(kind, false), test::kFalseAlarm) << to_string(kind);
+    EXPECT_LT(sectors_p(kind, true), test::kFalseAlarm) << "two cells of 128 the other way must be seen";
   }
 }
 
@@ -157,28 +175,40 @@ TEST(EmitterStatistical, LedSharesItsFluxAsDocumented) {
     const std::size_t die = (p.x > 0.0 ? 1u : 0u) + (p.y > 0.0 ? 2u : 0u);
     observed[on_die(p.x) && on_die(p.y) ? die : 4] += 1.0;
   }
-  // Stray light falls on the dies too: each has 1 mm2 of the package's 6.25 pi.
-  const double stray_per_die = 0.01 / (6.25 * std::numbers::pi), n = static_cast<double>(rays.size());
-  std::vector<double> expected;
-  for (const double share : {0.25, 0.2375, 0.2625, 0.25})
-    expected.push_back(n * (0.99 * share + stray_per_die));
-  expected.push_back(n * (0.01 - 4.0 * stray_per_die));
-  EXPECT_GT(test::chi_square_p(observed, expected), test::kFalseAlarm);
+  // Stray light falls on the dies too: each has 1 mm2 of the package's 6.25 pi. `off` is moved from die 1 to
+  // die 2.
+  const auto share_p = [&](double stray, double off) {
+    const double stray_per_die = stray / (6.25 * std::numbers::pi), n = static_cast<double>(rays.size());
+    std::vector<double> expected;
+    for (const double share : {0.25, 0.2375 - off, 0.2625 + off, 0.25})
+      expected.push_back(n * ((1.0 - stray) * share + stray_per_die));
+    expected.push_back(n * (stray - 4.0 * stray_per_die));
+    return test::chi_square_p(observed, expected);
+  };
+  EXPECT_GT(share_p(0.01, 0.0), test::kFalseAlarm);
+  // A share s that is off by o adds o^2 / s to the square of the deviation.
+  const double seen = test::seen_deviation(static_cast<double>(rays.size()), 5.0);
+  EXPECT_LT(share_p(0.01, 1.2 * seen * std::sqrt(0.125)), test::kFalseAlarm);
+  EXPECT_LT(share_p(0.01 + 1.2 * seen * std::sqrt(0.01), 0.0), test::kFalseAlarm);
 }
 
 TEST(EmitterStatistical, FilamentIsEvenAlongTheCoilAndItsImageHasItsShare) {
   const RayBlock rays =
       draw({.kind = EmitterKind::filament, .ghost_share = 0.0, .surface = BoundingSurface{}});
   const Coordinate along = [](const Ray& r) { return r.origin_mm.x / 8.0 + 0.5; };
-  std::vector<double> counts(40, 0.0);
+  const double wrong = 1.3 * test::seen_deviation(0.8 * static_cast<double>(rays.size()), 40.0);
+  std::vector<double> counts(40, 0.0), bent_counts(40, 0.0);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Vec3 p = rays.origin_mm(i);
     EXPECT_NEAR(std::hypot(p.y, p.z), 0.6, 0.0601);
     const double x = along(rays.ray(i));
     // The wire's own thickness blurs the two ends; count the rest.
-    if (x >= 0.1 && x < 0.9) counts[static_cast<std::size_t>(50.0 * (x - 0.1))] += 1.0;
+    if (x < 0.1 || x >= 0.9) continue;
+    counts[static_cast<std::size_t>(50.0 * (x - 0.1))] += 1.0;
+    bent_counts[static_cast<std::size_t>(40.0 * std::pow((x - 0.1) / 0.8, 1.0 + wrong))] += 1.0;
   }
   EXPECT_GT(test::chi_square_uniform_p(counts), test::kFalseAlarm);
+  EXPECT_LT(test::chi_square_uniform_p(bent_counts), test::kFalseAlarm) << "bent by " << wrong;
 }
 
 TEST(Emitter, RaysStartOnTheirSurfaceAndGoOutward) {
