@@ -101,7 +101,7 @@ std::vector<BoxSums> drawn(const ErrorBoxes& boxes, double half, double tilt, st
     out[r].flux.assign(boxes.size(), 0.0);
     for (int i = 0; i < 40000; ++i) {
       double u = 2.0 * rng.uniform() - 1.0;
-      if (rng.uniform() > (1.0 + tilt * u) / (1.0 + tilt)) u = -u;  // folds the density over
+      if (rng.uniform() > 0.5 * (1.0 + tilt * u)) u = -u;
       const double x = half * u, y = half * (2.0 * rng.uniform() - 1.0);
       out[r].flux[boxes.cell({}, {x, -y, -std::sqrt(1.0 - x * x - y * y)})] += 1.0;
     }
