@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -8,7 +9,9 @@
 #include "lucerna/cli/compare_parts.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
+#include "lucerna/design/box_error.h"
 #include "lucerna/photometry/compare_distributions.h"
+#include "lucerna/report/error_json.h"
 #include "lucerna/report/svg_polar.h"
 #include "lucerna/report/trace_folder.h"
 
@@ -44,6 +47,9 @@ void compare_photometry(const CompareArguments& a, Session& session) {
         reference.distribution, test.distribution,
         {.reference_error_cd = reference.standard_error, .test_error_cd = test.standard_error});
   });
+  const DesignError boxes = session.timed("boxes", [&] {
+    return box_error(reference.distribution, test.distribution, TargetMode::shape, test.standard_error);
+  });
   Json json = session.json_head(std::nullopt);
   json["relative_rms"] = c.relative_rms;
   json["bergen_fit"] = c.bergen_fit;
@@ -54,6 +60,9 @@ void compare_photometry(const CompareArguments& a, Session& session) {
   json["overlap"] = c.overlap;
   json["floor"] = c.noise_floor;
   json["excess"] = c.excess;
+  json["error"] = error_json(boxes);
+  json["outside"] = outside_json(boxes);
+  json["worst_cell"] = estimate_json(boxes.worst_cell);
   if (c.alignment) {
     json["alignment"] = {{"tilt_deg", c.alignment->tilt_deg},
                          {"tilt_toward_c_deg", c.alignment->tilt_toward_c_deg},
@@ -69,6 +78,13 @@ void compare_photometry(const CompareArguments& a, Session& session) {
   }
   write_comparison(a, json, session);
   session.say(fmt::format("{} against {}", a.test, a.reference));
+  session.say(fmt::format(
+      "  error as a design   {:.4g} % in 48 x 48 boxes over A's rectangle{} (24: {:.4g}, 12: {:.4g}), by "
+      "shape",
+      100.0 * boxes.c48.excess,
+      std::isnan(boxes.c48.standard_error) ? ""
+                                           : fmt::format(" +- {:.2g} %", 100.0 * boxes.c48.standard_error),
+      100.0 * boxes.c24.excess, 100.0 * boxes.c12.excess));
   session.say(fmt::format("  relative RMS        {:.4g} % (noise floor {:.4g} %, excess {:.4g} %)",
                           100.0 * c.relative_rms, 100.0 * c.noise_floor, 100.0 * c.excess));
   session.say(fmt::format("  Bergen fit          {:.3f} (100 = equal; by solid angle), {:.3f} unweighted",

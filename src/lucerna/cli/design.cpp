@@ -94,16 +94,6 @@ DesignFigures finish(const DesignProblem& problem, const DesignResult& result, c
   return figures;
 }
 
-/// Bodies are not there while the mirror is shaped: says so, and what they do to the light in the end.
-std::string bodies_note(const TraceResult& traced) {
-  const Ledger sums = ledger(traced);
-  return fmt::format(
-      "bodies do not shade the light while a mirror is designed, only in the trace of the result: there "
-      "{:.1f} % of "
-      "the light leaves, against what is said above without them",
-      100.0 * (sums.out_direct.mean + sums.out_reflected.mean) / sums.emitted);
-}
-
 void run_design(const DesignArguments& a, Session& session, int& exit_code) {
   session.start();
   const auto accelerator = chosen_accelerator(a.device);
@@ -139,7 +129,9 @@ void run_design(const DesignArguments& a, Session& session, int& exit_code) {
                           1e-6 * static_cast<double>(result.rays), session.seconds("design"),
                           to_string(result.end)));
   for (const std::string& line : design_summary(problem, result, figures)) session.say(line);
-  if (!problem.project.scene.bodies.empty()) session.say("  " + bodies_note(traced));
+  if (!problem.project.scene.bodies.empty()) {
+    session.say("  bodies shade the light of all figures above, but not while the mirror is shaped");
+  }
   session.say(fmt::format("  written: {}", fmt::join(names, " ")));
   if (!a.report.empty()) {
     write_design_report(a.output, a.report);

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "lucerna/design/bounds.h"
+#include "lucerna/design/box_error.h"
 #include "lucerna/design/design_problem.h"
 #include "lucerna/design/limit_check.h"
 
@@ -21,9 +23,9 @@ struct DesignOptions {
   std::optional<double> time_s;
   /// Rays of an evaluation at the end, at most.
   std::uint64_t max_rays = std::uint64_t{1} << 23;
-  /// Rays of the re-trace that judges the result, other than those it was fitted with. Where time ran out or
-  /// the user asked to stop, fewer may be traced.
-  std::uint64_t judge_rays = std::uint64_t{1} << 22;
+  /// Rays of the validation, at most (ValidationOptions::max_rays), other than those it was fitted with.
+  /// Where time ran out or the user asked to stop, fewer may be traced.
+  std::uint64_t judge_rays = std::uint64_t{1} << 24;
   /// Rays that the caller will trace after that; time is kept for them.
   std::uint64_t rays_after = 0;
   /// Where evaluations are traced (device_evaluator.h); null: on the CPU.
@@ -41,18 +43,21 @@ struct DesignResult {
   std::vector<FitRecord> history;
   /// State to resume from; a design that is taken up from it ends at the same bits as one never stopped.
   std::string checkpoint;
-  /// Against the target in 48 x 48 tent bins (48 rings) over the target's 99 % window, re-traced with
-  /// independent rays.
-  BinError error, start_error;
-  /// Share of the sources' flux that leaves the luminaire, and of the target's window that it lands in.
-  double efficiency = 0.0, in_window = 0.0;
-  /// Where the rest went.
-  double absorbed = 0.0, back = 0.0, lost = 0.0;
+  /// Against the target, by fresh rays through the exported mesh (validation.h).
+  DesignError error, start_error;
+  /// What no mirror of this aperture and height can be better than, with the light that this one has in the
+  /// target's rectangle.
+  DesignBound bound;
+  /// Shares of the sources' flux: what leaves the luminaire; what the mirror's face, its back and bodies
+  /// absorb; rays that were given up.
+  Estimate efficiency, absorbed, back, bodies, lost;
+  /// Seconds that finding these took.
+  double validation_s = 0.0;
   int evaluations = 0;
   std::uint64_t rays = 0;
   /// Every limit that was set, as found in the exported mesh and the judging light.
   std::vector<LimitCheck> limits;
-  /// What keeps the error from being smaller, in one sentence each.
+  /// What is known of why the error is not smaller, in one sentence each, with the figure that shows it.
   std::vector<std::string> remarks;
 };
 

@@ -18,33 +18,6 @@ constexpr std::uint64_t kReachRays = std::uint64_t{1} << 18;
 /// Shares that are this close to a bound are not called impossible: the curve is known to a few percent.
 constexpr double kSlack = 1.05;
 
-/// The largest share of the flux whose brightest part fits into an étendue.
-double share_in(const EtendueCurve& curve, double etendue) {
-  if (curve.degenerate() || curve.at(1.0) <= etendue) return 1.0;
-  double low = 0.0, high = 1.0;
-  for (int i = 0; i < 50; ++i) {
-    const double middle = 0.5 * (low + high);
-    (curve.at(middle) <= etendue ? low : high) = middle;
-  }
-  return low;
-}
-
-/// Area of the opening, and half the surface of the sphere about the rays' starts that holds 98 % of them
-/// where they start above it.
-double opening(const DesignShape& shape, const RayBlock& rays) {
-  const Aperture& a = shape.aperture();
-  const double outline = a.shape() == ApertureShape::circle ? std::numbers::pi * a.half_x_mm() * a.half_x_mm()
-                                                            : 4.0 * a.half_x_mm() * a.half_y_mm();
-  Vec3 mean;
-  const auto n = static_cast<double>(rays.size());
-  for (std::size_t i = 0; i < rays.size(); ++i) mean += rays.ray(i).origin_mm / n;
-  std::vector<double> distance;
-  for (std::size_t i = 0; i < rays.size(); ++i) distance.push_back(length(rays.ray(i).origin_mm - mean));
-  const auto at = distance.begin() + static_cast<std::ptrdiff_t>(0.98 * n);
-  std::nth_element(distance.begin(), at, distance.end());
-  return outline + std::numbers::pi * *at * *at;
-}
-
 /// Bins in the order of falling intensity; dark ones left out.
 std::vector<std::size_t> brightest_first(const TentBins& bins, const Eigen::VectorXd& target) {
   const auto intensity = [&](std::size_t i) {
@@ -87,7 +60,7 @@ std::vector<std::string> etendue_statements(const Reach& reach, TargetMode mode,
     statements.push_back(fmt::format(
         "etendue: an opening of {:.4g} mm2 passes {:.3g} mm2 sr towards the brighter half of the target, "
         "where the sources' light needs {:.3g}; at most {:.1f} % of it can have the target's distribution, "
-        "{} {:.1f} %. A wider mirror, a smaller source or a wider beam would do",
+        "{} {:.1f} %",
         reach.opening_mm2, reach.etendue_mm2sr, reach.needed_mm2sr, 100.0 * reach.most_share, what,
         100.0 * share));
   };
@@ -106,6 +79,30 @@ std::vector<std::string> etendue_statements(const Reach& reach, TargetMode mode,
 
 }  // namespace
 
+double share_in(const EtendueCurve& curve, double etendue_mm2sr) {
+  if (curve.degenerate() || curve.at(1.0) <= etendue_mm2sr) return 1.0;
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (low + high);
+    (curve.at(middle) <= etendue_mm2sr ? low : high) = middle;
+  }
+  return low;
+}
+
+double opening_mm2(const DesignShape& shape, const RayBlock& rays) {
+  const Aperture& a = shape.aperture();
+  const double outline = a.shape() == ApertureShape::circle ? std::numbers::pi * a.half_x_mm() * a.half_x_mm()
+                                                            : 4.0 * a.half_x_mm() * a.half_y_mm();
+  Vec3 mean;
+  const auto n = static_cast<double>(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) mean += rays.ray(i).origin_mm / n;
+  std::vector<double> distance;
+  for (std::size_t i = 0; i < rays.size(); ++i) distance.push_back(length(rays.ray(i).origin_mm - mean));
+  const auto at = distance.begin() + static_cast<std::ptrdiff_t>(0.98 * n);
+  std::nth_element(distance.begin(), at, distance.end());
+  return outline + std::numbers::pi * *at * *at;
+}
+
 Reach target_reach(const DesignRays& rays, const DesignShape& shape, const TentBins& bins,
                    const Eigen::VectorXd& target, TargetMode mode, double wanted_efficiency) {
   Reach reach;
@@ -121,7 +118,7 @@ Reach target_reach(const DesignRays& rays, const DesignShape& shape, const TentB
   }
   if (bins.is_plane()) return reach;
   const RayBlock block = rays.first(kReachRays);
-  reach.opening_mm2 = opening(shape, block);
+  reach.opening_mm2 = opening_mm2(shape, block);
   // The quick curve of the focus plane can be too large, never far too small: what it allows is allowed. What
   // it forbids is judged again by the curve of a searched support, which takes seconds.
   bound_by_etendue(etendue_curve(block), bins, target, mode, reach);

@@ -7,6 +7,7 @@
 #include "lucerna/design/design_rays.h"
 #include "lucerna/design/design_shape.h"
 #include "lucerna/design/least_squares.h"
+#include "lucerna/rayset/etendue_curve.h"
 
 namespace lucerna {
 
@@ -34,5 +35,11 @@ struct Reach {
 /// half a second; some seconds where the étendue forbids something (two curves, model_etendue.h).
 Reach target_reach(const DesignRays& rays, const DesignShape& shape, const TentBins& bins,
                    const Eigen::VectorXd& target, TargetMode mode, double wanted_efficiency = 0.0);
+
+/// The largest share of the flux whose brightest part fits into an étendue in mm^2 sr.
+double share_in(const EtendueCurve& curve, double etendue_mm2sr);
+/// Area in mm^2 that light leaves through: the aperture's outline, and half the surface of the sphere about
+/// the rays' starts that holds 98 % of them, where light starts in front of it.
+double opening_mm2(const DesignShape& shape, const RayBlock& rays);
 
 }  // namespace lucerna

@@ -11,6 +11,7 @@
 
 #include "lucerna/core/direction.h"
 #include "lucerna/core/error.h"
+#include "lucerna/core/parallel.h"
 
 namespace lucerna {
 
@@ -26,7 +27,13 @@ struct Grid {
   std::size_t nu, nv;
   bool spokes;
 
-  Vec3 vertex(std::size_t i, std::size_t j) const {
+  Vec3 vertex(std::size_t i, std::size_t j) const { return sample(i, j).point; }
+
+  /// A vertex with the surface's normal there, of any length.
+  struct Sample {
+    Vec3 point, normal;
+  };
+  Sample sample(std::size_t i, std::size_t j) const {
     const Aperture& a = reflector.aperture;
     const double share = static_cast<double>(i) / static_cast<double>(nu);
     double x, y;
@@ -39,7 +46,8 @@ struct Grid {
       x = a.half_x_mm() * (2.0 * share - 1.0);
       y = a.half_y_mm() * (2.0 * static_cast<double>(j) / static_cast<double>(nv) - 1.0);
     }
-    return {x, y, reflector.surface->at(x, y).z_mm};
+    const SurfacePoint s = reflector.surface->at(x, y);
+    return {{x, y, s.z_mm}, {-s.dzdx, -s.dzdy, 1.0}};
   }
 
   /// Once around, t in [0, 1): by angle, or from corner to corner of a rectangle (at 0, 1/4, ...).
@@ -76,47 +84,80 @@ double off_surface(const Reflector& reflector, const Vec3& p) {
   return std::abs(p.z - s.z_mm) / std::sqrt(1.0 + s.dzdx * s.dzdx + s.dzdy * s.dzdy);
 }
 
+/// A point that is on the surface.
+Grid::Sample sample_at(const Reflector& reflector, const Vec3& p) {
+  const SurfacePoint s = reflector.surface->at(p.x, p.y);
+  return {p, {-s.dzdx, -s.dzdy, 1.0}};
+}
+
 /// Angle of a chord with the surface at its ends, whichever is more.
-double off_slope(const Reflector& reflector, const Vec3& a, const Vec3& b) {
-  const Vec3 chord = b - a;
+double off_slope(const Grid::Sample& a, const Grid::Sample& b) {
+  const Vec3 chord = b.point - a.point;
   const double l = length(chord);
   if (!(l > 0.0)) return 0.0;
   double worst = 0.0;
-  for (const Vec3& p : {a, b}) {
-    const SurfacePoint s = reflector.surface->at(p.x, p.y);
-    const Vec3 normal{-s.dzdx, -s.dzdy, 1.0};
-    worst = std::max(worst, std::abs(dot(chord, normal)) / (l * length(normal)));
+  for (const Grid::Sample* p : {&a, &b}) {
+    worst = std::max(worst, std::abs(dot(chord, p->normal)) / (l * length(p->normal)));
   }
   return std::asin(std::min(1.0, worst));
 }
 
 /// How far a grid is from its tolerance, 1 = just held: the worse of both tolerances for edges along u and
 /// along v. Diagonals of twisted cells count for both.
-std::array<double, 2> excess(const Grid& grid, const CadTolerance& tolerance) {
-  double u = 0.0, v = grid.rim_sagitta() / tolerance.chord_mm;
-  // In the middle a triangle is off by up to 4/3 of what its edges are.
-  const double chord = 0.75 * tolerance.chord_mm;
-  // Two edges of a triangle, each half the angle off, keep its normal within the whole.
-  const double angle = 0.5 * radians(tolerance.slope_deg);
-  const auto worse = [&](const Vec3& a, const Vec3& b, double slope_share) {
-    return std::max(off_surface(grid.reflector, 0.5 * (a + b)) / chord,
-                    slope_share * off_slope(grid.reflector, a, b) / angle);
-  };
-  for (std::size_t j = 0; j < grid.nv; ++j) {
-    for (std::size_t i = 0; i < grid.nu; ++i) {
-      const Vec3 a = grid.vertex(i, j), b = grid.vertex(i + 1, j), d = grid.vertex(i, j + 1);
-      u = std::max(u, worse(a, b, 1.0));
-      v = std::max(v, worse(a, d, 1.0));
-      const double diagonal = worse(b, d, 0.5);
-      if (diagonal > 1.0) {
-        u = std::max(u, diagonal);
-        v = std::max(v, diagonal);
-      }
-      if (i + 1 == grid.nu) v = std::max(v, worse(b, grid.vertex(i + 1, j + 1), 1.0));
+class GridExcess {
+ public:
+  GridExcess(const Grid& grid, const CadTolerance& tolerance)
+      : grid_(grid),
+        chord_(0.75 *
+               tolerance.chord_mm),  // in the middle a triangle is off by up to 4/3 of what its edges are
+        angle_(0.5 * radians(tolerance.slope_deg)) {  // two edges, each half the angle off, keep the whole
+    constexpr std::size_t kRows = 16;
+    for (const auto& [u, v] : parallel_map_blocks<std::array<double, 2>>(
+             grid.nv, kRows, [&](std::size_t first, std::size_t last) { return rows(first, last); })) {
+      worst_ = {std::max(worst_[0], u), std::max(worst_[1], v)};
     }
+    worst_[1] = std::max(worst_[1], grid.rim_sagitta() / tolerance.chord_mm);
   }
-  return {u, v};
-}
+
+  const std::array<double, 2>& worst() const { return worst_; }
+
+ private:
+  using Row = std::vector<Grid::Sample>;
+
+  Row row(std::size_t j) const {
+    Row samples;
+    for (std::size_t i = 0; i <= grid_.nu; ++i) samples.push_back(grid_.sample(i, j));
+    return samples;
+  }
+
+  std::array<double, 2> rows(std::size_t first, std::size_t last) const {
+    double u = 0.0, v = 0.0;
+    Row near = row(first), far;
+    for (std::size_t j = first; j < last; ++j, near.swap(far)) {
+      far = row(j + 1);
+      for (std::size_t i = 0; i < grid_.nu; ++i) {
+        u = std::max(u, edge(near[i], near[i + 1], 1.0));
+        v = std::max(v, edge(near[i], far[i], 1.0));
+        const double diagonal = edge(near[i + 1], far[i], 0.5);
+        if (diagonal > 1.0) {
+          u = std::max(u, diagonal);
+          v = std::max(v, diagonal);
+        }
+      }
+      v = std::max(v, edge(near[grid_.nu], far[grid_.nu], 1.0));
+    }
+    return {u, v};
+  }
+
+  double edge(const Grid::Sample& a, const Grid::Sample& b, double slope_share) const {
+    return std::max(off_surface(grid_.reflector, 0.5 * (a.point + b.point)) / chord_,
+                    slope_share * off_slope(a, b) / angle_);
+  }
+
+  const Grid& grid_;
+  double chord_, angle_;
+  std::array<double, 2> worst_{0.0, 0.0};
+};
 
 /// More pieces for an excess over the tolerance; a multiple of 8, so that corners stay corners.
 std::size_t finer(std::size_t n, double excess) {
@@ -146,7 +187,7 @@ std::optional<Grid> grid_for(const Reflector& reflector, const CadTolerance& tol
       reflector.aperture.shape() == ApertureShape::circle || reflector.aperture.hole_radius_mm() > 0.0;
   Grid grid{reflector, 8, spokes ? std::size_t{32} : std::size_t{8}, spokes};
   for (;;) {
-    const auto [u, v] = excess(grid, tolerance);
+    const auto [u, v] = GridExcess(grid, tolerance).worst();
     if (u <= 1.0 && v <= 1.0) return grid;
     grid.nu = finer(grid.nu, u);
     grid.nv = finer(grid.nv, v);
@@ -239,8 +280,9 @@ std::vector<std::array<double, 2>> cad_profile(const Reflector& reflector, const
       const auto& p = points[i - 1];
       const auto& q = points[i];
       const Vec3 a{p[0], 0.0, p[1]}, b{q[0], 0.0, q[1]};
-      worst = std::max({worst, off_surface(reflector, 0.5 * (a + b)) / tolerance.chord_mm,
-                        off_slope(reflector, a, b) / radians(tolerance.slope_deg)});
+      worst = std::max(
+          {worst, off_surface(reflector, 0.5 * (a + b)) / tolerance.chord_mm,
+           off_slope(sample_at(reflector, a), sample_at(reflector, b)) / radians(tolerance.slope_deg)});
     }
     if (worst <= 1.0) return points;
     if (n >= kMostTriangles) {

@@ -8,6 +8,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "lucerna/report/error_json.h"
+
 namespace lucerna {
 
 namespace {
@@ -147,6 +149,37 @@ void tolerance_rows(const ToleranceSweep& sweep, std::vector<std::string>& lines
   }
 }
 
+/// What the bound stands on.
+std::string bound_text(const DesignBound& bound) {
+  if (!(bound.error > 0.0))
+    return "etendue and luminance do not forbid the target with this share of the light";
+  return fmt::format(
+      "the {:.0f} % of the target's light in its brightest boxes have {:.3g} mm2 sr of this aperture "
+      "and height, which hold at most {:.0f} % of the sources' light",
+      100.0 * bound.target_share, bound.etendue_mm2sr, 100.0 * bound.max_share);
+}
+
+/// The error, headline first, and where the light is.
+void error_lines(const DesignResult& result, std::vector<std::string>& lines) {
+  const DesignError& e = result.error;
+  lines.push_back(
+      fmt::format("  error {:.2f} +- {:.2f} % in 48 x 48 boxes (24: {:.2f}, 12: {:.2f}); the start had "
+                  "{:.1f} %",
+                  100.0 * e.c48.excess, 100.0 * e.c48.standard_error, 100.0 * e.c24.excess,
+                  100.0 * e.c12.excess, 100.0 * result.start_error.c48.excess));
+  lines.push_back(fmt::format("    bound {:.2f} %, reached {:.2f} %: {}", 100.0 * result.bound.error,
+                              100.0 * e.c48.excess, bound_text(result.bound)));
+  lines.push_back(fmt::format(
+      "    noise of {:.3g} M rays, taken out: {:.2f} %; worst box {:.1f} +- {:.1f} % of the target's peak",
+      1e-6 * static_cast<double>(e.rays), 100.0 * e.c48.floor, 100.0 * e.worst_cell.mean,
+      100.0 * e.worst_cell.standard_error));
+  lines.push_back(
+      fmt::format("  light: {:.1f} % leaves; {:.1f} % in the target's rectangle, {:.1f} % outside "
+                  "({:.1f} % directly), where the error is {:.2f} +- {:.2f} %",
+                  100.0 * result.efficiency.mean, 100.0 * e.in_rectangle.mean, 100.0 * e.outside_share.mean,
+                  100.0 * e.outside_direct.mean, 100.0 * e.outside.excess, 100.0 * e.outside.standard_error));
+}
+
 }  // namespace
 
 std::string_view to_string(DesignEnd end) {
@@ -191,9 +224,18 @@ DesignFigures design_figures(const DesignProblem& problem, const DesignResult& r
 
 Json design_json(const DesignProblem& problem, const DesignResult& result, const DesignFigures& f) {
   Json json;
-  json["relative_rms"] = result.error.relative_rms;
-  json["floor"] = result.error.floor;
-  json["start_relative_rms"] = result.start_error.relative_rms;
+  json["error"] = error_json(result.error);
+  json["outside"] = outside_json(result.error);
+  json["worst_cell"] = estimate_json(result.error.worst_cell);
+  json["in_rectangle"] = estimate_json(result.error.in_rectangle);
+  json["bound"] = {{"error", result.bound.error},
+                   {"target_share", result.bound.target_share},
+                   {"max_share", result.bound.max_share},
+                   {"etendue_mm2sr", result.bound.etendue_mm2sr}};
+  json["start"] = {{"error", error_json(result.start_error)},
+                   {"outside", outside_json(result.start_error)},
+                   {"in_rectangle", estimate_json(result.start_error.in_rectangle)}};
+  json["validation"] = {{"rays", result.error.rays}, {"seconds", result.validation_s}};
   json["bergen_fit"] = f.comparison ? Json(f.comparison->bergen_fit) : Json();
   json["wasserstein_deg"] = f.comparison ? Json(f.comparison->wasserstein_deg) : Json();
   json["target"] = {{"file", problem.target.file},
@@ -204,9 +246,11 @@ Json design_json(const DesignProblem& problem, const DesignResult& result, const
   if (!f.trace.far_fields.empty()) json.update(beam_json(f.trace.far_fields.front().beam));
   if (f.result_plane) json["plane"] = plane_json(*f.result_plane);
   json["scale"] = result.error.scale;
-  json["efficiency"] = result.efficiency;
-  json["in_window"] = result.in_window;
-  json["losses"] = {{"mirror", result.absorbed}, {"mirror_back", result.back}, {"lost", result.lost}};
+  json["efficiency"] = estimate_json(result.efficiency);
+  json["losses"] = {{"mirror", estimate_json(result.absorbed)},
+                    {"mirror_back", estimate_json(result.back)},
+                    {"bodies", estimate_json(result.bodies)},
+                    {"lost", estimate_json(result.lost)}};
   json["evaluations"] = result.evaluations;
   json["rays"] = result.rays;
   json["parameters"] = result.shape.parameter_count();
@@ -232,18 +276,15 @@ std::vector<std::string> design_summary(const DesignProblem& problem, const Desi
   far_field_rows(f, table);
   plane_rows(f, table);
   std::vector<std::string>& lines = table.lines;
-  lines.push_back(fmt::format("  difference: relative RMS {:.2f} % (start {:.2f} %, noise {:.2f} %)",
-                              100.0 * result.error.relative_rms, 100.0 * result.start_error.relative_rms,
-                              100.0 * result.error.floor));
+  error_lines(result, lines);
   if (f.comparison) {
     lines.push_back(fmt::format("  all directions: Bergen fit {:.1f} of 100, Wasserstein {:.2f} deg",
                                 f.comparison->bergen_fit, f.comparison->wasserstein_deg));
   }
-  lines.push_back(fmt::format("  efficiency {:.1f} %: {:.1f} % in the target's window, {:.1f} % beside it",
-                              100.0 * result.efficiency, 100.0 * result.in_window,
-                              100.0 * (result.efficiency - result.in_window)));
-  lines.push_back(fmt::format("  losses: mirror {:.1f} %, its back {:.1f} %, lost rays {:.2g} %",
-                              100.0 * result.absorbed, 100.0 * result.back, 100.0 * result.lost));
+  lines.push_back(
+      fmt::format("  losses: mirror {:.1f} %, its back {:.1f} %, bodies {:.1f} %, lost rays {:.2g} %",
+                  100.0 * result.absorbed.mean, 100.0 * result.back.mean, 100.0 * result.bodies.mean,
+                  100.0 * result.lost.mean));
   for (const LimitCheck& c : result.limits) {
     lines.push_back(fmt::format("  limit {}: {:.6g} found, {:.6g} allowed: {}", c.limit, c.found, c.allowed,
                                 c.held ? "held" : "NOT HELD"));

@@ -33,16 +33,30 @@ std::vector<std::string_view> words_of(std::string_view line) {
   }
 }
 
+/// "3.38 ± 0.01", both in per cent.
+std::string percent_with_error(const ResultFigures& result, const std::string& key,
+                               const std::string& error_key, int decimals = 2) {
+  return result.percent(key, decimals) + " ± " + result.percent(error_key, decimals);
+}
+
 std::string summary(const ResultFigures& result) {
   std::string out = "<dl class=\"cards\">\n";
-  out += card("Difference to the target", result.percent("/relative_rms"), "%",
-              fmt::format("relative RMS in the target's window; the noise alone would be {} %",
-                          result.percent("/floor")));
-  out += card("It began at", result.percent("/start_relative_rms"), "%",
-              "relative RMS of the mirror in the project");
-  out += card("Efficiency", result.percent("/efficiency"), "%",
-              fmt::format("of the sources' flux leaves; {} % lands in the target's window",
-                          result.percent("/in_window")));
+  out += card("Error", percent_with_error(result, "/error/c48/excess", "/error/c48/standard_error"), "%",
+              fmt::format("l2 in 48 × 48 boxes over the target's rectangle, noise of {} % taken out; {} % in "
+                          "24 × 24, {} % in 12 × 12",
+                          result.percent("/error/c48/floor"), result.percent("/error/c24/excess"),
+                          result.percent("/error/c12/excess")));
+  out += card("It began at", result.percent("/start/error/c48/excess"), "%",
+              "error of the mirror in the project");
+  out +=
+      card("In the target's rectangle", result.percent("/in_rectangle/value"), "%",
+           fmt::format("of the sources' flux; {} % leaves the luminaire, {} % goes elsewhere, {} % directly",
+                       result.percent("/efficiency/value"), result.percent("/outside/share/value"),
+                       result.percent("/outside/direct/value")));
+  out += card("Error outside", result.percent("/outside/error/excess"), "%",
+              "l2 over the rest of the sphere, relative to the target in its rectangle");
+  out += card("Worst box", percent_with_error(result, "/worst_cell/value", "/worst_cell/standard_error", 1),
+              "%", "largest deviation of a 48th box, of the target's peak; noise raises it");
   out += card("Parameters", result.figure("/parameters"), "",
               fmt::format("mirror {} mm high", result.figure("/height_mm")));
   out += card("Evaluations", result.figure("/evaluations"), "",

@@ -58,6 +58,8 @@ void make_design(const test::TempDir& dir, const std::string& target) {
   TraceOptions options;
   options.last_ray = 50'000;
   const TraceFigures figures = trace_figures(trace(project.scene, options));
+  const Json kEstimate{{"value", 0.89}, {"standard_error", 0.002}};
+  const Json kError{{"value", 0.0323}, {"floor", 0.0016}, {"excess", 0.0322}, {"standard_error", 0.0003}};
   Json json{{"program_version", std::string(version())},
             {"schema_version", kJsonSchemaVersion},
             {"command", "lucerna design"},
@@ -66,12 +68,13 @@ void make_design(const test::TempDir& dir, const std::string& target) {
             {"isa", "scalar"},
             {"inputs", Json::array()},
             {"wall_s", {{"design", 1.5}}},
-            {"relative_rms", 0.0323},
-            {"floor", 0.0016},
-            {"start_relative_rms", 0.9},
+            {"error", {{"c12", kError}, {"c24", kError}, {"c48", kError}}},
+            {"start", {{"error", {{"c48", kError}}}}},
+            {"outside", {{"share", kEstimate}, {"direct", kEstimate}, {"error", kError}}},
+            {"worst_cell", kEstimate},
+            {"in_rectangle", kEstimate},
             {"scale", 993.8},
-            {"efficiency", 0.9},
-            {"in_window", 0.89},
+            {"efficiency", kEstimate},
             {"evaluations", 5},
             {"rays", 327680},
             {"parameters", 18},
@@ -103,8 +106,10 @@ TEST(ReportDesign, ShowsTheTargetTheConvergenceAndTheLosses) {
   EXPECT_EQ(test::html_fault(html), "");
   EXPECT_LT(html.size(), 1'500'000u);
   const auto seen = test::check_keyed_figures(html, test::embedded(html, "result"));
-  for (const char* key : {"/relative_rms", "/floor", "/efficiency", "/in_window", "/evaluations",
-                          "/ledger/absorbed/mirror", "/detectors/1/mean/value"})
+  for (const char* key :
+       {"/error/c48/excess", "/error/c48/standard_error", "/error/c12/excess", "/start/error/c48/excess",
+        "/outside/share/value", "/outside/error/excess", "/worst_cell/value", "/in_rectangle/value",
+        "/efficiency/value", "/evaluations", "/ledger/absorbed/mirror", "/detectors/1/mean/value"})
     EXPECT_TRUE(seen.contains(key)) << key;
   EXPECT_TRUE(has(html, "the target is &lt;not&gt; reached"));
   const Json fields = test::embedded(html, "far-fields");

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "lucerna/design/box_error.h"
+#include "lucerna/design/design_rays.h"
+#include "lucerna/design/design_shape.h"
+#include "lucerna/rayset/etendue_curve.h"
+
+namespace lucerna {
+
+/// What no mirror of an aperture and a height can do better than, whatever its shape.
+struct DesignBound {
+  /// Below this no error in 48 x 48 boxes can be: with as much light in the rectangle as was reached by
+  /// shape, with any in absolute mode. 0 where nothing forbids the target.
+  double error = 0.0;
+  /// Where it binds: the share of the target's light in its brightest boxes, the largest share of the
+  /// sources' flux that their étendue can take, and that étendue in mm^2 sr.
+  double target_share = 0.0, max_share = 1.0, etendue_mm2sr = 0.0;
+};
+
+/// The bound from étendue and luminance (Liouville): light that leaves towards some boxes passes an opening
+/// of projected area A(direction), so that it has at most the étendue of A over the boxes, and no more flux
+/// than the sources' brightest light of that étendue (`curve`, which must not state too much étendue). Of all
+/// sets of brightest boxes the one that binds most is taken; within the set and outside of it the deviations
+/// are spread as evenly as light could be at best, so that the true least error is larger. A is that of the
+/// convex hull of the mirror over its aperture, `height_mm` high along `axis`: opening_mm2 * |cos| +
+/// mantle_mm2 * sin. `share`: of the sources' flux in the rectangle (by shape; absolute mode does not use
+/// it). Plane targets have no bound (0).
+DesignBound etendue_bound(const ErrorBoxes& boxes, std::span<const double> target, TargetMode mode,
+                          double share, const EtendueCurve& curve, const Vec3& axis, double opening_mm2,
+                          double mantle_mm2);
+
+/// The same for a mirror's rays and aperture; the height is `shape`'s. The quick curve of the rays decides
+/// whether there is anything to bound; the searched one (some seconds) then bounds.
+DesignBound design_bound(const ErrorBoxes& boxes, std::span<const double> target, TargetMode mode,
+                         double share, const DesignRays& rays, const DesignShape& shape, const Vec3& axis);
+
+}  // namespace lucerna

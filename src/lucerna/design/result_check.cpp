@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/result_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "lucerna/design/bounds.h"
+#include "lucerna/design/light_limits.h"
+#include "lucerna/design/reach.h"
+#include "lucerna/design/validation.h"
+#include "lucerna/reflector/cad_export.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Rays that limits on light are checked with, and that the start is validated with, at most.
+constexpr std::uint64_t kLimitRays = std::uint64_t{1} << 20, kStartRays = std::uint64_t{1} << 20;
+/// Of the mesh where few rays are traced, as for the start: a finer one would cost more than the rays.
+constexpr CadTolerance kCoarse{.chord_mm = 0.01, .slope_deg = 0.5};
+
+/// All limits that are set, against the exported mesh and fresh light.
+std::vector<LimitCheck> checked_limits(const DesignProblem& problem, const DesignShape& shape,
+                                       const DesignRays& rays, std::uint64_t n) {
+  std::vector<LimitCheck> out;
+  const DesignLimits& limits = problem.limits;
+  if (limits.any_on_form()) {
+    const CadTolerance tolerance;
+    out =
+        check_limits(cad_mesh(shape.reflector(), tolerance), limits, tolerance.chord_mm, tolerance.slope_deg);
+  }
+  const LightLimits light(limits, problem.reflectance);
+  if (light.empty()) return out;
+  const LightLimits::Measured found = light.measure(shape, rays, n);
+  if (limits.glare) {
+    const double most = limits.glare->max_per_flux * rays.flux(), has = found.glare_per_flux * rays.flux();
+    out.push_back({"glare " + limits.glare->text, most, has, has <= most});
+  }
+  if (limits.min_efficiency) {
+    out.push_back({"min_efficiency", *limits.min_efficiency, found.efficiency,
+                   found.efficiency >= *limits.min_efficiency});
+  }
+  return out;
+}
+
+/// The light of a shape in the boxes.
+Validation validated(const DesignProblem& problem, const DesignShape& shape, const ErrorBoxes& boxes,
+                     std::span<const double> target, const ValidationOptions& options, Progress& progress) {
+  Scene scene = problem.project.scene;
+  scene.reflectors.front().reflector = shape.reflector();
+  return validate(scene, boxes, target, problem.target.mode, options, progress);
+}
+
+void validate_result(const DesignProblem& problem, const DesignOptions& options, const DesignRays& rays,
+                     std::uint64_t max_rays, double max_s, DesignResult& result, Progress& progress) {
+  const ErrorBoxes boxes(target_rectangle(problem.target));
+  const std::vector<double> target = box_target(boxes, problem.target, rays.flux());
+  ValidationOptions o;
+  o.seed = options.seed;
+  o.max_rays = max_rays;
+  o.max_s = max_s;
+  if (max_rays < kStartRays) o.tolerance = kCoarse;
+  const Validation v = validated(problem, result.shape, boxes, target, o, progress);
+  result.error = v.error;
+  result.efficiency = v.efficiency;
+  result.absorbed = v.absorbed;
+  result.back = v.back;
+  result.bodies = v.bodies;
+  result.lost = v.lost;
+  result.validation_s = v.seconds;
+  o.max_rays = std::min(max_rays, kStartRays);
+  o.min_rays = o.max_rays / 8;
+  o.tolerance = kCoarse;
+  result.start_error = validated(problem, problem.start, boxes, target, o, progress).error;
+  result.bound = design_bound(boxes, target, problem.target.mode, result.error.in_rectangle.mean, rays,
+                              result.shape, problem.world_from_mirror.ez());
+}
+
+/// Only what a figure stands behind.
+void add_remarks(DesignResult& result) {
+  const BoxErrorEstimate& e = result.error.c48;
+  if (e.excess <= 2.0 * e.standard_error) {
+    result.remarks.push_back(fmt::format(
+        "no error is left that {:.3g} M rays can tell from noise: {:.2f} +- {:.2f} %",
+        1e-6 * static_cast<double>(result.error.rays), 100.0 * e.excess, 100.0 * e.standard_error));
+  } else if (const std::string binding = binding_limits(result.limits); !binding.empty()) {
+    result.remarks.push_back(binding);
+  }
+  for (const LimitCheck& c : result.limits) {
+    if (c.held) continue;
+    result.remarks.push_back(
+        fmt::format("limit {} is not held: {:.4g} found, {:.4g} allowed", c.limit, c.found, c.allowed));
+  }
+}
+
+}  // namespace
+
+double share_behind(const DesignShape& shape, const DesignRays& rays) {
+  constexpr std::uint64_t kBlocks = 16;
+  double behind = 0.0, all = 0.0;
+  for (std::uint64_t b = 0; b < std::min(kBlocks, rays.size() / kBlockRays); ++b) {
+    const DesignRays::Block& block = rays.block(b);
+    for (std::size_t i = 0; i < kBlockRays; ++i) {
+      const auto x = static_cast<double>(block.x_mm[i]), y = static_cast<double>(block.y_mm[i]);
+      const auto weight = static_cast<double>(block.weight[i]);
+      all += weight;
+      const bool over = shape.aperture().contains(x, y);
+      if (over && static_cast<double>(block.z_mm[i]) < shape.at(x, y).z_mm) behind += weight;
+    }
+  }
+  return behind / all;
+}
+
+void check_result(const DesignProblem& problem, const DesignOptions& options, const FitProblem& fit,
+                  std::uint64_t max_rays, double max_s, DesignResult& result, Progress& progress) {
+  DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(),
+                  options.seed + 0x9E3779B97F4A7C15ull);
+  rays.evaluate_on(options.accelerator);
+  const std::uint64_t limit_rays = std::min(max_rays, kLimitRays);
+  rays.grow(limit_rays, progress);
+  validate_result(problem, options, rays, max_rays, max_s, result, progress);
+  result.limits = checked_limits(problem, result.shape, rays, limit_rays);
+  const double behind = share_behind(result.shape, rays), given = share_behind(problem.start, rays);
+  if (behind > given + kMaxBehind) {
+    result.limits.push_back({"source in front of the mirror (share behind it)", given, behind, false});
+  }
+  result.remarks = target_reach(rays, problem.start, fit.bins, fit.target(fit.bins), fit.mode,
+                                problem.limits.min_efficiency.value_or(0.0))
+                       .statements;
+  add_remarks(result);
+}
+
+}  // namespace lucerna
