@@ -21,9 +21,6 @@ namespace {
 
 /// In shape mode a tenth of the light beside the window counts as an error of 4.5 %.
 constexpr double kFluxWeight = 0.2;
-/// Of free forms, whose search has starts that catch the light: a tenth of it beside the rectangle counts as
-/// an error of 1 %.
-constexpr double kFluxWeightOfSearch = 0.01;
 /// Seconds that a validation gets where none are left, and without a limit.
 constexpr double kMinValidation_s = 2.0, kNoLimit = std::numeric_limits<double>::infinity();
 /// Rays that judge a result for which there is no time left.
@@ -73,7 +70,7 @@ FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& option
     plain.rays = kFluxRays;
     plain.derivatives = false;
     const Evaluation start = evaluate(problem.start, problem.reflectance, rays, fit.bins, plain);
-    fit.flux_weight = kFluxWeight;
+    fit.flux_weight = uses_free_form_search(problem) ? problem.light_weight : kFluxWeight;
     fit.flux_reference = start.reflected + start.direct;
   }
   LightLimits(problem.limits, problem.reflectance).check(problem.start, rays);
@@ -81,7 +78,6 @@ FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& option
   fit.target = target_flux(problem.target, problem.world_from_mirror, rays.flux());
   fit.rectangle = target_rectangle(problem.target);
   fit.mirror_from_world = problem.world_from_mirror.inverse();
-  if (uses_free_form_search(problem)) fit.flux_weight *= kFluxWeightOfSearch / kFluxWeight;
   return fit;
 }
 

@@ -183,6 +183,10 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   const double time_s = design.positive("time_s").value_or(60.0);
   const std::vector<int> intervals = read_intervals(design);
   const std::optional<int> told = read_attempts(design);
+  const double light_weight = design.number("light_weight", DesignProblem::kLightWeight);
+  if (!(light_weight >= 0.0 && light_weight <= 100.0)) {
+    design.fail("light_weight", fmt::format("found {}, expected a number from 0 to 100", light_weight));
+  }
   const PlacedReflector placed = project.scene.reflectors[0];
   const bool revolution = dynamic_cast<const RevolutionSurface*>(placed.reflector.surface.get()) != nullptr;
   const int attempts = told.value_or(revolution ? kAttemptsOfRevolution : kAttempts);
@@ -218,6 +222,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
           attempts,
           growth,
           !intervals.empty(),
+          light_weight,
           tolerances};
 }
 

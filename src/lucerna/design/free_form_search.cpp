@@ -71,13 +71,13 @@ FreeFormLevel FreeFormSearch::level(int number) const {
   const auto [x, y] = intervals_of(given_.aperture(), most);
   switch (number) {
     case 0:
-      return {x, y, 64, 1.25, rays(18), 5, 0.05, smoothing};
+      return {x, y, 64, 1.25, rays(18), 8, 0.1, smoothing};
     case 1:
-      return {x, y, 84, 1.25, rays(20), 7, 0.05, smoothing};
+      return {x, y, 84, 1.25, rays(20), 25, 0.05, smoothing};
     case kEnd:
-      return {x, y, 108, 1.25, rays(22), 10, 0.01, smoothing};
+      return {x, y, 108, 1.25, rays(22), 25, 0.015, smoothing};
     default:
-      return {x, y, 120, 1.25, rays(23), 20, 0.005, smoothing};
+      return {x, y, 120, 1.25, rays(23), 40, 0.005, smoothing};
   }
 }
 

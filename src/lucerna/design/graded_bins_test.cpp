@@ -19,14 +19,14 @@ TargetRectangle down(double u_min, double u_max, double v_min, double v_max) {
 TEST(GradedBins, CoverTheHemisphere) {
   const TentBins bins = graded_bins(down(-0.2, 0.4, -0.1, 0.1), Frame(), 48, 1.25);
   const double whole = std::accumulate(bins.measure().begin(), bins.measure().end(), 0.0);
-  EXPECT_NEAR(whole, 2.0 * std::numbers::pi, 0.2);  // the outermost tents fade out towards the horizon
+  EXPECT_NEAR(whole, 2.0 * std::numbers::pi, 0.1);
 }
 
-TEST(GradedBins, LoseNoLightOfAnyDirectionAwayFromTheHorizon) {
+TEST(GradedBins, LoseNoLightOfAnyDirection) {
   const TentBins bins = graded_bins(down(-0.2, 0.4, -0.1, 0.1), Frame(), 48, 1.25);
   Rng rng(3, 0);
   for (int i = 0; i < 2000; ++i) {
-    const double z = 0.3 + 0.7 * rng.uniform(), a = 2.0 * std::numbers::pi * rng.uniform(),
+    const double z = 0.01 + 0.99 * rng.uniform(), a = 2.0 * std::numbers::pi * rng.uniform(),
                  s = std::sqrt(1 - z * z);
     TentDeposit d;
     bins.deposit({}, Vec3{s * std::cos(a), s * std::sin(a), -z}, d);

@@ -259,32 +259,47 @@ bool ShapeLimits::held(const DesignShape& shape, std::span<const Limit* const> l
   return true;
 }
 
-std::optional<DesignShape> ShapeLimits::solve(const DesignShape& shape,
-                                              std::span<const Limit* const> limits) const {
-  DesignShape now = shape;
-  const auto n = static_cast<Eigen::Index>(shape.parameter_count());
+namespace {
+
+/// Parameters that no limit reaches stay where they are.
+Eigen::VectorXd own_squares(const Eigen::VectorXd& diagonal) {
+  return diagonal.array() + 1e-2 * diagonal.mean() + 1e-300;
+}
+
+Eigen::VectorXd damped(const NormalEquations& e, double lambda) { return damped_step(e, lambda); }
+Eigen::VectorXd damped(const SparseEquations& e, double lambda) {
+  SparseSymmetric metric(e.gradient.size(), e.gradient.size());
+  metric.setIdentity();
+  metric.diagonal() = own_squares(e.hessian.diagonal());
+  return damped_step(e, metric, lambda);
+}
+
+void make_empty(NormalEquations& e, Eigen::Index n) { e.hessian = Eigen::MatrixXd::Zero(n, n); }
+void make_empty(SparseEquations& e, Eigen::Index n) { e.hessian.resize(n, n); }
+
+/// Gauss-Newton on `cost(shape, rows)` alone, from a shape until nothing is left of it or no step helps.
+template <class Equations, class Cost>
+DesignShape minimised(DesignShape now, const Cost& cost) {
   const auto equations_at = [&](const DesignShape& s) {
-    SparseEquations e;
+    Equations e;
+    const auto n = static_cast<Eigen::Index>(s.parameter_count());
     e.gradient = Eigen::VectorXd::Zero(n);
-    e.hessian.resize(n, n);
+    make_empty(e, n);
     ResidualRows rows;
-    e.cost = cost(s, limits, kFine, &rows);
+    e.cost = cost(s, &rows);
     rows.add_to(e);
     return e;
   };
-  // Parameters that no limit reaches stay where they are.
-  const auto metric = [&](const SparseEquations& e) {
-    const Eigen::VectorXd diagonal = e.hessian.diagonal();
-    SparseSymmetric m(n, n);
-    m.setIdentity();
-    m.diagonal() = (diagonal.array() + 1e-2 * diagonal.mean() + 1e-300).matrix();
-    return m;
-  };
-  SparseEquations equations = equations_at(now);
+  Equations equations = equations_at(now);
   double lambda = 1e-3;
   for (int step = 0; step < kMostSteps && equations.cost > 1e-12 && lambda < 1e8; ++step) {
-    const DesignShape trial = now.with(now.parameters() + damped_step(equations, metric(equations), lambda));
-    SparseEquations next = equations_at(trial);
+    const Eigen::VectorXd move = damped(equations, lambda);
+    if (!move.allFinite()) {
+      lambda *= 10.0;
+      continue;
+    }
+    const DesignShape trial = now.with(now.parameters() + move);
+    Equations next = equations_at(trial);
     if (next.cost < equations.cost) {
       now = trial;
       equations = std::move(next);
@@ -293,6 +308,20 @@ std::optional<DesignShape> ShapeLimits::solve(const DesignShape& shape,
       lambda *= 10.0;
     }
   }
+  return now;
+}
+
+/// Parameters from which a dense factorisation takes longer than a sparse one.
+constexpr std::size_t kManyParameters = 400;
+
+}  // namespace
+
+std::optional<DesignShape> ShapeLimits::solve(const DesignShape& shape,
+                                              std::span<const Limit* const> limits) const {
+  const auto excess = [&](const DesignShape& s, ResidualRows* rows) { return cost(s, limits, kFine, rows); };
+  const DesignShape now = shape.parameter_count() > kManyParameters
+                              ? minimised<SparseEquations>(shape, excess)
+                              : minimised<NormalEquations>(shape, excess);
   if (held(now, limits)) return now;
   return std::nullopt;
 }

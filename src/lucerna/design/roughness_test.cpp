@@ -43,7 +43,9 @@ TEST(Roughness, GradientAndHessianAreThoseOfTheCost) {
   Rng rng(4, 0);
   for (double& x : move) x = rng.uniform() - 0.5;
   const double there = roughness(shape.with(shape.parameters() + move), 0.5, nullptr);
-  EXPECT_NEAR(there, here + 2.0 * equations.gradient.dot(move) + move.dot(equations.hessian * move),
+  EXPECT_NEAR(there,
+              here + 2.0 * equations.gradient.dot(move) +
+                  move.dot(equations.hessian.selfadjointView<Eigen::Lower>() * move),
               1e-9 * there);
 }
 

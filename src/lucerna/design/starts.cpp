@@ -40,6 +40,18 @@ double blur_rad(const DesignRays& rays, const PointSource& source, const DesignS
   return std::sqrt(square / weight) / distance;
 }
 
+/// The shape as given, and moved so that its vertex is so far from the source, over the mirror's radius. Which
+/// distance suits a target cannot be told before: near mirrors catch more, far ones blur less.
+std::vector<DesignShape> at_vertex_distances(const DesignShape& shape, const Vec3& source_mm) {
+  constexpr double kOverRadius[] = {0.3, 0.45, 0.7, 1.0};
+  std::vector<DesignShape> out{shape};
+  for (const double distance : kOverRadius) {
+    const double vertex = source_mm.z - distance * shape.aperture().outer_radius_mm();
+    out.push_back(shape.with((shape.parameters().array() + (vertex - shape.at(0.0, 0.0).z_mm)).matrix()));
+  }
+  return out;
+}
+
 }  // namespace
 
 Direction bin_direction(const TentBins& bins, std::size_t i, const Vec3& from_mm) {
@@ -105,8 +117,11 @@ std::vector<FitStart> fit_starts(const FitProblem& problem, const DesignShape& s
   const PointSource source = point_source(*problem.rays, kStartRays);
   const double blur = blur_rad(*problem.rays, source, shape);
   std::vector<FitStart> starts{{shape}};
-  for (const DesignShape& s : zero_etendue_shapes(shape, source, wanted_light(problem, shape), blur)) {
-    starts.push_back({s, FitEntry::own_knots});
+  const std::vector<DirectedFlux> wanted = wanted_light(problem, shape);
+  for (const DesignShape& family : at_vertex_distances(shape, source.at_mm)) {
+    for (const DesignShape& s : zero_etendue_shapes(family, source, wanted, blur)) {
+      starts.push_back({s, FitEntry::own_knots});
+    }
   }
   const TentBins bins = rebinned(problem.bins, 1.0, problem.bins.count() / 3);
   const Eigen::VectorXd target = problem.target(bins);

@@ -31,6 +31,15 @@ struct TentAxis {
     return outer + inner + cells_beyond(above, u - (low + inner * cell), slope);
   }
 
+  /// The same where tents have their centres in the middle of cells: the outermost two of grown cells are
+  /// flat from their centres outwards, so that no light is lost at the end.
+  LUCERNA_HD double tent_index(double u, double& slope) const {
+    const double i = index(u, slope);
+    if (outer == 0 || (i > 0.5 && i < count() - 0.5)) return i;
+    slope = 0.0;
+    return i <= 0.5 ? 0.5 : count() - 0.5;
+  }
+
   /// The coordinate of an index, and its slope.
   LUCERNA_HD double coordinate(double index, double& slope) const {
     const double s = index - outer;

@@ -123,7 +123,7 @@ struct TentBinsView {
   /// Tents of the grid of count x count cells along both axes.
   LUCERNA_HD void deposit_grid(double window_u, double window_v, TentDeposit& out) const {
     double per_u = 0.0, per_v = 0.0;
-    const double u = axis_u.index(window_u, per_u) + 0.5, v = axis_v.index(window_v, per_v) + 0.5;
+    const double u = axis_u.tent_index(window_u, per_u) + 0.5, v = axis_v.tent_index(window_v, per_v) + 0.5;
     if (!(u >= 0.0 && v >= 0.0 && u < count + 1 && v < count + 1)) return;
     const int i = static_cast<int>(u) - 1, j = static_cast<int>(v) - 1;
     const double fu = u - (i + 1), fv = v - (j + 1);

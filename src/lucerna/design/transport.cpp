@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/core/parallel.h"
 
 namespace lucerna {
 
@@ -18,6 +19,8 @@ constexpr int kIterations = 24;
 constexpr double kFall = 0.45;
 /// Scalings beyond this (and below its inverse) are absorbed into the potentials: far within a float's range.
 constexpr float kMaxScaling = 1e12f;
+/// Rows of the kernel that one thread works on at a time.
+constexpr std::size_t kRows = 128;
 /// Nearest to opposite a pair may be: 1 - d . o is at least this.
 constexpr float kMinOpening = 1e-6f;
 
@@ -58,8 +61,8 @@ class Sinkhorn {
     soften();
     absorb();
     for (int i = 0; i < kIterations; ++i) {
-      balance(u_, kernel_ * (b_.cwiseProduct(v_)));
-      balance(v_, kernel_.transpose() * (a_.cwiseProduct(u_)));
+      balance(u_, from_columns(b_.cwiseProduct(v_)));
+      balance(v_, from_rows(a_.cwiseProduct(u_)));
       const float most = std::max(u_.maxCoeff(), v_.maxCoeff()),
                   least = std::min(u_.minCoeff(), v_.minCoeff());
       if (most > kMaxScaling || least < 1.0f / kMaxScaling) absorb();
@@ -71,23 +74,48 @@ class Sinkhorn {
  private:
   /// f from g by the soft minimum, in logarithms: right at any entropy, where the kernel could underflow.
   void soften() {
-    for (Eigen::Index i = 0; i < cost_.rows(); ++i) {
+    for_rows([&](Eigen::Index i) {
       const Eigen::ArrayXf x = (g_.array() - cost_.row(i).transpose().array()) / entropy_;
       const float most = x.maxCoeff();
       f_[i] = -entropy_ * (most + std::log((b_.array() * (x - most).exp()).sum()));
-    }
+    });
     u_ = Eigen::VectorXf::Ones(a_.size());
     v_ = Eigen::VectorXf::Ones(b_.size());
   }
   void absorb() {
     f_.array() += entropy_ * u_.array().log();
     g_.array() += entropy_ * v_.array().log();
-    for (Eigen::Index i = 0; i < cost_.rows(); ++i) {
+    for_rows([&](Eigen::Index i) {
       kernel_.row(i) =
           ((g_.array() + f_[i] - cost_.row(i).transpose().array()) / entropy_).min(60.0f).exp().transpose();
-    }
+    });
     u_.setOnes();
     v_.setOnes();
+  }
+  template <class Body>
+  void for_rows(const Body& body) const {
+    parallel_blocks(static_cast<std::size_t>(cost_.rows()), kRows, [&](std::size_t first, std::size_t last) {
+      for (auto i = static_cast<Eigen::Index>(first); i < static_cast<Eigen::Index>(last); ++i) body(i);
+    });
+  }
+  /// kernel * x and its transpose * x, in blocks of rows that are summed in order.
+  Eigen::VectorXf from_columns(const Eigen::VectorXf& x) const {
+    Eigen::VectorXf out(kernel_.rows());
+    parallel_blocks(static_cast<std::size_t>(kernel_.rows()), kRows, [&](std::size_t first, std::size_t last) {
+      const auto at = static_cast<Eigen::Index>(first), n = static_cast<Eigen::Index>(last - first);
+      out.segment(at, n).noalias() = kernel_.middleRows(at, n) * x;
+    });
+    return out;
+  }
+  Eigen::VectorXf from_rows(const Eigen::VectorXf& x) const {
+    const auto parts = parallel_map_blocks<Eigen::VectorXf>(
+        static_cast<std::size_t>(kernel_.rows()), kRows, [&](std::size_t first, std::size_t last) {
+          const auto at = static_cast<Eigen::Index>(first), n = static_cast<Eigen::Index>(last - first);
+          return Eigen::VectorXf(kernel_.middleRows(at, n).transpose() * x.segment(at, n));
+        });
+    Eigen::VectorXf sum = Eigen::VectorXf::Zero(kernel_.cols());
+    for (const Eigen::VectorXf& part : parts) sum += part;
+    return sum;
   }
   static void balance(Eigen::VectorXf& scaling, const Eigen::VectorXf& sums) {
     for (Eigen::Index i = 0; i < sums.size(); ++i) {
