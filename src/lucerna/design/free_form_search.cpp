@@ -32,6 +32,8 @@ constexpr int kMaxFailed = 8;
 constexpr int kMaxRefused = 5;
 /// The squared error at the end is the noise's and this share more.
 constexpr double kNoiseShare = 0.1;
+/// A mirror that fits its own rays below their noise still costs so much of what it did.
+constexpr double kMinCostShare = 0.02;
 /// A given mirror that is this near (relative error) goes on alone.
 constexpr double kNear = 0.03;
 /// Weight of roughness where slopes are measured in half widths of the target's rectangle: it keeps knots in
@@ -169,7 +171,7 @@ void FreeFormSearch::begin(const DesignShape& shape, int candidate, int number, 
   point_.emplace(fit_->at(fine));
   ++state_.evaluations;
   state_.total_rays += l.rays;
-  state_.now = {candidate, number, point_->equations.cost, 0.0, fine.intervals_x(), fine.intervals_y(), {}};
+  state_.now = {candidate, number, 0.0, 0.0, fine.intervals_x(), fine.intervals_y(), {}};
   state_.step = 0;
   state_.refused = 0;
   state_.lambda = std::clamp(state_.lambda, 1e-4, 1e-2);
@@ -244,8 +246,9 @@ FitRecord FreeFormSearch::step(Progress& progress) {
   const BinError error = fit_->error(*point_);
   const Eigen::VectorXd& p = point_->shape.parameters();
   state_.now.parameters.assign(p.begin(), p.end());
-  state_.now.cost = point_->equations.cost;
-  state_.now.over_noise = std::sqrt(state_.now.cost) / std::max(error.floor, 1e-12);
+  const double cost = point_->equations.cost, noise = error.floor * error.floor;
+  state_.now.cost = std::max(cost - noise, kMinCostShare * cost);
+  state_.now.over_noise = std::sqrt(cost) / std::max(error.floor, 1e-12);
   record.stage = state_.now.level;
   record.step = state_.step;
   record.candidate = state_.now.candidate;

@@ -21,7 +21,7 @@ struct FreeFormCandidate {
 /// A candidate that was fitted on a level.
 struct FreeFormMark {
   int candidate = -1, level = -1;
-  /// What candidates are compared by: the cost.
+  /// What candidates are compared by: the cost less its noise, which differs from mirror to mirror.
   double cost = 0.0;
   /// Error over noise.
   double over_noise = 0.0;

@@ -101,10 +101,11 @@ class Sinkhorn {
   /// kernel * x and its transpose * x, in blocks of rows that are summed in order.
   Eigen::VectorXf from_columns(const Eigen::VectorXf& x) const {
     Eigen::VectorXf out(kernel_.rows());
-    parallel_blocks(static_cast<std::size_t>(kernel_.rows()), kRows, [&](std::size_t first, std::size_t last) {
-      const auto at = static_cast<Eigen::Index>(first), n = static_cast<Eigen::Index>(last - first);
-      out.segment(at, n).noalias() = kernel_.middleRows(at, n) * x;
-    });
+    parallel_blocks(
+        static_cast<std::size_t>(kernel_.rows()), kRows, [&](std::size_t first, std::size_t last) {
+          const auto at = static_cast<Eigen::Index>(first), n = static_cast<Eigen::Index>(last - first);
+          out.segment(at, n).noalias() = kernel_.middleRows(at, n) * x;
+        });
     return out;
   }
   Eigen::VectorXf from_rows(const Eigen::VectorXf& x) const {
