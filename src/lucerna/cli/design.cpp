@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 struct DesignArguments {
   std::string project, output, time, seed = "1", rays, device = "auto", report;
-  bool resume = false, tolerances = false;
+  bool resume = false, tolerances = false, pareto = false;
 };
 
 /// Where evaluations are traced: the first CUDA device, or null for the CPU.
@@ -38,6 +38,7 @@ std::shared_ptr<Accelerator> chosen_accelerator(const std::string& name) {
 DesignOptions design_options(const DesignArguments& a, const DesignProblem& problem) {
   DesignOptions options;
   options.seed = parse_count(a.seed);
+  options.pareto = a.pareto;
   if (!a.time.empty()) options.time_s = parse_number(a.time);
   if (!a.rays.empty()) {
     options.max_rays = parse_count(a.rays);
@@ -157,6 +158,8 @@ void add_design(CLI::App& app, Session& session, int& exit_code) {
   command.option("--device", a.device, "cpu, cuda or auto");
   command.option("--report", a.report, "Also write the report as one HTML file");
   command.flag("--tolerances", a.tolerances, "Try what a misplaced source and an inexact mirror change");
+  command.flag("--pareto", a.pareto,
+               "Also the trade between error and light, of five weights (after the time)");
   command.flag("--resume", a.resume, "Go on from the folder's checkpoint");
   command.flag("--force", session.force, "Write into a folder that is not empty");
   session.add_json(command);

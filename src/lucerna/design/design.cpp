@@ -100,6 +100,9 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
   // Time stops a validation too, but not before there is an error to show.
   const double max_s = result.end == DesignEnd::time ? std::max(time.left_s(), kMinValidation_s) : kNoLimit;
   check_result(problem, options, fit_data, judge_rays, max_s, result, progress);
+  if (options.pareto && result.end != DesignEnd::interrupted) {
+    result.pareto = pareto_front(problem, result.shape, options, progress);
+  }
   return result;
 }
 

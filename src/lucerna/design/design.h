@@ -13,6 +13,7 @@
 #include "lucerna/design/box_error.h"
 #include "lucerna/design/design_problem.h"
 #include "lucerna/design/limit_check.h"
+#include "lucerna/design/pareto.h"
 
 namespace lucerna {
 
@@ -30,6 +31,8 @@ struct DesignOptions {
   std::uint64_t rays_after = 0;
   /// Where evaluations are traced (device_evaluator.h); null: on the CPU.
   std::shared_ptr<Accelerator> accelerator;
+  /// Also the trade between error and light (pareto.h), after the time that was given.
+  bool pareto = false;
   /// State to go on from (`checkpoint_text`); empty: from the start.
   std::string checkpoint;
 };
@@ -57,6 +60,8 @@ struct DesignResult {
   std::uint64_t rays = 0;
   /// Every limit that was set, as found in the exported mesh and the judging light.
   std::vector<LimitCheck> limits;
+  /// What was asked for by DesignOptions::pareto.
+  std::vector<ParetoPoint> pareto;
   /// What is known of why the error is not smaller, in one sentence each, with the figure that shows it.
   std::vector<std::string> remarks;
 };

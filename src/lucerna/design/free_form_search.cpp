@@ -18,8 +18,8 @@ constexpr int kLevels = 4, kEnd = 2, kMoreRays = 3;
 constexpr int kRoughIntervals = 32;
 /// The first candidates, over the aperture's radius: mirrors that spread light near the source, and mirrors
 /// whose rays cross farther from it. Others catch too little light or become walls.
-constexpr std::array<TransportChoice, 5> kFirst{
-    {{-1.0, 0.33}, {-1.0, 0.47}, {-1.0, 0.27}, {1.0, 0.75}, {1.0, 1.08}}};
+constexpr std::array<TransportChoice, 6> kFirst{
+    {{-1.0, 0.33}, {-1.0, 0.27}, {-1.0, 0.21}, {-1.0, 0.45}, {1.0, 0.75}, {1.0, 0.92}}};
 /// How many of them are fitted finely.
 constexpr int kFine = 2;
 /// A neighbour of the best goes on where its cost is at most so many times the best's at that level.
@@ -32,6 +32,9 @@ constexpr int kMaxFailed = 8;
 constexpr int kMaxRefused = 5;
 /// The squared error at the end is the noise's and this share more.
 constexpr double kNoiseShare = 0.1;
+/// What of the squared error counts where candidates are compared at a level: mirrors that are fitted roughly
+/// all come nearer to the target, but the light that they lose stays lost.
+constexpr std::array<double, kLevels> kErrorShare{0.1, 0.3, 1.0, 1.0};
 /// A mirror that fits its own rays below their noise still costs so much of what it did.
 constexpr double kMinCostShare = 0.02;
 /// A given mirror that is this near (relative error) goes on alone.
@@ -56,6 +59,15 @@ std::array<int, 2> intervals_of(const Aperture& a, int most) {
 }
 
 }  // namespace
+
+std::optional<DesignShape> free_form_start(const FitProblem& problem, const DesignShape& family,
+                                           const TransportChoice& choice) {
+  problem.rays->grow(kStartRays);
+  const TentBins bins = graded_bins(problem.rectangle, problem.mirror_from_world, kStartBins, kStartWiden, 0);
+  return transport_start({problem.rays, kStartRays, problem.reflectance.greatest(), problem.direct_light,
+                          problem.target(bins), bins},
+                         family, choice);
+}
 
 FreeFormSearch::FreeFormSearch(const FitProblem& problem, const DesignShape& given, int max_intervals,
                                std::uint64_t max_rays, FreeFormState state)
@@ -101,16 +113,10 @@ FreeFormCandidate FreeFormSearch::candidate(int number) const {
 std::optional<DesignShape> FreeFormSearch::start_of(int number) const {
   const FreeFormCandidate c = candidate(number);
   if (c.given) return given_;
-  problem_.rays->grow(kStartRays);
-  const TentBins bins =
-      graded_bins(problem_.rectangle, problem_.mirror_from_world, kStartBins, kStartWiden, 0);
-  const TransportProblem transport{
-      problem_.rays,         kStartRays, problem_.reflectance.greatest(), problem_.direct_light,
-      problem_.target(bins), bins};
   const FreeFormLevel rough = level(0);
   const DesignShape family = DesignShape::bspline(given_.focal_mm(), given_.aperture(), rough.intervals_x,
                                                   rough.intervals_y, given_.symmetry());
-  return transport_start(transport, family, c.transport);
+  return free_form_start(problem_, family, c.transport);
 }
 
 const FreeFormMark* FreeFormSearch::best_of(int level) const {
@@ -247,7 +253,9 @@ FitRecord FreeFormSearch::step(Progress& progress) {
   const Eigen::VectorXd& p = point_->shape.parameters();
   state_.now.parameters.assign(p.begin(), p.end());
   const double cost = point_->equations.cost, noise = error.floor * error.floor;
-  state_.now.cost = std::max(cost - noise, kMinCostShare * cost);
+  const double squared = error.relative_rms * error.relative_rms;
+  const double excess = std::max(squared - noise, kMinCostShare * squared);
+  state_.now.cost = kErrorShare[static_cast<std::size_t>(state_.now.level)] * excess + (cost - squared);
   state_.now.over_noise = std::sqrt(cost) / std::max(error.floor, 1e-12);
   record.stage = state_.now.level;
   record.step = state_.step;

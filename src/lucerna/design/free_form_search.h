@@ -12,6 +12,11 @@
 
 namespace lucerna {
 
+/// What a point source's mirror would be for a fit's target, with the knots and the symmetry of `family`; see
+/// transport_start. Grows the problem's rays.
+std::optional<DesignShape> free_form_start(const FitProblem& problem, const DesignShape& family,
+                                           const TransportChoice& choice);
+
 /// What a candidate begins with: the given mirror, or a point source's.
 struct FreeFormCandidate {
   bool given = false;
@@ -21,7 +26,8 @@ struct FreeFormCandidate {
 /// A candidate that was fitted on a level.
 struct FreeFormMark {
   int candidate = -1, level = -1;
-  /// What candidates are compared by: the cost less its noise, which differs from mirror to mirror.
+  /// What candidates are compared by: the squared error less its noise (a share of it while the fit is
+  /// rough), and what lost light, limits and roughness cost.
   double cost = 0.0;
   /// Error over noise.
   double over_noise = 0.0;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "lucerna/design/bounds.h"
@@ -78,6 +79,12 @@ void validate_result(const DesignProblem& problem, const DesignOptions& options,
                               result.shape, problem.world_from_mirror.ez());
 }
 
+/// A design is never worse than the mirror that was given, by the printed error.
+bool given_is_better(const DesignResult& result) {
+  const BoxErrorEstimate &found = result.error.c48, &given = result.start_error.c48;
+  return given.excess + 2.0 * std::hypot(given.standard_error, found.standard_error) < found.excess;
+}
+
 /// Only what a figure stands behind.
 void add_remarks(DesignResult& result) {
   const BoxErrorEstimate& e = result.error.c48;
@@ -121,6 +128,11 @@ void check_result(const DesignProblem& problem, const DesignOptions& options, co
   const std::uint64_t limit_rays = std::min(max_rays, kLimitRays);
   rays.grow(limit_rays, progress);
   validate_result(problem, options, rays, max_rays, max_s, result, progress);
+  const bool keep_given = given_is_better(result);
+  if (keep_given) {
+    result.shape = problem.start;
+    validate_result(problem, options, rays, max_rays, max_s, result, progress);
+  }
   result.limits = checked_limits(problem, result.shape, rays, limit_rays);
   const double behind = share_behind(result.shape, rays), given = share_behind(problem.start, rays);
   if (behind > given + kMaxBehind) {
@@ -130,6 +142,8 @@ void check_result(const DesignProblem& problem, const DesignOptions& options, co
                                 problem.limits.min_efficiency.value_or(0.0))
                        .statements;
   add_remarks(result);
+  if (keep_given)
+    result.remarks.push_back("the given mirror is the result: nothing that was found has a smaller error");
 }
 
 }  // namespace lucerna

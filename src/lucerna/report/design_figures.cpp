@@ -180,6 +180,29 @@ void error_lines(const DesignResult& result, std::vector<std::string>& lines) {
                   100.0 * e.outside_direct.mean, 100.0 * e.outside.excess, 100.0 * e.outside.standard_error));
 }
 
+/// The trade between error and light, one line a weight.
+void pareto_lines(const DesignResult& result, std::vector<std::string>& lines) {
+  if (result.pareto.empty()) return;
+  lines.push_back("  trade: vertex moved   light_weight   error in 48 x 48 boxes   light in the rectangle");
+  for (const ParetoPoint& p : result.pareto) {
+    lines.push_back(fmt::format(
+        "         {:7.1f} mm     {:<12.4g}   {:5.2f} +- {:.2f} %          {:.1f} +- {:.1f} %", p.vertex_mm,
+        p.light_weight, 100.0 * p.error.c48.excess, 100.0 * p.error.c48.standard_error,
+        100.0 * p.error.in_rectangle.mean, 100.0 * p.error.in_rectangle.standard_error));
+  }
+}
+
+nlohmann::ordered_json pareto_json(const std::vector<ParetoPoint>& points) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  for (const ParetoPoint& p : points) {
+    out.push_back({{"light_weight", p.light_weight},
+                   {"vertex_moved_mm", p.vertex_mm},
+                   {"error", error_json(p.error)},
+                   {"in_rectangle", estimate_json(p.error.in_rectangle)}});
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string_view to_string(DesignEnd end) {
@@ -227,6 +250,7 @@ Json design_json(const DesignProblem& problem, const DesignResult& result, const
   json["error"] = error_json(result.error);
   json["outside"] = outside_json(result.error);
   json["worst_cell"] = estimate_json(result.error.worst_cell);
+  if (!result.pareto.empty()) json["pareto"] = pareto_json(result.pareto);
   json["in_rectangle"] = estimate_json(result.error.in_rectangle);
   json["bound"] = {{"error", result.bound.error},
                    {"target_share", result.bound.target_share},
@@ -277,6 +301,7 @@ std::vector<std::string> design_summary(const DesignProblem& problem, const Desi
   plane_rows(f, table);
   std::vector<std::string>& lines = table.lines;
   error_lines(result, lines);
+  pareto_lines(result, lines);
   if (f.comparison) {
     lines.push_back(fmt::format("  all directions: Bergen fit {:.1f} of 100, Wasserstein {:.2f} deg",
                                 f.comparison->bergen_fit, f.comparison->wasserstein_deg));
