@@ -94,8 +94,8 @@ TEST(ValidationStatistical, SeesTheLightOfTheLibrarysOwnTracer) {
   const DesignError difference = box_error(b, target, v.replicates, TargetMode::absolute);
   const DesignError noise = box_error(b, target, own, TargetMode::absolute);
   const auto close = [](const BoxErrorEstimate& d, const BoxErrorEstimate& f, double cells) {
-    const double noise = d.floor * d.floor + f.floor * f.floor;
-    EXPECT_LT(std::abs(d.value * d.value - noise), 5.0 * noise * 1.5 * std::sqrt(2.0 / cells)) << cells;
+    const double square = d.floor * d.floor + f.floor * f.floor;
+    EXPECT_LT(std::abs(d.value * d.value - square), 5.0 * square * 1.5 * std::sqrt(2.0 / cells)) << cells;
   };
   close(difference.c12, noise.c12, 144.0);
   close(difference.c24, noise.c24, 576.0);
