@@ -38,6 +38,30 @@ FarFieldTable read_distribution(const std::string& path, const CompareArguments&
   return std::move(folder.far_fields.front());
 }
 
+void say_comparison(const DesignError& boxes, const DistributionComparison& c, Session& session) {
+  session.say(fmt::format(
+      "  error as a design   {:.4g} % in 48 x 48 boxes over A's rectangle{} (24: {:.4g}, 12: {:.4g}), by "
+      "shape",
+      100.0 * boxes.c48.excess,
+      std::isnan(boxes.c48.standard_error) ? ""
+                                           : fmt::format(" +- {:.2g} %", 100.0 * boxes.c48.standard_error),
+      100.0 * boxes.c24.excess, 100.0 * boxes.c12.excess));
+  session.say(fmt::format("  relative RMS        {:.4g} % (noise floor {:.4g} %, excess {:.4g} %)",
+                          100.0 * c.relative_rms, 100.0 * c.noise_floor, 100.0 * c.excess));
+  session.say(fmt::format("  Bergen fit          {:.3f} (100 = equal; by solid angle), {:.3f} unweighted",
+                          c.bergen_fit, c.bergen_fit_unweighted));
+  session.say(fmt::format("  flux, peak          {:.5g}, {:.5g} times", c.flux_ratio, c.peak_ratio));
+  session.say(fmt::format("  Wasserstein-1       {:.4g} deg", c.wasserstein_deg));
+  session.say(
+      fmt::format("  overlap             {:.3f} % of the flux in the right place", 100.0 * c.overlap));
+  if (c.alignment) {
+    session.say(fmt::format(
+        "  best alignment      tilt {:.3g} deg toward C {:.0f}, turn {:.3g} deg; then relative RMS {:.4g} %",
+        c.alignment->tilt_deg, c.alignment->tilt_toward_c_deg, c.alignment->turn_deg,
+        100.0 * c.alignment->relative_rms));
+  }
+}
+
 void compare_photometry(const CompareArguments& a, Session& session) {
   const FarFieldTable reference =
       session.timed("read", [&] { return read_distribution(a.reference, a, session); });
@@ -78,27 +102,7 @@ void compare_photometry(const CompareArguments& a, Session& session) {
   }
   write_comparison(a, json, session);
   session.say(fmt::format("{} against {}", a.test, a.reference));
-  session.say(fmt::format(
-      "  error as a design   {:.4g} % in 48 x 48 boxes over A's rectangle{} (24: {:.4g}, 12: {:.4g}), by "
-      "shape",
-      100.0 * boxes.c48.excess,
-      std::isnan(boxes.c48.standard_error) ? ""
-                                           : fmt::format(" +- {:.2g} %", 100.0 * boxes.c48.standard_error),
-      100.0 * boxes.c24.excess, 100.0 * boxes.c12.excess));
-  session.say(fmt::format("  relative RMS        {:.4g} % (noise floor {:.4g} %, excess {:.4g} %)",
-                          100.0 * c.relative_rms, 100.0 * c.noise_floor, 100.0 * c.excess));
-  session.say(fmt::format("  Bergen fit          {:.3f} (100 = equal; by solid angle), {:.3f} unweighted",
-                          c.bergen_fit, c.bergen_fit_unweighted));
-  session.say(fmt::format("  flux, peak          {:.5g}, {:.5g} times", c.flux_ratio, c.peak_ratio));
-  session.say(fmt::format("  Wasserstein-1       {:.4g} deg", c.wasserstein_deg));
-  session.say(
-      fmt::format("  overlap             {:.3f} % of the flux in the right place", 100.0 * c.overlap));
-  if (c.alignment) {
-    session.say(fmt::format(
-        "  best alignment      tilt {:.3g} deg toward C {:.0f}, turn {:.3g} deg; then relative RMS {:.4g} %",
-        c.alignment->tilt_deg, c.alignment->tilt_toward_c_deg, c.alignment->turn_deg,
-        100.0 * c.alignment->relative_rms));
-  }
+  say_comparison(boxes, c, session);
 }
 
 void compare(const CompareArguments& a, Session& session) {

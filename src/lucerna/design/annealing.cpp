@@ -42,7 +42,7 @@ void propose(Chain& chain) {
 
 }  // namespace
 
-void anneal(SearchRun& run) {
+void anneal(GlobalSearchRun& run) {
   std::vector<Chain> chains;
   Rng rng(run.seed(), 0, 0x5a);
   std::vector<Eigen::VectorXd> probes;

@@ -34,7 +34,7 @@ struct Rates {
 /// One run until it has converged or the budget is spent.
 class CmaRun {
  public:
-  CmaRun(SearchRun& run, Rng& rng, int lambda, Eigen::VectorXd mean, double sigma)
+  CmaRun(GlobalSearchRun& run, Rng& rng, int lambda, Eigen::VectorXd mean, double sigma)
       : run_(run),
         rng_(rng),
         lambda_(lambda),
@@ -107,7 +107,7 @@ class CmaRun {
     scale_ = eigen.eigenvalues().cwiseMax(1e-20).cwiseSqrt();
   }
 
-  SearchRun& run_;
+  GlobalSearchRun& run_;
   Rng& rng_;
   int lambda_;
   Rates rates_;
@@ -119,7 +119,7 @@ class CmaRun {
 
 }  // namespace
 
-void cma_es(SearchRun& run) {
+void cma_es(GlobalSearchRun& run) {
   Rng rng(run.seed(), 0, 0x636d61);
   int lambda = 4 + static_cast<int>(3.0 * std::log(static_cast<double>(run.size())));
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(run.size());

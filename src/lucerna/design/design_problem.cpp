@@ -157,6 +157,23 @@ void add_detectors(Project& project, const DesignTarget& target) {
                                {"cells", toml::array{cells, cells}}});
 }
 
+Optimizer read_optimizer(TomlReader& design) {
+  const std::string word = design.text("optimizer").value_or("auto");
+  try {
+    return optimizer(word);
+  } catch (const InputError&) {
+    design.fail("optimizer", fmt::format("found '{}', expected one of {}", word, optimizer_names()));
+  }
+}
+
+double read_light_weight(TomlReader& design) {
+  const double weight = design.number("light_weight", DesignProblem::kLightWeight);
+  if (!(weight >= 0.0 && weight <= 100.0)) {
+    design.fail("light_weight", fmt::format("found {}, expected a number from 0 to 100", weight));
+  }
+  return weight;
+}
+
 }  // namespace
 
 DesignProblem design_problem(Project project, const std::filesystem::path& path) {
@@ -173,20 +190,11 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
     root.fail("reflector", fmt::format("found {} reflectors, expected the one that is to be shaped",
                                        project.scene.reflectors.size()));
   }
-  Optimizer how;
-  try {
-    how = optimizer(design.text("optimizer").value_or("auto"));
-  } catch (const InputError&) {
-    design.fail("optimizer", fmt::format("found '{}', expected one of {}",
-                                         design.text("optimizer").value_or(""), optimizer_names()));
-  }
+  const Optimizer how = read_optimizer(design);
   const double time_s = design.positive("time_s").value_or(60.0);
   const std::vector<int> intervals = read_intervals(design);
   const std::optional<int> told = read_attempts(design);
-  const double light_weight = design.number("light_weight", DesignProblem::kLightWeight);
-  if (!(light_weight >= 0.0 && light_weight <= 100.0)) {
-    design.fail("light_weight", fmt::format("found {}, expected a number from 0 to 100", light_weight));
-  }
+  const double light_weight = read_light_weight(design);
   const PlacedReflector placed = project.scene.reflectors[0];
   const bool revolution = dynamic_cast<const RevolutionSurface*>(placed.reflector.surface.get()) != nullptr;
   const int attempts = told.value_or(revolution ? kAttemptsOfRevolution : kAttempts);

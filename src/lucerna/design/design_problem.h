@@ -31,8 +31,8 @@ struct DesignProblem {
   int growth = 0;
   /// The project says how many knots there are to be.
   bool fixed_knots = false;
-  /// What light beside the target's rectangle costs a free form in shape mode: so many times the square of the
-  /// missing share, beside the squared error. At 0.03 a tenth of the light counts as an error of 1.7 %.
+  /// What light beside the target's rectangle costs a free form in shape mode: so many times the square of
+  /// the missing share, beside the squared error. At 0.03 a tenth of the light counts as an error of 1.7 %.
   double light_weight = kLightWeight;
   static constexpr double kLightWeight = 0.03;
   /// What to try around the result; nothing: no [design.tolerances].

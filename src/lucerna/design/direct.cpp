@@ -55,7 +55,7 @@ std::vector<std::size_t> promising(const std::vector<Cell>& cells, double best) 
 
 }  // namespace
 
-void direct(SearchRun& run) {
+void direct(GlobalSearchRun& run) {
   const auto n = static_cast<std::size_t>(run.size());
   std::vector<Cell> cells{{Eigen::VectorXd::Zero(run.size()), std::vector<int>(n, 0), run.best().cost}};
   while (!run.spent()) {

@@ -24,7 +24,7 @@ std::string_view to_string(GlobalMethod method) {
 
 namespace detail {
 
-SearchRun::SearchRun(const SearchBox& box, const SearchOptions& options, const BatchCost& cost)
+GlobalSearchRun::GlobalSearchRun(const SearchBox& box, const SearchOptions& options, const BatchCost& cost)
     : box_(box), options_(options), cost_(cost), best_point_(Eigen::VectorXd::Zero(box.centre.size())) {
   LUCERNA_CHECK(box.centre.size() > 0 && box.centre.size() == box.half.size() && box.half.minCoeff() > 0.0,
                 "a search box of {} by {} numbers", box.centre.size(), box.half.size());
@@ -34,7 +34,7 @@ SearchRun::SearchRun(const SearchBox& box, const SearchOptions& options, const B
   costs({best_point_});
 }
 
-std::vector<double> SearchRun::costs(const std::vector<Eigen::VectorXd>& points) {
+std::vector<double> GlobalSearchRun::costs(const std::vector<Eigen::VectorXd>& points) {
   constexpr double kWorst = std::numeric_limits<double>::infinity();
   const auto left = static_cast<std::size_t>(options_.most_evaluations - best_.evaluations);
   const std::size_t n = std::min(points.size(), left);
@@ -61,7 +61,7 @@ std::vector<double> SearchRun::costs(const std::vector<Eigen::VectorXd>& points)
 
 GlobalSearchResult global_search(GlobalMethod method, const SearchBox& box, const SearchOptions& options,
                                  const BatchCost& cost) {
-  detail::SearchRun run(box, options, cost);
+  detail::GlobalSearchRun run(box, options, cost);
   switch (method) {
     case GlobalMethod::tree:
       detail::search_tree(run);

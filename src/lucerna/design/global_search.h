@@ -49,9 +49,9 @@ GlobalSearchResult global_search(GlobalMethod method, const SearchBox& box, cons
 namespace detail {
 
 /// What all methods share: the box as [-1, 1]^n, the budget and the best so far.
-class SearchRun {
+class GlobalSearchRun {
  public:
-  SearchRun(const SearchBox& box, const SearchOptions& options, const BatchCost& cost);
+  GlobalSearchRun(const SearchBox& box, const SearchOptions& options, const BatchCost& cost);
 
   Eigen::Index size() const { return box_.centre.size(); }
   std::uint64_t seed() const { return options_.seed; }
@@ -72,10 +72,10 @@ class SearchRun {
   Eigen::VectorXd best_point_;
 };
 
-void search_tree(SearchRun& run);
-void anneal(SearchRun& run);
-void cma_es(SearchRun& run);
-void direct(SearchRun& run);
+void search_tree(GlobalSearchRun& run);
+void anneal(GlobalSearchRun& run);
+void cma_es(GlobalSearchRun& run);
+void direct(GlobalSearchRun& run);
 
 }  // namespace detail
 

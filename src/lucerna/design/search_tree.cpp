@@ -108,7 +108,7 @@ void learn(const Branch& branch, const Eigen::VectorXd& at, double cost) {
 
 }  // namespace
 
-void search_tree(SearchRun& run) {
+void search_tree(GlobalSearchRun& run) {
   const auto n = run.size();
   Node root(Eigen::VectorXd::Zero(n), 1.0);
   root.learn(root.centre, run.best().cost);

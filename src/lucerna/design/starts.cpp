@@ -40,8 +40,8 @@ double blur_rad(const DesignRays& rays, const PointSource& source, const DesignS
   return std::sqrt(square / weight) / distance;
 }
 
-/// The shape as given, and moved so that its vertex is so far from the source, over the mirror's radius. Which
-/// distance suits a target cannot be told before: near mirrors catch more, far ones blur less.
+/// The shape as given, and moved so that its vertex is so far from the source, over the mirror's radius.
+/// Which distance suits a target cannot be told before: near mirrors catch more, far ones blur less.
 std::vector<DesignShape> at_vertex_distances(const DesignShape& shape, const Vec3& source_mm) {
   constexpr double kOverRadius[] = {0.3, 0.45, 0.7, 1.0};
   std::vector<DesignShape> out{shape};

@@ -30,10 +30,9 @@ double fit_cost(const FitProblem& problem, const DesignShape& shape, const Evalu
 double fit_cost(const FitProblem& problem, const DesignShape& shape, const TentBins& bins,
                 const Eigen::VectorXd& target, std::uint64_t rays);
 
-/// Where a fit may begin: the given shape, and what a point source would need (zero_etendue.h) with the vertex
-/// where it is given and at other distances, the cheapest first in a third of the problem's bins. The given
-/// shape begins with few knots, the others with all.
-/// Progress phase "starts".
+/// Where a fit may begin: the given shape, and what a point source would need (zero_etendue.h) with the
+/// vertex where it is given and at other distances, the cheapest first in a third of the problem's bins. The
+/// given shape begins with few knots, the others with all. Progress phase "starts".
 std::vector<FitStart> fit_starts(const FitProblem& problem, const DesignShape& shape,
                                  Progress& progress = no_progress());
 
