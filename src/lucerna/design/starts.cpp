@@ -40,11 +40,13 @@ double blur_rad(const DesignRays& rays, const PointSource& source, const DesignS
   return std::sqrt(square / weight) / distance;
 }
 
-/// The shape as given, and moved so that its vertex is so far from the source, over the mirror's radius.
-/// Which distance suits a target cannot be told before: near mirrors catch more, far ones blur less.
+/// The shape as given, and of revolution moved so that its vertex is so far from the source, over the
+/// mirror's radius. Which distance suits a target cannot be told before: near mirrors catch more, far ones
+/// blur less.
 std::vector<DesignShape> at_vertex_distances(const DesignShape& shape, const Vec3& source_mm) {
   constexpr double kOverRadius[] = {0.3, 0.45, 0.7, 1.0};
   std::vector<DesignShape> out{shape};
+  if (!shape.is_revolution()) return out;
   for (const double distance : kOverRadius) {
     const double vertex = source_mm.z - distance * shape.aperture().outer_radius_mm();
     out.push_back(shape.with((shape.parameters().array() + (vertex - shape.at(0.0, 0.0).z_mm)).matrix()));
