@@ -13,7 +13,6 @@
 #include <sstream>
 
 #include "lucerna/core/file.h"
-#include "lucerna/design/checkpoint.h"
 #include "lucerna/core/random.h"
 #include "lucerna/design/checkpoint.h"
 #include "lucerna/design/limit_check.h"
