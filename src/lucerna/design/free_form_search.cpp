@@ -21,7 +21,7 @@ constexpr int kRoughIntervals = 32;
 constexpr std::array<TransportChoice, 6> kFirst{
     {{-1.0, 0.33}, {-1.0, 0.27}, {-1.0, 0.21}, {-1.0, 0.45}, {1.0, 0.75}, {1.0, 0.92}}};
 /// How many of them are fitted finely.
-constexpr int kFine = 2;
+constexpr int kFine = 3;
 /// A neighbour of the best goes on where its cost is at most so many times the best's at that level.
 constexpr double kWorthOn = 1.1;
 /// Farthest neighbour of the best: its vertex distance is within this factor.
@@ -33,15 +33,17 @@ constexpr int kMaxRefused = 5;
 /// The squared error at the end is the noise's and this share more.
 constexpr double kNoiseShare = 0.1;
 /// What of the squared error counts where candidates are compared at a level: mirrors that are fitted roughly
-/// all come nearer to the target, but the light that they lose stays lost.
-constexpr std::array<double, kLevels> kErrorShare{0.1, 0.3, 1.0, 1.0};
+/// come nearer to the target later, but the light that they lose stays lost.
+constexpr std::array<double, kLevels> kErrorShare{0.3, 1.0, 1.0, 1.0};
 /// A mirror that fits its own rays below their noise still costs so much of what it did.
 constexpr double kMinCostShare = 0.02;
 /// A given mirror that is this near (relative error) goes on alone.
 constexpr double kNear = 0.03;
+/// Least damping: with less, knots that little light tells of fit its noise.
+constexpr double kMinLambda = 1e-5;
 /// Weight of roughness where slopes are measured in half widths of the target's rectangle: it keeps knots in
 /// order that little light falls on.
-constexpr double kSmoothing = 1e-6;
+constexpr double kSmoothing = 1e-4;
 /// Light that a start is made for, in rays.
 constexpr std::uint64_t kStartRays = std::uint64_t{1} << 19;
 constexpr int kStartBins = 36;
@@ -243,6 +245,7 @@ FitRecord FreeFormSearch::step(Progress& progress) {
       point_.emplace(fit_->at(shape_of(state_.now)));
     }
     record.accepted = fit_->step(*point_, state_.lambda);
+    state_.lambda = std::max(state_.lambda, kMinLambda);
     ++state_.evaluations;
     ++state_.step;
     state_.total_rays += level(state_.now.level).rays;

@@ -28,9 +28,9 @@ std::vector<LimitCheck> checked_limits(const DesignProblem& problem, const Desig
   std::vector<LimitCheck> out;
   const DesignLimits& limits = problem.limits;
   if (limits.any_on_form()) {
-    const CadTolerance tolerance;
-    out =
-        check_limits(cad_mesh(shape.reflector(), tolerance), limits, tolerance.chord_mm, tolerance.slope_deg);
+    CadTolerance tolerance;  // becomes what the mesh keeps
+    const Mesh mesh = cad_mesh_within(shape.reflector(), tolerance);
+    out = check_limits(mesh, limits, tolerance.chord_mm, tolerance.slope_deg);
   }
   const LightLimits light(limits, problem.reflectance);
   if (light.empty()) return out;
