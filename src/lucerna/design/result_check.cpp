@@ -19,7 +19,7 @@ namespace {
 
 /// Rays that limits on light are checked with, and that the start is validated with, at most.
 constexpr std::uint64_t kLimitRays = std::uint64_t{1} << 20, kStartRays = std::uint64_t{1} << 20;
-/// Of the mesh where few rays are traced, as for the start: a finer one would cost more than the rays.
+/// Of the mesh where few rays are traced: a finer one would cost more than the rays.
 constexpr CadTolerance kCoarse{.chord_mm = 0.01, .slope_deg = 0.5};
 
 /// All limits that are set, against the exported mesh and fresh light.
@@ -73,7 +73,6 @@ void validate_result(const DesignProblem& problem, const DesignOptions& options,
   result.validation_s = v.seconds;
   o.max_rays = std::min(max_rays, kStartRays);
   o.min_rays = o.max_rays / 8;
-  o.tolerance = kCoarse;
   result.start_error = validated(problem, problem.start, boxes, target, o, progress).error;
   result.bound = design_bound(boxes, target, problem.target.mode, result.error.in_rectangle.mean, rays,
                               result.shape, problem.world_from_mirror.ez());

@@ -27,7 +27,7 @@ struct ValidationOptions {
   double max_s = std::numeric_limits<double>::infinity();
   /// Of the mesh. Flat facets blur the light by about their angle to the surface; what these do to the error
   /// is in docs/validation.md.
-  CadTolerance tolerance{.chord_mm = 0.01, .slope_deg = 0.2};
+  CadTolerance tolerance = kOpticalTolerance;
   HitEngine engine = HitEngine::best;
 };
 

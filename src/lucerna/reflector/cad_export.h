@@ -19,6 +19,11 @@ struct CadTolerance {
   double slope_deg = 2.0;
 };
 
+/// What a mesh keeps that light is traced through: flat facets blur a beam by about their angle to the
+/// surface, and this is a fifth of a 48th box of a wide beam. STL files and validation (design/validation.h)
+/// keep it.
+inline constexpr CadTolerance kOpticalTolerance{.chord_mm = 0.01, .slope_deg = 0.3};
+
 /// A reflector as triangles, for STL and OBJ: a grid over the aperture (from the hole's rim outwards where
 /// there is one, and over circles; else of rows and columns), counter-clockwise seen from the reflecting
 /// side, fine enough for the tolerance everywhere. Vertices are on the exact surface. Throws InputError if a

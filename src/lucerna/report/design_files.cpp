@@ -61,12 +61,11 @@ DesignStart read_design_progress(const std::filesystem::path& folder) {
 
 std::vector<std::string> write_reflector_files(const std::filesystem::path& folder,
                                                const Reflector& reflector) {
-  CadTolerance tolerance;
-  const Mesh mesh = cad_mesh_within(reflector, tolerance);
+  CadTolerance optical = kOpticalTolerance, tolerance;
   const auto profile = cad_profile(reflector, tolerance);
   write_file(folder / "reflector.step", step_text(reflector));
-  write_file(folder / "reflector.stl", stl_bytes(mesh));
-  write_file(folder / "reflector.obj", obj_text(mesh));
+  write_file(folder / "reflector.stl", stl_bytes(cad_mesh_within(reflector, optical)));
+  write_file(folder / "reflector.obj", obj_text(cad_mesh_within(reflector, tolerance)));
   write_file(folder / "reflector.dxf", dxf_profile(profile));
   write_file(folder / "reflector.csv", csv_profile(profile));
   return {"reflector.step", "reflector.stl", "reflector.obj", "reflector.dxf", "reflector.csv"};
