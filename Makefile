@@ -19,7 +19,7 @@ check: packages
 
 # Seconds to minutes: the form of the tree, clang-tidy on what changed.
 check-quick:
-	scripts/check.sh format tidy-changed tree
+	scripts/check.sh format tree docs tidy-changed
 
 # make fuzz MINUTES=10: so many minutes for all targets together.
 MINUTES ?= 10
