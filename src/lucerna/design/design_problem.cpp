@@ -71,9 +71,8 @@ std::vector<int> read_intervals(TomlReader& reader) {
   return out;
 }
 
-/// Attempts in turn that may bring nothing: a mirror of revolution has few parameters, cheap evaluations and
-/// many basins.
-constexpr int kAttempts = 6, kAttemptsOfRevolution = 12;
+/// Attempts in turn that may bring nothing: without a word of the project, as many as there is time for.
+constexpr int kAttempts = 1'000'000;
 
 std::optional<int> read_attempts(TomlReader& reader) {
   const std::optional<double> n = reader.number("attempts");
@@ -197,7 +196,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   const double light_weight = read_light_weight(design);
   const PlacedReflector placed = project.scene.reflectors[0];
   const bool revolution = dynamic_cast<const RevolutionSurface*>(placed.reflector.surface.get()) != nullptr;
-  const int attempts = told.value_or(revolution ? kAttemptsOfRevolution : kAttempts);
+  const int attempts = told.value_or(kAttempts);
   double source_flux = 0.0;
   for (const PlacedSource& source : project.scene.sources) source_flux += source.total_flux();
   DesignLimits limits;

@@ -25,8 +25,9 @@ struct DesignProblem {
   Frame world_from_mirror;
   double time_s = 60.0;
   Optimizer optimizer;
-  /// After how many attempts in turn that bring nothing better a design ends above the noise.
-  int attempts = 6;
+  /// After how many attempts in turn that bring nothing better (of a search among candidates: after how many
+  /// neighbours of the best) a design ends above the noise before its time.
+  int attempts = 1'000'000;
   /// How often the knots may be doubled beyond `start`'s: 0 where the project says how many there are to be.
   int growth = 0;
   /// The project says how many knots there are to be.

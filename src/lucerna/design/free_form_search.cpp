@@ -38,7 +38,7 @@ constexpr std::array<double, kLevels> kErrorShare{0.3, 1.0, 1.0, 1.0};
 /// A mirror that fits its own rays below their noise still costs so much of what it did.
 constexpr double kMinCostShare = 0.02;
 /// A given mirror that is this near (relative error) goes on alone.
-constexpr double kNear = 0.03;
+constexpr double kNear = 0.01;
 /// Least damping: with less, knots that little light tells of fit its noise.
 constexpr double kMinLambda = 1e-5;
 /// Weight of roughness where slopes are measured in half widths of the target's rectangle: it keeps knots in
@@ -149,7 +149,7 @@ const FreeFormMark* FreeFormSearch::next_promotion() const {
                          [&](const FreeFormMark& m) { return m.level == level; });
   };
   const FreeFormMark* given = best_of(0);
-  const bool near = state_.begun == 1 && given != nullptr && given->cost < kNear * kNear;
+  const bool near = state_.begun == 1 && given != nullptr && given->cost < kErrorShare[0] * kNear * kNear;
   if (state_.begun < first && !near && best_of(kEnd) == nullptr) return nullptr;
   const FreeFormMark* rough = best_waiting(0);
   if (rough != nullptr && count(1) < (near ? 1 : kFine)) return rough;
@@ -276,6 +276,8 @@ FitRecord FreeFormSearch::step(Progress& progress) {
 }
 
 bool FreeFormSearch::done() const {
+  const int neighbours = state_.begun - static_cast<int>(kFirst.size()) - 1;
+  if (!state_.now.exists() && neighbours >= problem_.fruitless && next_promotion() == nullptr) return true;
   if (state_.failed >= kMaxFailed) return true;
   const FreeFormMark* best = best_of(kMoreRays);
   return best != nullptr && best->over_noise * best->over_noise <= 1.0 + kNoiseShare;

@@ -65,7 +65,8 @@ class FreeFormSearch {
 
   /// One trial step, or the beginning of a candidate.
   FitRecord step(Progress& progress = no_progress());
-  /// Nothing is left to gain: the best is at the noise of the most rays.
+  /// Nothing is left to gain: the best is at the noise of the most rays, or FitProblem::fruitless neighbours
+  /// have had their turn.
   bool done() const;
   /// Rays that the next step will trace, at most.
   std::uint64_t next_rays() const;
