@@ -61,7 +61,7 @@ void run(const BenchmarkScene& c, int cells, const std::shared_ptr<const RaySet>
     TraceResult result;
     const double per_s = rays_per_second(scene, options, rays->rays.size(), clock, &result);
     fmt::print("            {:10} {} thread(s) {:7.2f} M rays/s  {:.3f} reflections a ray\n", result.isa,
-               ThreadLimit::current(), 1e-6 * per_s, ledger(result).reflections_per_ray);
+               ThreadLimit::current(), 1e-6 * per_s, ledger(result).reflections_per_ray.mean);
     return per_s;
   };
   double fast = 0.0;

@@ -37,6 +37,16 @@ double parse_number(std::string_view word) {
   return *value;
 }
 
+double parse_share(std::string_view word) {
+  const bool percent = word.ends_with('%');
+  std::string_view number = percent ? word.substr(0, word.size() - 1) : word;
+  while (number.ends_with(' ')) number.remove_suffix(1);
+  const double share = parse_number(number) * (percent ? 0.01 : 1.0);
+  if (!(share > 0.0 && share <= 1.0))
+    throw UsageError(fmt::format("'{}': expected a share above 0, like 1% or 0.01", word));
+  return share;
+}
+
 std::uint64_t parse_count(std::string_view word) {
   const auto value = to_number(word);
   const auto whole = value ? to_whole(*value) : std::nullopt;

@@ -15,6 +15,9 @@ namespace lucerna::cli {
 /// A finite number, whole word.
 double parse_number(std::string_view word);
 
+/// A share above 0 and at most 1: "1%", "0.5 %" or "0.01".
+double parse_share(std::string_view word);
+
 /// A count: digits, or a number like 1e6 that is whole and below 2^53.
 std::uint64_t parse_count(std::string_view word);
 

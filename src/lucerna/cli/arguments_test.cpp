@@ -46,5 +46,12 @@ TEST(Arguments, NumbersAndRotations) {
     EXPECT_THROW(parse_rotation(bad), UsageError) << bad;
 }
 
+TEST(Arguments, SharesArePercentOrNumbers) {
+  EXPECT_DOUBLE_EQ(parse_share("1%"), 0.01);
+  EXPECT_DOUBLE_EQ(parse_share("0.5 %"), 0.005);
+  EXPECT_DOUBLE_EQ(parse_share("0.02"), 0.02);
+  for (const char* bad : {"0", "-1%", "150%", "%", "one"}) EXPECT_THROW(parse_share(bad), UsageError) << bad;
+}
+
 }  // namespace
 }  // namespace lucerna::cli

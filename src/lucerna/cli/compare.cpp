@@ -13,6 +13,7 @@
 #include "lucerna/photometry/compare_distributions.h"
 #include "lucerna/report/error_json.h"
 #include "lucerna/report/svg_polar.h"
+#include "lucerna/report/trace_figures.h"
 #include "lucerna/report/trace_folder.h"
 
 namespace lucerna::cli {
@@ -46,14 +47,18 @@ void say_comparison(const DesignError& boxes, const DistributionComparison& c, S
       std::isnan(boxes.c48.standard_error) ? ""
                                            : fmt::format(" +- {:.2g} %", 100.0 * boxes.c48.standard_error),
       100.0 * boxes.c24.excess, 100.0 * boxes.c12.excess));
-  session.say(fmt::format("  relative RMS        {:.4g} % (noise floor {:.4g} %, excess {:.4g} %)",
-                          100.0 * c.relative_rms, 100.0 * c.noise_floor, 100.0 * c.excess));
-  session.say(fmt::format("  Bergen fit          {:.3f} (100 = equal; by solid angle), {:.3f} unweighted",
-                          c.bergen_fit, c.bergen_fit_unweighted));
-  session.say(fmt::format("  flux, peak          {:.5g}, {:.5g} times", c.flux_ratio, c.peak_ratio));
-  session.say(fmt::format("  Wasserstein-1       {:.4g} deg", c.wasserstein_deg));
+  const auto percent = [](const Estimate& e) {
+    return estimate_text({100.0 * e.mean, 100.0 * e.standard_error}, "%");
+  };
+  session.say(fmt::format("  relative RMS        {} (noise floor {:.4g} %, excess {:.4g} %)",
+                          percent(c.rms()), 100.0 * c.noise_floor, 100.0 * c.excess));
+  session.say(fmt::format("  Bergen fit          {} (100 = equal; by solid angle), {} unweighted",
+                          estimate_text(c.bergen()), estimate_text(c.bergen_unweighted())));
   session.say(
-      fmt::format("  overlap             {:.3f} % of the flux in the right place", 100.0 * c.overlap));
+      fmt::format("  flux, peak          {}, {} times", estimate_text(c.flux()), estimate_text(c.peak())));
+  session.say(fmt::format("  Wasserstein-1       {}", estimate_text(c.wasserstein(), "deg")));
+  session.say(
+      fmt::format("  overlap             {} of the flux in the right place", percent(c.overlapping())));
   if (c.alignment) {
     session.say(fmt::format(
         "  best alignment      tilt {:.3g} deg toward C {:.0f}, turn {:.3g} deg; then relative RMS {:.4g} %",
@@ -75,13 +80,13 @@ void compare_photometry(const CompareArguments& a, Session& session) {
     return box_error(reference.distribution, test.distribution, TargetMode::shape, test.standard_error);
   });
   Json json = session.json_head(std::nullopt);
-  json["relative_rms"] = c.relative_rms;
-  json["bergen_fit"] = c.bergen_fit;
-  json["bergen_fit_unweighted"] = c.bergen_fit_unweighted;
-  json["flux_ratio"] = c.flux_ratio;
-  json["peak_ratio"] = c.peak_ratio;
-  json["wasserstein_deg"] = c.wasserstein_deg;
-  json["overlap"] = c.overlap;
+  json["relative_rms"] = estimate_json(c.rms());
+  json["bergen_fit"] = estimate_json(c.bergen());
+  json["bergen_fit_unweighted"] = estimate_json(c.bergen_unweighted());
+  json["flux_ratio"] = estimate_json(c.flux());
+  json["peak_ratio"] = estimate_json(c.peak());
+  json["wasserstein_deg"] = estimate_json(c.wasserstein());
+  json["overlap"] = estimate_json(c.overlapping());
   json["floor"] = c.noise_floor;
   json["excess"] = c.excess;
   json["error"] = error_json(boxes);

@@ -57,7 +57,7 @@ Description describe_photometry(const std::string& path, const PhotometricReadOp
       {"lamp_flux_lm", to_json(lamps)},
       {"light_output_ratio", lamps ? to_json(beam.flux / *lamps) : Json()},
       {"peak", {{"intensity", beam.peak.cd}, {"c_deg", beam.peak.c_deg}, {"gamma_deg", beam.peak.gamma_deg}}},
-      {"beam", beam_planes_json(beam)},
+      {"beam", beam_json(beam)["planes"]},
       {"multiplier", origin.multiplier},
       {"ballast_factor", origin.ballast_factor},
       {"ies_turn_deg", options.ies_turn == IesTurn::none ? 0 : 90},

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "lucerna/cli/arguments.h"
@@ -12,13 +13,18 @@
 #include "lucerna/report/design_files.h"
 #include "lucerna/report/report_design.h"
 #include "lucerna/trace/accelerator.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/trace/trace_until.h"
 
 namespace lucerna::cli {
 
 namespace {
 
 namespace fs = std::filesystem;
+
+/// The result is traced until its figures are good to 1 %, but no longer than this share of the time (1 to 10
+/// seconds); and as many rays are set aside for it, in units of what a trace would take by default.
+constexpr double kFinalTraceShare = 0.1;
+constexpr std::uint64_t kFinalTraceRays = 4;
 
 struct DesignArguments {
   std::string project, output, time, seed = "1", rays, device = "auto", report;
@@ -44,7 +50,7 @@ DesignOptions design_options(const DesignArguments& a, const DesignProblem& prob
     options.max_rays = parse_count(a.rays);
     options.judge_rays = 4 * options.max_rays;
   }
-  options.rays_after = default_ray_count(problem.project.scene);
+  options.rays_after = kFinalTraceRays * default_ray_count(problem.project.scene);
   if (problem.tolerances) {
     options.rays_after += problem.tolerances->rays * tolerance_cases(*problem.tolerances, 1).size();
   }
@@ -85,7 +91,15 @@ DesignFigures finish(const DesignProblem& problem, const DesignResult& result, c
   const Project project = with_shape(problem, result.shape);
   TraceOptions trace_options;
   trace_options.seed = options.seed + 1;
-  traced = session.timed("trace", [&] { return trace(project.scene, trace_options); });
+  NoiseGoal goal;
+  goal.most_seconds = std::clamp(kFinalTraceShare * options.time_s.value_or(problem.time_s), 1.0, 10.0);
+  NoiseTrace final_trace =
+      session.timed("trace", [&] { return trace_until(project.scene, trace_options, goal); });
+  if (final_trace.end == NoiseEnd::time) {
+    session.note(fmt::format("the trace of the result has {:.2g} % noise, {:.2g} % wanted: {}",
+                             100.0 * final_trace.noise, 100.0 * goal.noise, to_string(final_trace.end)));
+  }
+  traced = std::move(final_trace.result);
   DesignFigures figures = session.timed("figures", [&] { return design_figures(problem, result, traced); });
   if (problem.tolerances && result.end != DesignEnd::interrupted) {
     figures.tolerances = session.timed("tolerances", [&] {

@@ -130,7 +130,7 @@ TEST(DesignCli, LeavesFilesWhoseTraceHasTheStatedError) {
   const auto traced = run_lucerna(dir.path(), "trace out/reflector.toml -o again --rays 1e5 --json");
   ASSERT_EQ(traced.exit_code, 0) << traced.err;
   const Json ledger = Json::parse(traced.out)["ledger"];
-  EXPECT_NEAR((ledger["out_direct"].get<double>() + ledger["out_reflected"].get<double>()) /
+  EXPECT_NEAR((ledger["out_direct"]["value"].get<double>() + ledger["out_reflected"]["value"].get<double>()) /
                   ledger["emitted"].get<double>(),
               json["efficiency"]["value"].get<double>(), 0.003);
 }

@@ -12,13 +12,17 @@
 #include "lucerna/report/trace_folder.h"
 #include "lucerna/trace/accelerator.h"
 #include "lucerna/trace/project.h"
+#include "lucerna/trace/trace_file.h"
+#include "lucerna/trace/trace_until.h"
 
 namespace lucerna::cli {
 
 namespace {
 
 struct TraceArguments {
-  std::string project, output, rays, seed = "1", sequence = "sobol", device = "auto", report;
+  std::string project, output, rays, noise = "1%", time = "60", seed = "1", sequence = "sobol",
+                                     device = "auto", report;
+  bool resume = false;
 };
 
 TraceOptions trace_options(const TraceArguments& a) {
@@ -37,17 +41,70 @@ TraceOptions trace_options(const TraceArguments& a) {
   return options;
 }
 
+/// The trace that is in the folder, if it is one of this project.
+std::optional<TraceResult> stored_trace(const TraceArguments& a, const TraceOrigin& origin) {
+  const std::filesystem::path file = std::filesystem::path(a.output) / kTraceFileName;
+  if (!a.resume || !std::filesystem::exists(file)) return std::nullopt;
+  StoredTrace stored = read_trace_file(file);
+  if (stored.origin.scene_id != origin.scene_id)
+    throw InputError(fmt::format("{}: is a trace of another project, or of other input files", a.output));
+  if (stored.origin.program_version != origin.program_version) {
+    throw InputError(fmt::format("{}: was traced by lucerna {}, this is {}", a.output,
+                                 stored.origin.program_version, origin.program_version));
+  }
+  return std::move(stored.result);
+}
+
+/// `--rays`: exactly those, with what is there already.
+NoiseTrace trace_rays(const Scene& scene, TraceOptions options, std::optional<TraceResult> from,
+                      Session& session) {
+  if (from) {
+    if (options.first_ray != from->first_ray || *options.last_ray < from->last_ray) {
+      throw UsageError(
+          fmt::format("--resume: rays {}:{} are there already", from->first_ray, from->last_ray));
+    }
+    options.first_ray = from->last_ray;
+    options.seed = from->seed;
+    options.sequence = from->sequence;
+  }
+  NoiseTrace out;
+  if (from && options.first_ray == *options.last_ray) {
+    out.result = std::move(*from);
+  } else {
+    out.result = trace(scene, options, session.progress());
+    if (from) out.result = merge(*from, out.result);
+  }
+  return out;
+}
+
+NoiseTrace run_rays(const TraceArguments& a, const Scene& scene, const TraceOptions& options,
+                    const TraceOrigin& origin, Session& session) {
+  std::optional<TraceResult> from = stored_trace(a, origin);
+  if (a.resume && !from) session.note(fmt::format("{}: no trace yet, starting anew", a.output));
+  if (!a.rays.empty()) return trace_rays(scene, options, std::move(from), session);
+  NoiseGoal goal;
+  goal.noise = parse_share(a.noise);
+  goal.most_seconds = parse_number(a.time);
+  NoiseTrace traced = trace_until(scene, options, goal, std::move(from), session.progress());
+  if (traced.end == NoiseEnd::time || traced.end == NoiseEnd::finite_source) {
+    session.note(fmt::format("noise {:.2g} % of the peak, {:.2g} % wanted: {}", 100.0 * traced.noise,
+                             100.0 * goal.noise, to_string(traced.end)));
+  }
+  return traced;
+}
+
 void run_trace(const TraceArguments& a, Session& session) {
   session.start();
   const TraceOptions options = trace_options(a);
   const Project project = session.timed("read", [&] { return read_project(a.project, session.progress()); });
-  prepare_folder(a.output, session.force);
+  prepare_folder(a.output, session.force || a.resume);
   for (const std::string& warning : project.warnings) session.note(warning);
   for (const auto& input : project.inputs) session.add_input(input);
-  const TraceResult result =
-      session.timed("trace", [&] { return trace(project.scene, options, session.progress()); });
-  const TraceFigures figures = session.timed("figures", [&] { return trace_figures(result); });
   const TraceOrigin origin = session.timed("hash", [&] { return trace_origin(project); });
+  const NoiseTrace traced =
+      session.timed("trace", [&] { return run_rays(a, project.scene, options, origin, session); });
+  const TraceResult& result = traced.result;
+  const TraceFigures figures = session.timed("figures", [&] { return trace_figures(result); });
   const auto names = write_trace_output(a.output, result, origin, figures, session);
   const double seconds = session.seconds("trace");
   session.say(fmt::format(
@@ -69,7 +126,11 @@ void add_trace(CLI::App& app, Session& session, int&) {
   TraceArguments& a = *arguments;
   command.required("PROJECT", a.project, "Project file (see: lucerna init)");
   command.required("-o,--output", a.output, "Folder for the results");
-  command.option("--rays", a.rays, "Number of rays, or a range A:B of ray numbers");
+  command.option("--noise", a.noise,
+                 "Trace until no angle above 1 % of the peak has a larger error, as a share of the peak");
+  command.option("--time", a.time, "Seconds after which to stop with the noise that is left");
+  command.option("--rays", a.rays, "Instead: a number of rays, or a range A:B of ray numbers");
+  command.flag("--resume", a.resume, "Go on with the trace in the folder");
   command.option("--seed", a.seed, "Seed of the random numbers");
   command.option("--sequence", a.sequence, "random or sobol");
   command.option("--device", a.device, "cpu, cuda or auto");

@@ -1,13 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <string_view>
+
 namespace lucerna {
 
 /// A Monte Carlo figure: what leaves the library instead of a naked number.
 struct Estimate {
   double mean = 0.0;
-  /// Standard error of `mean`, same unit.
+  /// Standard error of `mean`, same unit; NaN where it is not known.
   double standard_error = 0.0;
 };
+
+/// Standard errors to either side that make the 95 % interval of an estimate: Student's t for the 15 degrees
+/// of freedom that 16 replicates leave.
+inline constexpr double kIntervalErrors = 2.131;
+
+/// "1759 +- 4": the error to one significant digit (two where the first is 1), the value to the same place.
+/// An error that is not known leaves the value to five significant digits, one of zero the same. `unit` is
+/// appended after a blank unless it is empty.
+std::string estimate_text(const Estimate& estimate, std::string_view unit = {});
 
 }  // namespace lucerna

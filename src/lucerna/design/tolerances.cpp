@@ -11,8 +11,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/random.h"
-#include "lucerna/photometry/beam.h"
-#include "lucerna/photometry/binned_intensity.h"
+#include "lucerna/photometry/far_field_metrics.h"
 #include "lucerna/trace/trace.h"
 
 namespace lucerna {
@@ -28,50 +27,48 @@ FarFieldDetector watch() {
   return d;
 }
 
-std::vector<double> steps(std::size_t count, double step_deg) {
-  std::vector<double> out(count);
-  for (std::size_t i = 0; i < count; ++i) out[i] = step_deg * static_cast<double>(i);
-  return out;
-}
-
 ToleranceFigures figures_of(const TraceResult& result) {
-  const FarField field = far_field(result, 0);
-  const auto c = steps(field.c_count, field.c_step_deg),
-             gamma = steps(field.gamma_count, field.gamma_step_deg);
-  const BeamFigures beam =
-      beam_figures(intensity_from_bins(c, gamma, field.flux, {}, field.unit).distribution);
-  const Ledger l = ledger(result);
+  const FarFieldMetrics m = far_field_metrics(counted_far_field(result, 0), {});
   ToleranceFigures f;
-  f.efficiency = (l.out_direct.mean + l.out_reflected.mean) / l.emitted;
-  f.peak = beam.peak.cd;
-  f.centre = beam.centre_cd;
-  for (const auto& plane : beam.planes) {
+  f.efficiency = out_flux(result).map([&](double x) { return x / result.flux; }).estimate();
+  if (m.peak) f.peak = m.peak->cd;
+  f.centre = m.axis_cd;
+  for (const auto& plane : m.planes) {
     if (plane.c_deg == 0.0) f.beam_c0_deg = plane.beam_of_maximum;
     if (plane.c_deg == 90.0) f.beam_c90_deg = plane.beam_of_maximum;
   }
   return f;
 }
 
-ToleranceSpread spread_of(const std::string& name, const ToleranceSweep& sweep,
-                          const std::function<double(const ToleranceFigures&)>& figure) {
+using Figure = std::function<std::optional<Estimate>(const ToleranceFigures&)>;
+
+ToleranceSpread spread_of(const std::string& name, const ToleranceSweep& sweep, const Figure& figure) {
   ToleranceSpread s;
   s.figure = name;
-  s.nominal = figure(sweep.figures.front());
-  s.least = std::numeric_limits<double>::infinity();
-  s.greatest = -s.least;
-  double sum = 0.0, squares = 0.0;
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  s.nominal = figure(sweep.figures.front()).value_or(Estimate{unknown, unknown});
+  s.least.mean = std::numeric_limits<double>::infinity();
+  s.greatest.mean = -s.least.mean;
+  double sum = 0.0, squares = 0.0, errors = 0.0;
   int n = 0;
   for (std::size_t i = 0; i < sweep.cases.size(); ++i) {
-    if (sweep.cases[i].name.rfind("combined", 0) != 0) continue;
-    const double x = figure(sweep.figures[i]);
-    sum += x;
-    squares += x * x;
-    s.least = std::min(s.least, x);
-    s.greatest = std::max(s.greatest, x);
+    const std::optional<Estimate> x = figure(sweep.figures[i]);
+    if (sweep.cases[i].name.rfind("combined", 0) != 0 || !x) continue;
+    sum += x->mean;
+    squares += x->mean * x->mean;
+    errors += x->standard_error;
+    if (x->mean < s.least.mean) s.least = *x;
+    if (x->mean > s.greatest.mean) s.greatest = *x;
     ++n;
   }
-  s.mean = sum / n;
-  s.standard_deviation = n > 1 ? std::sqrt(std::max(0.0, (squares - n * s.mean * s.mean) / (n - 1))) : 0.0;
+  if (n == 0) {
+    s.mean = s.least = s.greatest = {unknown, unknown};
+    return s;
+  }
+  // Of the same rays: the errors go together, and their mean is that of the mean.
+  s.mean = {sum / n, errors / n};
+  s.standard_deviation =
+      n > 1 ? std::sqrt(std::max(0.0, (squares - n * s.mean.mean * s.mean.mean) / (n - 1))) : 0.0;
   return s;
 }
 
@@ -175,32 +172,33 @@ ToleranceSweep tolerance_sweep(const Scene& scene, const ToleranceRanges& ranges
     sweep.figures.push_back(figures_of(trace(changed(plain, c), options)));
     progress.update("tolerances", sweep.figures.size(), sweep.cases.size());
   }
-  const auto angle = [](const std::optional<double>& a) { return a.value_or(0.0); };
   sweep.spread = {
       spread_of("efficiency", sweep, [](const ToleranceFigures& f) { return f.efficiency; }),
       spread_of("peak", sweep, [](const ToleranceFigures& f) { return f.peak; }),
       spread_of("centre", sweep, [](const ToleranceFigures& f) { return f.centre; }),
-      spread_of("beam_c0_deg", sweep, [&](const ToleranceFigures& f) { return angle(f.beam_c0_deg); }),
-      spread_of("beam_c90_deg", sweep, [&](const ToleranceFigures& f) { return angle(f.beam_c90_deg); }),
+      spread_of("beam_c0_deg", sweep, [](const ToleranceFigures& f) { return f.beam_c0_deg; }),
+      spread_of("beam_c90_deg", sweep, [](const ToleranceFigures& f) { return f.beam_c90_deg; }),
   };
   return sweep;
 }
 
 std::string tolerances_csv(const ToleranceSweep& sweep) {
   std::string csv =
-      "case,shift_x_mm,shift_y_mm,shift_z_mm,tilt_x_deg,tilt_y_deg,slope_error_mrad,reflectance,efficiency,"
-      "peak,"
-      "centre,beam_c0_deg,beam_c90_deg\n";
-  const auto angle = [](const std::optional<double>& a) {
-    return a ? fmt::format("{:.4g}", *a) : std::string();
+      "case,shift_x_mm,shift_y_mm,shift_z_mm,tilt_x_deg,tilt_y_deg,slope_error_mrad,reflectance";
+  for (const char* figure : {"efficiency", "peak", "centre", "beam_c0_deg", "beam_c90_deg"})
+    csv += fmt::format(",{0},{0}_standard_error", figure);
+  csv += '\n';
+  const auto columns = [](const std::optional<Estimate>& e) {
+    return e ? fmt::format(",{:.6g},{:.2g}", e->mean, e->standard_error) : std::string(",,");
   };
   for (std::size_t i = 0; i < sweep.cases.size(); ++i) {
     const ToleranceCase& c = sweep.cases[i];
     const ToleranceFigures& f = sweep.figures[i];
-    csv += fmt::format("{},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.6g},{:.6g},{:.6g},{},{}\n",
-                       c.name, c.shift_mm.x, c.shift_mm.y, c.shift_mm.z, c.tilt_x_deg, c.tilt_y_deg,
-                       c.slope_error_mrad, c.reflectance, f.efficiency, f.peak, f.centre,
-                       angle(f.beam_c0_deg), angle(f.beam_c90_deg));
+    csv +=
+        fmt::format("{},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g}", c.name, c.shift_mm.x, c.shift_mm.y,
+                    c.shift_mm.z, c.tilt_x_deg, c.tilt_y_deg, c.slope_error_mrad, c.reflectance);
+    csv += columns(f.efficiency) + columns(f.peak) + columns(f.centre) + columns(f.beam_c0_deg) +
+           columns(f.beam_c90_deg) + '\n';
   }
   return csv;
 }

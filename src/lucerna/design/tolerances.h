@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lucerna/core/estimate.h"
 #include "lucerna/core/progress.h"
 #include "lucerna/trace/scene.h"
 #include "lucerna/trace/toml_reader.h"
@@ -43,17 +44,21 @@ struct ToleranceCase {
 /// What is watched: of the whole luminaire, all light in the far field.
 struct ToleranceFigures {
   /// Of the sources' flux, that leaves.
-  double efficiency = 0.0;
+  Estimate efficiency;
   /// Largest intensity (cd or W/sr), and on the axis.
-  double peak = 0.0, centre = 0.0;
-  /// Full angles at half the maximum in C0-C180 and C90-C270; nothing where the plane is dark.
-  std::optional<double> beam_c0_deg, beam_c90_deg;
+  Estimate peak, centre;
+  /// Full angles at half the maximum in C0-C180 and C90-C270; nothing where they are not determined.
+  std::optional<Estimate> beam_c0_deg, beam_c90_deg;
 };
 
-/// How one figure varies over the combined cases.
+/// How one figure varies over the combined cases. Errors are those of the rays; the same rays serve all
+/// cases, so that differences between cases are better known than either. A case whose figure is not
+/// determined is left out.
 struct ToleranceSpread {
   std::string figure;
-  double nominal = 0.0, mean = 0.0, standard_deviation = 0.0, least = 0.0, greatest = 0.0;
+  Estimate nominal, mean;
+  double standard_deviation = 0.0;
+  Estimate least, greatest;
 };
 
 struct ToleranceSweep {

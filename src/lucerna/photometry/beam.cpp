@@ -14,11 +14,6 @@ namespace {
 
 constexpr int kConeRings = 32, kConePoints = 64;
 
-/// The great circle through C and C + 180: angle from nadir (positive in C, 0..360) and intensity there.
-struct CirclePoint {
-  double angle_deg, cd;
-};
-
 std::vector<CirclePoint> great_circle(const IntensityDistribution& d, double c_deg) {
   std::vector<CirclePoint> circle;
   const auto add = [&](double angle, double cd) {
@@ -39,33 +34,6 @@ std::vector<CirclePoint> great_circle(const IntensityDistribution& d, double c_d
   }
   if (g.front() > 0.0) add(360.0 - g.front() + step, 0.0);
   return circle;
-}
-
-/// 360 less the widest run of the circle below `threshold`.
-std::optional<double> smallest_arc_deg(const std::vector<CirclePoint>& circle, double threshold) {
-  const std::size_t n = circle.size();
-  std::optional<double> first_rise, last_fall;
-  double widest = 0.0;
-  bool any_above = false;
-  for (std::size_t i = 0; i < n; ++i) {
-    const CirclePoint a = circle[i];
-    CirclePoint b = circle[(i + 1) % n];
-    if (i + 1 == n) b.angle_deg += 360.0;
-    any_above = any_above || a.cd >= threshold;
-    const bool above_a = a.cd >= threshold, above_b = b.cd >= threshold;
-    if (above_a == above_b) continue;
-    const double crossing = a.angle_deg + (b.angle_deg - a.angle_deg) * (threshold - a.cd) / (b.cd - a.cd);
-    if (above_a) {
-      last_fall = crossing;
-    } else if (last_fall) {
-      widest = std::max(widest, crossing - *last_fall);
-    } else {
-      first_rise = crossing;
-    }
-  }
-  if (!any_above) return std::nullopt;
-  if (first_rise && last_fall) widest = std::max(widest, *first_rise + 360.0 - *last_fall);
-  return 360.0 - widest;
 }
 
 double reference_cd(const IntensityDistribution& d, BeamReference reference) {
@@ -95,6 +63,52 @@ void for_cone(const Direction& axis, double half_angle_deg, F&& visit) {
 }
 
 }  // namespace
+
+/// 360 less the widest run of the circle below the threshold.
+std::optional<double> smallest_arc_deg(const std::vector<CirclePoint>& circle, double threshold) {
+  const std::size_t n = circle.size();
+  std::optional<double> first_rise, last_fall;
+  double widest = 0.0;
+  bool any_above = false;
+  for (std::size_t i = 0; i < n; ++i) {
+    const CirclePoint a = circle[i];
+    CirclePoint b = circle[(i + 1) % n];
+    if (i + 1 == n) b.angle_deg += 360.0;
+    any_above = any_above || a.cd >= threshold;
+    const bool above_a = a.cd >= threshold, above_b = b.cd >= threshold;
+    if (above_a == above_b) continue;
+    const double crossing = a.angle_deg + (b.angle_deg - a.angle_deg) * (threshold - a.cd) / (b.cd - a.cd);
+    if (above_a) {
+      last_fall = crossing;
+    } else if (last_fall) {
+      widest = std::max(widest, crossing - *last_fall);
+    } else {
+      first_rise = crossing;
+    }
+  }
+  if (!any_above) return std::nullopt;
+  if (first_rise && last_fall) widest = std::max(widest, *first_rise + 360.0 - *last_fall);
+  return 360.0 - widest;
+}
+
+std::optional<double> farthest_from_axis_deg(const std::vector<CirclePoint>& circle, double threshold,
+                                             bool up) {
+  const auto from_axis = [up](double angle) {
+    const double gamma = std::abs(std::remainder(angle, 360.0));
+    return up ? 180.0 - gamma : gamma;
+  };
+  std::optional<double> farthest;
+  const auto reach = [&](double angle) { farthest = std::max(farthest.value_or(0.0), from_axis(angle)); };
+  for (std::size_t i = 0; i < circle.size(); ++i) {
+    const CirclePoint a = circle[i];
+    CirclePoint b = circle[(i + 1) % circle.size()];
+    if (i + 1 == circle.size()) b.angle_deg += 360.0;
+    if (a.cd >= threshold) reach(a.angle_deg);
+    if ((a.cd >= threshold) != (b.cd >= threshold))
+      reach(a.angle_deg + (b.angle_deg - a.angle_deg) * (threshold - a.cd) / (b.cd - a.cd));
+  }
+  return farthest;
+}
 
 PeakIntensity peak_intensity(const IntensityDistribution& d) {
   const auto at = static_cast<std::size_t>(std::max_element(d.cd.begin(), d.cd.end()) - d.cd.begin());

@@ -25,6 +25,20 @@ enum class BeamReference {
 /// The axis that "centre" means: nadir, or zenith if more flux goes up than down.
 double axis_gamma_deg(const IntensityDistribution& distribution);
 
+/// One point of the great circle through the planes C and C + 180: angle from nadir (positive in C, 0 to
+/// 360) and intensity.
+struct CirclePoint {
+  double angle_deg, cd;
+};
+
+/// The smallest arc of a circle of ascending points, linear between them, that holds all that reaches
+/// `threshold`; nothing if no point does, 360 if all do.
+std::optional<double> smallest_arc_deg(const std::vector<CirclePoint>& circle, double threshold);
+
+/// Largest angle from nadir (from zenith if `up`) at which such a circle reaches `threshold`, 0 to 180.
+std::optional<double> farthest_from_axis_deg(const std::vector<CirclePoint>& circle, double threshold,
+                                             bool up);
+
 /// Full angle in degrees, in the great circle of the planes C and C + 180, of the smallest arc that holds
 /// every direction with at least `fraction` of the reference intensity; crossings are linear between grid
 /// angles. Counts the outermost crossings, also of a beam off the axis. Nothing if the reference is zero or

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/photometry/jackknife.h"
 
 namespace lucerna {
 
@@ -25,22 +26,32 @@ struct IntensityBins {
 /// otherwise).
 IntensityBins intensity_bins(std::span<const double> c_deg, std::span<const double> gamma_deg);
 
+/// The integral over each tent in gamma of sin gamma: from the neighbour before to the neighbour after. The
+/// gammas must reach from 0 to 180.
+std::vector<double> tent_integrals(std::span<const double> gamma_deg);
+
 /// What `intensity_from_bins` returns.
 struct BinnedIntensity {
   IntensityDistribution distribution;
-  /// Standard error of each value of `distribution.cd`; empty if none was given.
+  /// Standard error of each value of `distribution.cd`; empty if it is not known.
   std::vector<double> standard_error_cd;
   /// The last factor on all values that made the flux exact. 1 within a percent on a grid that resolves the
-  /// beam; further away means that the gamma step is too wide for what was traced, and the peak is uncertain
-  /// by as much.
+  /// beam; further away means that the gamma step is too wide for what was traced, and the values are
+  /// uncertain by as much.
   double closure = 1.0;
 };
 
 /// Intensities from flux per bin ([c][gamma], as `intensity_bins` cuts the sphere), such that `total_flux` of
 /// the result is the sum of the bins to rounding.
 ///
-/// Method. A bin's flux over its solid angle is the mean intensity A of the cell. `total_flux` weights ring k
-/// with W_k, the cell ring has the solid angle S_k; on equal steps d, W_k = cos(d/2) S_k inside but W_0 = 2
+/// Pooling. Cells shrink with sin gamma towards the poles, their noise grows; but nothing there is finer than
+/// the gamma step. So a value is the mean over an arc of its ring that is as long as the ring is high, where
+/// a plane's own bin is shorter (within 11.5 degrees of the poles on a grid of 5 x 1 degrees); at a pole it
+/// is the mean of all wedges. The solid angle behind a value never falls below three quarters of a square of
+/// the gamma step, and the flux of a ring stays its own.
+///
+/// Closing. A bin's flux over its solid angle is the mean intensity A of the cell. `total_flux` weights ring
+/// k with W_k, the cell ring has the solid angle S_k; on equal steps d, W_k = cos(d/2) S_k inside but W_0 = 2
 /// cos^2(d/4) S_0 at a pole, so cell means put into that sum count the polar caps twice. Dividing by W_k
 /// instead would close the sum but halve the intensity on the axis. For a smooth beam the ring values that
 /// return its flux without touching the axis are R = I - (d^2/12) (I'' - I' cot gamma); with A = I + (d^2/24)
@@ -48,23 +59,26 @@ struct BinnedIntensity {
 /// ring is multiplied by R/A of its ring mean, with I'' from the second difference of the ring means, limited
 /// by the smaller of the two first differences (minmod), which leaves sharp edges and noise alone and values
 /// non-negative. What is then left to the exact flux (fourth order in d / beam width) is one factor on all
-/// values, returned as `closure`. The wedges of a polar cap get their common mean. A ring factor is a mean
-/// over all planes, so a cell's relative noise stays that of its ray count.
+/// values, returned as `closure`. A ring factor is a mean over all planes, so a value's relative noise stays
+/// that of its ray count.
 ///
-/// `flux` must be finite and >= 0, of size planes * gammas; `flux_standard_error` of the same size or empty.
-/// Throws InputError otherwise. O(bins).
+/// Errors. `replicated` (the same flux, and without each replicate; empty = errors unknown) goes the same
+/// way; the jackknife's variances, known to 37 % each from 16 replicates, are then pooled as node_errors.h
+/// says.
+///
+/// `flux` must be finite and >= 0, of size planes * gammas; `replicated` of the same size or empty. Throws
+/// InputError otherwise. O(bins).
 BinnedIntensity intensity_from_bins(std::span<const double> c_deg, std::span<const double> gamma_deg,
-                                    std::span<const double> flux, std::span<const double> flux_standard_error,
+                                    std::span<const double> flux, const JackknifedFlux& replicated = {},
                                     FluxUnit unit = FluxUnit::lumen);
 
 /// Intensities from flux that was dealt to the grid's angles by tents (each ray to its two neighbours in C
 /// and in gamma, in proportion to nearness): flux over the integral of the tent, the weighted mean of the
-/// intensity about the angle. Polar wedges get their common mean; one factor on all values (`closure`) makes
+/// intensity about the angle, pooled about the poles as above; one factor on all values (`closure`) makes
 /// `total_flux` exact. The grid must reach from 0 to 180. Errors and cost as `intensity_from_bins`;
 /// neighbours' errors are correlated.
 BinnedIntensity intensity_from_tents(std::span<const double> c_deg, std::span<const double> gamma_deg,
-                                     std::span<const double> flux,
-                                     std::span<const double> flux_standard_error,
+                                     std::span<const double> flux, const JackknifedFlux& replicated = {},
                                      FluxUnit unit = FluxUnit::lumen);
 
 }  // namespace lucerna

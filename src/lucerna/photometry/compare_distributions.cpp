@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "lucerna/core/error.h"
+#include "lucerna/core/parallel.h"
+#include "lucerna/core/random.h"
 #include "lucerna/photometry/beam.h"
 #include "lucerna/photometry/binned_intensity.h"
 #include "lucerna/photometry/flux.h"
@@ -234,11 +237,14 @@ double wasserstein_deg(const IntensityDistribution& a, const IntensityDistributi
   return wasserstein_of(common, shares(common.a, common.weight_sr), shares(common.b, common.weight_sr));
 }
 
-DistributionComparison compare_distributions(const IntensityDistribution& reference,
-                                             const IntensityDistribution& test,
-                                             const CompareOptions& options) {
-  check_comparable(reference, test);
-  const Common common = common_grid(reference, test);
+namespace {
+
+/// Copies of which the scatter is taken.
+constexpr std::size_t kCopies = 8;
+
+/// All figures but those of noise and alignment.
+DistributionComparison compared(const Common& common, const IntensityDistribution& reference,
+                                const IntensityDistribution& test) {
   const Sums weighted = sums_of(common, true), plain = sums_of(common, false);
   DistributionComparison result;
   result.relative_rms = weighted.rms();
@@ -251,11 +257,57 @@ DistributionComparison compare_distributions(const IntensityDistribution& refere
   double apart = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) apart += std::abs(a[i] - b[i]);
   result.overlap = 1.0 - 0.5 * apart;
+  return result;
+}
+
+/// The values moved by their errors, evenly distributed with that standard deviation; none below 0.
+IntensityDistribution moved(const IntensityDistribution& d, std::span<const double> error,
+                            std::uint64_t seed) {
+  IntensityDistribution out = d;
+  for (std::size_t i = 0; i < error.size(); ++i) {
+    Rng rng(seed, i);
+    out.cd[i] = std::max(0.0, out.cd[i] + std::sqrt(3.0) * (2.0 * rng.uniform() - 1.0) * error[i]);
+  }
+  return out;
+}
+
+ComparisonErrors errors_of(const IntensityDistribution& reference, const IntensityDistribution& test,
+                           const CompareOptions& options) {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  if (options.reference_error_cd.empty() && options.test_error_cd.empty())
+    return {unknown, unknown, unknown, unknown, unknown, unknown, unknown};
+  std::vector<DistributionComparison> copies(kCopies);
+  parallel_blocks(kCopies, 1, [&](std::size_t k, std::size_t) {
+    const IntensityDistribution a = moved(reference, options.reference_error_cd, 2 * k + 1),
+                                b = moved(test, options.test_error_cd, 2 * k + 2);
+    copies[k] = compared(common_grid(a, b), a, b);
+  });
+  const auto scatter = [&](double DistributionComparison::*figure) {
+    double mean = 0.0, squares = 0.0;
+    for (const auto& c : copies) mean += c.*figure / kCopies;
+    for (const auto& c : copies) squares += (c.*figure - mean) * (c.*figure - mean);
+    return std::sqrt(squares / (kCopies - 1.0));
+  };
+  using C = DistributionComparison;
+  return {scatter(&C::relative_rms), scatter(&C::bergen_fit), scatter(&C::bergen_fit_unweighted),
+          scatter(&C::flux_ratio),   scatter(&C::peak_ratio), scatter(&C::wasserstein_deg),
+          scatter(&C::overlap)};
+}
+
+}  // namespace
+
+DistributionComparison compare_distributions(const IntensityDistribution& reference,
+                                             const IntensityDistribution& test,
+                                             const CompareOptions& options) {
+  check_comparable(reference, test);
+  const Common common = common_grid(reference, test);
+  DistributionComparison result = compared(common, reference, test);
+  const double signal = sums_of(common, true).reference;
   const double noise = noise_floor_of(reference, options.reference_error_cd, common) +
                        noise_floor_of(test, options.test_error_cd, common);
-  result.noise_floor = std::sqrt(noise / weighted.reference);
-  result.excess =
-      std::sqrt(std::max(0.0, result.relative_rms * result.relative_rms - noise / weighted.reference));
+  result.noise_floor = std::sqrt(noise / signal);
+  result.excess = std::sqrt(std::max(0.0, result.relative_rms * result.relative_rms - noise / signal));
+  result.errors = errors_of(reference, test, options);
   if (options.align) result.alignment = aligned(common, test);
   return result;
 }

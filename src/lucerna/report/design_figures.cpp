@@ -16,9 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-Json number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
-
 double source_flux(const DesignProblem& problem) {
   double flux = 0.0;
   for (const PlacedSource& s : problem.project.scene.sources) flux += s.total_flux();
@@ -35,18 +32,12 @@ PlaneSummary summary_of(const std::vector<double>& values, double factor) {
   return s;
 }
 
-const BeamFigures::Plane* plane_at(const BeamFigures& beam, double c_deg) {
-  for (const auto& plane : beam.planes) {
+template <class Plane>
+const Plane* plane_at(const std::vector<Plane>& planes, double c_deg) {
+  for (const Plane& plane : planes) {
     if (plane.c_deg == c_deg) return &plane;
   }
   return nullptr;
-}
-
-Json beam_json(const BeamFigures& beam) {
-  return {
-      {"peak", {{"intensity", beam.peak.cd}, {"c_deg", beam.peak.c_deg}, {"gamma_deg", beam.peak.gamma_deg}}},
-      {"centre", beam.centre_cd},
-      {"planes", beam_planes_json(beam)}};
 }
 
 Json plane_json(const PlaneSummary& s) {
@@ -66,11 +57,11 @@ Json tolerances_json(const ToleranceSweep& sweep) {
            {"rays", r.rays}};
   out["spread"] = Json::object();
   for (const ToleranceSpread& s : sweep.spread) {
-    out["spread"][s.figure] = {{"nominal", s.nominal},
-                               {"mean", s.mean},
+    out["spread"][s.figure] = {{"nominal", estimate_json(s.nominal)},
+                               {"mean", estimate_json(s.mean)},
                                {"standard_deviation", s.standard_deviation},
-                               {"min", s.least},
-                               {"max", s.greatest}};
+                               {"min", estimate_json(s.least)},
+                               {"max", estimate_json(s.greatest)}};
   }
   out["cases"] = Json::array();
   for (std::size_t i = 0; i < sweep.cases.size(); ++i) {
@@ -81,11 +72,11 @@ Json tolerances_json(const ToleranceSweep& sweep) {
                             {"tilt_deg", {c.tilt_x_deg, c.tilt_y_deg}},
                             {"slope_error_mrad", c.slope_error_mrad},
                             {"reflectance", c.reflectance},
-                            {"efficiency", f.efficiency},
-                            {"peak", f.peak},
-                            {"centre", f.centre},
-                            {"beam_c0_deg", number(f.beam_c0_deg)},
-                            {"beam_c90_deg", number(f.beam_c90_deg)}});
+                            {"efficiency", estimate_json(f.efficiency)},
+                            {"peak", estimate_json(f.peak)},
+                            {"centre", estimate_json(f.centre)},
+                            {"beam_c0_deg", estimate_json(f.beam_c0_deg)},
+                            {"beam_c90_deg", estimate_json(f.beam_c90_deg)}});
   }
   return out;
 }
@@ -98,28 +89,30 @@ std::string angle(const std::optional<double>& a) {
 struct Table {
   std::vector<std::string> lines;
   void row(const std::string& what, const std::string& target, const std::string& result) {
-    lines.push_back(fmt::format("  {:<30}{:>18}{:>18}", what, target, result));
+    lines.push_back(fmt::format("  {:<26}{:>18}{:>30}", what, target, result));
   }
 };
 
 void far_field_rows(const DesignFigures& f, Table& table) {
   if (!f.target_beam || f.trace.far_fields.empty()) return;
-  const BeamFigures &want = *f.target_beam, &have = f.trace.far_fields.front().beam;
+  const BeamFigures& want = *f.target_beam;
+  const FarFieldMetrics& have = f.trace.far_fields.front().metrics;
   const char* unit = f.trace.ledger.unit == FluxUnit::lumen ? "cd" : "W/sr";
   const auto amount = [&](double x) { return fmt::format("{:.5g} {}", x, unit); };
-  table.row("peak", amount(want.peak.cd), amount(have.peak.cd));
-  const auto place = [](const PeakIntensity& p) {
-    return fmt::format("C {:g}, {:g} deg", p.c_deg, p.gamma_deg);
-  };
-  table.row("peak at", place(want.peak), place(have.peak));
-  table.row("on the axis", amount(want.centre_cd), amount(have.centre_cd));
+  if (have.peak) {
+    table.row("peak", amount(want.peak.cd), estimate_text(have.peak->cd, unit));
+    table.row("peak at", fmt::format("C {:g}, {:g} deg", want.peak.c_deg, want.peak.gamma_deg),
+              peak_place_text(*have.peak));
+  }
+  table.row("on the axis", amount(want.centre_cd), estimate_text(have.axis_cd, unit));
   for (const double c : {0.0, 90.0}) {
-    const auto *a = plane_at(want, c), *b = plane_at(have, c);
+    const auto* a = plane_at(want.planes, c);
+    const auto* b = plane_at(have.planes, c);
     if (a == nullptr || b == nullptr) continue;
     table.row(fmt::format("beam angle C{:g}-C{:g}", c, c + 180.0), angle(a->beam_of_maximum),
-              angle(b->beam_of_maximum));
+              angle_text(b->beam_of_maximum));
     table.row(fmt::format("field angle C{:g}-C{:g}", c, c + 180.0), angle(a->field_of_maximum),
-              angle(b->field_of_maximum));
+              angle_text(b->field_of_maximum));
   }
 }
 
@@ -142,10 +135,10 @@ void tolerance_rows(const ToleranceSweep& sweep, std::vector<std::string>& lines
                   "{} combined cases",
                   r.source_shift_mm, r.source_tilt_deg, r.slope_error_mrad, r.reflectance, r.samples));
   lines.push_back(
-      fmt::format("  {:<22}{:>12}{:>12}{:>12}{:>12}", "", "nominal", "least", "greatest", "std. dev."));
+      fmt::format("  {:<16}{:>20}{:>20}{:>20}{:>12}", "", "nominal", "least", "greatest", "std. dev."));
   for (const ToleranceSpread& s : sweep.spread) {
-    lines.push_back(fmt::format("  {:<22}{:>12.5g}{:>12.5g}{:>12.5g}{:>12.3g}", s.figure, s.nominal, s.least,
-                                s.greatest, s.standard_deviation));
+    lines.push_back(fmt::format("  {:<16}{:>20}{:>20}{:>20}{:>12.3g}", s.figure, estimate_text(s.nominal),
+                                estimate_text(s.least), estimate_text(s.greatest), s.standard_deviation));
   }
 }
 
@@ -260,14 +253,14 @@ Json design_json(const DesignProblem& problem, const DesignResult& result, const
                    {"outside", outside_json(result.start_error)},
                    {"in_rectangle", estimate_json(result.start_error.in_rectangle)}};
   json["validation"] = {{"rays", result.error.rays}, {"seconds", result.validation_s}};
-  json["bergen_fit"] = f.comparison ? Json(f.comparison->bergen_fit) : Json();
-  json["wasserstein_deg"] = f.comparison ? Json(f.comparison->wasserstein_deg) : Json();
+  json["bergen_fit"] = f.comparison ? estimate_json(f.comparison->bergen()) : Json();
+  json["wasserstein_deg"] = f.comparison ? estimate_json(f.comparison->wasserstein()) : Json();
   json["target"] = {{"file", problem.target.file},
                     {"mode", problem.target.mode == TargetMode::shape ? "shape" : "absolute"},
                     {"factor", f.target_factor}};
   if (f.target_beam) json["target"].update(beam_json(*f.target_beam));
   if (f.target_plane) json["target"]["plane"] = plane_json(*f.target_plane);
-  if (!f.trace.far_fields.empty()) json.update(beam_json(f.trace.far_fields.front().beam));
+  if (!f.trace.far_fields.empty()) json.update(beam_json(f.trace.far_fields.front().metrics));
   if (f.result_plane) json["plane"] = plane_json(*f.result_plane);
   json["scale"] = result.error.scale;
   json["efficiency"] = estimate_json(result.efficiency);
@@ -303,8 +296,9 @@ std::vector<std::string> design_summary(const DesignProblem& problem, const Desi
   error_lines(result, lines);
   pareto_lines(result, lines);
   if (f.comparison) {
-    lines.push_back(fmt::format("  all directions: Bergen fit {:.1f} of 100, Wasserstein {:.2f} deg",
-                                f.comparison->bergen_fit, f.comparison->wasserstein_deg));
+    lines.push_back(fmt::format("  all directions: Bergen fit {} of 100, Wasserstein {}",
+                                estimate_text(f.comparison->bergen()),
+                                estimate_text(f.comparison->wasserstein(), "deg")));
   }
   lines.push_back(
       fmt::format("  losses: mirror {:.1f} %, its back {:.1f} %, bodies {:.1f} %, lost rays {:.2g} %",

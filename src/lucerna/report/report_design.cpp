@@ -62,9 +62,7 @@ std::string summary(const ResultFigures& result) {
   out += card("Evaluations", result.figure("/evaluations"), "",
               fmt::format("{} rays; ended: {}", result.figure("/rays"), result.text("/end")));
   if (const std::string key = first_far_field_key(result); !key.empty()) {
-    out += card("Peak intensity", result.figure(key + "/peak/intensity"), result.text(key + "/unit"),
-                fmt::format("at C {}°, γ {}°; one cell, so noise raises it",
-                            result.figure(key + "/peak/c_deg"), result.figure(key + "/peak/gamma_deg")));
+    out += peak_card(result, key);
   }
   out += "</dl>\n";
   return out;

@@ -16,6 +16,7 @@
 #include "lucerna/report/svg_isolux.h"
 #include "lucerna/report/svg_polar.h"
 #include "lucerna/report/svg_zonal.h"
+#include "lucerna/report/trace_figures.h"
 
 namespace lucerna {
 
@@ -64,11 +65,10 @@ std::string plane_table(const ResultFigures& result, const std::string& detector
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const std::string key = fmt::format("{}/planes/{}", detector, i);
     const double c = result.number(key + "/c_deg");
-    table.rows.push_back({fmt::format("C{:g}–C{:g}", c, c + 180.0),
-                          result.fixed(key + "/beam_angle_of_maximum_deg", 1),
-                          result.fixed(key + "/field_angle_of_maximum_deg", 1),
-                          result.fixed(key + "/beam_angle_of_centre_deg", 1),
-                          result.fixed(key + "/field_angle_of_centre_deg", 1)});
+    table.rows.push_back(
+        {fmt::format("C{:g}–C{:g}", c, c + 180.0), result.figure(key + "/beam_angle_of_maximum_deg"),
+         result.figure(key + "/field_angle_of_maximum_deg"), result.figure(key + "/beam_angle_of_centre_deg"),
+         result.figure(key + "/field_angle_of_centre_deg")});
   }
   return fmt::format("<details><summary>Beam and field angles of all planes</summary>\n{}</details>\n",
                      html_table(table));
@@ -142,14 +142,20 @@ std::optional<std::string> plane_key(const ResultFigures& result, const std::str
   return std::nullopt;
 }
 
+/// An angle with its error, or that it is not determined.
+std::string angle_figure(const ResultFigures& result, const std::string& key) {
+  return result.at(key).is_null() ? "not determined" : result.figure(key);
+}
+
 std::string angle_cards(const ResultFigures& result, const std::string& detector) {
   std::string out;
   for (const double c : {0.0, 90.0}) {
     const auto key = plane_key(result, detector, c);
     if (!key) continue;
-    out += card(fmt::format("Beam angle C{:g}", c), result.fixed(*key + "/beam_angle_of_maximum_deg", 1), "°",
+    out += card(fmt::format("Beam angle C{:g}", c), angle_figure(result, *key + "/beam_angle_of_maximum_deg"),
+                "°",
                 fmt::format("50 % of the maximum; field angle (10 %) {}°",
-                            result.fixed(*key + "/field_angle_of_maximum_deg", 1)));
+                            angle_figure(result, *key + "/field_angle_of_maximum_deg")));
   }
   return out;
 }
@@ -163,7 +169,7 @@ FarFieldFigure add_far_field(HtmlPage& page, const FarFieldTable& field) {
   return {page.append("far-fields", std::move(data)), thinned, std::nullopt};
 }
 
-std::string intensity_plots(const FarFieldTable& field, const FarFieldFigure& f) {
+std::string intensity_plots(const FarFieldTable& field, const FarFieldFigure& f, const DrawnFigures& drawn) {
   const IntensityDistribution& d = field.distribution;
   const std::string attributes = fmt::format("data-detector=\"{}\"", f.index);
   const DiagramOptions title{.title = field.name};
@@ -173,9 +179,12 @@ std::string intensity_plots(const FarFieldTable& field, const FarFieldFigure& f)
                        controls);
   };
   std::string out = "<div class=\"plots\">\n";
-  out += figure(polar_svg(d, {.title = field.name}), "polar", "Polar diagram", "", plane_slider(d));
+  out += figure(polar_svg(d, {.title = field.name, .standard_error = field.standard_error, .figures = drawn}),
+                "polar", "Polar diagram", "", plane_slider(d));
   out += map_figure(field.name, f);
-  out += figure(cartesian_svg(d, title), "cartesian", "Cartesian diagram");
+  out += figure(
+      cartesian_svg(d, {.title = field.name, .standard_error = field.standard_error, .figures = drawn}),
+      "cartesian", "Cartesian diagram");
   out += figure(isocandela_svg(d, title), "isocandela", "Isocandela diagram");
   out += figure(sphere_svg(d, title), "sphere", "All directions");
   out += figure(zonal_svg(d, title), "zonal", "Zonal flux");
@@ -202,26 +211,33 @@ std::string first_far_field_key(const ResultFigures& result) {
   return "";
 }
 
+std::string peak_card(const ResultFigures& result, const std::string& d) {
+  const auto angle = [&](const std::string& name, const std::string& key) {
+    return result.at(d + key).is_null() ? name + " not determined"
+                                        : name + " " + result.figure(d + key) + "°";
+  };
+  return card("Peak intensity", result.figure(d + "/peak/intensity"), result.text(d + "/unit"),
+              fmt::format("at {}, {}", angle("C", "/peak/c_deg"), angle("γ", "/peak/gamma_deg")));
+}
+
 std::string far_field_cards(const ResultFigures& result, const std::string& d) {
   std::string out;
   const double emitted = result.number("/ledger/emitted");
   const std::string unit = result.text("/ledger/unit");
-  const double flux = result.number(d + "/flux"), error = result.number(d + "/flux_standard_error");
-  out += card("Flux that leaves", result.figure(d + "/flux", d + "/flux_standard_error"), unit,
-              "all directions");
+  const double flux = result.number(d + "/flux"), error = result.number(d + "/flux/standard_error");
+  out += card("Flux that leaves", result.figure(d + "/flux"), unit, "all directions");
   out += card("Optical efficiency", figure_text(100.0 * flux / emitted, 100.0 * error / emitted), "%",
               "flux that leaves over flux of the sources");
   const std::string cd = result.text(d + "/unit");
-  out += card("Peak intensity", result.figure(d + "/peak/intensity"), cd,
-              fmt::format("at C {}°, γ {}°; one cell, so noise raises it", result.figure(d + "/peak/c_deg"),
-                          result.figure(d + "/peak/gamma_deg")));
-  out +=
-      card("Intensity on the axis", result.figure(d + "/centre/intensity", d + "/centre/standard_error"), cd,
-           fmt::format("mean within {}° of γ {}°", result.figure(d + "/centre/cone_half_angle_deg"),
-                       result.figure(d + "/centre/gamma_deg")));
+  out += peak_card(result, d);
+  out += card("Intensity on the axis", result.figure(d + "/centre/intensity"), cd,
+              fmt::format("at γ {}°, a fit within {}°", result.figure(d + "/centre/gamma_deg"),
+                          result.figure(d + "/centre/fit_radius_deg")));
   out += angle_cards(result, d);
   out += card("Noise of the distribution", fmt::format("{:.2g}", 100.0 * result.number(d + "/noise")), "%",
-              "relative RMS, from the spread of 16 independent parts of the run");
+              fmt::format("relative RMS, from the spread of 16 independent parts of the run; {:.2g} % of the "
+                          "peak at the noisiest angle",
+                          100.0 * result.number(d + "/node_noise")));
   return out;
 }
 
@@ -236,7 +252,8 @@ void add_far_field_sections(HtmlPage& page, const ResultFigures& result,
     const FarFieldTable& field = fields[number];
     const std::string suffix = fields.size() > 1 ? " of " + field.name : "";
     page.section(fmt::format("intensity-{}", number), "Intensity" + suffix,
-                 intensity_plots(field, add_far_field(page, field)) + plane_table(result, key, field.name));
+                 intensity_plots(field, add_far_field(page, field), drawn_figures(result.at(key))) +
+                     plane_table(result, key, field.name));
     page.section(fmt::format("zones-{}", number), "Zonal flux" + suffix,
                  "<div class=\"pair\"><div>" + zone_table(field, unit) + "</div>\n<div>" +
                      sum_table(field, unit, result.number(key + "/flux") / emitted) + "</div></div>\n");

@@ -7,6 +7,7 @@
 
 #include "lucerna/report/html_page.h"
 #include "lucerna/report/report_parts.h"
+#include "lucerna/report/svg_axes.h"
 #include "lucerna/report/trace_folder.h"
 
 namespace lucerna {
@@ -21,14 +22,18 @@ struct FarFieldFigure {
 /// Puts a field's values into the page as float32, thinned to at most 27 k directions.
 FarFieldFigure add_far_field(HtmlPage& page, const FarFieldTable& field);
 
-/// Every diagram of a far field.
-std::string intensity_plots(const FarFieldTable& field, const FarFieldFigure& figure);
+/// Every diagram of a far field; `drawn`: the figures that are written into them.
+std::string intensity_plots(const FarFieldTable& field, const FarFieldFigure& figure,
+                            const DrawnFigures& drawn);
 
 /// The false-colour map alone: with a target it shows the target and the difference too.
 std::string direction_map(const std::string& name, const FarFieldFigure& figure);
 
 /// The pointer of the first far field among a result's detectors; "" if there is none.
 std::string first_far_field_key(const ResultFigures& result);
+
+/// The card of a detector's peak: intensity with its error, and where it is as far as that is determined.
+std::string peak_card(const ResultFigures& result, const std::string& detector);
 
 /// Summary cards of the far field at the pointer `detector`.
 std::string far_field_cards(const ResultFigures& result, const std::string& detector);

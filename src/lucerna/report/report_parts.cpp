@@ -30,6 +30,7 @@ std::uint64_t ResultFigures::count(const std::string& key) const {
 double ResultFigures::number(const std::string& key) const {
   const Json& value = at(key);
   if (value.is_null()) return std::nan("");
+  if (value.is_object() && value.contains("value")) return number(key + "/value");
   if (!value.is_number()) throw_input_error(file_, key, "found {}, expected a number", value.dump());
   return value.get<double>();
 }
@@ -40,6 +41,7 @@ std::string ResultFigures::text(const std::string& key) const {
 }
 
 std::string ResultFigures::figure(const std::string& key, const std::string& error_key) const {
+  if (at(key).is_object()) return figure(key + "/value", key + "/standard_error");
   const double value = number(key);
   const std::string shown = error_key.empty() ? figure_text(value) : figure_text(value, number(error_key));
   return fmt::format("<span data-key=\"{}\">{}</span>", html_escaped(key), shown);

@@ -17,12 +17,12 @@ class ResultFigures {
   bool has(const std::string& key) const;
   const nlohmann::ordered_json& at(const std::string& key) const;
   std::uint64_t count(const std::string& key) const;
-  /// NaN for null.
+  /// NaN for null; of an estimate ({value, standard_error}) its value.
   double number(const std::string& key) const;
   /// Escaped; what is no text as JSON writes it.
   std::string text(const std::string& key) const;
   std::string text_or_dash(const std::string& key) const { return has(key) ? text(key) : "–"; }
-  /// As figure_text; with its error if `error_key` is given.
+  /// As figure_text; with its error if it is an estimate or `error_key` is given. Null is a dash.
   std::string figure(const std::string& key, const std::string& error_key = "") const;
   /// To a fixed number of decimals.
   std::string fixed(const std::string& key, int decimals) const;

@@ -64,8 +64,7 @@ std::string plane_facts(const ResultFigures& result, const std::string& key) {
   out += fact("Largest", fmt::format("{} at x {}, y {} mm; one cell, so noise raises it", estimate("peak"),
                                      result.figure(key + "/peak/x_mm"), result.figure(key + "/peak/y_mm")));
   out += fact("Least", result.figure(key + "/least") + " " + unit);
-  out += fact("Flux",
-              result.figure(key + "/flux", key + "/flux_standard_error") + " " + result.text("/ledger/unit"));
+  out += fact("Flux", result.figure(key + "/flux") + " " + result.text("/ledger/unit"));
   out += fact("Noise of the image",
               fmt::format("{:.2g} % (relative RMS)", 100.0 * result.number(key + "/noise")));
   out +=
@@ -104,9 +103,9 @@ void add_plane_sections(HtmlPage& page, const ResultFigures& result, const std::
   for (std::size_t i = 0; i < result.at("/detectors").size(); ++i) {
     const std::string key = fmt::format("/detectors/{}", i), kind = result.text(key + "/kind");
     if (kind == "rays") {
-      rays.rows.push_back(
-          {result.text(key + "/file"), result.text(key + "/format"), result.figure(key + "/rays"),
-           result.figure(key + "/flux", key + "/flux_standard_error") + " " + result.text(key + "/unit")});
+      rays.rows.push_back({result.text(key + "/file"), result.text(key + "/format"),
+                           result.figure(key + "/rays"),
+                           result.figure(key + "/flux") + " " + result.text(key + "/unit")});
       ++files;
     }
     if (kind != "plane" && kind != "luminance") continue;

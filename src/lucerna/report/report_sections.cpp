@@ -15,21 +15,19 @@ namespace {
 
 /// One entry of the energy balance.
 struct Entry {
-  std::string name, key, error_key;
+  std::string name, key;
 };
 
 std::vector<Entry> ledger_entries(const ResultFigures& result) {
-  std::vector<Entry> entries{
-      {"Out, direct", "/ledger/out_direct", "/ledger/standard_error/out_direct"},
-      {"Out, reflected", "/ledger/out_reflected", "/ledger/standard_error/out_reflected"}};
+  std::vector<Entry> entries{{"Out, direct", "/ledger/out_direct"},
+                             {"Out, reflected", "/ledger/out_reflected"}};
   for (const auto& [cause, flux] : result.at("/ledger/absorbed").items()) {
     const std::string word = pointer_word(cause);
     std::string name = cause;
     std::replace(name.begin(), name.end(), '_', ' ');
-    entries.push_back({"Absorbed: " + html_escaped(name), "/ledger/absorbed/" + word,
-                       "/ledger/standard_error/absorbed/" + word});
+    entries.push_back({"Absorbed: " + html_escaped(name), "/ledger/absorbed/" + word});
   }
-  entries.push_back({"Lost", "/ledger/lost", ""});
+  entries.push_back({"Lost", "/ledger/lost"});
   return entries;
 }
 
@@ -50,7 +48,7 @@ std::string energy_balance_html(const ResultFigures& result) {
       bar += fmt::format("<span class=\"tone{}\" style=\"flex-grow:{:.6f}\"></span>", tone, share);
     described += fmt::format("{} {}; ", e.name, percent_text(flux, emitted));
     table.rows.push_back({fmt::format("<span class=\"swatch tone{}\"></span>{}", tone, e.name),
-                          result.figure(e.key, e.error_key), percent_text(flux, emitted)});
+                          result.figure(e.key), percent_text(flux, emitted)});
   }
   table.rows.push_back({"Sum", figure_text(sum), percent_text(sum, emitted)});
   return fmt::format("<div class=\"bar\" role=\"img\" aria-label=\"{}\">{}</div>\n", described, bar) +

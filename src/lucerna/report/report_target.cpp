@@ -10,6 +10,7 @@
 #include "lucerna/photometry/compare_distributions.h"
 #include "lucerna/photometry/flux.h"
 #include "lucerna/report/grid_map.h"
+#include "lucerna/report/html_text.h"
 #include "lucerna/report/report_far_field.h"
 #include "lucerna/report/report_parts.h"
 #include "lucerna/report/svg_curves.h"
@@ -89,14 +90,18 @@ std::string comparison_table(const FarFieldTable& result, const FarFieldTable& t
   const auto row = [&](const char* name, const std::string& value, const char* meaning) {
     table.rows.push_back({name, value, meaning});
   };
-  row("Relative RMS", fmt::format("{:.2f} %", 100.0 * c.relative_rms), "weighted by solid angle");
+  const auto percent = [](const Estimate& e) {
+    return figure_text(100.0 * e.mean, 100.0 * e.standard_error) + " %";
+  };
+  row("Relative RMS", percent(c.rms()), "weighted by solid angle");
   row("Noise floor", fmt::format("{:.2f} %", 100.0 * c.noise_floor),
       "what the trace's noise alone would give");
-  row("Bergen fit", fmt::format("{:.2f}", c.bergen_fit), "100 = equal");
-  row("Overlap", fmt::format("{:.2f} %", 100.0 * c.overlap), "of the light in the right place");
-  row("Wasserstein-1", fmt::format("{:.3g}°", c.wasserstein_deg), "mean angle that light would have to move");
-  row("Peak", fmt::format("{:.4g}", c.peak_ratio), "result over target");
-  row("Flux", fmt::format("{:.4g}", c.flux_ratio), "result over target");
+  row("Bergen fit", figure_text(c.bergen_fit, c.errors.bergen_fit), "100 = equal");
+  row("Overlap", percent(c.overlapping()), "of the light in the right place");
+  row("Wasserstein-1", figure_text(c.wasserstein_deg, c.errors.wasserstein_deg) + "°",
+      "mean angle that light would have to move");
+  row("Peak", figure_text(c.peak_ratio, c.errors.peak_ratio), "result over target");
+  row("Flux", figure_text(c.flux_ratio, c.errors.flux_ratio), "result over target");
   return html_table(table);
 }
 
@@ -110,9 +115,10 @@ void directions_section(HtmlPage& page, const DesignProblem& problem, const FarF
                         ? "<p>The target's shape counts: it is scaled to fit best.</p>\n"
                         : "<p>The target counts as it is, in absolute figures.</p>\n";
   out += "<div class=\"plots\">\n";
-  out += plot_figure(
-      polar_svg(result.distribution, {.title = "Target and result", .reference = &target.distribution}),
-      "target-polar", "Polar diagram of result and target", attributes);
+  out += plot_figure(polar_svg(result.distribution, {.title = "Target and result",
+                                                     .reference = &target.distribution,
+                                                     .standard_error = result.standard_error}),
+                     "target-polar", "Polar diagram of result and target", attributes);
   out += direction_map("target-and-result", figure);
   out += sections_plot(page, result, target);
   out += "</div>\n" + comparison_table(result, target);

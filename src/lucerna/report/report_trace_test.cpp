@@ -91,9 +91,9 @@ TEST(ReportTrace, EveryKeyedFigureIsTheOneOfTheJson) {
   const TraceFolder folder = read_trace_folder(dir.path());
   const std::string html = trace_report_html(folder);
   const std::set<std::string> seen = test::check_keyed_figures(html, folder.result);
-  for (const char* key :
-       {"/ledger/emitted", "/ledger/out_reflected", "/ledger/absorbed/mirror", "/detectors/0/flux",
-        "/detectors/0/peak/intensity", "/detectors/0/planes/0/beam_angle_of_maximum_deg", "/seed"}) {
+  for (const char* key : {"/ledger/emitted", "/ledger/out_reflected/value", "/ledger/absorbed/mirror/value",
+                          "/detectors/0/flux/value", "/detectors/0/peak/intensity/value",
+                          "/detectors/0/planes/0/beam_angle_of_maximum_deg/value", "/seed"}) {
     EXPECT_TRUE(seen.contains(key)) << key;
   }
 }

@@ -11,6 +11,16 @@
 
 namespace lucerna {
 
+IntensityDistribution moved_by_errors(const IntensityDistribution& d, std::span<const double> standard_error,
+                                      double errors) {
+  LUCERNA_CHECK(standard_error.size() == d.cd.size(), "{} errors for {} values", standard_error.size(),
+                d.cd.size());
+  IntensityDistribution out = d;
+  for (std::size_t i = 0; i < out.cd.size(); ++i)
+    out.cd[i] = std::max(0.0, out.cd[i] + errors * standard_error[i]);
+  return out;
+}
+
 ShownIntensity shown_intensity(const IntensityDistribution& distribution,
                                const std::optional<double>& lamp_flux_lm) {
   if (distribution.unit != FluxUnit::lumen) return {1.0, "W/sr"};

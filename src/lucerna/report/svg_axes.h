@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,11 +12,25 @@
 
 namespace lucerna {
 
+/// Figures that are written into a diagram as they were estimated; without them those of the grid's values
+/// are, which is right where the values have no noise.
+struct DrawnFigures {
+  std::string peak;     ///< "Flux 920 lm · peak 1759 ± 4 cd at C 12°, γ 30°"
+  std::string c0, c90;  ///< "beam 50 % 62.9 ± 0.3°, field 10 % 86.6 ± 0.4°" of C0-C180 and C90-C270
+};
+
 /// What every diagram of a distribution can be told.
 struct DiagramOptions {
   std::string title{};                   ///< above the diagram; UTF-8; empty = the diagram's own name
   std::optional<double> lamp_flux_lm{};  ///< if given, intensities are in cd/klm of this flux instead of cd
+  /// Standard errors of the values (layout of `cd`): their 95 % intervals are drawn as a band. Not owned.
+  std::span<const double> standard_error{};
+  std::optional<DrawnFigures> figures{};
 };
+
+/// The values moved by `errors` standard errors, none below 0: one edge of a band.
+IntensityDistribution moved_by_errors(const IntensityDistribution& distribution,
+                                      std::span<const double> standard_error, double errors);
 
 /// The unit that intensities are shown in.
 struct ShownIntensity {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lucerna/core/estimate.h"
 #include "lucerna/photometry/beam.h"
 
 namespace lucerna {
@@ -33,9 +34,10 @@ std::string angle_text(const std::optional<double>& angle) {
   return angle ? fmt::format("{:.1f}°", *angle) : "–";
 }
 
-void draw_legend(SvgCanvas& canvas, const IntensityDistribution& d, const SvgStyle& across,
-                 const SvgStyle& along) {
+void draw_legend(SvgCanvas& canvas, const IntensityDistribution& d, const std::optional<DrawnFigures>& drawn,
+                 const SvgStyle& across, const SvgStyle& along) {
   const auto angles = [&](double c) {
+    if (drawn) return c == 0.0 ? drawn->c0 : drawn->c90;
     return fmt::format("beam 50 % {}, field 10 % {}",
                        angle_text(beam_angle_deg(d, c, 0.5, BeamReference::maximum)),
                        angle_text(beam_angle_deg(d, c, 0.1, BeamReference::maximum)));
@@ -71,9 +73,11 @@ std::string cartesian_svg(const IntensityDistribution& d, const DiagramOptions& 
   canvas.data("x", x.data());
   canvas.data("y", y.data());
   draw_title(canvas, options.title.empty() ? "Luminous intensity" : options.title,
-             fmt::format("{}{} over the angle from {} – peak {} {} at C {:g}°, γ {:g}°", unit.name,
-                         log_scale ? ", logarithmic," : "", axis > 90.0 ? "zenith" : "nadir",
-                         label_number(top), unit.name, peak.c_deg, peak.gamma_deg));
+             fmt::format("{}{} over the angle from {} – {}", unit.name, log_scale ? ", logarithmic," : "",
+                         axis > 90.0 ? "zenith" : "nadir",
+                         options.figures ? options.figures->peak
+                                         : fmt::format("peak {} {} at C {:g}°, γ {:g}°", label_number(top),
+                                                       unit.name, peak.c_deg, peak.gamma_deg)));
   draw_grid(canvas, x, angle_ticks(-range, range), "°", y, ticks(y, 6), "");
   canvas.text({kLeft, 76.0}, "← C180, C270", {.size = 12.0, .fill = "#555"});
   canvas.text({kRight, 76.0}, "C0, C90 →", {.size = 12.0, .anchor = "end", .fill = "#555"});
@@ -86,13 +90,23 @@ std::string cartesian_svg(const IntensityDistribution& d, const DiagramOptions& 
   const SvgStyle across{.stroke = std::string(kCurveColors[0]), .width = 2.4};
   const SvgStyle along{.stroke = std::string(kCurveColors[1]), .width = 2.4, .dash = "9 5"};
   canvas.begin_clip({kLeft, kTop}, kRight - kLeft, kBottom - kTop + 1.5);
+  if (!options.standard_error.empty()) {
+    const IntensityDistribution low = moved_by_errors(d, options.standard_error, -kIntervalErrors),
+                                high = moved_by_errors(d, options.standard_error, kIntervalErrors);
+    for (const double c : {0.0, 90.0}) {
+      std::vector<SvgPoint> ring = curve(high, c, axis, x, y, unit.per_cd);
+      const std::vector<SvgPoint> below = curve(low, c, axis, x, y, unit.per_cd);
+      ring.insert(ring.end(), below.rbegin(), below.rend());
+      canvas.area({ring}, {.fill = c == 0.0 ? across.stroke : along.stroke, .opacity = 0.25});
+    }
+  }
   canvas.polyline(curve(d, 0.0, axis, x, y, unit.per_cd), across);
   canvas.polyline(curve(d, 90.0, axis, x, y, unit.per_cd), along);
   canvas.end_clip();
   canvas.text({0.5 * (kLeft + kRight), kBottom + 38.0},
               fmt::format("angle from {}", axis > 90.0 ? "zenith" : "nadir (γ)"),
               {.size = 12.5, .anchor = "middle", .fill = "#444"});
-  draw_legend(canvas, d, across, along);
+  draw_legend(canvas, d, options.figures, across, along);
   return canvas.str();
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lucerna/core/error.h"
+#include "lucerna/core/estimate.h"
 #include "lucerna/photometry/beam.h"
 #include "lucerna/report/svg_axes.h"
 #include "lucerna/report/svg_canvas.h"
@@ -78,13 +79,32 @@ std::vector<SvgPoint> half_curve(const IntensityDistribution& d, const PolarFram
   return points;
 }
 
-void draw_pair(SvgCanvas& canvas, const IntensityDistribution& d, const PolarFrame& frame, double c_deg,
-               const SvgStyle& style) {
+/// The curve of the planes C and C + 180, from zenith to zenith.
+std::vector<SvgPoint> pair_curve(const IntensityDistribution& d, const PolarFrame& frame, double c_deg) {
   std::vector<SvgPoint> points = half_curve(d, frame, c_deg + 180.0, -1.0);
   std::reverse(points.begin(), points.end());
   const std::vector<SvgPoint> right = half_curve(d, frame, c_deg, 1.0);
   points.insert(points.end(), right.begin(), right.end());
-  canvas.polyline(points, style);
+  return points;
+}
+
+/// The 95 % intervals about both pairs of planes.
+void draw_bands(SvgCanvas& canvas, const IntensityDistribution& d, const PolarFrame& frame,
+                std::span<const double> standard_error) {
+  if (standard_error.empty()) return;
+  const IntensityDistribution low = moved_by_errors(d, standard_error, -kIntervalErrors),
+                              high = moved_by_errors(d, standard_error, kIntervalErrors);
+  for (const double c : {0.0, 90.0}) {
+    std::vector<SvgPoint> ring = pair_curve(high, frame, c);
+    const std::vector<SvgPoint> inner = pair_curve(low, frame, c);
+    ring.insert(ring.end(), inner.rbegin(), inner.rend());
+    canvas.area({ring}, {.fill = std::string(kCurveColors[c == 0.0 ? 0 : 1]), .opacity = 0.25});
+  }
+}
+
+void draw_pair(SvgCanvas& canvas, const IntensityDistribution& d, const PolarFrame& frame, double c_deg,
+               const SvgStyle& style) {
+  canvas.polyline(pair_curve(d, frame, c_deg), style);
 }
 
 void draw_spokes(SvgCanvas& canvas, const PolarFrame& frame) {
@@ -145,8 +165,14 @@ void draw_legend(SvgCanvas& canvas, const PolarFrame& frame, const PolarOptions&
   if (options.reference != nullptr) entry(reference, options.reference_name);
 }
 
-void draw_figures(SvgCanvas& canvas, const IntensityDistribution& d, double y, double shown_per_cd,
-                  const std::string& unit) {
+void draw_figures(SvgCanvas& canvas, const IntensityDistribution& d, const std::optional<DrawnFigures>& drawn,
+                  double y, double shown_per_cd, const std::string& unit) {
+  if (drawn) {
+    canvas.text({60.0, y}, drawn->peak);
+    canvas.text({60.0, y + 19.0}, "C0 – C180: " + drawn->c0);
+    canvas.text({60.0, y + 38.0}, "C90 – C270: " + drawn->c90);
+    return;
+  }
   const BeamFigures f = beam_figures(d);
   const auto plane = [&](double c) {
     return *std::find_if(f.planes.begin(), f.planes.end(), [&](const auto& p) { return p.c_deg == c; });
@@ -176,7 +202,7 @@ std::string polar_svg(const IntensityDistribution& d, const PolarOptions& option
   const int rings = std::max(1, static_cast<int>(std::ceil(peak / step - 1e-9)));
   const PolarFrame frame = frame_for(d, options.reference, step * rings);
 
-  SvgCanvas canvas(kWidth, frame.bottom + 76.0);
+  SvgCanvas canvas(kWidth, frame.bottom + (options.figures ? 95.0 : 76.0));
   canvas.data("plot", "polar");
   canvas.data("polar", fmt::format("{:g} {:g} {:.9g}", frame.centre.x, frame.centre.y, frame.unit_per_cd));
   canvas.text({0.5 * kWidth, 28.0}, options.title.empty() ? "Luminous intensity" : options.title,
@@ -195,10 +221,11 @@ std::string polar_svg(const IntensityDistribution& d, const PolarOptions& option
     draw_pair(canvas, *options.reference, frame, 0.0, behind);
     draw_pair(canvas, *options.reference, frame, 90.0, {.stroke = "#999", .width = 3.4, .dash = "9 5"});
   }
+  draw_bands(canvas, d, frame, options.standard_error);
   draw_pair(canvas, d, frame, 0.0, across);
   draw_pair(canvas, d, frame, 90.0, along);
   draw_legend(canvas, frame, options, across, along, behind);
-  draw_figures(canvas, d, frame.bottom + 43.0, shown_per_cd, unit);
+  draw_figures(canvas, d, options.figures, frame.bottom + 43.0, shown_per_cd, unit);
   return canvas.str();
 }
 

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/report/svg_axes.h"
 
 namespace lucerna {
 
@@ -14,6 +16,10 @@ struct PolarOptions {
   std::optional<double> lamp_flux_lm{};  ///< if given, rings are in cd/klm of this flux instead of cd
   const IntensityDistribution* reference = nullptr;  ///< a target to draw behind, in grey; not owned
   std::string reference_name = "target";
+  /// Standard errors of the values (layout of `cd`): their 95 % intervals are drawn as a band. Not owned.
+  std::span<const double> standard_error{};
+  /// Written below instead of what the grid's values give.
+  std::optional<DrawnFigures> figures{};
 };
 
 /// A polar intensity diagram as an SVG document, the way the trade draws it: gamma 0 at the bottom, C0 and

@@ -8,6 +8,8 @@
 
 #include "lucerna/photometry/beam.h"
 #include "lucerna/photometry/binned_intensity.h"
+#include "lucerna/photometry/far_field_metrics.h"
+#include "lucerna/report/svg_axes.h"
 #include "lucerna/trace/trace_result.h"
 
 namespace lucerna {
@@ -16,14 +18,14 @@ namespace lucerna {
 struct FarFieldFigures {
   FarField field;
   BinnedIntensity intensity;
-  BeamFigures beam;
-  /// Standard error of beam.centre_cd; NaN where it is not known.
-  double centre_standard_error_cd = 0.0;
-  /// Flux that left, all directions.
-  Estimate flux;
+  /// Peak, beam angles, zones, estimated from the counted cells and not from the grid's angles.
+  FarFieldMetrics metrics;
   /// Relative noise of the whole distribution: root of the solid-angle-weighted sum of squared standard
   /// errors over that of the squared intensities. NaN where it is not known.
   double noise = 0.0;
+  /// The largest standard error of a value above 1 % of the peak, over the peak (node_noise.h). NaN where it
+  /// is not known.
+  double node_noise = 0.0;
 };
 
 /// What is quoted of a plane (illuminance) or luminance image.
@@ -60,8 +62,19 @@ struct TraceFigures {
 /// Cost: a few passes over the bins.
 TraceFigures trace_figures(const TraceResult& result);
 
-/// Beam and field angles by both definitions, one object a pair of planes: what JSON results call the planes.
-nlohmann::ordered_json beam_planes_json(const BeamFigures& beam);
+/// As estimate_json of error_json.h; null as a whole for a figure that is not determined.
+nlohmann::ordered_json estimate_json(const std::optional<Estimate>& estimate);
+
+/// Peak, centre and planes of a far field's metrics: what JSON results call `peak`, `centre`, `planes`.
+nlohmann::ordered_json beam_json(const FarFieldMetrics& metrics);
+/// The same of a distribution that is known exactly, without errors.
+nlohmann::ordered_json beam_json(const BeamFigures& beam);
+
+/// "C 12.3 +- 0.4, gamma 30.2 +- 0.1 deg", or what is known of it: "on the axis within 0.3 deg", "gamma 30.2
+/// +- 0.1 deg, C not determined", "not determined".
+std::string peak_place_text(const PeakEstimate& peak);
+/// "62.87 +- 0.03 deg" or "not determined".
+std::string angle_text(const std::optional<Estimate>& angle);
 
 /// "lx", "cd/m2", "W/m2" or "W/(m2 sr)".
 std::string plane_unit(const PlaneFigures& figures);
@@ -71,6 +84,10 @@ std::string ray_file_name(const RayDetector& detector);
 
 /// `ledger` and `detectors` of design.md section 3. What is not known is null.
 nlohmann::ordered_json trace_json(const TraceFigures& figures);
+
+/// What diagrams write of a far field: of its entry in `detectors`.
+DrawnFigures drawn_figures(const nlohmann::ordered_json& far_field);
+DrawnFigures drawn_figures(const FarFieldFigures& far_field);
 
 /// A short table for people, one line an entry.
 std::vector<std::string> trace_summary(const TraceFigures& figures);

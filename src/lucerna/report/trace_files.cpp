@@ -124,7 +124,10 @@ std::vector<std::string> write_trace_files(const std::filesystem::path& folder, 
     if (f.field.unit == FluxUnit::lumen) write(f.field.name + ".ldt", ldt_text(file));
     write(f.field.name + ".ies", ies_text(file, PhotometricFormat::ies_2019));
     write(f.field.name + ".csv", far_field_csv(f));
-    write(f.field.name + ".svg", polar_svg(f.intensity.distribution, {.title = f.field.name}));
+    write(f.field.name + ".svg",
+          polar_svg(f.intensity.distribution, {.title = f.field.name,
+                                               .standard_error = f.intensity.standard_error_cd,
+                                               .figures = drawn_figures(f)}));
   }
   for (const auto* images : {&figures.planes, &figures.luminances}) {
     for (const PlaneFigures& f : *images) {

@@ -132,7 +132,7 @@ BenchmarkFigures run_benchmark(const BenchmarkScene& s, int cells, const std::sh
   TraceResult result;
   f.rays_per_s = rays_per_second(scene, options, f.rays, wall_seconds, &result);
   f.isa = result.isa;
-  f.casts_per_ray = 1.0 + ledger(result).reflections_per_ray;
+  f.casts_per_ray = 1.0 + ledger(result).reflections_per_ray.mean;
   go_on();
   const ThreadLimit one(1);
   f.rays_per_cpu_s = rays_per_second(scene, options, f.rays, cpu_seconds);

@@ -236,7 +236,7 @@ void DeviceScene::add_detectors(const Scene& scene) {
   };
   std::vector<FarFieldView> far_fields;
   for (const FarFieldDetector& d : scene.far_fields) {
-    const FarFieldGrid grid(d);
+    const FarFieldGrid grid = FarFieldGrid::counted(d);
     far_fields.push_back({static_cast<std::int32_t>(grid.c_count()),
                           static_cast<std::int32_t>(grid.gamma_count()), first_bin, grid});
     if (grid.tent()) view_.features |= kTents;

@@ -24,6 +24,17 @@ struct FarFieldDetector {
   friend bool operator==(const FarFieldDetector&, const FarFieldDetector&) = default;
 };
 
+/// Into how many parts a detector's cells are cut while light is counted, so that a peak or an edge can be
+/// found between the grid's angles. Odd: a cell of the grid is a whole number of counted ones.
+struct FarFieldParts {
+  std::size_t c = 1, gamma = 1;
+};
+
+/// The fewest odd parts that make counted cells of at most 1 degree in C and 0.34 in gamma. One for tents
+/// (whose shares are not a cell's), in C for a grid of one plane, and where it would make more than 16 M
+/// cells.
+FarFieldParts counted_parts(const FarFieldDetector& detector);
+
 /// The bins of a FarFieldDetector: cells centred on the grid's angles. Cell (c, g) spans c_step about c *
 /// c_step and gamma_step about g * gamma_step; the cells of the first and last g are half as high, and each C
 /// has its own. Numbered plane after plane: c * gamma_count + g.
@@ -44,6 +55,9 @@ class FarFieldGrid {
     if (g >= gamma_count_) g = gamma_count_ - 1;
     return c * gamma_count_ + g;
   }
+
+  /// The cells that light is counted in: each of the grid's cut into `counted_parts`.
+  static FarFieldGrid counted(const FarFieldDetector& detector);
 
   LUCERNA_HD bool tent() const { return tent_; }
   /// Deals `units` to the four grid angles about `d`, by tents in C and in gamma; their sum is exact.

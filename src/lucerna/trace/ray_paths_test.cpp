@@ -145,7 +145,7 @@ TEST(RayPaths, AreTheRaysOfATraceThroughGlass) {
   EXPECT_NEAR(static_cast<double>(direct) / 4000.0, l.out_direct.mean / l.emitted, 1e-6);
   EXPECT_NEAR(static_cast<double>(reflected) / 4000.0, l.out_reflected.mean / l.emitted, 1e-6);
   EXPECT_NEAR(static_cast<double>(in_glass) / 4000.0, l.absorbed[2].second.mean / l.emitted, 1e-6);
-  EXPECT_NEAR(static_cast<double>(reflections), 4000.0 * l.reflections_per_ray, 1e-6);
+  EXPECT_NEAR(static_cast<double>(reflections), 4000.0 * l.reflections_per_ray.mean, 1e-6);
 }
 
 TEST(RayPaths, AreTheRaysOfTheTrace) {

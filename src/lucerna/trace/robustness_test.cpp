@@ -149,7 +149,7 @@ TEST(Robustness, TrickyRaysThroughEveryFamily) {
       const TraceResult result = trace(scene, {.max_bounces = 1000, .engine = engine, .cells = 64});
       const Ledger l = ledger(result);
       EXPECT_EQ(l.lost_rays, 0u);
-      EXPECT_GT(l.reflections_per_ray, 0.2);
+      EXPECT_GT(l.reflections_per_ray.mean, 0.2);
       for (const Tally& t : result.replicates) {
         EXPECT_EQ(t.emitted,
                   t.out_direct + t.out_reflected + t.absorbed[0] + t.absorbed[1] + t.lost[0] + t.lost[1]);
@@ -231,9 +231,10 @@ TEST(Robustness, SmallMirrorsAreMetFromFarAway) {
       for (const char* isa : {"scalar", ""}) {
         options.isa = isa;
         const Ledger fast = ledger(trace(scene, options));
-        const double met = exact.reflections_per_ray * (1 << 20);
+        const double met = exact.reflections_per_ray.mean * (1 << 20);
         EXPECT_GT(met, 100.0) << away_mm;
-        EXPECT_NEAR(fast.reflections_per_ray * (1 << 20), met, 2.0 + 1e-4 * met) << away_mm << ' ' << isa;
+        EXPECT_NEAR(fast.reflections_per_ray.mean * (1 << 20), met, 2.0 + 1e-4 * met)
+            << away_mm << ' ' << isa;
         for (const auto& [cause, flux] : fast.absorbed) {
           EXPECT_TRUE(cause != "mirror_back" || flux.mean == 0.0) << away_mm << ' ' << isa;
         }

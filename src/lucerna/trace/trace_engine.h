@@ -28,7 +28,7 @@ class TraceEngine {
       : bodies_(scene.bodies), glasses_(scene.glasses), keep_rays_(!scene.ray_detectors.empty()) {
     body_count_ = scene.bodies.size();
     glass_count_ = scene.glasses.size();
-    for (const FarFieldDetector& d : scene.far_fields) far_fields_.emplace_back(d);
+    for (const FarFieldDetector& d : scene.far_fields) far_fields_.push_back(FarFieldGrid::counted(d));
     for (const PlaneDetector& d : scene.planes) planes_.emplace_back(d);
     for (const LuminanceDetector& d : scene.luminances) planes_.emplace_back(d);
   }
@@ -77,6 +77,7 @@ class TraceEngine {
   const GlassTracer& glasses() const { return glasses_; }
   /// Where Tally::absorbed counts what glass `i` keeps.
   std::size_t glass_cause(std::size_t i) const { return kMirrorLosses + body_count_ + i; }
+  /// As they count (FarFieldGrid::counted).
   const std::vector<FarFieldGrid>& far_fields() const { return far_fields_; }
 
  private:

@@ -21,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::string_view kMagic = "LUCTRACE";
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 /// Sixteen replicates of three detectors of 16 M cells of 8 bytes: more than any project needs.
 constexpr std::uint64_t kMostBytes = std::uint64_t{6} << 30;
 
@@ -214,7 +214,7 @@ void check_shape(const TraceResult& r, const Reader& reader) {
   if (r.replicates.size() != kReplicates)
     reader.fail("{} replicates, expected {}", r.replicates.size(), kReplicates);
   std::vector<std::size_t> sizes;
-  for (const FarFieldDetector& d : r.far_fields) sizes.push_back(FarFieldGrid(d).size());
+  for (const FarFieldDetector& d : r.far_fields) sizes.push_back(FarFieldGrid::counted(d).size());
   for (const PlaneDetector& d : r.planes) check(d), sizes.push_back(d.grid.size());
   for (const LuminanceDetector& d : r.luminances) check(d), sizes.push_back(d.grid.size());
   std::uint64_t rays = 0;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/core/parallel.h"
 
 namespace lucerna {
 
@@ -48,6 +49,23 @@ class Normaliser {
   double emitted_ = 0.0, per_unit_ = 0.0, used_ = 0.0;
 };
 
+/// Reflections over rays, a ratio estimator like the others.
+Estimate reflections_per_ray(const TraceResult& result) {
+  double reflections = 0.0, rays = 0.0, used = 0.0, squares = 0.0;
+  for (const Tally& t : result.replicates) {
+    reflections += static_cast<double>(t.reflections);
+    rays += static_cast<double>(t.rays);
+    if (t.rays > 0) used += 1.0;
+  }
+  const double ratio = reflections / rays;
+  for (const Tally& t : result.replicates) {
+    const double d = static_cast<double>(t.reflections) - ratio * static_cast<double>(t.rays);
+    squares += d * d;
+  }
+  return {ratio, used < 2.0 ? std::numeric_limits<double>::quiet_NaN()
+                            : std::sqrt(squares * used / (used - 1.0)) / rays};
+}
+
 }  // namespace
 
 Ledger ledger(const TraceResult& result) {
@@ -66,38 +84,99 @@ Ledger ledger(const TraceResult& result) {
   for (std::size_t i = 0; i < kLostCauses; ++i) {
     l.lost.emplace_back(lost[i], normal.estimate([i](const Tally& t) { return t.lost[i]; }));
   }
-  std::uint64_t reflections = 0;
+  l.all_lost = normal.estimate(
+      [](const Tally& t) { return std::accumulate(t.lost.begin(), t.lost.end(), std::int64_t{0}); });
   for (const Tally& t : result.replicates) {
     l.rays += t.rays;
-    reflections += t.reflections;
     for (const std::uint64_t n : t.lost_rays) l.lost_rays += n;
   }
-  l.reflections_per_ray = static_cast<double>(reflections) / static_cast<double>(l.rays);
+  l.reflections_per_ray = reflections_per_ray(result);
   return l;
 }
+
+namespace {
+
+/// Flux by cell, and without each replicate: the ratio estimator X / E of the rest of the run.
+/// `units(replicate, cell)` is a whole number of units.
+template <class Units>
+JackknifedFlux jackknifed_flux(const TraceResult& result, std::size_t cells, const Units& units) {
+  std::vector<const Tally*> used;
+  double emitted = 0.0;
+  for (const Tally& t : result.replicates) {
+    emitted += static_cast<double>(t.emitted);
+    if (t.emitted > 0) used.push_back(&t);
+  }
+  LUCERNA_CHECK(emitted > 0.0, "nothing was emitted");
+  const std::size_t replicates = used.size() < 2 ? 0 : used.size();
+  std::vector<double> per_unit{result.flux / emitted};
+  for (std::size_t r = 0; r < replicates; ++r)
+    per_unit.push_back(result.flux / (emitted - static_cast<double>(used[r]->emitted)));
+  JackknifedFlux out(cells, replicates);
+  parallel_blocks(cells, 4096, [&](std::size_t first, std::size_t last) {
+    std::vector<std::int64_t> x(used.size());
+    for (std::size_t cell = first; cell < last; ++cell) {
+      std::int64_t sum = 0;
+      for (std::size_t r = 0; r < used.size(); ++r) sum += x[r] = units(*used[r], cell);
+      const auto row = out.row(cell);
+      row[0] = static_cast<double>(sum) * per_unit[0];
+      for (std::size_t r = 0; r < replicates; ++r)
+        row[r + 1] = static_cast<double>(sum - x[r]) * per_unit[r + 1];
+    }
+  });
+  return out;
+}
+
+}  // namespace
 
 FarField far_field(const TraceResult& result, std::size_t index) {
   LUCERNA_CHECK(index < result.far_fields.size(), "index = {}", index);
   const FarFieldDetector& detector = result.far_fields[index];
-  const FarFieldGrid grid(detector);
+  const FarFieldGrid grid(detector), counted = FarFieldGrid::counted(detector);
+  const FarFieldParts parts = counted_parts(detector);
+  const std::size_t gammas = grid.gamma_count();
   FarField f{detector.name,
              detector.c_step_deg,
              detector.gamma_step_deg,
              grid.c_count(),
-             grid.gamma_count(),
+             gammas,
              detector.tent,
              result.unit,
              {},
-             {}};
-  f.flux.resize(grid.size());
-  f.standard_error.resize(grid.size());
-  const Normaliser normal(result);
+             std::vector<double>(grid.size()),
+             jackknifed_flux(result, grid.size(), [&](const Tally& t, std::size_t cell) {
+               const std::size_t c = cell / gammas * parts.c + counted.c_count() - parts.c / 2;
+               const std::size_t g = cell % gammas * parts.gamma, half = parts.gamma / 2;
+               const std::size_t from = g < half ? 0 : g - half,
+                                 to = std::min(g + half + 1, counted.gamma_count());
+               std::int64_t sum = 0;
+               for (std::size_t k = 0; k < parts.c; ++k) {
+                 const std::int64_t* const plane =
+                     t.bins[index].data() + (c + k) % counted.c_count() * counted.gamma_count();
+                 sum += std::accumulate(plane + from, plane + to, std::int64_t{0});
+               }
+               return sum;
+             })};
+  f.flux = f.replicated.fluxes();
   for (std::size_t i = 0; i < grid.size(); ++i) {
-    const Estimate e = normal.estimate([&](const Tally& t) { return t.bins[index][i]; });
-    f.flux[i] = e.mean;
-    f.standard_error[i] = e.standard_error;
+    const auto row = f.replicated.row(i);
+    f.standard_error[i] = Jackknife({row.begin(), row.end()}).estimate().standard_error;
   }
   return f;
+}
+
+CountedSphere counted_far_field(const TraceResult& result, std::size_t index) {
+  LUCERNA_CHECK(index < result.far_fields.size(), "index = {}", index);
+  const FarFieldGrid counted = FarFieldGrid::counted(result.far_fields[index]);
+  return CountedSphere(counted.c_count(), counted.gamma_count(), result.unit,
+                       jackknifed_flux(result, counted.size(), [&](const Tally& t, std::size_t cell) {
+                         return t.bins[index][cell];
+                       }));
+}
+
+Jackknife out_flux(const TraceResult& result) {
+  const JackknifedFlux flux =
+      jackknifed_flux(result, 1, [](const Tally& t, std::size_t) { return t.out_direct + t.out_reflected; });
+  return Jackknife({flux.row(0).begin(), flux.row(0).end()});
 }
 
 namespace {

@@ -9,6 +9,7 @@
 #include "lucerna/core/estimate.h"
 #include "lucerna/core/flux_unit.h"
 #include "lucerna/core/sequence.h"
+#include "lucerna/photometry/counted_sphere.h"
 #include "lucerna/rayset/ray_block.h"
 #include "lucerna/trace/far_field.h"
 #include "lucerna/trace/plane_detector.h"
@@ -61,9 +62,11 @@ struct Ledger {
   std::vector<std::pair<std::string, Estimate>> absorbed;
   /// By cause: "bounce_limit", "not_finite"; rays beside it.
   std::vector<std::pair<std::string, Estimate>> lost;
+  /// All causes together.
+  Estimate all_lost;
   std::uint64_t lost_rays = 0;
   std::uint64_t rays = 0;
-  double reflections_per_ray = 0.0;
+  Estimate reflections_per_ray;
 };
 
 /// The figures of the energy ledger. emitted = out + absorbed + lost to rounding of the last digit.
@@ -79,10 +82,19 @@ struct FarField {
   std::vector<double> flux;
   /// NaN where not known, as in Ledger.
   std::vector<double> standard_error;
+  /// The same flux, and what it is without each replicate that has rays.
+  JackknifedFlux replicated;
 };
 
 /// The far field that detector `index` of TraceResult::far_fields saw.
 FarField far_field(const TraceResult& result, std::size_t index);
+
+/// The same in the cells that were counted, `counted_parts` to a cell of the grid. Throws what CountedSphere
+/// throws. About 130 bytes a cell.
+CountedSphere counted_far_field(const TraceResult& result, std::size_t index);
+
+/// Flux that left, direct and reflected, and without each replicate.
+Jackknife out_flux(const TraceResult& result);
 
 /// A figure by cell of a plane grid, numbered iy * nx + ix.
 struct PlaneImage {

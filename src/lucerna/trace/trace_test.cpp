@@ -233,7 +233,7 @@ TEST(Trace, FastAndReferenceEnginesAgree) {
     EXPECT_NEAR(ledger(fast).out_direct.mean, ledger(exact).out_direct.mean, 1e-4 * ledger(exact).emitted);
     EXPECT_NEAR(ledger(fast).absorbed[0].second.mean, ledger(exact).absorbed[0].second.mean,
                 1e-4 * ledger(exact).emitted);
-    EXPECT_GT(ledger(fast).reflections_per_ray, 0.9);
+    EXPECT_GT(ledger(fast).reflections_per_ray.mean, 0.9);
     for (const Tally& t : fast.replicates) {
       EXPECT_EQ(t.emitted,
                 t.out_direct + t.out_reflected + t.absorbed[0] + t.absorbed[1] + t.lost[0] + t.lost[1]);

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a trace at its default noise prints, against a long trace with other random numbers: peak, beam and
+// field angles, angles of the written grid within three of their stated errors.
+// Usage: bench_figures [TRUTH_RAYS [NOISE]] PROJECT.toml...   (default 300e6 0.01; bench/figures/*.toml)
+#include <fmt/format.h>
+
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "lucerna/core/parallel.h"
+#include "lucerna/photometry/far_field_metrics.h"
+#include "lucerna/trace/node_noise.h"
+#include "lucerna/trace/project.h"
+#include "lucerna/trace/trace_until.h"
+
+namespace {
+
+using namespace lucerna;
+
+double seconds_of(const auto& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+struct Look {
+  BinnedIntensity nodes;
+  FarFieldMetrics metrics;
+};
+
+Look look_at(const TraceResult& result) {
+  Look l;
+  l.nodes = node_intensity(far_field(result, 0));
+  l.metrics = far_field_metrics(counted_far_field(result, 0), l.nodes.distribution.c_deg);
+  return l;
+}
+
+/// Shares of the grid's angles (all; above 1 % of the peak) within k stated errors, the truth's own error
+/// added.
+struct Within {
+  double all_3 = 0.0, bright_3 = 0.0, bright_2 = 0.0, worst_share = 0.0;
+};
+
+Within within(const BinnedIntensity& test, const BinnedIntensity& truth) {
+  const auto& cd = truth.distribution.cd;
+  const double peak = *std::max_element(cd.begin(), cd.end());
+  double n = 0.0, bright = 0.0;
+  Within w;
+  for (std::size_t i = 0; i < cd.size(); ++i) {
+    const double gap = std::abs(test.distribution.cd[i] - cd[i]);
+    const double error = std::hypot(test.standard_error_cd[i], truth.standard_error_cd[i]);
+    n += 1.0;
+    w.all_3 += gap <= 3.0 * error ? 1.0 : 0.0;
+    w.worst_share = std::max(w.worst_share, gap / peak);
+    if (cd[i] < 0.01 * peak) continue;
+    bright += 1.0;
+    w.bright_3 += gap <= 3.0 * error ? 1.0 : 0.0;
+    w.bright_2 += gap <= 2.0 * error ? 1.0 : 0.0;
+  }
+  w.all_3 /= n;
+  w.bright_3 /= bright;
+  w.bright_2 /= bright;
+  return w;
+}
+
+void print(const char* what, const std::optional<Estimate>& test, const std::optional<Estimate>& truth) {
+  if (!test || !truth) {
+    fmt::print("  {:<18} {} / {}\n", what, test ? estimate_text(*test) : "not determined",
+               truth ? estimate_text(*truth) : "not determined");
+    return;
+  }
+  fmt::print("  {:<18} {:>22} | {:>22} | {:+8.3f} {:+7.3f} % {:+5.1f} errors\n", what, estimate_text(*test),
+             estimate_text(*truth), test->mean - truth->mean, 100.0 * (test->mean / truth->mean - 1.0),
+             (test->mean - truth->mean) / std::hypot(test->standard_error, truth->standard_error));
+}
+
+void run(const std::string& file, std::uint64_t truth_rays, double noise) {
+  const Project project = read_project(file);
+  NoiseTrace traced;
+  const double trace_s =
+      seconds_of([&] { traced = trace_until(project.scene, {.seed = 1}, {.noise = noise}); });
+  Look test, truth;
+  const double look_s = seconds_of([&] { test = look_at(traced.result); });
+  fmt::print("{}: {:.1f} M rays, node noise {:.2f} %, trace {:.2f} s, figures {:.2f} s, {} threads {}\n",
+             file, 1e-6 * static_cast<double>(traced.result.last_ray), 100.0 * traced.noise, trace_s, look_s,
+             ThreadLimit::current(), to_string(traced.end));
+  truth = look_at(trace(project.scene, {.last_ray = truth_rays, .seed = 4242}));
+  if (test.metrics.peak && truth.metrics.peak) {
+    print("peak", test.metrics.peak->cd, truth.metrics.peak->cd);
+    fmt::print(
+        "  radius {:.2f} / {:.2f} deg, half width {:.2f} / {:.2f}; apart {:.2f} +- {:.2f} deg; max node "
+        "{:.5g} / {:.5g}\n",
+        test.metrics.peak->radius_deg, truth.metrics.peak->radius_deg, test.metrics.peak->half_width_deg,
+        truth.metrics.peak->half_width_deg,
+        degrees(angle_between(test.metrics.peak->direction, truth.metrics.peak->direction)),
+        test.metrics.peak->direction_error_deg,
+        *std::max_element(test.nodes.distribution.cd.begin(), test.nodes.distribution.cd.end()),
+        *std::max_element(truth.nodes.distribution.cd.begin(), truth.nodes.distribution.cd.end()));
+  }
+  print("axis", test.metrics.axis_cd, truth.metrics.axis_cd);
+  for (std::size_t i = 0; i < test.metrics.planes.size(); ++i) {
+    const auto &a = test.metrics.planes[i], &b = truth.metrics.planes[i];
+    if (a.c_deg != 0.0 && a.c_deg != 90.0) continue;
+    print(fmt::format("C{:g} beam", a.c_deg).c_str(), a.beam_of_maximum, b.beam_of_maximum);
+    print(fmt::format("C{:g} field", a.c_deg).c_str(), a.field_of_maximum, b.field_of_maximum);
+  }
+  print("cut-off", test.metrics.cut_off_deg, truth.metrics.cut_off_deg);
+  print("flux 0-30", test.metrics.flux_0_30, truth.metrics.flux_0_30);
+  const Within w = within(test.nodes, truth.nodes);
+  fmt::print(
+      "  nodes within 3 errors: {:.2f} % of all, {:.2f} % of those above 1 % of the peak (2: {:.1f} %); "
+      "largest difference {:.2f} % of the peak\n",
+      100.0 * w.all_3, 100.0 * w.bright_3, 100.0 * w.bright_2, 100.0 * w.worst_share);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  double numbers[2] = {300e6, 0.01};
+  int at = 1;
+  for (double& number : numbers) {
+    if (at >= argc) break;
+    const std::string word = argv[at];
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc() || end != word.data() + word.size()) break;
+    ++at;
+  }
+  for (; at < argc; ++at) run(argv[at], static_cast<std::uint64_t>(numbers[0]), numbers[1]);
+}

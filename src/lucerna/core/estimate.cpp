@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/core/estimate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna {
+
+namespace {
+
+/// The power of ten of the last digit that is printed of an error.
+int last_place(double error) {
+  const int leading = static_cast<int>(std::floor(std::log10(error)));
+  const double first = error / std::pow(10.0, leading);
+  // 0.96 to one digit is 1, whose place is one higher.
+  if (first >= 9.5) return leading;
+  return first < 1.95 ? leading - 1 : leading;
+}
+
+}  // namespace
+
+std::string estimate_text(const Estimate& e, std::string_view unit) {
+  const std::string tail = unit.empty() ? std::string() : fmt::format(" {}", unit);
+  if (!(std::isfinite(e.standard_error) && e.standard_error > 0.0 && std::isfinite(e.mean)))
+    return fmt::format("{:.5g}{}", e.mean, tail);
+  const int place = last_place(e.standard_error);
+  if (place < -9 || place > 9) return fmt::format("{:.5g} +- {:.1g}{}", e.mean, e.standard_error, tail);
+  const double step = std::pow(10.0, place);
+  const auto rounded = [&](double x) { return place > 0 ? std::round(x / step) * step : x; };
+  const int decimals = std::max(0, -place);
+  return fmt::format("{:.{}f} +- {:.{}f}{}", rounded(e.mean), decimals, rounded(e.standard_error), decimals,
+                     tail);
+}
+
+}  // namespace lucerna
