@@ -13,7 +13,7 @@ TEST(Estimate, TextHasAsManyDigitsAsTheErrorAllows) {
   EXPECT_EQ(estimate_text({1758.93, 14.2}, "cd"), "1759 +- 14 cd");
   EXPECT_EQ(estimate_text({1758.93, 42.0}), "1760 +- 40");
   EXPECT_EQ(estimate_text({62.8734, 0.0312}, "deg"), "62.87 +- 0.03 deg");
-  EXPECT_EQ(estimate_text({62.8734, 0.0981}), "62.9 +- 0.1");
+  EXPECT_EQ(estimate_text({62.8734, 0.0981}), "62.87 +- 0.10");
   EXPECT_EQ(estimate_text({0.5, 0.019}), "0.500 +- 0.019");
   EXPECT_EQ(estimate_text({-3.0, 0.4}), "-3.0 +- 0.4");
 }

@@ -102,7 +102,10 @@ FarFieldMetrics far_field_metrics(const CountedSphere& sphere, std::span<const d
   m.axis_gamma_deg = m.flux_90_180.mean > m.flux_0_90.mean ? 180.0 : 0.0;
   const Direction axis = Direction::from_unit({0.0, 0.0, m.axis_gamma_deg == 0.0 ? -1.0 : 1.0});
   const double finest = sphere.resolution_deg();
-  m.axis_radius_deg = std::max(finest, m.peak ? m.peak->radius_deg : kAxisRadius_deg);
+  // As wide as the peak's, but never so wide that what a parabola leaves out of the lobe shows.
+  const double wanted =
+      m.peak ? std::min(m.peak->radius_deg, kSmoothing * m.peak->half_width_deg) : kAxisRadius_deg;
+  m.axis_radius_deg = std::max(finest, wanted);
   const Jackknife centre = sphere.fit(axis, Kernel(m.axis_radius_deg)).coefficients[0];
   m.axis_cd = centre.estimate();
   std::vector<double> planes{0.0, 90.0};

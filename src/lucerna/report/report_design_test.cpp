@@ -109,7 +109,7 @@ TEST(ReportDesign, ShowsTheTargetTheConvergenceAndTheLosses) {
   for (const char* key :
        {"/error/c48/excess", "/error/c48/standard_error", "/error/c12/excess", "/start/error/c48/excess",
         "/outside/share/value", "/outside/error/excess", "/worst_cell/value", "/in_rectangle/value",
-        "/efficiency/value", "/evaluations", "/ledger/absorbed/mirror", "/detectors/1/mean/value"})
+        "/efficiency/value", "/evaluations", "/ledger/absorbed/mirror/value", "/detectors/1/mean/value"})
     EXPECT_TRUE(seen.contains(key)) << key;
   EXPECT_TRUE(has(html, "the target is &lt;not&gt; reached"));
   const Json fields = test::embedded(html, "far-fields");

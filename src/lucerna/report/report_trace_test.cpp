@@ -115,7 +115,7 @@ TEST(ReportTrace, SaysWhyThereIsNoView) {
   EXPECT_TRUE(has(html, "There is no 3D view: "));
   EXPECT_TRUE(has(html, "gone.tm25ray"));
   EXPECT_FALSE(has(html, "three.js authors"));
-  EXPECT_LT(html.size(), 500'000u);
+  EXPECT_LT(html.size(), 600'000u);
   EXPECT_EQ(test::html_fault(html), "");
 }
 

@@ -41,15 +41,15 @@ TEST(TraceFigures, EverythingThatLeavesIsInTheFarField) {
   EXPECT_GT(f.noise, 0.0);
   EXPECT_GT(f.node_noise, 0.0);
   EXPECT_GT(f.metrics.axis_cd.standard_error, 0.0);
-  EXPECT_LT(f.metrics.axis_cd.standard_error, 0.1 * f.metrics.axis_cd.mean);
+  EXPECT_LT(f.metrics.axis_cd.standard_error, 0.2 * f.metrics.axis_cd.mean);
 }
 
 TEST(TraceFigures, NoiseFallsWithTheRootOfTheRays) {
   TraceOptions options;
   options.sequence = SequenceKind::random;
-  options.last_ray = 1 << 15;
+  options.last_ray = 1 << 17;
   const double few = trace_figures(trace(half_caught(500.0), options)).far_fields[0].noise;
-  options.last_ray = 1 << 19;
+  options.last_ray = 1 << 21;
   const double many = trace_figures(trace(half_caught(500.0), options)).far_fields[0].noise;
   EXPECT_NEAR(few / many, 4.0, 0.6);
 }
