@@ -13,7 +13,7 @@ namespace lucerna {
 namespace {
 
 constexpr const char* kMagic = "lucerna-design-checkpoint-8";
-constexpr const char* kSearchMagic = "lucerna-search-checkpoint-1";
+constexpr const char* kSearchMagic = "lucerna-search-checkpoint-2";
 /// More numbers than any design has; keeps a damaged count from asking for memory.
 constexpr std::size_t kMostNumbers = 1 << 20;
 
@@ -62,6 +62,8 @@ class Reader {
     FreeFormMark m;
     m.candidate = value<int>();
     m.level = value<int>();
+    m.transport.sign = value<double>();
+    m.transport.vertex_distance_mm = value<double>();
     m.cost = value<double>();
     m.over_noise = value<double>();
     m.intervals_x = value<int>();
@@ -107,8 +109,8 @@ void put(std::string& text, const char* name, const FitMark& m) {
 }
 
 void put(std::string& text, const char* name, const FreeFormMark& m) {
-  text += fmt::format("{} {} {} {} {} {} {} ", name, m.candidate, m.level, m.cost, m.over_noise,
-                      m.intervals_x, m.intervals_y);
+  text += fmt::format("{} {} {} {} {} {} {} {} {} ", name, m.candidate, m.level, m.transport.sign,
+                      m.transport.vertex_distance_mm, m.cost, m.over_noise, m.intervals_x, m.intervals_y);
   put(text, "of", m.parameters);
 }
 

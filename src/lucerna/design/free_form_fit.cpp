@@ -14,6 +14,8 @@ namespace {
 constexpr double kRimShare = 0.02;
 /// Longest change of a height in one step, over the mirror's radius: the linear model is not good for more.
 constexpr double kMaxMove = 0.05;
+/// Damping beyond which there is no step to be had.
+constexpr double kMaxLambda = 1e12;
 
 }  // namespace
 
@@ -54,6 +56,7 @@ bool FreeFormFit::step(FreeFormPoint& now, double& lambda) const {
   const double longest = kMaxMove * now.shape.aperture().outer_radius_mm();
   Eigen::VectorXd move = damped_step(now.equations, metric, lambda);
   while (!(move.cwiseAbs().maxCoeff() <= longest)) {
+    if (lambda > kMaxLambda) return false;  // no light tells of any parameter
     lambda *= 4.0;
     move = damped_step(now.equations, metric, lambda);
   }

@@ -97,28 +97,27 @@ FreeFormLevel FreeFormSearch::level(int number) const {
   }
 }
 
-FreeFormCandidate FreeFormSearch::candidate(int number) const {
-  if (number == 0) return {true, {}};
-  const double radius = given_.aperture().outer_radius_mm();
-  if (static_cast<std::size_t>(number) <= kFirst.size()) {
-    const TransportChoice& c = kFirst[static_cast<std::size_t>(number) - 1];
-    return {false, {c.sign, c.vertex_distance_mm * radius}};
-  }
-  // A neighbour of the best that is no neighbour of the given mirror.
-  Rng rng(problem_.seed, static_cast<std::uint64_t>(number), 77);
-  const FreeFormMark* best = best_of(kEnd);
-  const FreeFormCandidate about = candidate(best != nullptr && best->candidate > 0 ? best->candidate : 1);
-  const double factor = std::pow(kFarthest, 2.0 * rng.uniform() - 1.0);
-  return {false, {about.transport.sign, factor * about.transport.vertex_distance_mm}};
+TransportChoice FreeFormSearch::first_choice(int number) const {
+  const TransportChoice& c = kFirst[static_cast<std::size_t>(number) - 1];
+  return {c.sign, c.vertex_distance_mm * given_.aperture().outer_radius_mm()};
 }
 
-std::optional<DesignShape> FreeFormSearch::start_of(int number) const {
-  const FreeFormCandidate c = candidate(number);
-  if (c.given) return given_;
+TransportChoice FreeFormSearch::choice(int number) const {
+  if (static_cast<std::size_t>(number) <= kFirst.size()) return first_choice(number);
+  // A neighbour of the best; of the first choice where the given mirror is the best.
+  Rng rng(problem_.seed, static_cast<std::uint64_t>(number), 77);
+  const FreeFormMark* best = best_of(kEnd);
+  const TransportChoice about = best != nullptr && best->candidate > 0 ? best->transport : first_choice(1);
+  const double factor = std::pow(kFarthest, 2.0 * rng.uniform() - 1.0);
+  return {about.sign, factor * about.vertex_distance_mm};
+}
+
+std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormMark& mark) const {
+  if (mark.candidate == 0) return given_;
   const FreeFormLevel rough = level(0);
   const DesignShape family = DesignShape::bspline(given_.focal_mm(), given_.aperture(), rough.intervals_x,
                                                   rough.intervals_y, given_.symmetry());
-  return free_form_start(problem_, family, c.transport);
+  return free_form_start(problem_, family, mark.transport);
 }
 
 const FreeFormMark* FreeFormSearch::best_of(int level) const {
@@ -168,8 +167,8 @@ DesignShape FreeFormSearch::shape_of(const FreeFormMark& mark) const {
   return given_.refined(mark.intervals_x, mark.intervals_y).with(to_eigen(mark.parameters));
 }
 
-void FreeFormSearch::begin(const DesignShape& shape, int candidate, int number, Progress& progress) {
-  const FreeFormLevel l = level(number);
+void FreeFormSearch::begin(const DesignShape& shape, const FreeFormMark& mark, Progress& progress) {
+  const FreeFormLevel l = level(mark.level);
   // Knots are refined, never coarsened.
   const DesignShape fine = shape.intervals_x() >= l.intervals_x && shape.intervals_y() >= l.intervals_y
                                ? shape
@@ -179,7 +178,9 @@ void FreeFormSearch::begin(const DesignShape& shape, int candidate, int number, 
   point_.emplace(fit_->at(fine));
   ++state_.evaluations;
   state_.total_rays += l.rays;
-  state_.now = {candidate, number, 0.0, 0.0, fine.intervals_x(), fine.intervals_y(), {}};
+  state_.now = mark;
+  state_.now.intervals_x = fine.intervals_x();
+  state_.now.intervals_y = fine.intervals_y();
   state_.step = 0;
   state_.refused = 0;
   state_.lambda = std::clamp(state_.lambda, 1e-4, 1e-2);
@@ -189,15 +190,19 @@ void FreeFormSearch::begin(const DesignShape& shape, int candidate, int number, 
 void FreeFormSearch::choose(Progress& progress) {
   while (true) {
     if (const FreeFormMark* mark = next_promotion()) {
-      const FreeFormMark m = *mark;
-      begin(shape_of(m), m.candidate, m.level + 1, progress);
+      FreeFormMark next = *mark;
+      ++next.level;
+      begin(shape_of(next), next, progress);
       return;
     }
-    const int number = state_.begun++;
-    if (const std::optional<DesignShape> start = start_of(number)) {
+    FreeFormMark next;
+    next.candidate = state_.begun++;
+    next.level = 0;
+    if (next.candidate > 0) next.transport = choice(next.candidate);
+    if (const std::optional<DesignShape> start = start_of(next)) {
       state_.failed = 0;
       state_.lambda = FreeFormState{}.lambda;
-      begin(*start, number, 0, progress);
+      begin(*start, next, progress);
       return;
     }
     // Without neighbours to try, the best at the end is all there is.

@@ -17,15 +17,11 @@ namespace lucerna {
 std::optional<DesignShape> free_form_start(const FitProblem& problem, const DesignShape& family,
                                            const TransportChoice& choice);
 
-/// What a candidate begins with: the given mirror, or a point source's.
-struct FreeFormCandidate {
-  bool given = false;
-  TransportChoice transport;
-};
-
 /// A candidate that was fitted on a level.
 struct FreeFormMark {
   int candidate = -1, level = -1;
+  /// What it began with; of the given mirror without meaning.
+  TransportChoice transport;
   /// What candidates are compared by: the squared error less its noise (a share of it while the fit is
   /// rough), and what lost light, limits and roughness cost.
   double cost = 0.0;
@@ -77,16 +73,19 @@ class FreeFormSearch {
 
  private:
   FreeFormLevel level(int number) const;
-  FreeFormCandidate candidate(int number) const;
+  TransportChoice first_choice(int number) const;
+  /// What a candidate that is not the given mirror begins with.
+  TransportChoice choice(int number) const;
   const FreeFormMark* best_of(int level) const;
   bool was_at(int candidate, int level) const;
   /// The next mark to be taken up a level; null where a new candidate is to begin.
   const FreeFormMark* next_promotion() const;
   void choose(Progress& progress);
-  void begin(const DesignShape& shape, int candidate, int level, Progress& progress);
+  /// `mark`: the candidate, its transport, and the level that begins.
+  void begin(const DesignShape& shape, const FreeFormMark& mark, Progress& progress);
   void finish();
   bool level_ended() const;
-  std::optional<DesignShape> start_of(int candidate) const;
+  std::optional<DesignShape> start_of(const FreeFormMark& mark) const;
   DesignShape shape_of(const FreeFormMark& mark) const;
   void forget_what_cannot_win();
 

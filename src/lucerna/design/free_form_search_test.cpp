@@ -120,6 +120,48 @@ TEST(FreeFormSearch, EndsAtTheSameBitsHoweverOftenItWasStopped) {
   EXPECT_EQ(checkpoint_text(state, "key"), whole);
 }
 
+// Neighbours are made about the best, which may be a neighbour itself: that once never ended.
+TEST(FreeFormSearch, ANeighbourThatIsTheBestHasNeighbours) {
+  DesignRays rays = disk_rays();
+  const FitProblem problem = oval_problem(rays);
+  FreeFormState state = run(problem, plain(), 45).state();
+  state.now = {};
+  state.step = 0;
+  FreeFormMark best = state.done.back();
+  best.candidate = 12;
+  best.transport = {1.0, 22.0};
+  best.cost = 1e-9;
+  best.over_noise = 10.0;
+  state.done.clear();
+  for (int level = 0; level < 4; ++level) {
+    best.level = level;
+    state.done.push_back(best);
+  }
+  state.begun = 13;
+  const FreeFormSearch search = run(problem, plain(), 1, state);
+  EXPECT_EQ(search.state().now.candidate, 13);
+  EXPECT_EQ(search.state().now.transport.sign, 1.0);
+  EXPECT_NEAR(search.state().now.transport.vertex_distance_mm, 22.0, 0.31 * 22.0);
+}
+
+// No ray meets the mirror and none of the rest counts: nothing tells of any parameter.
+TEST(FreeFormSearch, EndsAStepThatNoLightTellsOf) {
+  EmitterOptions options;
+  options.kind = EmitterKind::disk;
+  options.radius_mm = 0.5;
+  DesignRays rays({{make_emitter(options), Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 200}), {}}}, Frame(),
+                  3);
+  FitProblem problem = oval_problem(rays);
+  problem.mode = TargetMode::absolute;
+  problem.direct_light = false;
+  FreeFormLevel level;
+  level.rays = kRays;
+  const FreeFormFit fit(problem, level);
+  FreeFormPoint point = fit.at(plain());
+  double lambda = 1e-2;
+  EXPECT_FALSE(fit.step(point, lambda));
+}
+
 TEST(FreeFormSearch, RefusesCheckpointsThatAreCutOrOfAnotherProblem) {
   DesignRays rays = disk_rays();
   const FitProblem problem = oval_problem(rays);
