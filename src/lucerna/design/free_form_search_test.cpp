@@ -123,7 +123,8 @@ TEST(FreeFormSearch, EndsAtTheSameBitsHoweverOftenItWasStopped) {
 // Neighbours are made about the best, which may be a neighbour itself: that once never ended.
 TEST(FreeFormSearch, ANeighbourThatIsTheBestHasNeighbours) {
   DesignRays rays = disk_rays();
-  const FitProblem problem = oval_problem(rays);
+  FitProblem problem = oval_problem(rays);
+  problem.fruitless = 1000;
   FreeFormState state = run(problem, plain(), 45).state();
   state.now = {};
   state.step = 0;
@@ -139,7 +140,7 @@ TEST(FreeFormSearch, ANeighbourThatIsTheBestHasNeighbours) {
   }
   state.begun = 13;
   const FreeFormSearch search = run(problem, plain(), 1, state);
-  EXPECT_EQ(search.state().now.candidate, 13);
+  EXPECT_GE(search.state().now.candidate, 13);
   EXPECT_EQ(search.state().now.transport.sign, 1.0);
   EXPECT_NEAR(search.state().now.transport.vertex_distance_mm, 22.0, 0.31 * 22.0);
 }
