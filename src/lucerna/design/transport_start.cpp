@@ -181,6 +181,14 @@ Outline outline(const PointTransport& transport, const Aperture& aperture, const
   return out;
 }
 
+/// Angle between neighbouring bins in the middle, as seen from a place; bins of a plane are told in mm.
+double bin_width_rad(const TentBins& bins, const Vec3& from_mm) {
+  const auto count = static_cast<std::size_t>(bins.count()), middle = (count / 2) * count + count / 2;
+  const Direction here = bin_direction(bins, middle, from_mm);
+  const double u = angle_between(here, bin_direction(bins, middle + 1, from_mm));
+  return std::sqrt(u * angle_between(here, bin_direction(bins, middle + count, from_mm)));
+}
+
 }  // namespace
 
 DesignShape fitted_to_points(const DesignShape& family, const std::vector<SurfacePointWeight>& points) {
@@ -251,7 +259,7 @@ std::optional<DesignShape> transport_start(const TransportProblem& problem, cons
     const std::vector<DirectedFlux> to = wanted(problem, light, vertex);
     if (light.caught.size() < 16 || to.size() < 4) return std::nullopt;
     const double source_cell = 2.0 * edges.widest() / kSourceCells;
-    const double bin = std::sqrt(problem.bins.view().axis_u.cell * problem.bins.view().axis_v.cell);
+    const double bin = bin_width_rad(problem.bins, vertex);
     const PointTransport transport(light.caught, to, choice.sign, 0.5 * source_cell * bin);
     mirror = outline(transport, aperture, source, choice.vertex_distance_mm);
     edges = mirror->edges;
