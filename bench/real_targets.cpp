@@ -2,15 +2,14 @@
 // Designs as the command line makes them, each validated by fresh rays through the mesh of the mirror:
 //   bench_real_targets [options] files FILE.ldt|FILE.ies ...   real targets, for an LED (or --source FILE)
 //   bench_real_targets [options] synthetic [NAME ...]          the functions of synthetic_targets.h
-//   bench_real_targets [options] attainable [NAME ...]         the light of mirrors that were designed for
-//   these bench_real_targets [options] hidden [CASE ...]             random mirrors: n10 n49-near n49-far
-//   n400
+//   bench_real_targets [options] attainable [NAME ...]         the light of mirrors designed for these
+//   bench_real_targets [options] hidden [CASE ...]             n10, n49-near, n49-far, n400: random mirrors
 // options: --time S (60), --rays N (of the validation, 16 M), --target-rays N (of tables, 64 M), --family
 // bspline|revolution, --source led|filament|FILE, --targets N (of `hidden`, 10), --seed S, --start (judges
-// only the mirror to begin with). The mirror of all but `hidden`: 120 mm over f = 20 mm, hole 8 mm,
-// reflectance 0.9. Each line: excess at n = 12, 24 and 48 with its standard error, noise, light in the
-// rectangle, light and error outside, bound, seconds of the design and of the validation, rays of the design,
-// why it ended.
+// only the mirror to begin with), --history (prints every step). The mirror of all but `hidden`: 120 mm over
+// f = 20 mm, hole 8 mm, reflectance 0.9. Each line: excess at n = 12, 24 and 48 with its standard error,
+// noise, light in the rectangle, light and error outside, bound, seconds of the design and of the validation,
+// rays of the design, why it ended.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -46,7 +45,7 @@ struct Run {
   std::uint64_t rays = std::uint64_t{1} << 24, target_rays = std::uint64_t{1} << 26, seed = 1;
   std::string family = "bspline", source = "led", mode;
   int targets = 10;
-  bool start_only = false;
+  bool start_only = false, history = false, fixed_knots = false;
   std::vector<std::string> names;
   fs::path folder;
 };
@@ -109,8 +108,9 @@ Judged judged(const Run& run, const DesignProblem& p, const DesignShape& shape) 
   options.seed = run.seed + 1000;
   options.max_rays = run.rays;
   Judged out{validate(scene, boxes, target, p.target.mode, options), {}};
-  out.bound = design_bound(boxes, target, p.target.mode, out.validation.error.in_rectangle.mean, rays, shape,
-                           p.world_from_mirror.ez());
+  SourceEtendue etendue(rays);
+  out.bound = design_bound(boxes, target, p.target.mode, out.validation.error.in_rectangle.mean, etendue,
+                           shape, p.world_from_mirror.ez());
   return out;
 }
 
@@ -138,7 +138,15 @@ DesignShape solve(const Run& run, const std::string& name, const DesignProblem& 
   options.judge_rays = std::uint64_t{1} << 18;  // the validation below has more
   const auto clock = std::chrono::steady_clock::now();
   DesignResult result{p.start};
-  if (!run.start_only) result = design(p, options);
+  const auto observer = [&](const FitRecord& r, const DesignShape&, const std::string&) {
+    if (!run.history) return;
+    fmt::print(
+        "  {:6.2f} s  candidate {} stage {} step {}  {} rays  error {:.5f}  noise {:.5f}  lambda {:.2g} {}  "
+        "in {:.4f}\n",
+        seconds_since(clock), r.candidate, r.stage, r.step, r.rays, r.error, r.floor, r.lambda,
+        r.accepted ? "taken" : "refused", r.in_rectangle);
+  };
+  if (!run.start_only) result = design(p, options, no_progress(), observer);
   const double seconds = seconds_since(clock);
   out = judged(run, p, result.shape);
   print_line(name, out,
@@ -295,6 +303,7 @@ DesignProblem hidden_problem(const Run& run, const Suite& s, const DesignShape& 
   DesignProblem p = problem(run, scene, any, "absolute");
   p.start = plain(s);
   p.growth = 0;
+  p.fixed_knots = run.fixed_knots;
   Scene scene_of_truth = p.project.scene;
   scene_of_truth.reflectors.front().reflector = truth.reflector();
   p.target.distribution =
@@ -341,6 +350,10 @@ Run parsed(int argc, char** argv) {
       run.source = value(i);
     } else if (a == "--start") {
       run.start_only = true;
+    } else if (a == "--history") {
+      run.history = true;
+    } else if (a == "--fixed-knots") {
+      run.fixed_knots = true;
     } else if (run.mode.empty()) {
       run.mode = a;
     } else {

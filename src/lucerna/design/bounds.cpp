@@ -6,13 +6,11 @@
 #include <vector>
 
 #include "lucerna/design/reach.h"
-#include "lucerna/source/model_etendue.h"
 
 namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kBoundRays = std::uint64_t{1} << 18;
 /// Étendue curves are known to a few per cent: so much more flux is granted.
 constexpr double kSlack = 1.05;
 
@@ -90,15 +88,14 @@ DesignBound etendue_bound(const ErrorBoxes& boxes, std::span<const double> targe
 }
 
 DesignBound design_bound(const ErrorBoxes& boxes, std::span<const double> target, TargetMode mode,
-                         double share, const DesignRays& rays, const DesignShape& shape, const Vec3& axis) {
-  const RayBlock block = rays.first(kBoundRays);
+                         double share, SourceEtendue& etendue, const DesignShape& shape, const Vec3& axis) {
   const Aperture& a = shape.aperture();
   const double mantle = 2.0 * std::hypot(a.half_x_mm(), a.half_y_mm()) * shape.height_mm();
   const auto bound = [&](const EtendueCurve& curve) {
-    return etendue_bound(boxes, target, mode, share, curve, axis, opening_mm2(shape, block), mantle);
+    return etendue_bound(boxes, target, mode, share, curve, axis, opening_mm2(shape, etendue.rays()), mantle);
   };
-  const DesignBound quick = bound(etendue_curve(block));
-  return quick.error > 0.0 ? bound(searched_etendue_curve(block)) : quick;
+  const DesignBound quick = bound(etendue.quick());
+  return quick.error > 0.0 ? bound(etendue.searched()) : quick;
 }
 
 }  // namespace lucerna

@@ -4,9 +4,8 @@
 #include <span>
 
 #include "lucerna/design/box_error.h"
-#include "lucerna/design/design_rays.h"
 #include "lucerna/design/design_shape.h"
-#include "lucerna/rayset/etendue_curve.h"
+#include "lucerna/design/source_etendue.h"
 
 namespace lucerna {
 
@@ -32,9 +31,9 @@ DesignBound etendue_bound(const ErrorBoxes& boxes, std::span<const double> targe
                           double share, const EtendueCurve& curve, const Vec3& axis, double opening_mm2,
                           double mantle_mm2);
 
-/// The same for a mirror's rays and aperture; the height is `shape`'s. The quick curve of the rays decides
-/// whether there is anything to bound; the searched one (some seconds) then bounds.
+/// The same for a mirror's sources and aperture; the height is `shape`'s. The quick curve decides whether
+/// there is anything to bound; the searched one then bounds.
 DesignBound design_bound(const ErrorBoxes& boxes, std::span<const double> target, TargetMode mode,
-                         double share, const DesignRays& rays, const DesignShape& shape, const Vec3& axis);
+                         double share, SourceEtendue& etendue, const DesignShape& shape, const Vec3& axis);
 
 }  // namespace lucerna

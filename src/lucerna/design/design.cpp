@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/design/approach.h"
 #include "lucerna/design/light_limits.h"
 #include "lucerna/design/limits.h"
 #include "lucerna/design/result_check.h"
@@ -19,8 +20,6 @@ namespace lucerna {
 
 namespace {
 
-/// In shape mode a tenth of the light beside the window counts as an error of 4.5 %.
-constexpr double kFluxWeight = 0.2;
 /// Seconds that a validation gets where none are left, and without a limit.
 constexpr double kMinValidation_s = 2.0, kNoLimit = std::numeric_limits<double>::infinity();
 /// Rays that judge a result for which there is no time left.
@@ -70,7 +69,7 @@ FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& option
     plain.rays = kFluxRays;
     plain.derivatives = false;
     const Evaluation start = evaluate(problem.start, problem.reflectance, rays, fit.bins, plain);
-    fit.flux_weight = uses_free_form_search(problem) ? problem.light_weight : kFluxWeight;
+    fit.flux_weight = uses_free_form_search(problem) ? problem.light_weight : kLadderFluxWeight;
     fit.flux_reference = start.reflected + start.direct;
   }
   LightLimits(problem.limits, problem.reflectance).check(problem.start, rays);

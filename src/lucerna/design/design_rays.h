@@ -33,6 +33,7 @@ class DesignRays {
   std::uint64_t size() const { return block_.size() * kBlockRays; }
   /// Flux of all sources, in their unit.
   double flux() const { return flux_; }
+  const std::vector<PlacedSource>& sources() const { return sources_; }
   FluxUnit unit() const { return sources_.front().rays->flux_unit(); }
 
   using Block = DesignRayBlock;

@@ -180,7 +180,8 @@ void expect_same_end(const DesignProblem& p, const std::function<int(const FitSt
 TEST(Design, ResumesInTheMiddleOfATryToTheSameBits) {
   const TempDir folder;
   write_target(folder.path());
-  const DesignProblem p = problem(folder.path(), "intervals = [1, 1]\nattempts = 2\n", kFreeForm);
+  const DesignProblem p =
+      problem(folder.path(), "intervals = [1, 1]\nattempts = 2\noptimizer = \"least-squares\"\n", kFreeForm);
   const auto within = [](const FitState& s) {
     if (s.tries < 2 || s.step < 1) return -1;
     return s.twin ? 1 : 0;
@@ -191,7 +192,7 @@ TEST(Design, ResumesInTheMiddleOfATryToTheSameBits) {
 TEST(Design, ResumesWhereKnotsHaveGrownToTheSameBits) {
   const TempDir folder;
   write_target(folder.path());
-  DesignProblem p = problem(folder.path(), "intervals = [1, 1]\n", kFreeForm);
+  DesignProblem p = problem(folder.path(), "intervals = [1, 1]\noptimizer = \"least-squares\"\n", kFreeForm);
   p.growth = 1;
   DesignOptions options = tiny();
   options.max_rays = 1 << 16;

@@ -7,6 +7,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/random.h"
+#include "lucerna/design/approach.h"
 
 namespace lucerna {
 
@@ -35,6 +36,8 @@ constexpr double kNoiseShare = 0.1;
 /// What of the squared error counts where candidates are compared at a level: mirrors that are fitted roughly
 /// come nearer to the target later, but the light that they lose stays lost.
 constexpr std::array<double, kLevels> kErrorShare{0.3, 1.0, 1.0, 1.0};
+/// The given mirror keeps its own knots as long as a level ends below so many times the noise.
+constexpr double kEnoughKnots = 2.0;
 /// A mirror that fits its own rays below their noise still costs so much of what it did.
 constexpr double kMinCostShare = 0.02;
 /// A given mirror that is this near (relative error) goes on alone.
@@ -102,22 +105,36 @@ TransportChoice FreeFormSearch::first_choice(int number) const {
   return {c.sign, c.vertex_distance_mm * given_.aperture().outer_radius_mm()};
 }
 
+bool FreeFormSearch::few_knots_given() const {
+  return std::max(given_.intervals_x(), given_.intervals_y()) <= kApproachIntervals;
+}
+
 TransportChoice FreeFormSearch::choice(int number) const {
   if (static_cast<std::size_t>(number) <= kFirst.size()) return first_choice(number);
   // A neighbour of the best; of the first choice where the given mirror is the best.
   Rng rng(problem_.seed, static_cast<std::uint64_t>(number), 77);
   const FreeFormMark* best = best_of(kEnd);
-  const TransportChoice about = best != nullptr && best->candidate > 0 ? best->transport : first_choice(1);
+  const bool of_given = best != nullptr && !best->transport.exists();
+  if (of_given && few_knots_given()) return {};
+  const TransportChoice about = best != nullptr && !of_given ? best->transport : first_choice(1);
   const double factor = std::pow(kFarthest, 2.0 * rng.uniform() - 1.0);
   return {about.sign, factor * about.vertex_distance_mm};
 }
 
 std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormMark& mark) const {
-  if (mark.candidate == 0) return given_;
+  if (mark.candidate == 0) return nearer_of_given();
+  if (!mark.transport.exists()) return approach(problem_, given_, mark.candidate, max_rays_);
   const FreeFormLevel rough = level(0);
   const DesignShape family = DesignShape::bspline(given_.focal_mm(), given_.aperture(), rough.intervals_x,
                                                   rough.intervals_y, given_.symmetry());
   return free_form_start(problem_, family, mark.transport);
+}
+
+DesignShape FreeFormSearch::nearer_of_given() const {
+  if (!few_knots_given()) return given_;
+  DesignShape coarse = approach(problem_, given_, 0, max_rays_);
+  const FreeFormFit fit(problem_, level(0));
+  return fit.at(coarse).equations.cost < fit.at(given_).equations.cost ? coarse : given_;
 }
 
 const FreeFormMark* FreeFormSearch::best_of(int level) const {
@@ -169,11 +186,12 @@ DesignShape FreeFormSearch::shape_of(const FreeFormMark& mark) const {
 
 void FreeFormSearch::begin(const DesignShape& shape, const FreeFormMark& mark, Progress& progress) {
   const FreeFormLevel l = level(mark.level);
-  // Knots are refined, never coarsened.
-  const DesignShape fine = shape.intervals_x() >= l.intervals_x && shape.intervals_y() >= l.intervals_y
-                               ? shape
-                               : shape.refined(std::max(shape.intervals_x(), l.intervals_x),
-                                               std::max(shape.intervals_y(), l.intervals_y));
+  // Knots are refined, never coarsened, and only where something is left to gain.
+  const bool enough = !mark.transport.exists() && (mark.level == 0 || mark.over_noise < kEnoughKnots);
+  const bool has = shape.intervals_x() >= l.intervals_x && shape.intervals_y() >= l.intervals_y;
+  const DesignShape fine = enough || has ? shape
+                                         : shape.refined(std::max(shape.intervals_x(), l.intervals_x),
+                                                         std::max(shape.intervals_y(), l.intervals_y));
   fit_.emplace(problem_, l, progress);
   point_.emplace(fit_->at(fine));
   ++state_.evaluations;

@@ -20,8 +20,8 @@ std::optional<DesignShape> free_form_start(const FitProblem& problem, const Desi
 /// A candidate that was fitted on a level.
 struct FreeFormMark {
   int candidate = -1, level = -1;
-  /// What it began with; of the given mirror without meaning.
-  TransportChoice transport;
+  /// What it began with; none: the given mirror, or what an approach made of it.
+  TransportChoice transport{};
   /// What candidates are compared by: the squared error less its noise (a share of it while the fit is
   /// rough), and what lost light, limits and roughness cost.
   double cost = 0.0;
@@ -74,8 +74,11 @@ class FreeFormSearch {
  private:
   FreeFormLevel level(int number) const;
   TransportChoice first_choice(int number) const;
+  bool few_knots_given() const;
   /// What a candidate that is not the given mirror begins with.
   TransportChoice choice(int number) const;
+  /// The given mirror, or what an approach makes of it, whichever is nearer to the target.
+  DesignShape nearer_of_given() const;
   const FreeFormMark* best_of(int level) const;
   bool was_at(int candidate, int level) const;
   /// The next mark to be taken up a level; null where a new candidate is to begin.

@@ -7,14 +7,11 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/design/starts.h"
-#include "lucerna/rayset/etendue_curve.h"
-#include "lucerna/source/model_etendue.h"
 
 namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kReachRays = std::uint64_t{1} << 18;
 /// Shares that are this close to a bound are not called impossible: the curve is known to a few percent.
 constexpr double kSlack = 1.05;
 
@@ -103,8 +100,9 @@ double opening_mm2(const DesignShape& shape, const RayBlock& rays) {
   return outline + std::numbers::pi * *at * *at;
 }
 
-Reach target_reach(const DesignRays& rays, const DesignShape& shape, const TentBins& bins,
-                   const Eigen::VectorXd& target, TargetMode mode, double wanted_efficiency) {
+Reach target_reach(const DesignRays& rays, SourceEtendue& etendue, const DesignShape& shape,
+                   const TentBins& bins, const Eigen::VectorXd& target, TargetMode mode,
+                   double wanted_efficiency) {
   Reach reach;
   const double total = target.sum();
   LUCERNA_CHECK(total > 0.0, "a target without light in its window");
@@ -117,13 +115,10 @@ Reach target_reach(const DesignRays& rays, const DesignShape& shape, const TentB
     }
   }
   if (bins.is_plane()) return reach;
-  const RayBlock block = rays.first(kReachRays);
-  reach.opening_mm2 = opening_mm2(shape, block);
-  // The quick curve of the focus plane can be too large, never far too small: what it allows is allowed. What
-  // it forbids is judged again by the curve of a searched support, which takes seconds.
-  bound_by_etendue(etendue_curve(block), bins, target, mode, reach);
+  reach.opening_mm2 = opening_mm2(shape, etendue.rays());
+  bound_by_etendue(etendue.quick(), bins, target, mode, reach);
   if (!etendue_statements(reach, mode, wanted_efficiency).empty()) {
-    bound_by_etendue(searched_etendue_curve(block), bins, target, mode, reach);
+    bound_by_etendue(etendue.searched(), bins, target, mode, reach);
   }
   const auto forbidden = etendue_statements(reach, mode, wanted_efficiency);
   reach.statements.insert(reach.statements.end(), forbidden.begin(), forbidden.end());

@@ -7,7 +7,7 @@
 #include "lucerna/design/design_rays.h"
 #include "lucerna/design/design_shape.h"
 #include "lucerna/design/least_squares.h"
-#include "lucerna/rayset/etendue_curve.h"
+#include "lucerna/design/source_etendue.h"
 
 namespace lucerna {
 
@@ -32,9 +32,10 @@ struct Reach {
 /// `wanted_efficiency` (0: none) is a limit that the sources' share must reach. Rays beyond the first 2^18
 /// are not used. Bins on a plane have no bound here (no statements): the plane is near. The bound is on the
 /// light that leaves through the opening; light that passes beside the mirror has étendue of its own. Cost:
-/// half a second; some seconds where the étendue forbids something (two curves, model_etendue.h).
-Reach target_reach(const DesignRays& rays, const DesignShape& shape, const TentBins& bins,
-                   const Eigen::VectorXd& target, TargetMode mode, double wanted_efficiency = 0.0);
+/// that of the curves that it asks `etendue` (of the same rays) for.
+Reach target_reach(const DesignRays& rays, SourceEtendue& etendue, const DesignShape& shape,
+                   const TentBins& bins, const Eigen::VectorXd& target, TargetMode mode,
+                   double wanted_efficiency = 0.0);
 
 /// The largest share of the flux whose brightest part fits into an étendue in mm^2 sr.
 double share_in(const EtendueCurve& curve, double etendue_mm2sr);

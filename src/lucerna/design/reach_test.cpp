@@ -37,7 +37,9 @@ Reach reach_of(double half_deg, double share, TargetMode mode, double efficiency
                EmitterKind kind = EmitterKind::disk) {
   const DesignShape shape = DesignShape::revolution(10, Aperture::circle(20), 4);
   const TentBins bins = TentBins::rings(Frame(), 1.5 * radians(half_deg), 48);
-  return target_reach(emitter_rays(kind), shape, bins, spot(bins, half_deg, share), mode, efficiency);
+  const DesignRays rays = emitter_rays(kind);
+  SourceEtendue etendue(rays);
+  return target_reach(rays, etendue, shape, bins, spot(bins, half_deg, share), mode, efficiency);
 }
 
 TEST(Reach, BoundsTheShareByTheEtendue) {

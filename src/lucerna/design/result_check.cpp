@@ -54,10 +54,11 @@ Validation validated(const DesignProblem& problem, const DesignShape& shape, con
   return validate(scene, boxes, target, problem.target.mode, options, progress);
 }
 
-void validate_result(const DesignProblem& problem, const DesignOptions& options, const DesignRays& rays,
-                     std::uint64_t max_rays, double max_s, DesignResult& result, Progress& progress) {
+void validate_result(const DesignProblem& problem, const DesignOptions& options, SourceEtendue& etendue,
+                     double sources_flux, std::uint64_t max_rays, double max_s, DesignResult& result,
+                     Progress& progress) {
   const ErrorBoxes boxes(target_rectangle(problem.target));
-  const std::vector<double> target = box_target(boxes, problem.target, rays.flux());
+  const std::vector<double> target = box_target(boxes, problem.target, sources_flux);
   ValidationOptions o;
   o.seed = options.seed;
   o.max_rays = max_rays;
@@ -74,7 +75,7 @@ void validate_result(const DesignProblem& problem, const DesignOptions& options,
   o.max_rays = std::min(max_rays, kStartRays);
   o.min_rays = o.max_rays / 8;
   result.start_error = validated(problem, problem.start, boxes, target, o, progress).error;
-  result.bound = design_bound(boxes, target, problem.target.mode, result.error.in_rectangle.mean, rays,
+  result.bound = design_bound(boxes, target, problem.target.mode, result.error.in_rectangle.mean, etendue,
                               result.shape, problem.world_from_mirror.ez());
 }
 
@@ -126,18 +127,19 @@ void check_result(const DesignProblem& problem, const DesignOptions& options, co
   rays.evaluate_on(options.accelerator);
   const std::uint64_t limit_rays = std::min(max_rays, kLimitRays);
   rays.grow(limit_rays, progress);
-  validate_result(problem, options, rays, max_rays, max_s, result, progress);
+  SourceEtendue etendue(rays);
+  validate_result(problem, options, etendue, rays.flux(), max_rays, max_s, result, progress);
   const bool keep_given = given_is_better(result);
   if (keep_given) {
     result.shape = problem.start;
-    validate_result(problem, options, rays, max_rays, max_s, result, progress);
+    validate_result(problem, options, etendue, rays.flux(), max_rays, max_s, result, progress);
   }
   result.limits = checked_limits(problem, result.shape, rays, limit_rays);
   const double behind = share_behind(result.shape, rays), given = share_behind(problem.start, rays);
   if (behind > given + kMaxBehind) {
     result.limits.push_back({"source in front of the mirror (share behind it)", given, behind, false});
   }
-  result.remarks = target_reach(rays, problem.start, fit.bins, fit.target(fit.bins), fit.mode,
+  result.remarks = target_reach(rays, etendue, problem.start, fit.bins, fit.target(fit.bins), fit.mode,
                                 problem.limits.min_efficiency.value_or(0.0))
                        .statements;
   add_remarks(result);

@@ -13,9 +13,6 @@ namespace {
 /// Knots along the longer side where the project does not say how many: 2.5 mm on a mirror of 120 mm, which
 /// closes the image of a hole of 8 mm.
 constexpr int kMaxIntervals = 48;
-/// Where the project fixes so few knots, the light may have to find its way through basins that only coarse
-/// bins and large scales show: the ladder's search (hidden mirrors of 4 to 17 intervals, docs/validation.md).
-constexpr int kFewIntervals = 20;
 
 /// Asks after every step whether to stop, and says why.
 class Stop {
@@ -98,8 +95,7 @@ void search_on_ladder(const SearchRun& run, FitProblem& fit_data, DesignResult& 
 
 bool uses_free_form_search(const DesignProblem& problem) {
   const DesignShape& start = problem.start;
-  if (start.is_revolution() || start.is_trough() || problem.optimizer.name != "auto") return false;
-  return !problem.fixed_knots || std::max(start.intervals_x(), start.intervals_y()) > kFewIntervals;
+  return !start.is_revolution() && !start.is_trough() && problem.optimizer.name == "auto";
 }
 
 void search_mirror(const SearchRun& run, FitProblem& fit, DesignResult& result) {

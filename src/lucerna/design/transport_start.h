@@ -14,7 +14,8 @@ namespace lucerna {
 /// Which of a point source's mirrors: `sign` as PointTransport has it, and how far the vertex is from the
 /// source.
 struct TransportChoice {
-  double sign = 1.0, vertex_distance_mm = 20.0;
+  double sign = 1.0, vertex_distance_mm = 0.0;
+  bool exists() const { return vertex_distance_mm > 0.0; }
 };
 
 /// What a start by transport is made for.

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/source_etendue.h"
+
+#include "lucerna/source/model_etendue.h"
+
+namespace lucerna {
+
+namespace {
+constexpr std::uint64_t kRays = std::uint64_t{1} << 18;
+}
+
+SourceEtendue::SourceEtendue(const DesignRays& rays) : rays_(rays.first(kRays)) {
+  if (rays.sources().size() == 1) model_ = dynamic_cast<const SourceModel*>(rays.sources()[0].rays.get());
+}
+
+const EtendueCurve& SourceEtendue::quick() {
+  if (!quick_) quick_ = etendue_curve(rays_);
+  return *quick_;
+}
+
+const EtendueCurve& SourceEtendue::searched() {
+  if (!searched_) searched_ = model_ != nullptr ? etendue_curve(*model_) : searched_etendue_curve(rays_);
+  return *searched_;
+}
+
+}  // namespace lucerna
