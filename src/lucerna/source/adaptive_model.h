@@ -9,6 +9,7 @@
 #include "lucerna/rayset/ray_set.h"
 #include "lucerna/source/adaptive_tree.h"
 #include "lucerna/source/adaptive_view.h"
+#include "lucerna/source/luminance_source.h"
 #include "lucerna/source/source_model.h"
 #include "lucerna/source/support_batch.h"
 #include "lucerna/source/wavelengths.h"
@@ -65,7 +66,7 @@ AdaptiveData decode_adaptive(const NflFile& file, std::string_view name);
 /// inverting the sum of their shares through a guide table: O(1)) and, with what the choice leaves of it, the
 /// first number of the ray in the leaf; 1-3 are the others. Even points stay even this way: leaves are in the
 /// order of their trees, so that neighbours in the first number are neighbours in the source.
-class AdaptiveModel final : public SourceModel {
+class AdaptiveModel final : public SourceModel, public LuminanceSource {
  public:
   /// `data` must be as decode_adaptive checks it.
   explicit AdaptiveModel(AdaptiveData data);
@@ -90,6 +91,10 @@ class AdaptiveModel final : public SourceModel {
   /// density. Throws InputError if a layer has no étendue (rays through one point or line, or parallel).
   double pdf_etendue(const Ray& ray) const override;
   NflFile to_nfl() const override { return encode_adaptive(data_); }
+
+  bool has_luminance() const override { return has_etendue_; }
+  void add_light_on(const Ray& ray, std::vector<LineLight>& to) const override;
+  LightBound light_bound() const override;
 
   const AdaptiveData& data() const { return data_; }
   /// False if some layer's rays have no étendue.

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "lucerna/core/error.h"
+#include "lucerna/source/emitter_luminance.h"
+#include "lucerna/source/led_emitter.h"
 #include "lucerna/source/warp.h"
 
 namespace lucerna {
@@ -18,32 +20,26 @@ constexpr std::array<std::string_view, 11> kKindNames{"point",   "disk",     "re
 /// Direction u[0], u[1]; position u[2], u[3]; part u[4].
 using Numbers = std::array<double, 5>;
 
-/// Sizes with the defaults filled in.
-struct Shape {
-  EmitterKind kind;
-  double radius_mm, length_mm, width_mm, height_mm, ghost_share;
-};
-
 Ray lambertian(const Vec3& origin_mm, const Direction& normal, const Numbers& u) {
   return {origin_mm, warp::about(normal, warp::cosine_hemisphere(u[0], u[1]))};
 }
 
-Ray sample_point(const Shape&, const Numbers& u) { return {{}, warp::sphere(u[0], u[1])}; }
+Ray sample_point(const EmitterShape&, const Numbers& u) { return {{}, warp::sphere(u[0], u[1])}; }
 
-Ray sample_disk(const Shape& s, const Numbers& u) {
+Ray sample_disk(const EmitterShape& s, const Numbers& u) {
   return lambertian(s.radius_mm * warp::disk(u[2], u[3]), {}, u);
 }
 
-Ray sample_rectangle(const Shape& s, const Numbers& u) {
+Ray sample_rectangle(const EmitterShape& s, const Numbers& u) {
   return lambertian({s.width_mm * (u[2] - 0.5), s.height_mm * (u[3] - 0.5), 0.0}, {}, u);
 }
 
-Ray sample_cylinder(const Shape& s, const Numbers& u) {
+Ray sample_cylinder(const EmitterShape& s, const Numbers& u) {
   const Direction normal = warp::at_cosine(0.0, u[2]);
   return lambertian(s.radius_mm * normal.vec() + Vec3{0, 0, s.length_mm * (u[3] - 0.5)}, normal, u);
 }
 
-Ray sample_sphere(const Shape& s, const Numbers& u) {
+Ray sample_sphere(const EmitterShape& s, const Numbers& u) {
   const Direction normal = warp::sphere(u[2], u[3]);
   return lambertian(s.radius_mm * normal.vec(), normal, u);
 }
@@ -57,7 +53,7 @@ double bent_tube_angle(double a, double v) {
   return phi;
 }
 
-Ray sample_filament(const Shape& s, const Numbers& u) {
+Ray sample_filament(const EmitterShape& s, const Numbers& u) {
   constexpr double kTurns = 12.0, kWireRadiusMm = 0.06;
   const double omega = 2.0 * std::numbers::pi * kTurns;
   const double speed2 = s.length_mm * s.length_mm + s.radius_mm * s.radius_mm * omega * omega;
@@ -74,9 +70,8 @@ Ray sample_filament(const Shape& s, const Numbers& u) {
   return {-ray.origin_mm, -ray.direction};
 }
 
-Ray sample_led(const Shape&, const Numbers& u) {
-  constexpr double kPitchMm = 1.1, kPackageRadiusMm = 2.5, kStrayShare = 0.01;
-  constexpr std::array<double, 4> kDieShare{0.25, 0.2375, 0.2625, 0.25};
+Ray sample_led(const EmitterShape&, const Numbers& u) {
+  using namespace led_emitter;
   if (u[4] < kStrayShare) return lambertian(kPackageRadiusMm * warp::disk(u[2], u[3]), {}, u);
   double rest = (u[4] - kStrayShare) / (1.0 - kStrayShare);
   int die = 0;
@@ -87,7 +82,7 @@ Ray sample_led(const Shape&, const Numbers& u) {
   return lambertian(centre + Vec3{u[2] - 0.5, u[3] - 0.5, 0.0}, {}, u);
 }
 
-Ray sample_phong500(const Shape& s, const Numbers& u) {
+Ray sample_phong500(const EmitterShape& s, const Numbers& u) {
   const Direction normal = warp::sphere(u[2], u[3]);
   return {s.radius_mm * normal.vec(), warp::about(normal, warp::phong_lobe(500.0, u[0], u[1]))};
 }
@@ -101,7 +96,7 @@ double striped(double u, int pairs) {
   return (pair + within) / pairs;
 }
 
-Ray sample_phong25(const Shape& s, const Numbers& u) {
+Ray sample_phong25(const EmitterShape& s, const Numbers& u) {
   // The pattern depends on the direction alone and the lobe on the angle between direction and normal alone,
   // so the direction comes first, from the pattern, and then the normal, from the lobe about it.
   const Direction direction = warp::sphere(striped(u[0], 3), u[1]);
@@ -116,17 +111,17 @@ Direction checkered_sphere(const Numbers& u) {
   return warp::sphere(u[2], azimuth);
 }
 
-Ray sample_radial(const Shape& s, const Numbers& u) {
+Ray sample_radial(const EmitterShape& s, const Numbers& u) {
   const Direction normal = checkered_sphere(u);
   return {s.radius_mm * normal.vec(), normal};
 }
 
-Ray sample_cosine(const Shape& s, const Numbers& u) {
+Ray sample_cosine(const EmitterShape& s, const Numbers& u) {
   const Direction normal = checkered_sphere(u);
   return lambertian(s.radius_mm * normal.vec(), normal, u);
 }
 
-using Sampler = Ray (*)(const Shape&, const Numbers&);
+using Sampler = Ray (*)(const EmitterShape&, const Numbers&);
 constexpr std::array<Sampler, 11> kSamplers{
     sample_point, sample_disk,     sample_rectangle, sample_cylinder, sample_sphere, sample_filament,
     sample_led,   sample_phong500, sample_phong25,   sample_radial,   sample_cosine};
@@ -139,7 +134,7 @@ double positive(double value, std::string_view name) {
   return value;
 }
 
-Shape shape_of(const EmitterOptions& o) {
+EmitterShape shape_of(const EmitterOptions& o) {
   const bool coil = o.kind == EmitterKind::filament;
   if (!(o.ghost_share >= 0.0 && o.ghost_share < 1.0)) {
     throw InputError(fmt::format("ghost_share is {}, expected 0 <= ghost_share < 1", o.ghost_share));
@@ -153,7 +148,7 @@ Shape shape_of(const EmitterOptions& o) {
           o.ghost_share};
 }
 
-class Emitter final : public RaySource {
+class Emitter final : public RaySource, public LuminanceSource {
  public:
   explicit Emitter(const EmitterOptions& options)
       : shape_(shape_of(options)),
@@ -176,6 +171,15 @@ class Emitter final : public RaySource {
     }
   }
 
+  bool has_luminance() const override { return emitter_has_luminance(shape_.kind); }
+  void add_light_on(const Ray& ray, std::vector<LineLight>& to) const override {
+    auto light = emitter_light(shape_, ray);
+    if (!light) return;
+    if (const auto distance = surface_.exit_distance_mm(ray)) light->start_mm = *distance;
+    to.push_back(*light);
+  }
+  LightBound light_bound() const override { return {{}, emitter_reach_mm(shape_)}; }
+
  private:
   /// Emitters are bounded by their own samples: 4096 even points find whatever sticks out by a visible
   /// amount.
@@ -192,7 +196,7 @@ class Emitter final : public RaySource {
     }
   }
 
-  Shape shape_;
+  EmitterShape shape_;
   Sampler sample_;
   BoundingSurface surface_;
   double flux_;
