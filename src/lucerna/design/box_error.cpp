@@ -244,6 +244,9 @@ BoxSums& BoxSums::operator+=(const BoxSums& other) {
   if (flux.empty()) flux.assign(other.flux.size(), 0.0);
   LUCERNA_CHECK(flux.size() == other.flux.size(), "{} cells and {}", flux.size(), other.flux.size());
   for (std::size_t i = 0; i < flux.size(); ++i) flux[i] += other.flux[i];
+  if (zones.empty()) zones.assign(other.zones.size(), 0.0);
+  LUCERNA_CHECK(zones.size() == other.zones.size(), "{} cells and {}", zones.size(), other.zones.size());
+  for (std::size_t i = 0; i < zones.size(); ++i) zones[i] += other.zones[i];
   direct_outside += other.direct_outside;
   emitted += other.emitted;
   out_direct += other.out_direct;

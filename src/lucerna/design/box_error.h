@@ -15,6 +15,8 @@ namespace lucerna {
 struct BoxSums {
   /// Flux that leaves the luminaire, reflected or not.
   std::vector<double> flux;
+  /// The same by measuring cell of the target's zones (zone_cells.h); empty without zones.
+  std::vector<double> zones;
   /// The part of it outside the rectangle that met no mirror.
   double direct_outside = 0.0;
   /// All ends of the emitted flux: emitted = out_direct + out_reflected + absorbed + back + bodies + lost.

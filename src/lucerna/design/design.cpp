@@ -77,6 +77,7 @@ FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& option
   fit.target = target_flux(problem.target, problem.world_from_mirror, rays.flux());
   fit.rectangle = target_rectangle(problem.target);
   fit.mirror_from_world = problem.world_from_mirror.inverse();
+  fit.zones = {problem.target.zones, rays.flux(), fit.mirror_from_world, problem.target.zones_only};
   return fit;
 }
 

@@ -14,6 +14,7 @@
 #include "lucerna/design/design_problem.h"
 #include "lucerna/design/limit_check.h"
 #include "lucerna/design/pareto.h"
+#include "lucerna/design/zone_check.h"
 
 namespace lucerna {
 
@@ -48,6 +49,8 @@ struct DesignResult {
   std::string checkpoint;
   /// Against the target, by fresh rays through the exported mesh (validation.h).
   DesignError error, start_error;
+  /// The target's zones in the light of the result and of the start, by the same rays.
+  std::vector<ZoneCheck> zones, start_zones;
   /// What no mirror of this aperture and height can be better than, with the light that this one has in the
   /// target's rectangle.
   DesignBound bound;

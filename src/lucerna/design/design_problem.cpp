@@ -10,6 +10,7 @@
 #include "lucerna/core/error.h"
 #include "lucerna/design/design_rays.h"
 #include "lucerna/design/limits.h"
+#include "lucerna/design/search_mirror.h"
 #include "lucerna/design/window.h"
 #include "lucerna/reflector/trough_surface.h"
 #include "lucerna/trace/toml_reader.h"
@@ -173,6 +174,18 @@ double read_light_weight(TomlReader& design) {
   return weight;
 }
 
+/// Zones are fitted by the search of free forms alone.
+void check_zones_family(const TomlReader& root, const DesignProblem& problem) {
+  if (problem.target.zones == nullptr || uses_free_form_search(problem)) return;
+  const DesignShape& start = problem.start;
+  const std::string found = start.is_revolution() ? "family = \"revolution\""
+                            : start.is_trough()   ? "family = \"trough\""
+                                                  : fmt::format("optimizer = \"{}\"", problem.optimizer.name);
+  root.fail("target", fmt::format("found {}: zones are designed for free forms only, expected family = "
+                                  "\"bspline\" and optimizer = \"auto\"",
+                                  found));
+}
+
 }  // namespace
 
 DesignProblem design_problem(Project project, const std::filesystem::path& path) {
@@ -205,7 +218,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
                          placed.world_from_reflector, project.scene.bodies, source_flux);
   }
   DesignTarget target = read_target(*target_reader, project.scene.sources.front().rays->flux_unit(),
-                                    placed.world_from_reflector.origin_mm(), project.inputs);
+                                    source_flux, placed.world_from_reflector.origin_mm(), project.inputs);
   DesignShape start = start_shape(placed.reflector, intervals, design, limits.symmetry);
   std::optional<ToleranceRanges> tolerances;
   if (auto table = design.table("tolerances")) tolerances = read_tolerances(std::move(*table));
@@ -218,19 +231,21 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   }
   const int growth = doublings(start, WindowOptions().count, !intervals.empty());
   add_detectors(project, target);
-  return {std::move(project),
-          std::move(target),
-          std::move(limits),
-          std::move(start),
-          placed.reflectance,
-          placed.world_from_reflector,
-          time_s,
-          how,
-          attempts,
-          growth,
-          !intervals.empty(),
-          light_weight,
-          tolerances};
+  DesignProblem problem{std::move(project),
+                        std::move(target),
+                        std::move(limits),
+                        std::move(start),
+                        placed.reflectance,
+                        placed.world_from_reflector,
+                        time_s,
+                        how,
+                        attempts,
+                        growth,
+                        !intervals.empty(),
+                        light_weight,
+                        tolerances};
+  check_zones_family(root, problem);
+  return problem;
 }
 
 TentBins target_window(const DesignProblem& problem) {

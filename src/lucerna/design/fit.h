@@ -10,6 +10,7 @@
 #include "lucerna/design/large_scale.h"
 #include "lucerna/design/residual_rows.h"
 #include "lucerna/design/target_rectangle.h"
+#include "lucerna/design/zone_cost.h"
 
 namespace lucerna {
 
@@ -57,6 +58,8 @@ struct FitProblem {
   /// Of the target, and where it is seen from.
   TargetRectangle rectangle;
   Frame mirror_from_world;
+  /// Bounds on the light of zones; without cells: none. Free forms of many knots only.
+  ZoneBands zones;
 };
 
 /// One step of the ladder from coarse to fine.

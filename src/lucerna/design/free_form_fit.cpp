@@ -16,16 +16,20 @@ constexpr double kRimShare = 0.02;
 constexpr double kMaxMove = 0.05;
 /// Damping beyond which there is no step to be had.
 constexpr double kMaxLambda = 1e12;
+/// Bins on each side of the widened rectangle out to the horizon; where zones may lie there.
+constexpr int kOuterBins = 8, kZoneBins = 24;
 
 }  // namespace
 
 FreeFormFit::FreeFormFit(const FitProblem& problem, const FreeFormLevel& level, Progress& progress)
     : problem_(problem),
       level_(level),
-      bins_(graded_bins(problem.rectangle, problem.mirror_from_world, level.bins, level.widen)),
+      bins_(graded_bins(problem.rectangle, problem.mirror_from_world, level.bins, level.widen,
+                        problem.zones.cells ? kZoneBins : kOuterBins)),
       target_(problem.target(bins_)),
       inside_(lucerna::in_rectangle(bins_, problem.rectangle)) {
   problem_.rays->grow(level_.rays, progress);
+  if (problem_.zones.cells) zones_.emplace(problem_.zones, bins_, level_.rays, level_.zones.weight);
 }
 
 FreeFormPoint FreeFormFit::at(DesignShape shape) const {
@@ -36,6 +40,8 @@ FreeFormPoint FreeFormFit::at(DesignShape shape) const {
   options.sparse = true;
   Evaluation light = evaluate(shape, problem_.reflectance, *problem_.rays, bins_, options);
   SparseEquations equations = sparse_equations(light, target_, bins_, problem_.mode);
+  equations *= error_weight();
+  if (zones_) zones_->add_to(light, equations);
   ResidualRows rows;
   equations.cost += roughness(shape, level_.smoothing, &rows);
   if (problem_.limits) equations.cost += problem_.limits(shape, level_.rays, &rows);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "lucerna/core/progress.h"
@@ -24,6 +25,8 @@ struct FreeFormLevel {
   double min_gain = 0.02;
   /// Weight of `roughness`.
   double smoothing = 0.0;
+  /// How zones count.
+  ZoneStage zones;
 };
 
 /// A shape with its light, and the equations of the next step.
@@ -34,8 +37,8 @@ struct FreeFormPoint {
 };
 
 /// Levenberg-Marquardt on a free form of many knots in fine bins that see all light, with sparse derivatives.
-/// The cost is the squared relative error, what the limits and the roughness cost, and flux_weight * (1 - F /
-/// flux_reference)^2, F the light in the target's rectangle.
+/// The cost is the squared relative error, what the limits, the zones and the roughness cost, and flux_weight
+/// * (1 - F / flux_reference)^2, F the light in the target's rectangle.
 class FreeFormFit {
  public:
   /// `problem` must outlive it. Grows the problem's rays to the level's.
@@ -48,6 +51,8 @@ class FreeFormFit {
 
   /// Error and noise of a point in these bins.
   BinError error(const FreeFormPoint& point) const;
+  /// What the squared error counts.
+  double error_weight() const { return problem_.zones.only ? level_.zones.guide_weight : 1.0; }
   /// Share of the sources' flux in the target's rectangle.
   double in_rectangle(const FreeFormPoint& point) const { return inside_.dot(point.light.flux); }
 
@@ -56,6 +61,7 @@ class FreeFormFit {
   FreeFormLevel level_;
   TentBins bins_;
   Eigen::VectorXd target_, inside_;
+  std::optional<ZoneCost> zones_;
 };
 
 }  // namespace lucerna

@@ -83,6 +83,12 @@ FreeFormSearch::FreeFormSearch(const FitProblem& problem, const DesignShape& giv
       state_(std::move(state)) {}
 
 FreeFormLevel FreeFormSearch::level(int number) const {
+  FreeFormLevel out = plain_level(number);
+  out.zones = zone_stage(number);
+  return out;
+}
+
+FreeFormLevel FreeFormSearch::plain_level(int number) const {
   const auto rays = [&](int doublings) { return std::min(max_rays_, std::uint64_t{1} << doublings); };
   const double half = 0.5 * std::max(problem_.rectangle.width(), problem_.rectangle.height());
   const double smoothing = problem_.rectangle.is_plane ? kSmoothing : kSmoothing / (half * half);
@@ -278,11 +284,12 @@ FitRecord FreeFormSearch::step(Progress& progress) {
   const BinError error = fit_->error(*point_);
   const Eigen::VectorXd& p = point_->shape.parameters();
   state_.now.parameters.assign(p.begin(), p.end());
-  const double cost = point_->equations.cost, noise = error.floor * error.floor;
-  const double squared = error.relative_rms * error.relative_rms;
+  const double cost = point_->equations.cost, weight = fit_->error_weight();
+  const double noise = weight * error.floor * error.floor;
+  const double squared = weight * error.relative_rms * error.relative_rms;
   const double excess = std::max(squared - noise, kMinCostShare * squared);
   state_.now.cost = kErrorShare[static_cast<std::size_t>(state_.now.level)] * excess + (cost - squared);
-  state_.now.over_noise = std::sqrt(cost) / std::max(error.floor, 1e-12);
+  state_.now.over_noise = std::sqrt(cost / std::max(noise, 1e-24));
   record.stage = state_.now.level;
   record.step = state_.step;
   record.candidate = state_.now.candidate;

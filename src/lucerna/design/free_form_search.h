@@ -73,6 +73,7 @@ class FreeFormSearch {
 
  private:
   FreeFormLevel level(int number) const;
+  FreeFormLevel plain_level(int number) const;
   TransportChoice first_choice(int number) const;
   bool few_knots_given() const;
   /// What a candidate that is not the given mirror begins with.

@@ -63,9 +63,11 @@ void validate_result(const DesignProblem& problem, const DesignOptions& options,
   o.seed = options.seed;
   o.max_rays = max_rays;
   o.max_s = max_s;
+  o.zones = problem.target.zones.get();
   if (max_rays < kStartRays) o.tolerance = kCoarse;
   const Validation v = validated(problem, result.shape, boxes, target, o, progress);
   result.error = v.error;
+  result.zones = v.zones;
   result.efficiency = v.efficiency;
   result.absorbed = v.absorbed;
   result.back = v.back;
@@ -74,21 +76,33 @@ void validate_result(const DesignProblem& problem, const DesignOptions& options,
   result.validation_s = v.seconds;
   o.max_rays = std::min(max_rays, kStartRays);
   o.min_rays = o.max_rays / 8;
-  result.start_error = validated(problem, problem.start, boxes, target, o, progress).error;
+  const Validation start = validated(problem, problem.start, boxes, target, o, progress);
+  result.start_error = start.error;
+  result.start_zones = start.zones;
   result.bound = design_bound(boxes, target, problem.target.mode, result.error.in_rectangle.mean, etendue,
                               result.shape, problem.world_from_mirror.ez());
 }
 
-/// A design is never worse than the mirror that was given, by the printed error.
-bool given_is_better(const DesignResult& result) {
+/// Bounds that are missed by less than this in all are as good as met where two mirrors are compared.
+constexpr double kMissingNoise = 0.01;
+
+/// A design is never worse than the mirror that was given: by the zones; where these are alike, by the
+/// printed error, or without a file to compare with by the light in the rectangle.
+bool given_is_better(const DesignProblem& problem, const DesignResult& result) {
+  const double missing = missing_in_zones(result.zones), missing_given = missing_in_zones(result.start_zones);
+  if (std::abs(missing - missing_given) > kMissingNoise) return missing_given < missing;
+  if (problem.target.zones_only) {
+    const Estimate &light = result.error.in_rectangle, &light_given = result.start_error.in_rectangle;
+    return light_given.mean > light.mean + 2.0 * std::hypot(light.standard_error, light_given.standard_error);
+  }
   const BoxErrorEstimate &found = result.error.c48, &given = result.start_error.c48;
   return given.excess + 2.0 * std::hypot(given.standard_error, found.standard_error) < found.excess;
 }
 
 /// Only what a figure stands behind.
-void add_remarks(DesignResult& result) {
+void add_remarks(const DesignProblem& problem, DesignResult& result) {
   const BoxErrorEstimate& e = result.error.c48;
-  if (e.excess <= 2.0 * e.standard_error) {
+  if (!problem.target.zones_only && e.excess <= 2.0 * e.standard_error) {
     result.remarks.push_back(fmt::format(
         "no error is left that {:.3g} M rays can tell from noise: {:.2f} +- {:.2f} %",
         1e-6 * static_cast<double>(result.error.rays), 100.0 * e.excess, 100.0 * e.standard_error));
@@ -129,7 +143,7 @@ void check_result(const DesignProblem& problem, const DesignOptions& options, co
   rays.grow(limit_rays, progress);
   SourceEtendue etendue(rays);
   validate_result(problem, options, etendue, rays.flux(), max_rays, max_s, result, progress);
-  const bool keep_given = given_is_better(result);
+  const bool keep_given = given_is_better(problem, result);
   if (keep_given) {
     result.shape = problem.start;
     validate_result(problem, options, etendue, rays.flux(), max_rays, max_s, result, progress);
@@ -139,12 +153,14 @@ void check_result(const DesignProblem& problem, const DesignOptions& options, co
   if (behind > given + kMaxBehind) {
     result.limits.push_back({"source in front of the mirror (share behind it)", given, behind, false});
   }
-  result.remarks = target_reach(rays, etendue, problem.start, fit.bins, fit.target(fit.bins), fit.mode,
-                                problem.limits.min_efficiency.value_or(0.0))
-                       .statements;
-  add_remarks(result);
+  if (!problem.target.zones_only) {
+    result.remarks = target_reach(rays, etendue, problem.start, fit.bins, fit.target(fit.bins), fit.mode,
+                                  problem.limits.min_efficiency.value_or(0.0))
+                         .statements;
+  }
+  add_remarks(problem, result);
   if (keep_given)
-    result.remarks.push_back("the given mirror is the result: nothing that was found has a smaller error");
+    result.remarks.push_back("the given mirror is the result: nothing that was found is better");
 }
 
 }  // namespace lucerna

@@ -39,8 +39,9 @@ SparseSymmetric joined(const std::vector<Columns>& parts, Eigen::Index n) {
   return out;
 }
 
-/// Lower triangle of J^T J.
-SparseSymmetric squared(const SparseJacobian& j) {
+}  // namespace
+
+SparseSymmetric squared_rows(const SparseJacobian& j) {
   const Eigen::SparseMatrix<double> by_column = j;
   const Eigen::Index n = j.cols();
   const auto columns_of = [&](std::size_t first, std::size_t last) {
@@ -78,7 +79,14 @@ SparseSymmetric squared(const SparseJacobian& j) {
   return joined(parallel_map_blocks<Columns>(static_cast<std::size_t>(n), 64, columns_of), n);
 }
 
-}  // namespace
+SparseEquations& SparseEquations::operator*=(double weight) {
+  if (weight == 1.0) return *this;
+  cost *= weight;
+  gradient *= weight;
+  hessian *= weight;
+  for (Product& p : products) p.weight *= weight;
+  return *this;
+}
 
 SparseEquations sparse_equations(const Evaluation& e, const Eigen::VectorXd& target, const TentBins& bins,
                                  TargetMode mode) {
@@ -96,7 +104,7 @@ SparseEquations sparse_equations(const Evaluation& e, const Eigen::VectorXd& tar
   SparseEquations out;
   out.cost = w.dot(residual.cwiseAbs2());
   out.gradient = j.transpose() * root.cwiseProduct(residual);
-  out.hessian = squared(j);
+  out.hessian = squared_rows(j);
   if (mode == TargetMode::shape) {  // what only scales the result is no improvement
     const Eigen::VectorXd flux = unit * root.cwiseProduct(e.flux);
     const double own = flux.squaredNorm();

@@ -25,7 +25,12 @@ struct SparseEquations {
   Eigen::VectorXd gradient;
   SparseSymmetric hessian;
   std::vector<Product> products;
+
+  SparseEquations& operator*=(double weight);
 };
+
+/// Lower triangle of J^T J.
+SparseSymmetric squared_rows(const SparseJacobian& j);
 
 /// As `normal_equations`, from an evaluation with `rows`. Throws never; the same bits for any thread count.
 SparseEquations sparse_equations(const Evaluation& e, const Eigen::VectorXd& target, const TentBins& bins,

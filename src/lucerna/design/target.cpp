@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/design/target.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "lucerna/core/error.h"
 #include "lucerna/design/window.h"
+#include "lucerna/design/zone_guide.h"
 #include "lucerna/photometry/photometric_io.h"
 
 namespace lucerna {
@@ -57,8 +59,8 @@ IlluminanceMap read_map(TomlReader& reader, const std::filesystem::path& file, T
   return map;
 }
 
-PlaneTarget read_plane(TomlReader& reader, const std::filesystem::path& file, TargetMode mode,
-                       const Vec3& luminaire_mm) {
+/// All of a plane target but its map.
+PlaneTarget read_plane(TomlReader& reader, const Vec3& luminaire_mm) {
   PlaneTarget plane;
   const auto position = reader.vector("position_mm");
   if (!position) reader.fail("position_mm", "is missing: the centre of the plane's rectangle");
@@ -76,8 +78,58 @@ PlaneTarget read_plane(TomlReader& reader, const std::filesystem::path& file, Ta
   if (plane.world_from_plane.inverse().point(luminaire_mm).z <= 0.0) {
     reader.fail("normal", "looks away from the mirror; expected the side that is lit");
   }
-  plane.map = read_map(reader, file, mode);
   return plane;
+}
+
+/// Zones that ask for light lie on the plane's rectangle.
+void check_places(const TomlReader& reader, const PlaneTarget& plane, const std::vector<TargetZone>& zones) {
+  for (const TargetZone& z : zones) {
+    const bool in = std::max(std::abs(z.column.low), std::abs(z.column.high)) <= 0.5 * plane.size_x_mm &&
+                    std::max(std::abs(z.row.low), std::abs(z.row.high)) <= 0.5 * plane.size_y_mm;
+    if (in || !z.asks_for_light()) continue;
+    reader.fail("zone", fmt::format("'{}' reaches beyond size_mm, and asks for light there", z.name));
+  }
+}
+
+std::shared_ptr<const ZoneCells> read_cells(TomlReader& reader, double source_flux,
+                                            const std::optional<PlaneTarget>& plane) {
+  const auto axis = reader.axis("axis");
+  std::vector<TargetZone> zones = read_zones(reader, plane.has_value(), source_flux);
+  const bool h_v = std::any_of(zones.begin(), zones.end(),
+                               [](const TargetZone& z) { return z.coordinates == ZoneCoordinates::h_v; });
+  if (axis && !h_v) reader.fail("axis", "is what zones with h_deg and v_deg are about; there are none");
+  if (h_v && !axis) reader.fail("axis", "is missing: the direction that h_deg = 0 and v_deg = 0 stand for");
+  if (zones.empty()) return nullptr;
+  if (plane) check_places(reader, *plane, zones);
+  const auto frame = plane ? std::optional<Frame>(plane->world_from_plane) : std::nullopt;
+  return std::make_shared<const ZoneCells>(std::move(zones), axis.value_or(Direction()), frame);
+}
+
+bool ask_for_light(const ZoneCells& cells) {
+  return std::any_of(cells.zones().begin(), cells.zones().end(),
+                     [](const TargetZone& z) { return z.asks_for_light(); });
+}
+
+void require_file(TomlReader& reader, const DesignTarget& target) {
+  if (target.zones != nullptr) {
+    if (ask_for_light(*target.zones)) return;
+    reader.fail("file", "is missing, and no zone asks for light: expected a file or a zone with a minimum");
+  }
+  reader.fail("file", target.plane ? "is missing: a CSV or PNG file with the illuminance that is wanted"
+                                   : "is missing: an IES or EULUMDAT file with the light that is wanted");
+}
+
+/// What zones without a file are begun with.
+void set_guide(TomlReader& reader, FluxUnit unit, DesignTarget& target) {
+  if (reader.has("mode")) {
+    reader.fail("mode", "belongs to a target with a file; zones count as their bounds say");
+  }
+  target.zones_only = true;
+  if (target.plane) {
+    target.plane->map = guide_map(*target.zones, target.plane->size_x_mm, target.plane->size_y_mm);
+  } else {
+    target.distribution = guide_distribution(*target.zones, unit);
+  }
 }
 
 }  // namespace
@@ -88,28 +140,28 @@ double PlaneTarget::flux() const {
   return sum / static_cast<double>(map.value.size()) * size_x_mm * size_y_mm / kMm2PerM2;
 }
 
-DesignTarget read_target(TomlReader reader, FluxUnit unit, const Vec3& luminaire_mm,
+DesignTarget read_target(TomlReader reader, FluxUnit unit, double source_flux, const Vec3& luminaire_mm,
                          std::vector<std::filesystem::path>& inputs) {
   DesignTarget target;
   const std::string kind = reader.text("kind").value_or("far-field");
   if (kind != "far-field" && kind != "plane") {
     reader.fail("kind", fmt::format("found '{}', expected far-field or plane", kind));
   }
+  if (kind == "plane") target.plane = read_plane(reader, luminaire_mm);
+  target.zones = read_cells(reader, source_flux, target.plane);
   const auto file = reader.file("file");
   if (!file) {
-    reader.fail("file", kind == "plane"
-                            ? "is missing: a CSV or PNG file with the illuminance that is wanted"
-                            : "is missing: an IES or EULUMDAT file with the light that is wanted");
-  }
-  target.mode = read_mode(reader);
-  target.file = file->string();
-  if (kind == "plane") {
-    target.plane = read_plane(reader, *file, target.mode, luminaire_mm);
-    target.distribution = seen_from(*target.plane, luminaire_mm, unit);
+    require_file(reader, target);
+    set_guide(reader, unit, target);
+  } else {
+    target.mode = read_mode(reader);
+    target.file = file->string();
+    inputs.push_back(*file);
+    if (target.plane) target.plane->map = read_map(reader, *file, target.mode);
   }
   reader.finish();
-  if (kind == "far-field") target.distribution = read_photometric_file(*file).distribution;
-  inputs.push_back(*file);
+  if (file && !target.plane) target.distribution = read_photometric_file(*file).distribution;
+  if (target.plane) target.distribution = seen_from(*target.plane, luminaire_mm, unit);
   if (target.mode == TargetMode::absolute && target.distribution.unit != unit) {
     reader.fail("mode",
                 fmt::format("the target is in {}, the sources in {}; they can be compared by shape only",

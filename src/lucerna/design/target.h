@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "lucerna/core/flux_unit.h"
 #include "lucerna/core/frame.h"
 #include "lucerna/design/least_squares.h"
+#include "lucerna/design/zone_cells.h"
 #include "lucerna/photometry/illuminance_map.h"
 #include "lucerna/photometry/intensity_distribution.h"
 #include "lucerna/trace/toml_reader.h"
@@ -41,13 +43,19 @@ struct DesignTarget {
   TargetMode mode = TargetMode::shape;
   std::string file;
   std::optional<PlaneTarget> plane;
+  /// Bounds on the light of zones; null: none.
+  std::shared_ptr<const ZoneCells> zones;
+  /// True where zones are all there is: no file; distribution or map are only a guide (zone_guide.h).
+  bool zones_only = false;
 };
 
 /// Reads [target]: `file` (IES, EULUMDAT), or kind = "plane" with `position_mm`, `normal`, `turn_deg`
 /// (as a plane detector has them), `size_mm` and a `file` of illuminance (CSV or PNG; `white_lx` is a PNG's
-/// white in absolute mode), and `mode`. `unit` is the sources', `luminaire_mm` the mirror's place. The file
-/// is added to `inputs`. Throws InputError with file, line, key, found and expected.
-DesignTarget read_target(TomlReader reader, FluxUnit unit, const Vec3& luminaire_mm,
+/// white in absolute mode), and `mode`. Also [[target.zone]] (target_zone.h), about `axis` where they are
+/// given by h and v; with a zone that asks for light no file is needed. `unit` and `source_flux` are the
+/// sources', `luminaire_mm` the mirror's place. The file is added to `inputs`. Throws InputError with file,
+/// line, key, found and expected.
+DesignTarget read_target(TomlReader reader, FluxUnit unit, double source_flux, const Vec3& luminaire_mm,
                          std::vector<std::filesystem::path>& inputs);
 
 /// The bins in which a target is compared, in the mirror's frame: 48 x 48 over the target's 99 % window (48

@@ -123,6 +123,12 @@ class Meshes {
   std::shared_ptr<const MeshHitFinder> direct_, returning_;
 };
 
+double total_flux(const Scene& scene) {
+  double flux = 0.0;
+  for (const PlacedSource& source : scene.sources) flux += source.total_flux();
+  return flux;
+}
+
 bool has_slope_errors(const Scene& scene) {
   const auto has = [](const auto& thing) { return thing.slope_error_mrad > 0.0; };
   return std::any_of(scene.reflectors.begin(), scene.reflectors.end(), has) ||
@@ -133,11 +139,12 @@ bool has_slope_errors(const Scene& scene) {
 class BatchTracer {
  public:
   BatchTracer(const Scene& scene, const RayNumbering& numbering, const Meshes& meshes,
-              const ErrorBoxes& boxes)
+              const ErrorBoxes& boxes, const ZoneCells* zones)
       : scene_(scene),
         numbering_(numbering),
         meshes_(meshes),
         boxes_(boxes),
+        zones_(zones),
         world_from_local_(meshes.local_from_world().inverse()),
         keyed_(has_slope_errors(scene)) {}
 
@@ -255,9 +262,10 @@ class BatchTracer {
   }
 
   void leave(std::size_t i, bool reflected, BoxSums& sums) {
-    const std::size_t cell =
-        boxes_.cell(world_from_local_.point(origin(i)), world_from_local_.vector(direction(i)));
+    const Vec3 from = world_from_local_.point(origin(i)), along = world_from_local_.vector(direction(i));
+    const std::size_t cell = boxes_.cell(from, along);
     sums.flux[cell] += flux_[i];
+    if (zones_ != nullptr) zones_->add(from, along, flux_[i], sums.zones);
     (reflected ? sums.out_reflected : sums.out_direct) += flux_[i];
     if (!reflected && cell >= ErrorBoxes::kInside) sums.direct_outside += flux_[i];
   }
@@ -301,6 +309,7 @@ class BatchTracer {
   const RayNumbering& numbering_;
   const Meshes& meshes_;
   const ErrorBoxes& boxes_;
+  const ZoneCells* zones_;
   Frame world_from_local_;
   RayBlock block_;
   std::size_t count_ = 0;
@@ -316,11 +325,11 @@ class BatchTracer {
 
 /// Blocks [first, last) of every replicate; block j of replicate r is number 16 j + r.
 void trace_round(const Scene& scene, const RayNumbering& numbering, const Meshes& meshes,
-                 const ErrorBoxes& boxes, std::uint64_t first, std::uint64_t last,
+                 const ErrorBoxes& boxes, const ZoneCells* zones, std::uint64_t first, std::uint64_t last,
                  std::vector<BoxSums>& replicates, std::uint64_t expected, Progress& progress) {
   std::atomic<std::uint64_t> done{first * kReplicates};
   parallel_blocks(kReplicates, 1, [&](std::size_t r, std::size_t) {
-    const auto tracer = std::make_unique<BatchTracer>(scene, numbering, meshes, boxes);
+    const auto tracer = std::make_unique<BatchTracer>(scene, numbering, meshes, boxes, zones);
     BoxSums& sums = replicates[r];
     for (std::uint64_t j = first; j < last; ++j) {
       tracer->add_block(kReplicates * j + r, sums);
@@ -332,9 +341,9 @@ void trace_round(const Scene& scene, const RayNumbering& numbering, const Meshes
 
 /// Rays to trace in all after `rays` took `seconds` and the meshes `before_s`, or 0: enough.
 std::uint64_t next_rays(const ValidationOptions& options, std::uint64_t rays, double seconds, double before_s,
-                        const BoxErrorEstimate& error) {
+                        bool clear) {
   if (rays >= options.max_rays) return 0;
-  if (rays >= options.min_rays && error.floor <= 0.5 * error.excess) return 0;
+  if (rays >= options.min_rays && clear) return 0;
   std::uint64_t next = std::min(2 * rays, options.max_rays);
   const double left = options.max_s - before_s - seconds, per_ray = seconds / static_cast<double>(rays);
   if (static_cast<double>(next - rays) * per_ray > left) {
@@ -387,17 +396,23 @@ Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const
   Validation out{.triangles = meshes.triangles(), .tolerance = meshes.tolerance(), .embree = meshes.embree()};
   std::vector<BoxSums>& replicates = out.replicates;
   replicates.resize(kReplicates);
-  for (BoxSums& r : replicates) r.flux.assign(boxes.size(), 0.0);
+  for (BoxSums& r : replicates) {
+    r.flux.assign(boxes.size(), 0.0);
+    r.zones.assign(options.zones != nullptr ? options.zones->size() : 0, 0.0);
+  }
   const Clock::time_point traced = Clock::now();
   const double before_s = seconds_since(start);
   std::uint64_t next = std::min(kFirstRound, options.max_rays) / kRoundUnit;
   for (std::uint64_t blocks = 0; next > blocks;) {
-    trace_round(scene, numbering, meshes, boxes, blocks, next, replicates, options.min_rays, progress);
+    trace_round(scene, numbering, meshes, boxes, options.zones, blocks, next, replicates, options.min_rays,
+                progress);
     blocks = next;
     out.rays = blocks * kRoundUnit;
     out.error = box_error(boxes, target, replicates, mode);
+    if (options.zones != nullptr) out.zones = check_zones(*options.zones, replicates, total_flux(scene));
+    const bool clear = out.error.c48.floor <= 0.5 * out.error.c48.excess && !any_undetermined(out.zones);
     if (progress.stop_requested()) break;
-    next = next_rays(options, out.rays, seconds_since(traced), before_s, out.error.c48) / kRoundUnit;
+    next = next_rays(options, out.rays, seconds_since(traced), before_s, clear) / kRoundUnit;
   }
   set_shares(replicates, out);
   out.seconds = seconds_since(start);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lucerna/core/progress.h"
-#include "lucerna/design/box_error.h"
+#include "lucerna/design/zone_check.h"
 #include "lucerna/reflector/cad_export.h"
 #include "lucerna/trace/scene.h"
 
@@ -29,11 +29,16 @@ struct ValidationOptions {
   /// is in docs/validation.md.
   CadTolerance tolerance = kOpticalTolerance;
   HitEngine engine = HitEngine::best;
+  /// Zones whose light is counted too; then rays are also doubled until every zone's verdict is clear. Null:
+  /// none. Must outlive the call.
+  const ZoneCells* zones = nullptr;
 };
 
 /// What a mirror does with light, found by code that shares nothing with the fit.
 struct Validation {
   DesignError error;
+  /// ValidationOptions::zones as found.
+  std::vector<ZoneCheck> zones;
   /// Shares of the sources' flux: what leaves; what the mirrors' faces, their backs and bodies absorb; rays
   /// that were given up after 100 reflections.
   Estimate efficiency, absorbed, back, bodies, lost;
