@@ -155,6 +155,9 @@ void run_design(const DesignArguments& a, Session& session, int& exit_code) {
   for (const LimitCheck& c : result.limits) {
     if (!c.held) exit_code = 1;
   }
+  for (const ZoneCheck& zone : result.zones) {
+    if (zone.verdict() != ZoneVerdict::met) exit_code = 1;
+  }
   if (result.end == DesignEnd::interrupted) exit_code = 3;
 }
 

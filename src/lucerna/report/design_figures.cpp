@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lucerna/report/error_json.h"
+#include "lucerna/report/zone_figures.h"
 
 namespace lucerna {
 
@@ -166,11 +167,20 @@ void error_lines(const DesignResult& result, std::vector<std::string>& lines) {
       "    noise of {:.3g} M rays, taken out: {:.2f} %; worst box {:.1f} +- {:.1f} % of the target's peak",
       1e-6 * static_cast<double>(e.rays), 100.0 * e.c48.floor, 100.0 * e.worst_cell.mean,
       100.0 * e.worst_cell.standard_error));
-  lines.push_back(
-      fmt::format("  light: {:.1f} % leaves; {:.1f} % in the target's rectangle, {:.1f} % outside "
-                  "({:.1f} % directly), where the error is {:.2f} +- {:.2f} %",
-                  100.0 * result.efficiency.mean, 100.0 * e.in_rectangle.mean, 100.0 * e.outside_share.mean,
-                  100.0 * e.outside_direct.mean, 100.0 * e.outside.excess, 100.0 * e.outside.standard_error));
+}
+
+void light_line(const DesignResult& result, bool with_error, std::vector<std::string>& lines) {
+  const DesignError& e = result.error;
+  std::string line = fmt::format(
+      "  light: {:.1f} % leaves; {:.1f} % in the target's rectangle, {:.1f} % outside "
+      "({:.1f} % directly)",
+      100.0 * result.efficiency.mean, 100.0 * e.in_rectangle.mean, 100.0 * e.outside_share.mean,
+      100.0 * e.outside_direct.mean);
+  if (with_error) {
+    line += fmt::format(", where the error is {:.2f} +- {:.2f} %", 100.0 * e.outside.excess,
+                        100.0 * e.outside.standard_error);
+  }
+  lines.push_back(std::move(line));
 }
 
 /// The trade between error and light, one line a weight.
@@ -196,6 +206,29 @@ nlohmann::ordered_json pareto_json(const std::vector<ParetoPoint>& points) {
   return out;
 }
 
+/// Errors against the target; of zones alone there is no other target, so only where the light is.
+Json error_figures(const DesignProblem& problem, const DesignResult& result) {
+  Json start{{"in_rectangle", estimate_json(result.start_error.in_rectangle)}};
+  if (problem.target.zones != nullptr) start["zones"] = zones_json(result.start_zones);
+  if (problem.target.zones_only) {
+    return {{"outside",
+             {{"share", estimate_json(result.error.outside_share)},
+              {"direct", estimate_json(result.error.outside_direct)}}},
+            {"start", start}};
+  }
+  start["error"] = error_json(result.start_error);
+  start["outside"] = outside_json(result.start_error);
+  return {{"error", error_json(result.error)},
+          {"outside", outside_json(result.error)},
+          {"worst_cell", estimate_json(result.error.worst_cell)},
+          {"bound",
+           {{"error", result.bound.error},
+            {"target_share", result.bound.target_share},
+            {"max_share", result.bound.max_share},
+            {"etendue_mm2sr", result.bound.etendue_mm2sr}}},
+          {"start", start}};
+}
+
 }  // namespace
 
 std::string_view to_string(DesignEnd end) {
@@ -215,6 +248,7 @@ DesignFigures design_figures(const DesignProblem& problem, const DesignResult& r
   DesignFigures f;
   f.trace = trace_figures(traced);
   const DesignTarget& target = problem.target;
+  if (target.zones_only) return f;  // a guide is nothing to compare with
   if (target.mode == TargetMode::shape && result.error.scale > 0.0) {
     f.target_factor = source_flux(problem) / result.error.scale;
   }
@@ -239,24 +273,17 @@ DesignFigures design_figures(const DesignProblem& problem, const DesignResult& r
 }
 
 Json design_json(const DesignProblem& problem, const DesignResult& result, const DesignFigures& f) {
-  Json json;
-  json["error"] = error_json(result.error);
-  json["outside"] = outside_json(result.error);
-  json["worst_cell"] = estimate_json(result.error.worst_cell);
+  Json json = error_figures(problem, result);
+  if (problem.target.zones != nullptr) json["zones"] = zones_json(result.zones);
   if (!result.pareto.empty()) json["pareto"] = pareto_json(result.pareto);
   json["in_rectangle"] = estimate_json(result.error.in_rectangle);
-  json["bound"] = {{"error", result.bound.error},
-                   {"target_share", result.bound.target_share},
-                   {"max_share", result.bound.max_share},
-                   {"etendue_mm2sr", result.bound.etendue_mm2sr}};
-  json["start"] = {{"error", error_json(result.start_error)},
-                   {"outside", outside_json(result.start_error)},
-                   {"in_rectangle", estimate_json(result.start_error.in_rectangle)}};
   json["validation"] = {{"rays", result.error.rays}, {"seconds", result.validation_s}};
   json["bergen_fit"] = f.comparison ? estimate_json(f.comparison->bergen()) : Json();
   json["wasserstein_deg"] = f.comparison ? estimate_json(f.comparison->wasserstein()) : Json();
   json["target"] = {{"file", problem.target.file},
-                    {"mode", problem.target.mode == TargetMode::shape ? "shape" : "absolute"},
+                    {"mode", problem.target.zones_only                  ? "zones"
+                             : problem.target.mode == TargetMode::shape ? "shape"
+                                                                        : "absolute"},
                     {"factor", f.target_factor}};
   if (f.target_beam) json["target"].update(beam_json(*f.target_beam));
   if (f.target_plane) json["target"]["plane"] = plane_json(*f.target_plane);
@@ -286,14 +313,17 @@ Json design_json(const DesignProblem& problem, const DesignResult& result, const
 std::vector<std::string> design_summary(const DesignProblem& problem, const DesignResult& result,
                                         const DesignFigures& f) {
   Table table;
-  table.row("",
-            problem.target.mode == TargetMode::absolute ? "target"
-                                                        : fmt::format("target x {:.4g}", f.target_factor),
-            "result");
+  const bool zones_only = problem.target.zones_only;
+  const bool absolute = problem.target.mode == TargetMode::absolute;
+  if (!zones_only) {
+    table.row("", absolute ? "target" : fmt::format("target x {:.4g}", f.target_factor), "result");
+  }
   far_field_rows(f, table);
   plane_rows(f, table);
   std::vector<std::string>& lines = table.lines;
-  error_lines(result, lines);
+  if (!zones_only) error_lines(result, lines);
+  light_line(result, !zones_only, lines);
+  for (std::string& line : zones_summary(result.zones, f.trace.ledger.unit)) lines.push_back(std::move(line));
   pareto_lines(result, lines);
   if (f.comparison) {
     lines.push_back(fmt::format("  all directions: Bergen fit {} of 100, Wasserstein {}",

@@ -16,6 +16,7 @@
 #include "lucerna/report/report_sections.h"
 #include "lucerna/report/report_target.h"
 #include "lucerna/report/svg_curves.h"
+#include "lucerna/report/zone_figures.h"
 
 namespace lucerna {
 
@@ -39,24 +40,40 @@ std::string percent_with_error(const ResultFigures& result, const std::string& k
   return result.percent(key, decimals) + " ± " + result.percent(error_key, decimals);
 }
 
-std::string summary(const ResultFigures& result) {
-  std::string out = "<dl class=\"cards\">\n";
-  out += card("Error", percent_with_error(result, "/error/c48/excess", "/error/c48/standard_error"), "%",
-              fmt::format("l2 in 48 × 48 boxes over the target's rectangle, noise of {} % taken out; {} % in "
-                          "24 × 24, {} % in 12 × 12",
-                          result.percent("/error/c48/floor"), result.percent("/error/c24/excess"),
-                          result.percent("/error/c12/excess")));
+/// Against the target: not where zones are all there is.
+std::string error_cards(const ResultFigures& result) {
+  if (!result.has("/error/c48")) return {};
+  std::string out =
+      card("Error", percent_with_error(result, "/error/c48/excess", "/error/c48/standard_error"), "%",
+           fmt::format("l2 in 48 × 48 boxes over the target's rectangle, noise of {} % taken out; {} % in "
+                       "24 × 24, {} % in 12 × 12",
+                       result.percent("/error/c48/floor"), result.percent("/error/c24/excess"),
+                       result.percent("/error/c12/excess")));
   out += card("It began at", result.percent("/start/error/c48/excess"), "%",
               "error of the mirror in the project");
+  out += card("Error outside", result.percent("/outside/error/excess"), "%",
+              "l2 over the rest of the sphere, relative to the target in its rectangle");
+  return out + card("Worst box",
+                    percent_with_error(result, "/worst_cell/value", "/worst_cell/standard_error", 1), "%",
+                    "largest deviation of a 48th box, of the target's peak; noise raises it");
+}
+
+std::string zones_card(const ResultFigures& result) {
+  if (!result.has("/zones")) return {};
+  std::size_t met = 0;
+  const std::size_t all = result.at("/zones").size();
+  for (std::size_t i = 0; i < all; ++i) met += result.text(fmt::format("/zones/{}/verdict", i)) == "met";
+  return card("Zones met", fmt::format("{} of {}", met, all), "",
+              "bounds on the light of the target's zones");
+}
+
+std::string summary(const ResultFigures& result) {
+  std::string out = "<dl class=\"cards\">\n" + zones_card(result) + error_cards(result);
   out +=
       card("In the target's rectangle", result.percent("/in_rectangle/value"), "%",
            fmt::format("of the sources' flux; {} % leaves the luminaire, {} % goes elsewhere, {} % directly",
                        result.percent("/efficiency/value"), result.percent("/outside/share/value"),
                        result.percent("/outside/direct/value")));
-  out += card("Error outside", result.percent("/outside/error/excess"), "%",
-              "l2 over the rest of the sphere, relative to the target in its rectangle");
-  out += card("Worst box", percent_with_error(result, "/worst_cell/value", "/worst_cell/standard_error", 1),
-              "%", "largest deviation of a 48th box, of the target's peak; noise raises it");
   out += card("Parameters", result.figure("/parameters"), "",
               fmt::format("mirror {} mm high", result.figure("/height_mm")));
   out += card("Evaluations", result.figure("/evaluations"), "",
@@ -70,7 +87,7 @@ std::string summary(const ResultFigures& result) {
 
 /// Remarks, and what result.json says of limits, whatever its shape.
 std::string limits_html(const ResultFigures& result) {
-  std::string out;
+  std::string out = zones_html(result);
   if (result.has("/limits") && !result.at("/limits").empty()) {
     HtmlTable table{"Limits", {"Limit", "Found", "Allowed", "Verdict"}, {}};
     for (std::size_t i = 0; i < result.at("/limits").size(); ++i) {
@@ -170,7 +187,11 @@ std::string design_report_html(const TraceFolder& folder, const std::vector<Hist
   HtmlPage page("Reflector design", folder_title(folder.path));
   page.section("summary", "Summary", summary(result));
   page.section("limits", "What limits it", limits_html(result));
-  if (options.problem != nullptr) {
+  const bool zones_only = options.problem != nullptr && options.problem->target.zones_only;
+  if (zones_only) {
+    page.section("target", "Target and result",
+                 "<p>The target is its zones: see the table above. There is no light to compare with.</p>\n");
+  } else if (options.problem != nullptr) {
     add_target_section(page, *options.problem, folder);
   } else {
     page.section("target", "Target and result",

@@ -226,6 +226,10 @@ bins = "hard"                 # tent: a ray counts for its four neighbours; smoo
 #size_mm = [3000, 2000]
 #white_lx = 500.0
 #mode = "absolute"
+
+# Beside a file or without one a free form may have bounds by zone, as standards have them:
+#   [[target.zone]] name, gamma_deg and c_deg (or h_deg and v_deg about the target's axis; x_mm and y_mm on a plane),
+#   each a number or [low, high], and min_cd, max_cd, min_lx, max_lx, min_uo, min_ul: docs/algorithms/zones.md
 )";
 }
 
