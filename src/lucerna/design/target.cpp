@@ -110,17 +110,18 @@ bool ask_for_light(const ZoneCells& cells) {
                      [](const TargetZone& z) { return z.asks_for_light(); });
 }
 
-void require_file(TomlReader& reader, const DesignTarget& target) {
-  if (target.zones != nullptr) {
-    if (ask_for_light(*target.zones)) return;
-    reader.fail("file", "is missing, and no zone asks for light: expected a file or a zone with a minimum");
-  }
-  reader.fail("file", target.plane ? "is missing: a CSV or PNG file with the illuminance that is wanted"
-                                   : "is missing: an IES or EULUMDAT file with the light that is wanted");
+/// A target is a file, or zones that ask for light.
+void require_file_or_zones(TomlReader& reader, bool plane) {
+  if (reader.has("file") || reader.has("zone")) return;
+  reader.fail("file", plane ? "is missing: a CSV or PNG file with the illuminance that is wanted"
+                            : "is missing: an IES or EULUMDAT file with the light that is wanted");
 }
 
 /// What zones without a file are begun with.
 void set_guide(TomlReader& reader, FluxUnit unit, DesignTarget& target) {
+  if (!ask_for_light(*target.zones)) {
+    reader.fail("file", "is missing, and no zone asks for light: expected a file or a zone with a minimum");
+  }
   if (reader.has("mode")) {
     reader.fail("mode", "belongs to a target with a file; zones count as their bounds say");
   }
@@ -147,11 +148,11 @@ DesignTarget read_target(TomlReader reader, FluxUnit unit, double source_flux, c
   if (kind != "far-field" && kind != "plane") {
     reader.fail("kind", fmt::format("found '{}', expected far-field or plane", kind));
   }
+  require_file_or_zones(reader, kind == "plane");
   if (kind == "plane") target.plane = read_plane(reader, luminaire_mm);
   target.zones = read_cells(reader, source_flux, target.plane);
   const auto file = reader.file("file");
   if (!file) {
-    require_file(reader, target);
     set_guide(reader, unit, target);
   } else {
     target.mode = read_mode(reader);
