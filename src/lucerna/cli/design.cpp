@@ -144,9 +144,6 @@ void run_design(const DesignArguments& a, Session& session, int& exit_code) {
                           1e-6 * static_cast<double>(result.rays), session.seconds("design"),
                           to_string(result.end)));
   for (const std::string& line : design_summary(problem, result, figures)) session.say(line);
-  if (!problem.project.scene.bodies.empty()) {
-    session.say("  bodies shade the light of all figures above, but not while the mirror is shaped");
-  }
   session.say(fmt::format("  written: {}", fmt::join(names, " ")));
   if (!a.report.empty()) {
     write_design_report(a.output, a.report);

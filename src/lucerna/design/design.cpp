@@ -8,6 +8,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/design/approach.h"
+#include "lucerna/design/body_shadows.h"
 #include "lucerna/design/light_limits.h"
 #include "lucerna/design/limits.h"
 #include "lucerna/design/result_check.h"
@@ -87,6 +88,7 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
   TimeBudget time(options.time_s.value_or(problem.time_s), options.judge_rays / 2 + options.rays_after);
   DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
   rays.evaluate_on(options.accelerator);
+  rays.shade_by(shadows_of(problem.project.scene, problem.world_from_mirror.inverse()));
   FitProblem fit_data = fit_problem(problem, options, rays);
   DesignResult result{problem.start};
   search_mirror({problem, options, problem_key(problem, options), time, progress, observer}, fit_data,

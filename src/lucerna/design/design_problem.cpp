@@ -174,6 +174,34 @@ double read_light_weight(TomlReader& design) {
   return weight;
 }
 
+/// The reflector that is to be shaped becomes the first, in the scene and in the project's tables.
+void put_shaped_first(Project& project, const TomlReader& root, TomlReader& design) {
+  std::vector<PlacedReflector>& all = project.scene.reflectors;
+  const std::optional<double> number = design.number("reflector");
+  if (all.empty()) root.fail("reflector", "found no reflector, expected the one that is to be shaped");
+  if (!number && all.size() == 1) return;
+  const auto count = static_cast<double>(all.size());
+  if (!number) {
+    design.fail("reflector",
+                fmt::format("is missing: found {} reflectors, expected the number (from 0) of the "
+                            "one that is to be shaped",
+                            all.size()));
+  }
+  if (!(*number >= 0.0 && *number < count && *number == std::floor(*number))) {
+    design.fail("reflector",
+                fmt::format("found {}, expected a whole number from 0 to {}", *number, count - 1.0));
+  }
+  const auto shaped = static_cast<std::ptrdiff_t>(*number);
+  std::rotate(all.begin(), all.begin() + shaped, all.begin() + shaped + 1);
+  const toml::array given = *project.table["reflector"].as_array();
+  toml::array ordered{*given.get(static_cast<std::size_t>(shaped))->as_table()};
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    if (i != static_cast<std::size_t>(shaped)) ordered.push_back(*given.get(i)->as_table());
+  }
+  project.table.insert_or_assign("reflector", std::move(ordered));
+  project.table["design"].as_table()->insert_or_assign("reflector", 0);
+}
+
 /// Zones are fitted by the search of free forms alone.
 void check_zones_family(const TomlReader& root, const DesignProblem& problem) {
   if (problem.target.zones == nullptr || uses_free_form_search(problem)) return;
@@ -198,10 +226,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   if (!target_reader) root.fail("target", "is missing: a design needs a [target]");
   static const toml::table kNothing;
   TomlReader design = reader ? *reader : TomlReader(kNothing, path.string(), "design");
-  if (project.scene.reflectors.size() != 1) {
-    root.fail("reflector", fmt::format("found {} reflectors, expected the one that is to be shaped",
-                                       project.scene.reflectors.size()));
-  }
+  put_shaped_first(project, root, design);
   const Optimizer how = read_optimizer(design);
   const double time_s = design.positive("time_s").value_or(60.0);
   const std::vector<int> intervals = read_intervals(design);
@@ -306,7 +331,10 @@ Project with_shape(const DesignProblem& problem, const DesignShape& shape) {
   Project project = problem.project;
   project.scene.reflectors[0].reflector = shape.reflector();
   const toml::table tables = toml::parse(reflector_toml(problem, shape));
-  project.table.insert_or_assign("reflector", *tables["reflector"].as_array());
+  toml::array reflectors = *tables["reflector"].as_array();
+  const toml::array& given = *problem.project.table["reflector"].as_array();
+  for (std::size_t i = 1; i < given.size(); ++i) reflectors.push_back(*given.get(i)->as_table());
+  project.table.insert_or_assign("reflector", std::move(reflectors));
   return project;
 }
 

@@ -19,7 +19,7 @@ struct DesignProblem {
   Project project;
   DesignTarget target;
   DesignLimits limits;
-  /// The mirror to shape, where it begins: the project's only reflector.
+  /// The mirror to shape, where it begins: the project's first reflector.
   DesignShape start;
   Reflectance reflectance{1.0};
   Frame world_from_mirror;
@@ -43,7 +43,8 @@ struct DesignProblem {
 /// The name of the detector that watches a plane target's rectangle.
 inline constexpr const char* kTargetPlane = "target";
 
-/// Reads [target] and [design] of a project and its only [[reflector]] as a shape with free parameters: a
+/// Reads [target] and [design] of a project and its [[reflector]] (of several the one that `reflector` of
+/// [design] numbers, which becomes the first) as a shape with free parameters: a
 /// paraboloid, a profile of revolution or of a trough (fitted by the family's spline) or a B-spline. Throws
 /// InputError with file, line, key, found and expected; also for limits that contradict each other or the
 /// mirror, naming the pair. The project gets a

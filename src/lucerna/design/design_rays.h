@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "lucerna/core/progress.h"
@@ -13,6 +14,7 @@
 namespace lucerna {
 
 class Accelerator;
+class BodyShadows;
 class DeviceEvaluator;
 
 /// What blocks of rays are padded to and dealt by, so that the order of summing is fixed.
@@ -44,6 +46,11 @@ class DesignRays {
   /// Null on the CPU.
   DeviceEvaluator* device() const { return device_.get(); }
 
+  /// From now on bodies stand in the rays' way, and evaluations are traced on the CPU; null: none.
+  void shade_by(std::shared_ptr<const BodyShadows> shadows) { shadows_ = std::move(shadows); }
+  /// Null without bodies.
+  const BodyShadows* shadows() const { return shadows_.get(); }
+
   /// A copy of the first `most` rays (whole blocks of them), for what takes ray sets.
   RayBlock first(std::uint64_t most) const;
 
@@ -58,6 +65,7 @@ class DesignRays {
   std::vector<double> ray_flux_;
   std::vector<Block> block_;
   std::shared_ptr<DeviceEvaluator> device_;
+  std::shared_ptr<const BodyShadows> shadows_;
 };
 
 }  // namespace lucerna

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
+#include "lucerna/design/body_shadows.h"
 #include "lucerna/design/device_evaluator.h"
 #include "lucerna/design/evaluation_sums.h"
 #include "lucerna/design/hit_kernels.h"
@@ -23,7 +25,7 @@ static_assert(kBlockRays <= kHitBatch);
 /// Sums of the rays of one task.
 struct TaskSums {
   std::vector<double> flux;
-  double weight = 0.0, reflected = 0.0, direct = 0.0, absorbed = 0.0, back = 0.0, lost = 0.0;
+  double weight = 0.0, reflected = 0.0, direct = 0.0, absorbed = 0.0, back = 0.0, lost = 0.0, bodies = 0.0;
   /// Bins x coefficients, row by row; null without derivatives.
   double* jacobian = nullptr;
   std::size_t coefficients = 0;
@@ -65,8 +67,10 @@ class BlockTracer {
  public:
   using Hit = typename Path<Shape>::Hit;
 
-  explicit BlockTracer(const EvaluationView<Shape>& view)
-      : view_(view), mirror_(hit_mirror(view.shape, view.aperture)) {}
+  BlockTracer(const EvaluationView<Shape>& view, const BodyShadows* shadows)
+      : view_(view), frozen_(view), shadows_(shadows), mirror_(hit_mirror(view.shape, view.aperture)) {
+    frozen_.derivatives = false;
+  }
 
   template <class Sums>
   void add(const DesignRays::Block& block, Sums& sums) {
@@ -82,7 +86,7 @@ class BlockTracer {
       for (int k = path_.hits; k-- > 0; at = hits_[at].before) {
         path_.hit[static_cast<std::size_t>(k)] = hits_[at].hit;
       }
-      view_.count(path_, weight, sums);
+      count(paths_[i], weight, sums);
     }
   }
 
@@ -92,11 +96,24 @@ class BlockTracer {
     PathEnd end = PathEnd::direct;
     int hits = 0;
     std::size_t last = 0;
+    /// How often it met a body, and the share of its light that these reflected.
+    int bodies = 0;
+    double share = 1.0;
   };
   struct LinkedHit {
     Hit hit;
     std::size_t before;
   };
+
+  template <class Sums>
+  void count(const State& s, double weight, Sums& sums) {
+    if (s.bodies == 0) return view_.count(path_, weight, sums);
+    // What the mirror absorbed before is its own.
+    const double taken = weight * (1.0 - s.share), kept = view_.reflected_share(path_);
+    sums.bodies += taken * kept;
+    sums.absorbed += taken * (1.0 - kept);
+    if (s.share > 0.0) frozen_.count(path_, weight * s.share, sums);
+  }
 
   /// The paths of a block's rays.
   void follow(const DesignRays::Block& block) {
@@ -111,7 +128,12 @@ class BlockTracer {
       search(n);
       std::size_t left = 0;
       for (std::size_t i = 0; i < n; ++i) {
-        if (goes_on(i, paths_[ray_[i]])) {
+        State& s = paths_[ray_[i]];
+        if (shadows_ != nullptr && meets_body(i, s)) {
+          if (!body_sends_on(s)) continue;
+          ray_[left] = ray_[i];
+          put(left++, s, 0.0, 0.0);
+        } else if (goes_on(i, s)) {
           ray_[left] = ray_[i];
           put(left++, paths_[ray_[i]], 1.0, -hits_[hit_count_ - 1].hit.m);  // reflection turns f' round
         }
@@ -139,6 +161,26 @@ class BlockTracer {
     }
   }
 
+  /// Whether a body is in the way to what the search found, and then what it leaves of the ray.
+  bool meets_body(std::size_t i, State& s) {
+    const std::int32_t what = ends_.what[i];
+    if (what != kHitNothing && what != kHitFront && what != kHitBack) return false;
+    const double t_max =
+        what == kHitNothing ? static_cast<double>(std::numeric_limits<float>::max()) : ends_.t[i];
+    const auto met = shadows_->first(s.origin, s.direction, t_max, s.hits + s.bodies > 0);
+    if (!met) return false;
+    ++s.bodies;
+    s.share *= met->reflected;
+    s.origin = met->origin;
+    s.direction = met->direction;
+    return true;
+  }
+
+  static bool body_sends_on(State& s) {
+    if (s.bodies >= kMostPathHits) s.share = 0.0;
+    return s.share > 0.0;
+  }
+
   bool goes_on(std::size_t i, State& s) {
     const std::int32_t what = ends_.what[i];
     if (what == kHitNothing) {
@@ -159,6 +201,9 @@ class BlockTracer {
   }
 
   const EvaluationView<Shape>& view_;
+  /// The same without derivatives: for light that a body reflected.
+  EvaluationView<Shape> frozen_;
+  const BodyShadows* shadows_;
   decltype(hit_mirror(Shape(), std::declval<Aperture>())) mirror_;
   const HitKernels& kernels_ = best_hit_kernels();
   HitRays rays_{};
@@ -192,6 +237,7 @@ EvaluationSums total(const std::vector<Sums>& tasks, std::size_t bins) {
     sums.absorbed += task.absorbed;
     sums.back += task.back;
     sums.lost += task.lost;
+    sums.bodies += task.bodies;
   }
   return sums;
 }
@@ -208,7 +254,7 @@ Evaluation evaluate_family(const DesignShape& design, const Shape& shape, const 
     const std::size_t each = options.derivatives ? kDesignTasks / groups : 1;
     const std::size_t coefficients = shape.coefficients().size();
     if (options.derivatives) jacobians[group].assign(bins.size() * coefficients, 0.0);
-    const auto tracer = std::make_unique<BlockTracer<decltype(shape.view())>>(view);
+    const auto tracer = std::make_unique<BlockTracer<decltype(shape.view())>>(view, rays.shadows());
     for (std::size_t r = group * each; r < (group + 1) * each; ++r) {
       sums[r].flux.assign(bins.size(), 0.0);
       if (options.derivatives) sums[r].jacobian = jacobians[group].data();
@@ -235,7 +281,7 @@ Evaluation evaluate_sparse(const DesignShape& design, const Reflectance& reflect
                                  SparseSums(across * static_cast<std::uint32_t>(shape.row_y().intervals)));
   std::vector<SparseTaskSums> sums(kDesignTasks);
   parallel_blocks(groups, 1, [&](std::size_t group, std::size_t) {
-    const auto tracer = std::make_unique<BlockTracer<BsplineView>>(view);
+    const auto tracer = std::make_unique<BlockTracer<BsplineView>>(view, rays.shadows());
     for (std::size_t r = group * each; r < (group + 1) * each; ++r) {
       sums[r].flux.assign(bins.size(), 0.0);
       sums[r].blocks = &blocks[group];
@@ -290,6 +336,7 @@ Evaluation evaluation_of(const EvaluationSums& sums) {
   e.absorbed = sums.absorbed / sums.weight;
   e.back = sums.back / sums.weight;
   e.lost = sums.lost / sums.weight;
+  e.bodies = sums.bodies / sums.weight;
   return e;
 }
 
@@ -297,7 +344,8 @@ Evaluation evaluate(const DesignShape& shape, const Reflectance& reflectance, co
                     const TentBins& bins, const EvaluationOptions& options) {
   LUCERNA_CHECK(options.rays <= rays.size() && options.rays >= kDesignTasks * kBlockRays, "{} rays of {}",
                 options.rays, rays.size());
-  if (DeviceEvaluator* const device = rays.device()) {
+  // Kernels for devices know no bodies.
+  if (DeviceEvaluator* const device = rays.shadows() == nullptr ? rays.device() : nullptr) {
     Evaluation e = device->evaluate(shape, reflectance, rays, bins, options);
     if (!options.derivatives || !options.sparse) return e;
     e.rows = e.jacobian.sparseView();

@@ -43,8 +43,8 @@ struct Evaluation {
   /// The same where it was asked for sparse.
   SparseJacobian rows;
   /// Shares of the sources' flux: light that leaves after, and without, a reflection; that mirrors absorbed;
-  /// that met the back; that was given up.
-  double reflected = 0.0, direct = 0.0, absorbed = 0.0, back = 0.0, lost = 0.0;
+  /// that met the back; that was given up; that bodies absorbed (DesignRays::shade_by).
+  double reflected = 0.0, direct = 0.0, absorbed = 0.0, back = 0.0, lost = 0.0, bodies = 0.0;
   std::uint64_t rays = 0;
 };
 
@@ -53,9 +53,11 @@ struct Evaluation {
 /// differentiated by the leaving direction and that by the coefficients that each hit touches. Rays that
 /// change from hitting to missing have measure zero among given rays but not in the mean: at rims they are
 /// counted by EvaluationOptions::rim_mm, at edges of the mirror's own shadow they are left out. A reflectance
-/// that depends on the angle is taken at the ray's own angle, its change is left out. `rays` must hold that
-/// many. Rays of one task are summed in order, tasks are added in order: the same bits for any number of
-/// threads. Thread safe.
+/// that depends on the angle is taken at the ray's own angle, its change is left out. Bodies that shade the
+/// rays take light where it meets them first; light that crosses the edge of a body as the surface moves, and
+/// how light moves that a body reflected, are left out of the derivatives. `rays` must hold that many. Rays
+/// of one task are summed in order, tasks are added in order: the same bits for any number of threads. Thread
+/// safe.
 Evaluation evaluate(const DesignShape& shape, const Reflectance& reflectance, const DesignRays& rays,
                     const TentBins& bins, const EvaluationOptions& options);
 

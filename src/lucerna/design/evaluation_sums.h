@@ -13,7 +13,7 @@ namespace lucerna {
 /// light of each end of a path, in mean rays.
 struct EvaluationSums {
   std::array<std::vector<double>, kDesignStreams> flux;
-  double weight = 0.0, reflected = 0.0, direct = 0.0, absorbed = 0.0, back = 0.0, lost = 0.0;
+  double weight = 0.0, reflected = 0.0, direct = 0.0, absorbed = 0.0, back = 0.0, lost = 0.0, bodies = 0.0;
 };
 
 /// Shares of the sources' flux, and the bins' variance from the scatter of the streams.

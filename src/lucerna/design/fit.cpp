@@ -59,6 +59,8 @@ constexpr std::uint64_t kSourceRays = 1 << 13;
 /// Longest change of a height in one step, over the mirror's radius: the model of a step is not good for
 /// more.
 constexpr double kLongestStep = 0.05;
+/// Damping beyond which there is no step to be had.
+constexpr double kMaxLambda = 1e12;
 
 /// FitProblem::flux_weight, where ends are compared: on the way light must not get lost for a little less
 /// error, but of two mirrors at the end the one whose light is right is wanted. A tenth of the light counts
@@ -367,10 +369,12 @@ FitRecord Fit::step(Progress& progress) {
   const Eigen::MatrixXd metric = step_metric(shape_, equations_);
   Eigen::VectorXd move = damped_step(equations_, metric, state_.lambda);
   const double longest = kLongestStep * shape_.aperture().outer_radius_mm();
-  while (!(move.cwiseAbs().maxCoeff() <= longest)) {
+  while (!(move.cwiseAbs().maxCoeff() <= longest) && state_.lambda < kMaxLambda) {
     state_.lambda *= 4.0;
     move = damped_step(equations_, metric, state_.lambda);
   }
+  // Without light there is no step to be had: one that changes nothing is refused.
+  if (!(move.cwiseAbs().maxCoeff() <= longest)) move.setZero();
   FitRecord record;
   record.stage = state_.stage;
   record.step = ++state_.step;

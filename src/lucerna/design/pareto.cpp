@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "lucerna/core/error.h"
+#include "lucerna/design/body_shadows.h"
 #include "lucerna/design/design.h"
 #include "lucerna/design/free_form_search.h"
 #include "lucerna/design/search_mirror.h"
@@ -75,9 +76,13 @@ std::vector<DesignShape> starts(const FitProblem& fit, const DesignShape& found)
 
 std::vector<ParetoPoint> pareto_front(const DesignProblem& problem, const DesignShape& found,
                                       const DesignOptions& options, Progress& progress) {
-  if (!uses_free_form_search(problem) || problem.target.mode != TargetMode::shape) return {};
+  if (!uses_free_form_search(problem) || problem.target.mode != TargetMode::shape ||
+      problem.target.zones_only) {
+    return {};
+  }
   DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
   rays.evaluate_on(options.accelerator);
+  rays.shade_by(shadows_of(problem.project.scene, problem.world_from_mirror.inverse()));
   FitProblem fit = fit_problem(problem, options, rays);
   const ErrorBoxes boxes(target_rectangle(problem.target));
   const std::vector<double> target = box_target(boxes, problem.target, rays.flux());

@@ -44,6 +44,8 @@ constexpr std::size_t kBatch = 4;
 constexpr double kTrust = 0.02;
 /// Longest change of a height in one step, over the radius.
 constexpr double kLongestStep = 0.05;
+/// Damping beyond which there is no step to be had.
+constexpr double kMaxLambda = 1e12;
 
 struct Candidate {
   DesignShape shape;
@@ -197,10 +199,11 @@ class Search {
     int slow = 0;
     for (int step = 0; step < most_steps && slow < 3 && lambda < 1e4; ++step) {
       Eigen::VectorXd move = damped_step(now, lambda);
-      while (!(move.cwiseAbs().maxCoeff() <= kLongestStep * radius_mm_)) {
+      while (!(move.cwiseAbs().maxCoeff() <= kLongestStep * radius_mm_) && lambda < kMaxLambda) {
         lambda *= 4.0;
         move = damped_step(now, lambda);
       }
+      if (!move.allFinite()) break;
       const DesignShape trial = c.shape.with(c.shape.parameters() + move);
       NormalEquations next = equations(trial, known);
       if (!(next.cost < now.cost)) {
@@ -249,8 +252,9 @@ class Search {
 }  // namespace
 
 bool can_search_profiles(const FitProblem& problem, const DesignShape& shape) {
-  return !problem.limits && shape.is_revolution() && problem.bins.is_rings() &&
-         std::abs(problem.bins.axes().ez().z) > 0.999999 && shape.parameter_count() <= kMostParameters;
+  return !problem.limits && problem.rays->shadows() == nullptr && shape.is_revolution() &&
+         problem.bins.is_rings() && std::abs(problem.bins.axes().ez().z) > 0.999999 &&
+         shape.parameter_count() <= kMostParameters;
 }
 
 std::vector<FitStart> profile_search(const FitProblem& problem, const DesignShape& shape, std::uint64_t rays,

@@ -9,7 +9,7 @@
 namespace lucerna {
 
 /// Whether `profile_search` can look: a mirror of revolution, a target in rings about its axis, few enough
-/// parameters for chance to find its way, and no limits, which the table does not know.
+/// parameters for chance to find its way, and no limits or bodies, which the table does not know.
 bool can_search_profiles(const FitProblem& problem, const DesignShape& shape);
 
 /// Where a search is: the best of the present round and its cost, evaluations so far, rays of the last and of

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lucerna/design/body_shadows.h"
 #include "lucerna/design/bounds.h"
 #include "lucerna/design/light_limits.h"
 #include "lucerna/design/reach.h"
@@ -139,6 +140,7 @@ void check_result(const DesignProblem& problem, const DesignOptions& options, co
   DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(),
                   options.seed + 0x9E3779B97F4A7C15ull);
   rays.evaluate_on(options.accelerator);
+  rays.shade_by(shadows_of(problem.project.scene, problem.world_from_mirror.inverse()));
   const std::uint64_t limit_rays = std::min(max_rays, kLimitRays);
   rays.grow(limit_rays, progress);
   SourceEtendue etendue(rays);

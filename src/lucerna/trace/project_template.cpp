@@ -201,7 +201,7 @@ bins = "hard"                 # tent: a ray counts for its four neighbours; smoo
 #name = "luminaire"
 #format = "tm25"
 
-# ---- what a design is to reach (lucerna design), and what it may not do; it shapes the only reflector ----
+# ---- what a design is to reach (lucerna design), and what it may not do; it shapes the reflector (of several: reflector = 0, 1, ...) ----
 #[target]
 #file = "wanted.ldt"
 #mode = "shape"
