@@ -184,7 +184,7 @@ TEST(DesignCli, ARectangleOnTheFloor) {
   EXPECT_THAT(run.out, HasSubstr("uniformity (least / mean)"));
   const Json json = Json::parse(slurp(dir / "out" / "result.json"));
   EXPECT_TRUE(json["bergen_fit"].is_null());
-  EXPECT_GT(json["plane"]["mean"].get<double>(), 0.0);
+  EXPECT_GT(json["plane"]["mean"]["value"].get<double>(), 0.0);
   EXPECT_TRUE(std::filesystem::exists(dir / "out" / "target.csv"));
   const DesignProblem problem = design_problem(read_project(dir / "p.toml"), dir / "p.toml");
   expect_error(json, traced_error(dir / "out" / "reflector.toml", problem));

@@ -9,6 +9,6 @@ namespace lucerna {
 std::string_view version();
 
 /// Version of the layout of every JSON result; grows when a key changes its meaning or goes.
-inline constexpr int kJsonSchemaVersion = 2;
+inline constexpr int kJsonSchemaVersion = 3;
 
 }  // namespace lucerna

@@ -23,6 +23,21 @@ Estimate Jackknife::estimate() const {
   return {all(), std::sqrt((n - 1.0) / n * squares)};
 }
 
+Jackknife Jackknife::draws() const {
+  Jackknife out(*this);
+  const double scale = replicates() < 2 ? 1.0 : std::sqrt(static_cast<double>(replicates()) - 1.0);
+  for (std::size_t r = 1; r < values_.size(); ++r) out.values_[r] = all() + scale * (values_[r] - all());
+  return out;
+}
+
+Jackknife Jackknife::from_draws(std::vector<double> values) {
+  Jackknife out(std::move(values));
+  const double scale = out.replicates() < 2 ? 1.0 : std::sqrt(static_cast<double>(out.replicates()) - 1.0);
+  for (std::size_t r = 1; r < out.values_.size(); ++r)
+    out.values_[r] = out.all() + (out.values_[r] - out.all()) / scale;
+  return out;
+}
+
 Jackknife ratio(const Jackknife& numerator, const Jackknife& denominator) {
   Jackknife out(numerator);
   for (std::size_t i = 0; i < out.values().size(); ++i) {

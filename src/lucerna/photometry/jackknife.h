@@ -35,6 +35,14 @@ class Jackknife {
   /// for fewer than two replicates.
   Estimate estimate() const;
 
+  /// The same figure R times with noise of its full size: what the run is without a replicate differs by a
+  /// quarter of its error only (16 replicates), so a figure that jumps (a crossing where the light runs
+  /// level) would not show it. The whole run's value first; then whole run + sqrt(R - 1) (without one - whole
+  /// run).
+  Jackknife draws() const;
+  /// What a function of such draws is as a jackknife: `estimate` gives their scatter.
+  static Jackknife from_draws(std::vector<double> values);
+
   /// `f` of each value: f(x) -> double.
   template <class F>
   Jackknife map(const F& f) const {

@@ -34,6 +34,21 @@ TEST(Jackknife, OfAMeanIsTheStandardErrorOfTheMean) {
   EXPECT_TRUE(std::isnan(Jackknife(std::vector<double>{3.0}).estimate().standard_error));
 }
 
+TEST(Jackknife, DrawsScatterByTheErrorAndComeBack) {
+  Rng rng(6, 0);
+  const Jackknife x = noisy(10.0, 1.0, rng), draws = x.draws();
+  EXPECT_EQ(x.all(), draws.all());
+  const Jackknife back = Jackknife::from_draws({draws.values().begin(), draws.values().end()});
+  EXPECT_NEAR(back.estimate().standard_error, x.estimate().standard_error, 1e-12);
+  // A step beside the value: no replicate's absence crosses it, the noise does.
+  const double step = x.all() + 0.9 * x.estimate().standard_error;
+  const auto jump = [step](double v) { return v > step ? 1.0 : 0.0; };
+  EXPECT_EQ(x.map(jump).estimate().standard_error, 0.0);
+  const Jackknife jumps = draws.map(jump);
+  EXPECT_GT(Jackknife::from_draws({jumps.values().begin(), jumps.values().end()}).estimate().standard_error,
+            0.1);
+}
+
 TEST(Jackknife, RatiosCarryTheirCorrelation) {
   Rng rng(5, 0);
   const Jackknife x = noisy(10.0, 1.0, rng);

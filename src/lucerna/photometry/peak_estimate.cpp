@@ -216,61 +216,68 @@ void find_rivals(const Candidates& c, const LargestFigure& most, const PeakEstim
   }
 }
 
-/// Where the quadratic about the brightest candidate is largest, of the whole run and without each replicate;
-/// nothing if it is no hill of which the top is near by.
-std::vector<Direction> tops(const LocalFit& fit) {
+/// The top of the quadratic with the coefficients of draw `r`; nothing if it is no hill of which the top is
+/// near by.
+std::optional<Direction> top(const LocalFit& fit, std::size_t r) {
+  const auto c = [&](std::size_t k) { return fit.coefficients[k].draws().values()[r]; };
+  const double xx = 2.0 * c(3), xy = c(4), yy = 2.0 * c(5), det = xx * yy - xy * xy;
+  if (!(xx < 0.0 && det > 0.0)) return std::nullopt;
+  const double x = (xy * c(2) - yy * c(1)) / det, y = (xy * c(1) - xx * c(2)) / det;
+  if (!(x * x + y * y < 1.0)) return std::nullopt;
+  return fit.direction(x, y);
+}
+
+/// Where the peak is in the whole run and in each draw of the noise: the top about the candidate that is the
+/// brightest there, or the candidate itself where the quadratic has no top.
+std::vector<Direction> tops(const Candidates& candidates) {
   std::vector<Direction> out;
-  for (std::size_t i = 0; i < fit.coefficients[0].values().size(); ++i) {
-    const auto c = [&](std::size_t k) { return fit.coefficients[k].values()[i]; };
-    const double xx = 2.0 * c(3), xy = c(4), yy = 2.0 * c(5), det = xx * yy - xy * xy;
-    if (!(xx < 0.0 && det > 0.0)) return {};
-    const double x = (xy * c(2) - yy * c(1)) / det, y = (xy * c(1) - xx * c(2)) / det;
-    if (!(x * x + y * y < 1.0)) return {};
-    out.push_back(fit.direction(x, y));
+  std::vector<Jackknife> draws;
+  for (const Jackknife& cd : candidates.cd) draws.push_back(cd.draws());
+  for (std::size_t r = 0; r < draws.front().values().size(); ++r) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < draws.size(); ++i) {
+      if (draws[i].values()[r] > draws[best].values()[r]) best = i;
+    }
+    out.push_back(top(candidates.fits[candidates.places[best].fit], r).value_or(candidates.direction(best)));
   }
   return out;
 }
 
-/// Root of the jackknife's mean square of angles that are measured from the whole run's.
-double jackknife_error(const std::vector<double>& angles) {
-  const auto n = static_cast<double>(angles.size());
+/// Root of the mean square of the draws' angles from the whole run's.
+double scatter(const std::vector<double>& angles) {
   double squares = 0.0;
   for (const double a : angles) squares += a * a;
-  return std::sqrt((n - 1.0) / n * squares);
+  return std::sqrt(squares / static_cast<double>(angles.size()));
 }
 
 /// Direction, its error and whether it is determined.
 void place_peak(const Candidates& c, const LargestFigure& most, PeakEstimate& p) {
-  std::vector<Direction> without = tops(c.fits[c.places[most.index].fit]);
-  // Read off the stencil, half a step of it is the least error.
-  double least = 0.0;
-  if (without.empty()) {
-    without.push_back(c.direction(most.index));
-    for (const std::size_t i : most.index_without) without.push_back(c.direction(i));
-    least = p.radius_deg * 0.5 * kSpacing / (kStencil - 1);
-  }
-  p.direction = without.front();
-  without.erase(without.begin());
+  std::vector<Direction> draws = tops(c);
+  // A place is read off a stencil: a part of its step is the least error.
+  const double least = p.radius_deg * kSpacing / (kStencil - 1) / std::sqrt(12.0);
+  p.direction = draws.front();
+  draws.erase(draws.begin());
   const TypeCAngles at = type_c_angles(p.direction);
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   p.direction_error_deg = unknown;
   double gamma_error = unknown, c_error = unknown;
-  if (without.size() >= 2) {
+  if (draws.size() >= 2) {
     std::vector<double> gaps, along, across;
-    for (const Direction& d : without) {
+    for (const Direction& d : draws) {
       gaps.push_back(apart_deg(d, p.direction));
       along.push_back(degrees(type_c_angles(d).gamma_rad - at.gamma_rad));
       across.push_back(std::sqrt(std::max(0.0, gaps.back() * gaps.back() - along.back() * along.back())));
     }
-    p.direction_error_deg = std::hypot(jackknife_error(gaps), least);
-    gamma_error = std::hypot(jackknife_error(along), least);
-    c_error = std::hypot(jackknife_error(across), least) / std::max(std::sin(at.gamma_rad), 1e-9);
+    p.direction_error_deg = std::hypot(scatter(gaps), least);
+    gamma_error = std::hypot(scatter(along), least);
+    c_error = std::hypot(scatter(across), least) / std::max(std::sin(at.gamma_rad), 1e-9);
   }
   bool other_c = false, other_gamma = false;
   find_rivals(c, most, p, other_c, other_gamma);
   const double from_pole = degrees(std::min(at.gamma_rad, std::numbers::pi - at.gamma_rad));
   if (!other_gamma) p.gamma_deg = Estimate{degrees(at.gamma_rad), gamma_error};
-  const bool on_axis = from_pole <= 2.0 * p.direction_error_deg;
+  // The draws of a ring of light are far apart too, but all as far from the axis.
+  const bool on_axis = from_pole <= 2.0 * std::min(p.direction_error_deg, 2.0 * gamma_error);
   if (!other_c && !on_axis && !(c_error > 90.0)) p.c_deg = Estimate{degrees(at.c_rad), c_error};
 }
 

@@ -20,8 +20,9 @@ class Section {
   /// Full angle of the smallest arc that holds every direction with at least `threshold` (its values without
   /// each replicate go with the section's), as `beam_angle_deg` has it. The section is smoothed with the
   /// smallest kernel for which the angle's error is small (a tenth of a degree or 0.5 %), or with the one of
-  /// least error. Nothing where the threshold is not reached, or the angle is not determined: its error is
-  /// above a degree and a tenth of it, or some replicates' absence leaves no crossing.
+  /// least error; where a smaller kernel sees another angle, that is part of the error. Nothing where the
+  /// threshold is not reached, or the angle is not determined: its error is above a degree and a tenth of it,
+  /// or some draw of the noise leaves no crossing.
   std::optional<Estimate> arc_deg(const Jackknife& threshold);
 
   /// Largest angle from the axis (gamma 0, or 180 if `up`) at which the threshold is reached, to either side,
@@ -31,10 +32,12 @@ class Section {
  private:
   struct Smoothed {
     double radius_deg = 0.0;
-    /// Of the whole run, then without each replicate.
+    /// Of the whole run, then its draws (Jackknife::draws).
     std::vector<std::vector<CirclePoint>> circles;
   };
   const Smoothed& smoothed(std::size_t i);
+  template <class Measure>
+  std::optional<Jackknife> measured(std::size_t radius, const Jackknife& levels, const Measure& measure);
   template <class Measure>
   std::optional<Jackknife> best(const Jackknife& threshold, const Measure& measure);
 

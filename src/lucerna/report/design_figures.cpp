@@ -23,13 +23,16 @@ double source_flux(const DesignProblem& problem) {
   return flux;
 }
 
+/// Of a target.
 PlaneSummary summary_of(const std::vector<double>& values, double factor) {
-  PlaneSummary s{0.0, std::numeric_limits<double>::infinity(), 0.0};
+  double mean = 0.0, least = std::numeric_limits<double>::infinity(), greatest = 0.0;
   for (const double v : values) {
-    s.mean += factor * v / static_cast<double>(values.size());
-    s.least = std::min(s.least, factor * v);
-    s.greatest = std::max(s.greatest, factor * v);
+    mean += factor * v / static_cast<double>(values.size());
+    least = std::min(least, factor * v);
+    greatest = std::max(greatest, factor * v);
   }
+  PlaneSummary s{{mean, 0.0}, {least, 0.0}, {greatest, 0.0}, {}};
+  if (mean > 0.0) s.uniformity = Estimate{least / mean, 0.0};
   return s;
 }
 
@@ -42,10 +45,10 @@ const Plane* plane_at(const std::vector<Plane>& planes, double c_deg) {
 }
 
 Json plane_json(const PlaneSummary& s) {
-  return {{"mean", s.mean},
-          {"min", s.least},
-          {"max", s.greatest},
-          {"uniformity", s.mean > 0.0 ? Json(s.least / s.mean) : Json()}};
+  return {{"mean", estimate_json(s.mean)},
+          {"min", estimate_json(s.least)},
+          {"max", estimate_json(s.greatest)},
+          {"uniformity", estimate_json(s.uniformity)}};
 }
 
 Json tolerances_json(const ToleranceSweep& sweep) {
@@ -120,13 +123,15 @@ void far_field_rows(const DesignFigures& f, Table& table) {
 void plane_rows(const DesignFigures& f, Table& table) {
   if (!f.target_plane || !f.result_plane) return;
   const char* unit = f.trace.ledger.unit == FluxUnit::lumen ? "lx" : "W/m2";
-  const auto amount = [&](double x) { return fmt::format("{:.5g} {}", x, unit); };
+  const auto amount = [&](const Estimate& x) { return estimate_text(x, unit); };
+  const auto share = [](const std::optional<Estimate>& x) {
+    return x ? estimate_text(*x) : std::string("-");
+  };
   const PlaneSummary &want = *f.target_plane, &have = *f.result_plane;
   table.row("mean illuminance", amount(want.mean), amount(have.mean));
   table.row("least", amount(want.least), amount(have.least));
   table.row("greatest", amount(want.greatest), amount(have.greatest));
-  table.row("uniformity (least / mean)", fmt::format("{:.3f}", want.least / want.mean),
-            fmt::format("{:.3f}", have.mean > 0.0 ? have.least / have.mean : 0.0));
+  table.row("uniformity (least / mean)", share(want.uniformity), share(have.uniformity));
 }
 
 void tolerance_rows(const ToleranceSweep& sweep, std::vector<std::string>& lines) {
@@ -255,7 +260,9 @@ DesignFigures design_figures(const DesignProblem& problem, const DesignResult& r
   if (target.plane) {
     f.target_plane = summary_of(target.plane->map.value, f.target_factor);
     for (const PlaneFigures& p : f.trace.planes) {
-      if (p.image.name == kTargetPlane) f.result_plane = summary_of(p.image.value, 1.0);
+      if (p.image.name == kTargetPlane)
+        f.result_plane =
+            PlaneSummary{p.extremes.mean, p.extremes.least, p.extremes.greatest, p.extremes.uniformity};
     }
     return f;
   }

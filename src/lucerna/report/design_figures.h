@@ -13,9 +13,11 @@
 
 namespace lucerna {
 
-/// Illuminance figures of a rectangle.
+/// Illuminance figures of a rectangle; a target's are exact, without errors.
 struct PlaneSummary {
-  double mean = 0.0, least = 0.0, greatest = 0.0;
+  Estimate mean, least, greatest;
+  /// least over mean; absent in the dark.
+  std::optional<Estimate> uniformity;
 };
 
 /// All figures of a finished design, worked out once for text, JSON and files.

@@ -61,9 +61,11 @@ std::string plane_facts(const ResultFigures& result, const std::string& key) {
   };
   std::string out = "<dl class=\"facts\">\n";
   out += fact("Mean", estimate("mean"));
-  out += fact("Largest", fmt::format("{} at x {}, y {} mm; one cell, so noise raises it", estimate("peak"),
+  out += fact("Largest", fmt::format("{} at x {}, y {} mm", estimate("peak"),
                                      result.figure(key + "/peak/x_mm"), result.figure(key + "/peak/y_mm")));
-  out += fact("Least", result.figure(key + "/least") + " " + unit);
+  out += fact("Least", estimate("least"));
+  if (result.has(key + "/uniformity/value"))
+    out += fact("Uniformity", result.figure(key + "/uniformity") + " (least over mean)");
   out += fact("Flux", result.figure(key + "/flux") + " " + result.text("/ledger/unit"));
   out += fact("Noise of the image",
               fmt::format("{:.2g} % (relative RMS)", 100.0 * result.number(key + "/noise")));

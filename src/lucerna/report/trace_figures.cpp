@@ -44,26 +44,19 @@ FarFieldFigures far_field_figures(const TraceResult& result, std::size_t index) 
   return f;
 }
 
-PlaneFigures plane_figures(PlaneImage image, std::optional<LuminanceDetector> view) {
+PlaneFigures plane_figures(PlaneImage image, const PlaneExtremes& extremes,
+                           std::optional<LuminanceDetector> view) {
   PlaneFigures f;
-  double sum = 0.0, noise = 0.0, signal = 0.0;
-  std::size_t best = 0;
-  f.least = image.value.front();
+  double noise = 0.0, signal = 0.0;
   for (std::size_t i = 0; i < image.value.size(); ++i) {
-    sum += image.value[i];
     noise += image.standard_error[i] * image.standard_error[i];
     signal += image.value[i] * image.value[i];
-    f.least = std::min(f.least, image.value[i]);
-    if (image.value[i] > image.value[best]) best = i;
   }
-  f.mean.mean = sum / static_cast<double>(image.value.size());
-  f.mean.standard_error =
-      f.mean.mean * (image.flux.mean > 0.0 ? image.flux.standard_error / image.flux.mean : 0.0);
-  f.peak = {image.value[best], image.standard_error[best]};
-  f.peak_x_mm = image.grid.cell_x_mm(best);
-  f.peak_y_mm = image.grid.cell_y_mm(best);
+  f.peak_x_mm = image.grid.cell_x_mm(extremes.greatest_cell);
+  f.peak_y_mm = image.grid.cell_y_mm(extremes.greatest_cell);
   f.noise = signal > 0.0 ? std::sqrt(noise / signal) : std::nan("");
   f.image = std::move(image);
+  f.extremes = extremes;
   f.view = std::move(view);
   return f;
 }
@@ -171,7 +164,7 @@ Json vector_json(const Vec3& v) { return {v.x, v.y, v.z}; }
 Json plane_json(const PlaneFigures& f) {
   const PlaneGrid& grid = f.image.grid;
   const Frame& frame = grid.world_from_plane;
-  Json peak = estimate_json(f.peak);
+  Json peak = estimate_json(f.extremes.greatest);
   peak["x_mm"] = f.peak_x_mm;
   peak["y_mm"] = f.peak_y_mm;
   Json json{{"name", f.image.name},
@@ -189,8 +182,9 @@ Json plane_json(const PlaneFigures& f) {
     json["half_angle_deg"] = f.view->half_angle_deg;
   }
   json["flux"] = estimate_json(f.image.flux);
-  json["mean"] = estimate_json(f.mean);
-  json["least"] = f.least;
+  json["mean"] = estimate_json(f.extremes.mean);
+  json["least"] = estimate_json(f.extremes.least);
+  json["uniformity"] = estimate_json(f.extremes.uniformity);
   json["peak"] = peak;
   json["noise"] = number(f.noise);
   return json;
@@ -206,9 +200,10 @@ Json rays_json(const RayFigures& f, FluxUnit unit) {
 std::string plane_line(const PlaneFigures& f, std::string_view flux_unit) {
   const std::string noise =
       std::isfinite(f.noise) ? fmt::format("; noise {:.2g} %", 100.0 * f.noise) : std::string();
-  return fmt::format("  {}: mean {} {}, peak {} at x {:g}, y {:g} mm, least {:.4g}; flux {} {}{}",
-                     f.image.name, estimate_text(f.mean), plane_unit(f), estimate_text(f.peak), f.peak_x_mm,
-                     f.peak_y_mm, f.least, estimate_text(f.image.flux), flux_unit, noise);
+  return fmt::format("  {}: mean {} {}, peak {} at x {:g}, y {:g} mm, least {}; flux {} {}{}", f.image.name,
+                     estimate_text(f.extremes.mean), plane_unit(f), estimate_text(f.extremes.greatest),
+                     f.peak_x_mm, f.peak_y_mm, estimate_text(f.extremes.least), estimate_text(f.image.flux),
+                     flux_unit, noise);
 }
 
 }  // namespace
@@ -249,7 +244,8 @@ std::string peak_place_text(const PeakEstimate& p) {
   if (p.c_deg && p.gamma_deg)
     return fmt::format("C {}, gamma {} deg", estimate_text(*p.c_deg), estimate_text(*p.gamma_deg));
   const double gamma = degrees(type_c_angles(p.direction).gamma_rad), off = std::min(gamma, 180.0 - gamma);
-  if (p.gamma_deg && off <= 2.0 * p.direction_error_deg)
+  // The draws of a ring of light are far apart too, but all as far from the axis.
+  if (p.gamma_deg && off <= 2.0 * std::min(p.direction_error_deg, 2.0 * p.gamma_deg->standard_error))
     return fmt::format("on the axis within {:.2g} deg", std::max(off, p.direction_error_deg));
   if (p.gamma_deg) return fmt::format("gamma {} deg, C not determined", estimate_text(*p.gamma_deg));
   if (p.c_deg) return fmt::format("C {} deg, gamma not determined", estimate_text(*p.c_deg));
@@ -285,10 +281,15 @@ TraceFigures trace_figures(const TraceResult& result) {
   const Estimate out = out_flux(result).estimate();
   for (std::size_t i = 0; i < result.far_fields.size(); ++i)
     figures.far_fields.push_back(far_field_figures(result, i));
-  for (std::size_t i = 0; i < result.planes.size(); ++i)
-    figures.planes.push_back(plane_figures(illuminance(result, i), std::nullopt));
-  for (std::size_t i = 0; i < result.luminances.size(); ++i)
-    figures.luminances.push_back(plane_figures(luminance(result, i), result.luminances[i]));
+  for (std::size_t i = 0; i < result.planes.size(); ++i) {
+    const PlaneImage image = illuminance(result, i);
+    figures.planes.push_back(plane_figures(image, illuminance_extremes(result, i, image), std::nullopt));
+  }
+  for (std::size_t i = 0; i < result.luminances.size(); ++i) {
+    const PlaneImage image = luminance(result, i);
+    figures.luminances.push_back(
+        plane_figures(image, luminance_extremes(result, i, image), result.luminances[i]));
+  }
   for (const RayDetector& d : result.ray_detectors) figures.rays.push_back({d, result.out_rays.size(), out});
   return figures;
 }

@@ -10,6 +10,7 @@
 #include "lucerna/photometry/binned_intensity.h"
 #include "lucerna/photometry/far_field_metrics.h"
 #include "lucerna/report/svg_axes.h"
+#include "lucerna/trace/plane_extremes.h"
 #include "lucerna/trace/trace_result.h"
 
 namespace lucerna {
@@ -33,11 +34,8 @@ struct PlaneFigures {
   PlaneImage image;
   /// What makes it a luminance image; absent for a plane.
   std::optional<LuminanceDetector> view;
-  /// Over all cells; the error of the mean is that of the counted flux.
-  Estimate mean;
-  double least = 0.0;
-  /// The brightest cell, its own error and its middle in the grid's frame.
-  Estimate peak;
+  PlaneExtremes extremes;
+  /// The middle of the brightest cell in the grid's frame.
   double peak_x_mm = 0.0, peak_y_mm = 0.0;
   /// Relative noise of the whole image: root of the sum of squared standard errors over that of the squared
   /// values; NaN where it is not known.

@@ -101,13 +101,13 @@ TEST(TraceFolder, SaysWhatIsNoTrace) {
   write_file(dir / "result.json", "{}");
   EXPECT_NE(message().find("expected the result of `lucerna trace`"), std::string::npos);
   write_file(dir / "result.json", R"({"ledger": {}, "detectors": [], "schema_version": 99})");
-  EXPECT_NE(message().find("found 99, expected 2"), std::string::npos);
+  EXPECT_NE(message().find("found 99, expected 3"), std::string::npos);
   write_file(dir / "project.toml", "");
   write_file(dir / "result.json",
-             R"({"ledger": {}, "detectors": [{"name": "../x", "kind": "far-field"}], "schema_version": 2})");
+             R"({"ledger": {}, "detectors": [{"name": "../x", "kind": "far-field"}], "schema_version": 3})");
   EXPECT_NE(message().find("../x"), std::string::npos);
   write_file(dir / "result.json",
-             R"({"ledger": {}, "detectors": [{"name": "x", "kind": "eye"}], "schema_version": 2})");
+             R"({"ledger": {}, "detectors": [{"name": "x", "kind": "eye"}], "schema_version": 3})");
   EXPECT_NE(message().find("found the kind \"eye\""), std::string::npos);
 }
 

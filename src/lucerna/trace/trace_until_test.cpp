@@ -36,10 +36,10 @@ TEST(TraceUntil, TracesUntilTheNoiseIsWhatWasAskedFor) {
   }()));
   ASSERT_GT(first, 0.0);
   ASSERT_LT(first, 0.1);
-  const NoiseTrace loose = trace_until(spot(), coarse(), {.noise = 0.5});
+  const NoiseTrace loose = trace_until(spot(), coarse(), {.noise = 0.5, .most_seconds = 1e6});
   EXPECT_EQ(loose.result.last_ray, 1u << 20);
   EXPECT_EQ(loose.end, NoiseEnd::reached);
-  const NoiseTrace fine = trace_until(spot(), coarse(), {.noise = 0.7 * first});
+  const NoiseTrace fine = trace_until(spot(), coarse(), {.noise = 0.7 * first, .most_seconds = 1e6});
   EXPECT_EQ(fine.end, NoiseEnd::reached);
   EXPECT_GT(fine.result.last_ray, 1u << 20);
   EXPECT_LE(fine.noise, 0.7 * first);
