@@ -104,5 +104,11 @@ TEST(DesignZonesCli, TheExamplesOfTheDocsRead) {
   }
 }
 
+TEST(DesignZonesCli, TheExampleWithABodyReads) {
+  const std::filesystem::path file = test::source_dir() / "docs/examples/strut.toml";
+  const DesignProblem problem = design_problem(read_project(file), file);
+  EXPECT_EQ(problem.project.scene.bodies.size(), 1u);
+}
+
 }  // namespace
 }  // namespace lucerna
