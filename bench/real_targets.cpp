@@ -6,10 +6,11 @@
 //   bench_real_targets [options] hidden [CASE ...]             n10, n49-near, n49-far, n400: random mirrors
 // options: --time S (60), --rays N (of the validation, 16 M), --target-rays N (of tables, 64 M), --family
 // bspline|revolution, --source led|filament|FILE, --targets N (of `hidden`, 10), --seed S, --start (judges
-// only the mirror to begin with), --history (prints every step). The mirror of all but `hidden`: 120 mm over
-// f = 20 mm, hole 8 mm, reflectance 0.9. Each line: excess at n = 12, 24 and 48 with its standard error,
-// noise, light in the rectangle, light and error outside, bound, seconds of the design and of the validation,
-// rays of the design, why it ended.
+// only the mirror to begin with), --history (prints every step), --keep (the models and tables that were
+// made), --fixed-knots (of `hidden`). The mirror of all but `hidden`: 120 mm over f = 20 mm, hole 8 mm,
+// reflectance 0.9. Each line: excess at n = 12, 24 and 48 with its standard error, noise, light in the
+// rectangle, light and error outside, bound, seconds of the design and of the validation, rays of the design,
+// why it ended.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,7 +46,7 @@ struct Run {
   std::uint64_t rays = std::uint64_t{1} << 24, target_rays = std::uint64_t{1} << 26, seed = 1;
   std::string family = "bspline", source = "led", mode;
   int targets = 10;
-  bool start_only = false, history = false, fixed_knots = false;
+  bool start_only = false, history = false, keep = false, fixed_knots = false;
   std::vector<std::string> names;
   fs::path folder;
 };
@@ -352,6 +353,8 @@ Run parsed(int argc, char** argv) {
       run.start_only = true;
     } else if (a == "--history") {
       run.history = true;
+    } else if (a == "--keep") {
+      run.keep = true;
     } else if (a == "--fixed-knots") {
       run.fixed_knots = true;
     } else if (run.mode.empty()) {
@@ -378,5 +381,9 @@ int main(int argc, char** argv) {
                fmt::format("lucerna-bench-{}", std::chrono::steady_clock::now().time_since_epoch().count());
   fs::create_directories(run.folder);
   mode->second(run);
-  fs::remove_all(run.folder);
+  if (run.keep) {
+    fmt::print("kept: {}\n", run.folder.string());
+  } else {
+    fs::remove_all(run.folder);
+  }
 }

@@ -347,7 +347,7 @@ NormalEquations Fit::equations_at(const DesignShape& shape, const Evaluation& e)
       scale_ ? normal_equations((*scale_)(e), scale_->flux(target_), bins_, problem_.mode)
              : normal_equations(e, target_, bins_, problem_.mode);
   ResidualRows rows;
-  equations.cost += roughness(shape, stage().smoothing, &rows);
+  equations.cost += roughness(shape, stage().smoothing, 1.0, &rows);
   if (problem_.limits) equations.cost += problem_.limits(shape, stage().rays, &rows);
   rows.add_to(equations);
   if (problem_.flux_weight > 0.0) {

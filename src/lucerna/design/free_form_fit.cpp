@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/design/free_form_fit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "lucerna/design/approach.h"
 #include "lucerna/design/roughness.h"
 
 namespace lucerna {
@@ -12,12 +14,27 @@ namespace {
 
 /// Width of the strip that stands for a rim, over the mirror's radius.
 constexpr double kRimShare = 0.02;
+/// Share of a third difference on the axis that counts as roughness.
+constexpr double kRoughnessAtAxis = 0.02;
+/// Knots for which a level's smoothing is meant, over the aperture's radius: roughness is that of a third
+/// derivative, whatever the knots.
+constexpr double kSmoothingStep = 1.0 / 24.0;
+/// What a mirror of few knots has of a level's smoothing: its knots are its smoothness.
+constexpr double kFewKnots = 1.0 / 300.0;
 /// Longest change of a height in one step, over the mirror's radius: the linear model is not good for more.
 constexpr double kMaxMove = 0.05;
 /// Damping beyond which there is no step to be had.
 constexpr double kMaxLambda = 1e12;
 /// Bins on each side of the widened rectangle out to the horizon; where zones may lie there.
 constexpr int kOuterBins = 8, kZoneBins = 24;
+
+double smoothing_for(const DesignShape& shape, double level_smoothing) {
+  const Aperture& a = shape.aperture();
+  const double step =
+      2.0 * std::max(a.half_x_mm() / shape.intervals_x(), a.half_y_mm() / shape.intervals_y());
+  const bool few = std::max(shape.intervals_x(), shape.intervals_y()) <= kApproachIntervals;
+  return level_smoothing * (few ? kFewKnots : 1.0) * std::pow(kSmoothingStep * a.outer_radius_mm() / step, 4);
+}
 
 }  // namespace
 
@@ -43,7 +60,7 @@ FreeFormPoint FreeFormFit::at(DesignShape shape) const {
   equations *= error_weight();
   if (zones_) zones_->add_to(light, equations);
   ResidualRows rows;
-  equations.cost += roughness(shape, level_.smoothing, &rows);
+  equations.cost += roughness(shape, smoothing_for(shape, level_.smoothing), kRoughnessAtAxis, &rows);
   if (problem_.limits) equations.cost += problem_.limits(shape, level_.rays, &rows);
   rows.add_to(equations);
   if (problem_.flux_weight > 0.0) {

@@ -27,9 +27,21 @@ TEST(Roughness, ParaboloidsAreSmoothAndShakenShapesAreNot) {
   for (const DesignShape& shape : shapes) {
     const DesignShape wider =
         shape.through([&](double x, double y) { return shape.at(x, y).z_mm + 0.01 * (x * x + y * y); });
-    EXPECT_NEAR(roughness(wider, 1.0, nullptr), 0.0, 1e-18);
-    EXPECT_GT(roughness(shaken(shape), 1.0, nullptr), 1e-3);
+    EXPECT_NEAR(roughness(wider, 1.0, 1.0, nullptr), 0.0, 1e-18);
+    EXPECT_GT(roughness(shaken(shape), 1.0, 1.0, nullptr), 1e-3);
   }
+}
+
+TEST(Roughness, CountsLessNearTheAxis) {
+  const DesignShape flat = DesignShape::bspline(10, Aperture::circle(40), 12, 12);
+  const auto bent = [&](std::size_t i, std::size_t j) {
+    Eigen::VectorXd p = flat.parameters();
+    p[static_cast<Eigen::Index>(j * 15 + i)] += 0.1;
+    return flat.with(p);
+  };
+  const DesignShape near = bent(7, 7), far = bent(7, 11);
+  EXPECT_NEAR(roughness(near, 1.0, 1.0, nullptr), roughness(far, 1.0, 1.0, nullptr), 1e-9);
+  EXPECT_LT(roughness(near, 1.0, 0.02, nullptr), 0.1 * roughness(far, 1.0, 0.02, nullptr));
 }
 
 /// It is quadratic in the parameters: gradient and Hessian give its values exactly.
@@ -37,12 +49,12 @@ TEST(Roughness, GradientAndHessianAreThoseOfTheCost) {
   const DesignShape shape = shaken(DesignShape::bspline(10, Aperture::circle(40), 4, 4, ShapeSymmetry::both));
   NormalEquations equations = nothing(shape);
   ResidualRows rows;
-  const double here = roughness(shape, 0.5, &rows);
+  const double here = roughness(shape, 0.5, 0.1, &rows);
   rows.add_to(equations);
   Eigen::VectorXd move(equations.gradient.size());
   Rng rng(4, 0);
   for (double& x : move) x = rng.uniform() - 0.5;
-  const double there = roughness(shape.with(shape.parameters() + move), 0.5, nullptr);
+  const double there = roughness(shape.with(shape.parameters() + move), 0.5, 0.1, nullptr);
   EXPECT_NEAR(there,
               here + 2.0 * equations.gradient.dot(move) +
                   move.dot(equations.hessian.selfadjointView<Eigen::Lower>() * move),
