@@ -19,14 +19,26 @@ constexpr int kLevels = 4, kEnd = 2, kMoreRays = 3;
 constexpr int kRoughIntervals = 32;
 /// The first candidates, over the aperture's radius: mirrors that spread light near the source, and mirrors
 /// whose rays cross farther from it. Others catch too little light or become walls.
-constexpr std::array<TransportChoice, 6> kFirst{
-    {{-1.0, 0.33}, {-1.0, 0.27}, {-1.0, 0.21}, {-1.0, 0.45}, {1.0, 0.75}, {1.0, 0.92}}};
+constexpr std::array<TransportChoice, 9> kFirst{{{-1.0, 0.33},
+                                                 {-1.0, 0.27},
+                                                 {-1.0, 0.21},
+                                                 {-1.0, 0.45},
+                                                 {1.0, 0.75},
+                                                 {1.0, 0.92},
+                                                 {1.0, 0.33},
+                                                 {1.0, 0.27},
+                                                 {1.0, 0.45}}};
 /// How many of them are fitted finely.
 constexpr int kFine = 3;
 /// A neighbour of the best goes on where its cost is at most so many times the best's at that level.
 constexpr double kWorthOn = 1.1;
+/// More rays help where the error is less than so many times the noise; else so many neighbours come first.
+constexpr double kNoisy = 1.6;
+constexpr int kNeighboursBefore = 4;
 /// Farthest neighbour of the best: its vertex distance is within this factor.
 constexpr double kFarthest = 1.3;
+/// A candidate that after two rough steps costs so many times the best of the rough level goes no further.
+constexpr double kHopeless = 4.0;
 /// Candidates in turn that have no start, after which there are no others.
 constexpr int kMaxFailed = 8;
 /// Steps in turn, each five times as damped as the one before, after which a level is at its end.
@@ -175,12 +187,15 @@ const FreeFormMark* FreeFormSearch::next_promotion() const {
   const bool near = state_.begun == 1 && given != nullptr && given->cost < kErrorShare[0] * kNear * kNear;
   if (state_.begun < first && !near && best_of(kEnd) == nullptr) return nullptr;
   const FreeFormMark* rough = best_waiting(0);
-  if (rough != nullptr && count(1) < (near ? 1 : kFine)) return rough;
+  const bool hopeful = rough != nullptr && rough->cost < kHopeless * best_of(0)->cost;
+  if (hopeful && count(1) < (near ? 1 : kFine)) return rough;
   const FreeFormMark* fine = best_waiting(1);
-  const FreeFormMark *end = best_of(kEnd), *more = best_of(kMoreRays);
+  const FreeFormMark* end = best_of(kEnd);
   if (end == nullptr) return fine;
-  // The best goes on with more rays; then the others, while they may win, and neighbours.
-  if (more == nullptr || !was_at(end->candidate, kMoreRays)) return end;
+  // The best goes on with more rays where noise is a good part of its error, else after some neighbours; then
+  // the others, while they may win, and neighbours.
+  const bool noisy = end->over_noise < kNoisy || state_.begun >= first + kNeighboursBefore;
+  if (noisy && !was_at(end->candidate, kMoreRays)) return end;
   if (state_.begun < first) return nullptr;
   if (fine != nullptr && fine->cost < kWorthOn * best_of(1)->cost) return fine;
   if (rough != nullptr && rough->cost < kWorthOn * best_of(0)->cost) return rough;
@@ -239,6 +254,11 @@ bool FreeFormSearch::level_ended() const {
   const FreeFormLevel l = level(state_.now.level);
   if (state_.step >= l.max_steps || state_.refused >= kMaxRefused) return true;
   const std::vector<double>& c = state_.costs;
+  const FreeFormMark* best = best_of(0);
+  if (state_.now.level == 0 && best != nullptr && state_.step >= 2 &&
+      state_.now.cost > kHopeless * best->cost) {
+    return true;
+  }
   return c.size() >= 3 && std::sqrt(c.back()) > (1.0 - l.min_gain) * std::sqrt(c[c.size() - 3]);
 }
 
