@@ -130,6 +130,96 @@ TEST(Tree, CheckSeesTypes) {
             (std::vector<std::string>{"A", "B", "C", "F"}));
 }
 
+/// Types of the parameters of `text`, which begins after the opening bracket: what stands before each
+/// parameter's name, without defaults.
+std::string parameter_types(const std::string& text) {
+  std::string types, word;
+  int depth = 0;
+  for (const char c : text + ")") {
+    const bool ends = depth == 0 && (c == ',' || c == ')');
+    if (!ends) {
+      depth += (c == '<' || c == '(' || c == '{') - (c == '>' || c == ')' || c == '}');
+      word += c;
+      continue;
+    }
+    word = word.substr(0, word.find(" = "));
+    const std::size_t name = word.find_last_of(" &*");
+    types += word.substr(0, name == std::string::npos ? word.size() : name + 1) + ",";
+    word.clear();
+    if (c == ')') break;
+  }
+  std::erase(types, ' ');
+  return types;
+}
+
+/// What the line at the left margin defines in an unnamed namespace: a type, the constants of that line, or a
+/// function with its parameters (which may go on in the lines after).
+std::vector<std::string> names_of(const std::vector<std::string>& lines, std::size_t at) {
+  const std::string& line = lines[at];
+  if (const auto types = types_of({line}); !types.empty()) return types;
+  if (line.empty() || std::string("} #/)").find(line[0]) != std::string::npos) return {};
+  if (line.starts_with("constexpr ")) {
+    std::vector<std::string> names;
+    for (const std::string& rest : lucerna::test::between(line.substr(0, line.find("//")), " k", " =")) {
+      if (rest.find_first_of(" (;") == std::string::npos) names.push_back("k" + rest);
+    }
+    return names;
+  }
+  const std::size_t open = line.find('('), name = line.find_last_of(" &*", open) + 1;
+  if (open == std::string::npos || name == 0 || name >= open || line.starts_with("using ")) return {};
+  std::string parameters = line.substr(open + 1);
+  for (std::size_t i = at; lines[i].find(')') == std::string::npos && i + 1 < lines.size(); ++i)
+    parameters += lines[i + 1];
+  return {line.substr(name, open - name) + "(" + parameter_types(parameters)};
+}
+
+std::vector<std::string> unnamed_names(const std::vector<std::string>& lines) {
+  std::vector<std::string> names;
+  bool inside = false;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (lines[i] == "namespace {") {
+      inside = true;
+    } else if (lines[i] == "}  // namespace") {
+      inside = false;
+    } else if (inside) {
+      for (const std::string& name : names_of(lines, i)) names.push_back(name);
+    }
+  }
+  return names;
+}
+
+// Sources of a folder are compiled many at a time (cmake/LucernaQuickBuild.cmake): what each hides from the
+// others by an unnamed namespace shares one with them then.
+TEST(Tree, UnnamedNamespacesOfAFolderShareNoName) {
+  std::map<std::string, fs::path> owner;
+  for (const fs::path& file : source_files()) {
+    if (file.extension() != ".cpp") continue;
+    const bool test = file.stem().string().ends_with("_test");
+    const std::string folder = file.parent_path().filename().string() + (test ? " tests: " : ": ");
+    for (const std::string& name : unnamed_names(lines_of(file))) {
+      const auto [at, first] = owner.emplace(folder + name, file);
+      if (!first && at->second != file) ADD_FAILURE() << at->first << " is in " << at->second << ", " << file;
+    }
+  }
+  EXPECT_GT(owner.size(), 500u);
+}
+
+TEST(Tree, CheckSeesUnnamedNames) {
+  const std::vector<std::string> lines{"int f(int a) {",
+                                       "}",
+                                       "namespace {",
+                                       "struct A {",
+                                       "  int kInner = 1;",
+                                       "constexpr int kOne = 1, kTwo = 2;  // not kThree = 3",
+                                       "const B& g(const C& c, int n = 3,",
+                                       "           std::map<D, E> m) {",
+                                       "int g(int other) { return h(other); }",
+                                       "}  // namespace",
+                                       "int k(int a) {"};
+  EXPECT_EQ(unnamed_names(lines),
+            (std::vector<std::string>{"A", "kOne", "kTwo", "g(constC&,int,std::map<D,E>,", "g(int,"}));
+}
+
 /// Lines of the longest function, after the one that opens its body to the one that closes it. Goes by the
 /// form that clang-format gives: a line that ends with the list of parameters and a brace, and the first
 /// brace as far left as the function, two left of its body. clang-tidy counts more exactly (`make check

@@ -10,6 +10,10 @@
 /// overflows the stack under the address sanitizer, and costs seconds in every file that includes it.
 namespace lucerna::test {
 
+inline bool has(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
 /// The decimal numbers in a text, whatever else is between them.
 std::vector<double> numbers_in(std::string_view text);
 

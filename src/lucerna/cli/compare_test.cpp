@@ -7,6 +7,7 @@
 
 #include "lucerna/core/file.h"
 #include "tests/support/run_program.h"
+#include "tests/support/text_scan.h"
 
 namespace lucerna {
 namespace {
@@ -16,7 +17,7 @@ using test::slurp;
 using test::TempDir;
 using Json = nlohmann::json;
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using test::has;
 
 void run_well(const TempDir& dir, const std::string& command) {
   const auto run = run_lucerna(dir.path(), command);

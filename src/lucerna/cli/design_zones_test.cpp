@@ -20,7 +20,7 @@ using testing::HasSubstr;
 using testing::Not;
 using Json = nlohmann::json;
 
-constexpr const char* kLamp = R"(
+constexpr const char* kZoneLamp = R"(
 [[source]]
 kind = "disk"
 radius_mm = 1.0
@@ -53,7 +53,7 @@ max_cd = 1e6
 
 TEST(DesignZonesCli, ZonesThatAreMetExitWithNought) {
   const TempDir dir;
-  write_file(dir / "p.toml", std::string(kLamp) + kEasy);
+  write_file(dir / "p.toml", std::string(kZoneLamp) + kEasy);
   const auto run = run_lucerna(dir.path(), "design p.toml --rays 8192 --time 1 -o out --report r.html");
   ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
   EXPECT_THAT(run.out, HasSubstr("2 of 2 zones met\n"));
@@ -80,7 +80,7 @@ TEST(DesignZonesCli, ZonesThatAreMetExitWithNought) {
 
 TEST(DesignZonesCli, AMissedZoneIsNamedAndExitsWithOne) {
   const TempDir dir;
-  write_file(dir / "p.toml", std::string(kLamp) + kEasy + R"([[target.zone]]
+  write_file(dir / "p.toml", std::string(kZoneLamp) + kEasy + R"([[target.zone]]
 name = "far too much"
 h_deg = [-30, 30]
 v_deg = [-30, 30]

@@ -15,14 +15,14 @@ namespace {
 using test::run_lucerna;
 using test::TempDir;
 
-void write_project(const TempDir& dir) {
+void write_device_project(const TempDir& dir) {
   write_file(dir.path() / "p.toml", "[[source]]\nkind = \"disk\"\nradius_mm = 1.0\nflux_lm = 100\n");
 }
 
 TEST(DeviceCli, CudaWithoutADeviceIsOneLineAndExitOne) {
   if (why_no_cuda().empty()) GTEST_SKIP() << "there is a CUDA device";
   const TempDir dir;
-  write_project(dir);
+  write_device_project(dir);
   for (const char* command : {"trace p.toml -o out --device cuda", "design p.toml -o out --device cuda"}) {
     const auto run = run_lucerna(dir.path(), command);
     EXPECT_EQ(run.exit_code, 1) << command;
@@ -35,7 +35,7 @@ TEST(DeviceCli, CudaWithoutADeviceIsOneLineAndExitOne) {
 TEST(DeviceCli, AutoFallsBackToTheCpu) {
   if (why_no_cuda().empty()) GTEST_SKIP() << "there is a CUDA device";
   const TempDir dir;
-  write_project(dir);
+  write_device_project(dir);
   const auto run = run_lucerna(dir.path(), "trace p.toml -o out --rays 2000 --json");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(nlohmann::json::parse(run.out)["isa"], "cuda");
@@ -43,7 +43,7 @@ TEST(DeviceCli, AutoFallsBackToTheCpu) {
 
 TEST(DeviceCli, UnknownDeviceIsAUsageError) {
   const TempDir dir;
-  write_project(dir);
+  write_device_project(dir);
   const auto run = run_lucerna(dir.path(), "trace p.toml -o out --device abacus");
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_NE(run.err.find("'abacus'; expected auto, cpu or cuda"), std::string::npos) << run.err;

@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 using test::run_lucerna;
 using test::slurp;
 
-constexpr const char* kProject =
+constexpr const char* kMergeProject =
     "[[source]]\nkind = 'cylinder'\n[[source]]\nfile = 's.tm25ray'\nflux_lm = 300\n[[reflector]]\n"
     "family = 'revolution'\npreset = 'parabola'\nfocal_mm = 15\ndiameter_mm = 60\nposition_mm = [0, 0, 15]\n"
     "axis = '-z'\nslope_error_mrad = 3\n[[detector]]\nkind = 'far-field'\nc_step_deg = 30\n[[detector]]\n"
@@ -27,7 +27,7 @@ class MergeCli : public testing::Test {
  protected:
   void SetUp() override {
     ASSERT_EQ(run_lucerna(dir.path(), "make-source disk -n 20000 -o s.tm25ray").exit_code, 0);
-    write_file(dir / "p.toml", kProject);
+    write_file(dir / "p.toml", kMergeProject);
   }
   void trace(const std::string& rays, const std::string& out, const std::string& more = "") {
     const auto run = run_lucerna(dir.path(), "trace p.toml --rays " + rays + " -o " + out + " " + more);
@@ -88,11 +88,11 @@ TEST_F(MergeCli, SaysWhatDoesNotFit) {
   std::filesystem::create_directory(dir / "isa");
   write_trace_file(dir / "isa" / kTraceFileName, other.result, other.origin);
   refuse("a isa", "isa with abacus: they cannot be added to the bit");
-  write_file(dir / "p.toml", std::string(kProject) + "name = 'other'\n");
+  write_file(dir / "p.toml", std::string(kMergeProject) + "name = 'other'\n");
   trace("1000:2000", "named");
   refuse("a named", "a and named are traces of different projects");
   // The same words, but other rays in the file.
-  write_file(dir / "p.toml", kProject);
+  write_file(dir / "p.toml", kMergeProject);
   ASSERT_EQ(run_lucerna(dir.path(), "make-source disk -n 20000 --seed 9 -o s.tm25ray").exit_code, 0);
   trace("1000:2000", "changed");
   refuse("a changed", "different input files");

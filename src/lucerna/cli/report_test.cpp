@@ -11,13 +11,13 @@ namespace {
 using test::run_lucerna;
 using test::slurp;
 
-constexpr const char* kProject =
+constexpr const char* kReportProject =
     "[[source]]\nkind = 'disk'\n[[reflector]]\nfamily = 'revolution'\npreset = 'parabola'\nfocal_mm = 15\n"
     "diameter_mm = 60\nposition_mm = [0, 0, 15]\naxis = '-z'\n";
 
 TEST(ReportCli, SameFileNowAndLater) {
   const test::TempDir dir;
-  write_file(dir / "p.toml", kProject);
+  write_file(dir / "p.toml", kReportProject);
   const auto run = run_lucerna(dir.path(), "trace p.toml -o out --rays 2e4 --report 'a b.html'");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto later = run_lucerna(dir.path(), "report out -o later.html");

@@ -10,6 +10,7 @@
 #include "lucerna/core/file.h"
 #include "tests/support/data_dir.h"
 #include "tests/support/run_program.h"
+#include "tests/support/text_scan.h"
 
 namespace lucerna {
 namespace {
@@ -32,7 +33,7 @@ axis = "-z"
 reflectance = 0.9
 )";
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using test::has;
 
 std::size_t lines(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));

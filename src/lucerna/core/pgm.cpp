@@ -12,24 +12,24 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 28;
-constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 24;
+constexpr std::uint64_t kMostPgmBytes = std::uint64_t{1} << 28;
+constexpr std::uint64_t kMostPgmPixels = std::uint64_t{1} << 24;
 
 /// The numbers of a PGM file; comments run from # to the end of the line.
 class PgmReader {
  public:
   explicit PgmReader(const std::filesystem::path& path)
-      : file_(path.string()), bytes_(read_file(path, kMostBytes)) {}
+      : file_(path.string()), bytes_(read_file(path, kMostPgmBytes)) {}
 
   GreyImage read() {
     const std::string_view kind = std::string_view(bytes_).substr(0, 2);
     if (kind != "P5" && kind != "P2") fail("this is no PGM: expected P5 or P2");
     at_ = 2;
     GreyImage image;
-    image.width = number(1, kMostPixels);
-    image.height = number(1, kMostPixels);
-    if (image.height > kMostPixels / image.width)
-      fail("{} x {} pixels, expected at most {}", image.width, image.height, kMostPixels);
+    image.width = number(1, kMostPgmPixels);
+    image.height = number(1, kMostPgmPixels);
+    if (image.height > kMostPgmPixels / image.width)
+      fail("{} x {} pixels, expected at most {}", image.width, image.height, kMostPgmPixels);
     const std::uint64_t white = number(1, 65535);
     image.white = static_cast<double>(white);
     const std::size_t n = image.width * image.height;

@@ -11,9 +11,6 @@ namespace lucerna {
 
 namespace {
 
-/// Étendue curves are known to a few per cent: so much more flux is granted.
-constexpr double kSlack = 1.05;
-
 /// Direction of the middle of a box, as near the horizon as it may be.
 Direction middle(const ErrorBoxes& boxes, std::size_t b) {
   const TargetRectangle& r = boxes.rectangle();
@@ -74,7 +71,7 @@ DesignBound etendue_bound(const ErrorBoxes& boxes, std::span<const double> targe
     const double area = opening_mm2 * cosine + mantle_mm2 * std::sqrt(positive(1.0 - cosine * cosine));
     etendue += boxes.measure()[b] * area;
     if (k % 16 != 15) continue;
-    const double most = std::min(1.0, kSlack * share_in(curve, etendue));
+    const double most = std::min(1.0, kEtendueSlack * share_in(curve, etendue));
     if (most >= 1.0) break;  // and more étendue holds all the more
     // By shape: s f has at most s most in the set, and the rest of s share is elsewhere.
     const double square = mode == TargetMode::absolute

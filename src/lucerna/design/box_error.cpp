@@ -15,7 +15,6 @@ namespace lucerna {
 
 namespace {
 
-constexpr double kMm2PerM2 = 1e6;
 /// Replicates that carry the stated errors of a table.
 constexpr std::size_t kTableReplicates = 16;
 

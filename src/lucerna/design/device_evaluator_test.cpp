@@ -29,13 +29,13 @@ DesignShape rough(const DesignShape& shape) {
   return shape.with(p);
 }
 
-struct Case {
+struct DeviceCase {
   const char* name;
   DesignShape shape;
   TentBins bins;
 };
 
-std::vector<Case> cases() {
+std::vector<DeviceCase> device_cases() {
   const Frame plane({1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {0, 0, 500});
   return {
       {"revolution, rings", rough(DesignShape::revolution(15, Aperture::circle(50, 6), 8)),
@@ -60,7 +60,7 @@ TEST(DeviceEvaluator, IsTheCpusWithinTheUnits) {
   const Reflectance mirror(std::vector<ReflectanceEntry>{{0.0, 0.9}, {60.0, 0.85}, {90.0, 1.0}});
   EvaluationOptions options;
   options.rays = 1 << 15;
-  for (const Case& c : cases()) {
+  for (const DeviceCase& c : device_cases()) {
     for (const double rim_mm : {0.0, 0.5}) {
       options.rim_mm = rim_mm;
       rays.evaluate_on(nullptr);
@@ -87,7 +87,7 @@ TEST(DeviceEvaluator, IsTheCpusWithinTheUnits) {
 
 TEST(DeviceEvaluator, WithoutDerivativesAndWithMoreRaysLater) {
   DesignRays rays = lamp(1 << 14), all = lamp(1 << 16);
-  const Case c = cases().front();
+  const DeviceCase c = device_cases().front();
   rays.evaluate_on(make_emulated_accelerator());
   all.evaluate_on(make_emulated_accelerator());
   EvaluationOptions options;
@@ -146,7 +146,7 @@ void expect_agreement(std::uint64_t n) {
   EvaluationOptions options;
   options.rays = n;
   options.rim_mm = 0.5;
-  for (const Case& c : cases()) {
+  for (const DeviceCase& c : device_cases()) {
     rays.evaluate_on(nullptr);
     const Evaluation cpu = evaluate(c.shape, Reflectance(0.9), rays, c.bins, options);
     rays.evaluate_on(device);

@@ -11,13 +11,14 @@
 namespace lucerna {
 namespace {
 
-TargetRectangle downwards(double u_min, double u_max, double v_min, double v_max) {
+TargetRectangle boxes_downwards(double u_min, double u_max, double v_min, double v_max) {
   return {Frame({1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {}), false, u_min, u_max, v_min, v_max};
 }
 
 TEST(ErrorBoxes, SolidAnglesFillTheSphere) {
-  for (const TargetRectangle& r : {downwards(-0.3, 0.25, -0.1, 0.12), downwards(-1, 1, -1, 1),
-                                   downwards(0.2, 0.98, -0.5, 0.5), downwards(-0.001, 0.001, 0.0, 0.001)}) {
+  for (const TargetRectangle& r :
+       {boxes_downwards(-0.3, 0.25, -0.1, 0.12), boxes_downwards(-1, 1, -1, 1),
+        boxes_downwards(0.2, 0.98, -0.5, 0.5), boxes_downwards(-0.001, 0.001, 0.0, 0.001)}) {
     const ErrorBoxes boxes(r);
     const auto& m = boxes.measure();
     // Slivers at the horizon are left out: hundredths of the cells along it.
@@ -27,7 +28,7 @@ TEST(ErrorBoxes, SolidAnglesFillTheSphere) {
 }
 
 TEST(ErrorBoxes, ALambertianEmittersFluxIsTheAreaOfDirectionCosines) {
-  const ErrorBoxes boxes(downwards(-0.4, 0.8, -0.3, 0.7));
+  const ErrorBoxes boxes(boxes_downwards(-0.4, 0.8, -0.3, 0.7));
   const auto flux = boxes.flux_of([](const Direction& d) { return std::max(0.0, -d.z()); }, 0.02);
   const double step_u = 1.2 / kErrorBoxes, step_v = 1.0 / kErrorBoxes;
   double partly = 0.0;
@@ -53,7 +54,8 @@ TEST(ErrorBoxes, ALambertianEmittersFluxIsTheAreaOfDirectionCosines) {
 TEST(ErrorBoxesStatistical, DirectionsFallIntoTheCellsThatWereIntegrated) {
   // Uniform directions: counts follow the measure. Chi^2 over the cells with enough of them, false alarm
   // 1e-6.
-  for (const TargetRectangle& r : {downwards(-0.5, 0.4, 0.1, 0.9), downwards(-0.01, 0.01, 0.3, 0.32)}) {
+  for (const TargetRectangle& r :
+       {boxes_downwards(-0.5, 0.4, 0.1, 0.9), boxes_downwards(-0.01, 0.01, 0.3, 0.32)}) {
     const ErrorBoxes boxes(r);
     constexpr int kCount = 2000000;
     std::vector<double> count(boxes.size(), 0.0);

@@ -16,6 +16,9 @@ namespace lucerna {
 /// Bins by parameters; row by row, as the rays touch it.
 using BinJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// A good EvaluationOptions::rim_mm, over the mirror's radius.
+inline constexpr double kRimShare = 0.02;
+
 /// What one evaluation traces.
 struct EvaluationOptions {
   std::uint64_t rays = 1 << 16;

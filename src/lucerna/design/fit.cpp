@@ -16,9 +16,6 @@ namespace lucerna {
 
 namespace {
 
-/// Width of the strip that stands for a rim, over the mirror's radius.
-constexpr double kRimShare = 0.02;
-
 /// A start is good when its error is at most this many times the noise: above it something is left to gain.
 constexpr double kGateFloors = 1.5;
 

@@ -12,8 +12,6 @@ namespace lucerna {
 
 namespace {
 
-/// Width of the strip that stands for a rim, over the mirror's radius.
-constexpr double kRimShare = 0.02;
 /// Share of a third difference on the axis that counts as roughness.
 constexpr double kRoughnessAtAxis = 0.02;
 /// Knots for which a level's smoothing is meant, over the aperture's radius: roughness is that of a third

@@ -13,8 +13,7 @@ namespace lucerna {
 
 namespace {
 
-/// Levels of a search: rough, fine, to the end; the last is gone through again with more rays.
-constexpr int kLevels = 4, kEnd = 2, kMoreRays = 3;
+constexpr int kLevels = kFreeFormLevels, kEnd = 2, kMoreRays = 3;
 /// Knots of the rough level, at most.
 constexpr int kRoughIntervals = 32;
 /// The first candidates, over the aperture's radius: mirrors that spread light near the source, and mirrors
@@ -64,10 +63,6 @@ constexpr double kSmoothing = 0.03;
 constexpr std::uint64_t kStartRays = std::uint64_t{1} << 19;
 constexpr int kStartBins = 36;
 constexpr double kStartWiden = 1.1;
-
-Eigen::VectorXd to_eigen(const std::vector<double>& v) {
-  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
-}
 
 /// Intervals along both sides where the longer has `most`.
 std::array<int, 2> intervals_of(const Aperture& a, int most) {
@@ -203,7 +198,8 @@ const FreeFormMark* FreeFormSearch::next_promotion() const {
 }
 
 DesignShape FreeFormSearch::shape_of(const FreeFormMark& mark) const {
-  return given_.refined(mark.intervals_x, mark.intervals_y).with(to_eigen(mark.parameters));
+  return given_.refined(mark.intervals_x, mark.intervals_y)
+      .with(Eigen::VectorXd::Map(mark.parameters.data(), static_cast<Eigen::Index>(mark.parameters.size())));
 }
 
 void FreeFormSearch::begin(const DesignShape& shape, const FreeFormMark& mark, Progress& progress) {

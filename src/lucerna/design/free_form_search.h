@@ -17,6 +17,9 @@ namespace lucerna {
 std::optional<DesignShape> free_form_start(const FitProblem& problem, const DesignShape& family,
                                            const TransportChoice& choice);
 
+/// Rough, fine, to the end; the last is gone through again with more rays.
+inline constexpr int kFreeFormLevels = 4;
+
 /// A candidate that was fitted on a level.
 struct FreeFormMark {
   int candidate = -1, level = -1;

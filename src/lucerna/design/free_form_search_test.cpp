@@ -13,7 +13,7 @@
 namespace lucerna {
 namespace {
 
-constexpr std::uint64_t kRays = std::uint64_t{1} << 15;
+constexpr std::uint64_t kSearchRays = std::uint64_t{1} << 15;
 
 /// A disk of 1 mm that shines down into a mirror of 60 mm, 15 mm above its given vertex.
 DesignRays disk_rays() {
@@ -58,7 +58,7 @@ double error_of(const FitProblem& problem, const DesignShape& shape) {
 }
 
 FreeFormSearch run(const FitProblem& problem, const DesignShape& given, int steps, FreeFormState state = {}) {
-  FreeFormSearch search(problem, given, 16, kRays, std::move(state));
+  FreeFormSearch search(problem, given, 16, kSearchRays, std::move(state));
   for (int i = 0; i < steps && !search.done(); ++i) search.step();
   return search;
 }
@@ -156,7 +156,7 @@ TEST(FreeFormSearch, EndsAStepThatNoLightTellsOf) {
   problem.mode = TargetMode::absolute;
   problem.direct_light = false;
   FreeFormLevel level;
-  level.rays = kRays;
+  level.rays = kSearchRays;
   const FreeFormFit fit(problem, level);
   FreeFormPoint point = fit.at(plain());
   double lambda = 1e-2;

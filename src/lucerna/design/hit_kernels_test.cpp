@@ -14,7 +14,7 @@
 namespace lucerna {
 namespace {
 
-DesignShape rough(const DesignShape& plain, double mm, std::uint64_t seed) {
+DesignShape rough_by(const DesignShape& plain, double mm, std::uint64_t seed) {
   Eigen::VectorXd p = plain.parameters();
   Rng rng(seed, 0);
   for (double& x : p) x = mm * (2.0 * rng.uniform() - 1.0);
@@ -23,10 +23,10 @@ DesignShape rough(const DesignShape& plain, double mm, std::uint64_t seed) {
 
 std::vector<DesignShape> shapes() {
   const Aperture square = Aperture::rectangle(100, 70, 8), round = Aperture::circle(100, 12);
-  return {rough(DesignShape::bspline(15, square, 4, 7), 0.6, 1),
-          rough(DesignShape::bspline(4, round, 17, 17), 2.0, 2),
-          rough(DesignShape::revolution(15, round, 8), 0.5, 3),
-          rough(DesignShape::revolution(4, round, 20), 0.3, 4)};
+  return {rough_by(DesignShape::bspline(15, square, 4, 7), 0.6, 1),
+          rough_by(DesignShape::bspline(4, round, 17, 17), 2.0, 2),
+          rough_by(DesignShape::revolution(15, round, 8), 0.5, 3),
+          rough_by(DesignShape::revolution(4, round, 20), 0.3, 4)};
 }
 
 /// n rays from about the focus, from far outside, and from the mirror itself.

@@ -11,7 +11,7 @@ namespace {
 
 /// Weight of roughness in the first stages, where slopes are measured in half widths of the window: enough
 /// against folds that coarse bins do not see, too little to hold the light back.
-constexpr double kSmoothing = 0.03;
+constexpr double kLadderSmoothing = 0.03;
 
 /// Half the window's angle (its sine, for squares of direction cosines).
 double half_angle(const TentBins& bins) {
@@ -85,7 +85,7 @@ void add_search(const std::array<int, 2>& knots, int k, double smoothing, Stages
 
 std::vector<FitStage> ladder(const DesignShape& shape, const TentBins& bins, const LadderOptions& o) {
   const int nx = shape.intervals_x(), ny = shape.intervals_y(), k = bins.count();
-  const double smoothing = kSmoothing / std::pow(half_angle(bins), 2);
+  const double smoothing = kLadderSmoothing / std::pow(half_angle(bins), 2);
   if (shape.is_revolution()) return ladder_of_revolution(nx, ny, k, smoothing, o);
   // Knots halved until few are left.
   std::vector<std::array<int, 2>> knots{{nx, ny}};

@@ -10,7 +10,7 @@ namespace lucerna {
 
 namespace {
 
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The orthonormal cosine transform, mode by mode.
 Eigen::MatrixXd cosines(int n) {
@@ -42,13 +42,13 @@ BinJacobian LargeScale::jacobian(const BinJacobian& jacobian) const {
   const Eigen::Index n = axis_.rows(), columns = jacobian.cols();
   // A bin without measure (beyond the horizon) has no weight in residuals either.
   const Eigen::VectorXd over = root_.unaryExpr([](double r) { return r > 0.0 ? 1.0 / r : 0.0; });
-  const Rows density = over.asDiagonal() * jacobian;
+  const RowMajorMatrix density = over.asDiagonal() * jacobian;
   // Bins are rows of v, in them u, in them parameters: v all at once, then u row by row.
-  const Eigen::Map<const Rows> by_v(density.data(), n, n * columns);
-  const Rows across = axis_ * by_v;
-  Rows both(n * n, columns);
+  const Eigen::Map<const RowMajorMatrix> by_v(density.data(), n, n * columns);
+  const RowMajorMatrix across = axis_ * by_v;
+  RowMajorMatrix both(n * n, columns);
   for (Eigen::Index j = 0; j < n; ++j) {
-    const Eigen::Map<const Rows> row(across.data() + j * n * columns, n, columns);
+    const Eigen::Map<const RowMajorMatrix> row(across.data() + j * n * columns, n, columns);
     both.middleRows(j * n, n) = axis_ * row;
   }
   return root_.asDiagonal() * both;

@@ -20,7 +20,7 @@ constexpr double kHeightMargin_mm = 0.02, kSlopeMargin = 0.01, kCurvatureMargin 
 /// How many margins inside a limit on heights its cost begins: what a surface may rise between two places.
 constexpr double kInside = 2.0;
 /// Places looked at in a knot interval: as a cost beside the light, and where a limit itself must be held.
-constexpr int kCoarse = 4, kFine = 12;
+constexpr int kCoarsePlaces = 4, kFinePlaces = 12;
 /// Gauss-Newton steps on the limits alone; hinges settle in a few dozen.
 constexpr int kMostSteps = 200;
 
@@ -175,7 +175,7 @@ std::vector<const ShapeLimits::Limit*> ShapeLimits::all() const {
 }
 
 double ShapeLimits::cost(const DesignShape& shape, ResidualRows* rows) const {
-  return cost(shape, all(), kCoarse, rows);
+  return cost(shape, all(), kCoarsePlaces, rows);
 }
 
 double ShapeLimits::cost(const DesignShape& shape, std::span<const Limit* const> limits, int per_interval,
@@ -238,7 +238,7 @@ double ShapeLimits::cost(const DesignShape& shape, std::span<const Limit* const>
 bool ShapeLimits::held(const DesignShape& shape) const { return held(shape, all()); }
 
 bool ShapeLimits::held(const DesignShape& shape, std::span<const Limit* const> limits) const {
-  const std::vector<Place> look = places<Place>(shape, kFine);
+  const std::vector<Place> look = places<Place>(shape, kFinePlaces);
   for (const Limit* limit : limits) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Place& p : look) {
@@ -318,7 +318,9 @@ constexpr std::size_t kManyParameters = 400;
 
 std::optional<DesignShape> ShapeLimits::solve(const DesignShape& shape,
                                               std::span<const Limit* const> limits) const {
-  const auto excess = [&](const DesignShape& s, ResidualRows* rows) { return cost(s, limits, kFine, rows); };
+  const auto excess = [&](const DesignShape& s, ResidualRows* rows) {
+    return cost(s, limits, kFinePlaces, rows);
+  };
   const DesignShape now = shape.parameter_count() > kManyParameters
                               ? minimised<SparseEquations>(shape, excess)
                               : minimised<NormalEquations>(shape, excess);

@@ -21,7 +21,7 @@ namespace {
 using test::TempDir;
 using testing::HasSubstr;
 
-Eigen::VectorXd random_parameters(std::size_t n, double size_mm, std::uint64_t seed) {
+Eigen::VectorXd random_move(std::size_t n, double size_mm, std::uint64_t seed) {
   Eigen::VectorXd p(static_cast<Eigen::Index>(n));
   Rng rng(seed, 0);
   for (double& x : p) x = size_mm * (2.0 * rng.uniform() - 1.0);
@@ -30,7 +30,7 @@ Eigen::VectorXd random_parameters(std::size_t n, double size_mm, std::uint64_t s
 
 std::vector<DesignShape> wild_shapes() {
   const auto wild = [](const DesignShape& s, std::uint64_t seed) {
-    return s.with(random_parameters(s.parameter_count(), 0.5, seed));
+    return s.with(random_move(s.parameter_count(), 0.5, seed));
   };
   return {wild(DesignShape::revolution(12, Aperture::circle(80, 10), 8), 1),
           wild(DesignShape::bspline(12, Aperture::circle(80), 5, 5), 2),
@@ -205,7 +205,7 @@ TEST(KeepOut, ColumnsHoldAThickenedZone) {
 }
 
 /// A disk that shines at a mirror.
-DesignRays rays(double focal_mm) {
+DesignRays rays_at(double focal_mm) {
   EmitterOptions options;
   options.kind = EmitterKind::disk;
   PlacedSource source{make_emitter(options), Frame({1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {0, 0, focal_mm}), {}};
@@ -215,7 +215,7 @@ DesignRays rays(double focal_mm) {
 }
 
 TEST(LightLimits, GlareDerivativesAgreeWithCentralDifferences) {
-  DesignRays light = rays(12);
+  DesignRays light = rays_at(12);
   DesignLimits limits;
   limits.glare = GlareLimit{8.0, 0.05, ""};
   const LightLimits cost(limits, Reflectance(0.9));
@@ -238,7 +238,7 @@ TEST(LightLimits, GlareDerivativesAgreeWithCentralDifferences) {
 }
 
 TEST(LightLimits, EfficiencyBeyondTheReflectanceIsRefused) {
-  DesignRays light = rays(12);
+  DesignRays light = rays_at(12);
   const DesignShape shape = DesignShape::bspline(12, Aperture::circle(80), 4, 4);
   DesignLimits limits;
   limits.min_efficiency = 0.95;

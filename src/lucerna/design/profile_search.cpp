@@ -32,10 +32,10 @@ struct Round {
   int shapes;
   std::uint64_t rays;
 };
-constexpr std::array<Round, 2> kRounds{{{8, 1 << 20}, {3, 1 << 22}}};
+constexpr std::array<Round, 2> kSearchRounds{{{8, 1 << 20}, {3, 1 << 22}}};
 static_assert([] {
   int all = 0;
-  for (const Round& r : kRounds) all += r.shapes;
+  for (const Round& r : kSearchRounds) all += r.shapes;
   return all;
 }() == kProfileEvaluations);
 /// Shapes that are traced between two looks at the clock.
@@ -43,7 +43,7 @@ constexpr std::size_t kBatch = 4;
 /// Beyond so far (over the radius) what a trace showed beside the table counts by half.
 constexpr double kTrust = 0.02;
 /// Longest change of a height in one step, over the radius.
-constexpr double kLongestStep = 0.05;
+constexpr double kLongestMove = 0.05;
 /// Damping beyond which there is no step to be had.
 constexpr double kMaxLambda = 1e12;
 
@@ -110,7 +110,7 @@ class Search {
 
   /// Traces some candidates, from `first` on. Returns their number.
   std::size_t trace(const std::vector<Candidate>& candidates, int round, std::size_t first) {
-    const auto& [shapes, rays] = kRounds[static_cast<std::size_t>(round)];
+    const auto& [shapes, rays] = kSearchRounds[static_cast<std::size_t>(round)];
     const std::size_t last = std::min({candidates.size(), static_cast<std::size_t>(shapes), first + kBatch});
     const std::size_t n = last - first;
     EvaluationOptions options;
@@ -199,7 +199,7 @@ class Search {
     int slow = 0;
     for (int step = 0; step < most_steps && slow < 3 && lambda < 1e4; ++step) {
       Eigen::VectorXd move = damped_step(now, lambda);
-      while (!(move.cwiseAbs().maxCoeff() <= kLongestStep * radius_mm_) && lambda < kMaxLambda) {
+      while (!(move.cwiseAbs().maxCoeff() <= kLongestMove * radius_mm_) && lambda < kMaxLambda) {
         lambda *= 4.0;
         move = damped_step(now, lambda);
       }
@@ -263,14 +263,14 @@ std::vector<FitStart> profile_search(const FitProblem& problem, const DesignShap
   Search search(problem, shape, rays);
   std::vector<Candidate> candidates = search.first();
   whole = true;
-  for (int round = 0; round < static_cast<int>(kRounds.size()) && whole; ++round) {
+  for (int round = 0; round < static_cast<int>(kSearchRounds.size()) && whole; ++round) {
     const auto r = static_cast<std::size_t>(round);
     candidates = search.hop(std::move(candidates));
     for (std::size_t at = 0; whole;) {
       const std::size_t n = search.trace(candidates, round, at);
       if (n == 0) break;
       at += n;
-      whole = watch(search.progress(std::min(rays, kRounds[r].rays)));
+      whole = watch(search.progress(std::min(rays, kSearchRounds[r].rays)));
     }
   }
   std::vector<FitStart> starts;

@@ -13,14 +13,14 @@
 namespace lucerna {
 namespace {
 
-constexpr std::uint64_t kRays = std::uint64_t{1} << 15, kMany = std::uint64_t{1} << 18;
+constexpr std::uint64_t kProfileRays = std::uint64_t{1} << 15, kMany = std::uint64_t{1} << 18;
 
 /// A Lambertian cylinder in a mirror of revolution, 100 mm wide; light that passes the mirror left out.
 struct Lamp {
   Lamp()
       : rays({{make_emitter(emitter()), Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 15}), {}}}, Frame(),
              3) {
-    rays.grow(kRays);
+    rays.grow(kProfileRays);
   }
   static EmitterOptions emitter() {
     EmitterOptions options;
@@ -34,7 +34,7 @@ struct Lamp {
     for (double& x : p) x = size_mm * (2.0 * rng.uniform() - 1.0);
     return plain.with(p);
   }
-  Evaluation traced(const DesignShape& shape, std::uint64_t count = kRays) const {
+  Evaluation traced(const DesignShape& shape, std::uint64_t count = kProfileRays) const {
     EvaluationOptions options;
     options.rays = count;
     options.direct_light = false;
@@ -47,7 +47,7 @@ struct Lamp {
   TentBins bins = TentBins::rings(Frame(), 0.35, 48);
 };
 
-ZoneTable table_of(const Lamp& lamp, std::uint64_t count = kRays) {
+ZoneTable table_of(const Lamp& lamp, std::uint64_t count = kProfileRays) {
   return {Lamp::shaken(0.0, 1), lamp.mirror, lamp.rays, count, lamp.bins, 4.0, Eigen::VectorXd::Zero(48)};
 }
 
@@ -103,7 +103,7 @@ TEST(ProfileSearch, FindsAHiddenMirrorsLightForAnyNumberOfThreads) {
   const auto searched = [&](int batches, bool& whole) {
     int batch = 0;
     return profile_search(
-        problem, plain, kRays, [&](const ProfileProgress&) { return ++batch < batches; }, whole);
+        problem, plain, kProfileRays, [&](const ProfileProgress&) { return ++batch < batches; }, whole);
   };
   bool whole = false;
   std::vector<FitStart> two, one;

@@ -12,9 +12,6 @@ namespace lucerna {
 
 namespace {
 
-/// Shares that are this close to a bound are not called impossible: the curve is known to a few percent.
-constexpr double kSlack = 1.05;
-
 /// Bins in the order of falling intensity; dark ones left out.
 std::vector<std::size_t> brightest_first(const TentBins& bins, const Eigen::VectorXd& target) {
   const auto intensity = [&](std::size_t i) {
@@ -61,7 +58,7 @@ std::vector<std::string> etendue_statements(const Reach& reach, TargetMode mode,
         reach.opening_mm2, reach.etendue_mm2sr, reach.needed_mm2sr, 100.0 * reach.most_share, what,
         100.0 * share));
   };
-  const double most = kSlack * reach.most_share;
+  const double most = kEtendueSlack * reach.most_share;
   if (reach.wanted_share > most && reach.wanted_share <= 1.0) {
     forbids("the target asks for", reach.wanted_share);
   }

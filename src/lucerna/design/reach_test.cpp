@@ -12,8 +12,6 @@
 namespace lucerna {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 DesignRays emitter_rays(EmitterKind kind) {
   EmitterOptions options;
   options.kind = kind;
@@ -24,7 +22,7 @@ DesignRays emitter_rays(EmitterKind kind) {
 }
 
 /// `share` of the flux, evenly within `half_deg` of the axis.
-Eigen::VectorXd spot(const TentBins& bins, double half_deg, double share) {
+Eigen::VectorXd spot_in(const TentBins& bins, double half_deg, double share) {
   const std::vector<double> flux = bins.flux_of(
       [&](const Direction& d) { return degrees(angle_between(d, Direction())) < half_deg ? 1.0 : 0.0; });
   const Eigen::VectorXd f =
@@ -39,7 +37,7 @@ Reach reach_of(double half_deg, double share, TargetMode mode, double efficiency
   const TentBins bins = TentBins::rings(Frame(), 1.5 * radians(half_deg), 48);
   const DesignRays rays = emitter_rays(kind);
   SourceEtendue etendue(rays);
-  return target_reach(rays, etendue, shape, bins, spot(bins, half_deg, share), mode, efficiency);
+  return target_reach(rays, etendue, shape, bins, spot_in(bins, half_deg, share), mode, efficiency);
 }
 
 TEST(Reach, BoundsTheShareByTheEtendue) {
@@ -48,7 +46,7 @@ TEST(Reach, BoundsTheShareByTheEtendue) {
     const Reach r = reach_of(half_deg, 0.5, TargetMode::absolute);
     const double expected = 101.0 * std::pow(std::sin(radians(half_deg)), 2);
     EXPECT_NEAR(r.most_share, expected, 0.12 * expected) << half_deg;
-    EXPECT_NEAR(r.opening_mm2, 101.0 * kPi, 0.05 * 101.0 * kPi);
+    EXPECT_NEAR(r.opening_mm2, 101.0 * std::numbers::pi, 0.05 * 101.0 * std::numbers::pi);
   }
   EXPECT_DOUBLE_EQ(reach_of(12.0, 0.9, TargetMode::absolute).most_share, 1.0);
 }

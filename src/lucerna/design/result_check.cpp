@@ -19,9 +19,9 @@ namespace lucerna {
 namespace {
 
 /// Rays that limits on light are checked with, and that the start is validated with, at most.
-constexpr std::uint64_t kLimitRays = std::uint64_t{1} << 20, kStartRays = std::uint64_t{1} << 20;
+constexpr std::uint64_t kLimitRays = std::uint64_t{1} << 20, kStartCheckRays = std::uint64_t{1} << 20;
 /// Of the mesh where few rays are traced: a finer one would cost more than the rays.
-constexpr CadTolerance kCoarse{.chord_mm = 0.01, .slope_deg = 0.5};
+constexpr CadTolerance kCoarseMesh{.chord_mm = 0.01, .slope_deg = 0.5};
 
 /// All limits that are set, against the exported mesh and fresh light.
 std::vector<LimitCheck> checked_limits(const DesignProblem& problem, const DesignShape& shape,
@@ -65,7 +65,7 @@ void validate_result(const DesignProblem& problem, const DesignOptions& options,
   o.max_rays = max_rays;
   o.max_s = max_s;
   o.zones = problem.target.zones.get();
-  if (max_rays < kStartRays) o.tolerance = kCoarse;
+  if (max_rays < kStartCheckRays) o.tolerance = kCoarseMesh;
   const Validation v = validated(problem, result.shape, boxes, target, o, progress);
   result.error = v.error;
   result.zones = v.zones;
@@ -75,7 +75,7 @@ void validate_result(const DesignProblem& problem, const DesignOptions& options,
   result.bodies = v.bodies;
   result.lost = v.lost;
   result.validation_s = v.seconds;
-  o.max_rays = std::min(max_rays, kStartRays);
+  o.max_rays = std::min(max_rays, kStartCheckRays);
   o.min_rays = o.max_rays / 8;
   const Validation start = validated(problem, problem.start, boxes, target, o, progress);
   result.start_error = start.error;

@@ -13,7 +13,7 @@ NormalEquations nothing(const DesignShape& shape) {
   return {0.0, Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
 }
 
-DesignShape shaken(const DesignShape& shape) {
+DesignShape rough_shape(const DesignShape& shape) {
   Eigen::VectorXd p = shape.parameters();
   Rng rng(3, 0);
   for (double& x : p) x += rng.uniform();
@@ -28,7 +28,7 @@ TEST(Roughness, ParaboloidsAreSmoothAndShakenShapesAreNot) {
     const DesignShape wider =
         shape.through([&](double x, double y) { return shape.at(x, y).z_mm + 0.01 * (x * x + y * y); });
     EXPECT_NEAR(roughness(wider, 1.0, 1.0, nullptr), 0.0, 1e-18);
-    EXPECT_GT(roughness(shaken(shape), 1.0, 1.0, nullptr), 1e-3);
+    EXPECT_GT(roughness(rough_shape(shape), 1.0, 1.0, nullptr), 1e-3);
   }
 }
 
@@ -46,7 +46,8 @@ TEST(Roughness, CountsLessNearTheAxis) {
 
 /// It is quadratic in the parameters: gradient and Hessian give its values exactly.
 TEST(Roughness, GradientAndHessianAreThoseOfTheCost) {
-  const DesignShape shape = shaken(DesignShape::bspline(10, Aperture::circle(40), 4, 4, ShapeSymmetry::both));
+  const DesignShape shape =
+      rough_shape(DesignShape::bspline(10, Aperture::circle(40), 4, 4, ShapeSymmetry::both));
   NormalEquations equations = nothing(shape);
   ResidualRows rows;
   const double here = roughness(shape, 0.5, 0.1, &rows);

@@ -17,7 +17,7 @@ namespace {
 /// Cells of a parameter's range at a node; they overlap by half, so that no good place lies on a border.
 constexpr int kCells = 3;
 /// Levels of the tree: ranges are 1, 1/2, 1/4 and 1/8 of the box.
-constexpr int kLevels = 4;
+constexpr int kTreeLevels = 4;
 /// Branches that go down at once.
 constexpr std::size_t kBranches = 4;
 /// Evaluations that a local search may take, in sweeps over all parameters.
@@ -117,7 +117,7 @@ void search_tree(GlobalSearchRun& run) {
     Rng rng(run.seed(), round, 0x74726565);
     std::vector<Branch> branches(kBranches);
     for (Branch& b : branches) b.path = {&root};
-    for (int level = 0; level < kLevels && !run.spent(); ++level) {
+    for (int level = 0; level < kTreeLevels && !run.spent(); ++level) {
       std::vector<Eigen::VectorXd> points;
       for (Branch& b : branches) {
         if (level > 0) b.path.push_back(&b.path.back()->child(b.path.back()->choose(rng)));

@@ -6,10 +6,12 @@
 namespace lucerna {
 
 namespace {
-constexpr std::uint64_t kRays = std::uint64_t{1} << 18;
-}
 
-SourceEtendue::SourceEtendue(const DesignRays& rays) : rays_(rays.first(kRays)) {
+constexpr std::uint64_t kCurveRays = std::uint64_t{1} << 18;
+
+}  // namespace
+
+SourceEtendue::SourceEtendue(const DesignRays& rays) : rays_(rays.first(kCurveRays)) {
   if (rays.sources().size() == 1) model_ = dynamic_cast<const SourceModel*>(rays.sources()[0].rays.get());
 }
 

@@ -12,7 +12,7 @@
 namespace lucerna {
 namespace {
 
-struct Scene {
+struct SparseScene {
   DesignRays rays;
   DesignShape shape;
   TentBins bins;
@@ -26,7 +26,7 @@ DesignShape bumpy(ShapeSymmetry symmetry) {
   return plain.with(p);
 }
 
-Scene scene(ShapeSymmetry symmetry = ShapeSymmetry::none) {
+SparseScene scene(ShapeSymmetry symmetry = ShapeSymmetry::none) {
   EmitterOptions options;
   options.kind = EmitterKind::cylinder;
   PlacedSource source{make_emitter(options), Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 15}), {}};
@@ -36,7 +36,7 @@ Scene scene(ShapeSymmetry symmetry = ShapeSymmetry::none) {
           graded_bins({Frame(), false, -0.3, 0.4, -0.2, 0.2}, Frame(), 32, 1.25, 4)};
 }
 
-Evaluation evaluated(const Scene& s, bool sparse) {
+Evaluation evaluated(const SparseScene& s, bool sparse) {
   EvaluationOptions options;
   options.rays = 1 << 16;
   options.sparse = sparse;
@@ -46,7 +46,7 @@ Evaluation evaluated(const Scene& s, bool sparse) {
 
 TEST(SparseJacobian, IsTheDenseOne) {
   for (const ShapeSymmetry symmetry : {ShapeSymmetry::none, ShapeSymmetry::both}) {
-    const Scene s = scene(symmetry);
+    const SparseScene s = scene(symmetry);
     const Evaluation dense = evaluated(s, false), sparse = evaluated(s, true);
     EXPECT_EQ(sparse.jacobian.size(), 0);
     ASSERT_EQ(sparse.rows.cols(), dense.jacobian.cols());
@@ -58,7 +58,7 @@ TEST(SparseJacobian, IsTheDenseOne) {
 }
 
 TEST(SparseJacobian, HasTheSameBitsForAnyNumberOfThreads) {
-  const Scene s = scene();
+  const SparseScene s = scene();
   const Evaluation many = evaluated(s, true);
   const ThreadLimit limit(1);
   const Evaluation one = evaluated(s, true);
@@ -70,7 +70,7 @@ TEST(SparseJacobian, HasTheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST(SparseEquations, AreTheDenseOnesAndTakeTheSameStep) {
-  const Scene s = scene();
+  const SparseScene s = scene();
   const Evaluation dense_light = evaluated(s, false), sparse_light = evaluated(s, true);
   const Eigen::VectorXd target =
       Eigen::Map<const Eigen::VectorXd>(s.bins.measure().data(), static_cast<Eigen::Index>(s.bins.size()));

@@ -63,7 +63,7 @@ BlocksByBin by_bin(const std::vector<SparseSums>& parts, std::size_t bins) {
 }
 
 /// Some rows of the Jacobian.
-struct Rows {
+struct SparseRows {
   std::vector<int> count, column;
   std::vector<double> value;
 };
@@ -79,7 +79,7 @@ SparseJacobian sparse_jacobian(const std::vector<SparseSums>& parts, std::size_t
   const BlocksByBin blocks = by_bin(parts, bins);
 
   const auto rows_of = [&](std::size_t first, std::size_t last) {
-    Rows rows;
+    SparseRows rows;
     std::vector<double> sum(shape.parameter_count(), 0.0);
     std::vector<char> seen(shape.parameter_count(), 0);
     std::vector<int> touched;
@@ -110,14 +110,14 @@ SparseJacobian sparse_jacobian(const std::vector<SparseSums>& parts, std::size_t
     }
     return rows;
   };
-  const std::vector<Rows> all = parallel_map_blocks<Rows>(bins, 256, rows_of);
+  const std::vector<SparseRows> all = parallel_map_blocks<SparseRows>(bins, 256, rows_of);
 
   SparseJacobian j(static_cast<Eigen::Index>(bins), static_cast<Eigen::Index>(shape.parameter_count()));
   std::size_t total = 0;
-  for (const Rows& r : all) total += r.column.size();
+  for (const SparseRows& r : all) total += r.column.size();
   j.resizeNonZeros(static_cast<Eigen::Index>(total));
   int at = 0, row = 0;
-  for (const Rows& r : all) {
+  for (const SparseRows& r : all) {
     std::copy(r.column.begin(), r.column.end(), j.innerIndexPtr() + at);
     std::copy(r.value.begin(), r.value.end(), j.valuePtr() + at);
     for (const int n : r.count) {

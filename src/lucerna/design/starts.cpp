@@ -11,7 +11,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kStartRays = std::uint64_t{1} << 16;
+constexpr std::uint64_t kGuessRays = std::uint64_t{1} << 16;
 
 EvaluationOptions plain_options(const FitProblem& problem, std::uint64_t rays) {
   EvaluationOptions options;
@@ -73,11 +73,11 @@ Direction bin_direction(const TentBins& bins, std::size_t i, const Vec3& from_mm
 }
 
 std::vector<DirectedFlux> wanted_light(const FitProblem& problem, const DesignShape& shape) {
-  problem.rays->grow(kStartRays);
+  problem.rays->grow(kGuessRays);
   const TentBins bins = rebinned(problem.bins, 1.0, problem.bins.is_rings() ? 240 : 16);
   Eigen::VectorXd flux = problem.target(bins);
   if (problem.direct_light) {
-    EvaluationOptions options = plain_options(problem, kStartRays);
+    EvaluationOptions options = plain_options(problem, kGuessRays);
     const Evaluation all = evaluate(shape, problem.reflectance, *problem.rays, bins, options);
     options.direct_light = false;
     const Evaluation mirror = evaluate(shape, problem.reflectance, *problem.rays, bins, options);
@@ -114,9 +114,9 @@ double fit_cost(const FitProblem& problem, const DesignShape& shape, const Evalu
 }
 
 std::vector<FitStart> fit_starts(const FitProblem& problem, const DesignShape& shape, Progress& progress) {
-  problem.rays->grow(kStartRays, progress);
+  problem.rays->grow(kGuessRays, progress);
   progress.update("starts", 0, 0);
-  const PointSource source = point_source(*problem.rays, kStartRays);
+  const PointSource source = point_source(*problem.rays, kGuessRays);
   const double blur = blur_rad(*problem.rays, source, shape);
   std::vector<FitStart> starts{{shape}};
   const std::vector<DirectedFlux> wanted = wanted_light(problem, shape);
@@ -127,7 +127,7 @@ std::vector<FitStart> fit_starts(const FitProblem& problem, const DesignShape& s
   }
   const TentBins bins = rebinned(problem.bins, 1.0, problem.bins.count() / 3);
   const Eigen::VectorXd target = problem.target(bins);
-  for (FitStart& s : starts) s.cost = fit_cost(problem, s.shape, bins, target, kStartRays);
+  for (FitStart& s : starts) s.cost = fit_cost(problem, s.shape, bins, target, kGuessRays);
   std::stable_sort(starts.begin(), starts.end(),
                    [](const FitStart& a, const FitStart& b) { return a.cost < b.cost; });
   return starts;

@@ -13,8 +13,6 @@ namespace lucerna {
 
 namespace {
 
-constexpr double kMm2PerM2 = 1e6;
-
 /// Intensity of a point at `from_mm` that lights the plane as the target wants it: E r^2 / cos.
 IntensityDistribution seen_from(const PlaneTarget& plane, const Vec3& from_mm, FluxUnit unit) {
   IntensityDistribution out = uniform_distribution(2.5, 1.0, unit);

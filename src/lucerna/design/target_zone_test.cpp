@@ -16,7 +16,7 @@ namespace {
 using test::TempDir;
 using testing::HasSubstr;
 
-constexpr const char* kFreeForm = R"(
+constexpr const char* kZoneFreeForm = R"(
 [[source]]
 kind = "disk"
 radius_mm = 1.0
@@ -30,12 +30,12 @@ axis = "-z"
 )";
 
 DesignProblem problem(const TempDir& folder, const std::string& target,
-                      const std::string& scene = kFreeForm) {
+                      const std::string& scene = kZoneFreeForm) {
   write_file(folder / "p.toml", scene + ("[target]\n" + target));
   return design_problem(read_project(folder / "p.toml"), folder / "p.toml");
 }
 
-std::string error_of(const std::string& target, const std::string& scene = kFreeForm) {
+std::string error_of(const std::string& target, const std::string& scene = kZoneFreeForm) {
   const TempDir folder;
   try {
     problem(folder, target, scene);
@@ -45,7 +45,7 @@ std::string error_of(const std::string& target, const std::string& scene = kFree
   return "no error";
 }
 
-constexpr const char* kFloor =
+constexpr const char* kZoneFloor =
     "kind = \"plane\"\nposition_mm = [0, 0, -1500]\nnormal = \"+z\"\nsize_mm = [800, 500]\n";
 
 TEST(TargetZone, ReadsRegionsAndBounds) {
@@ -85,7 +85,7 @@ mean_of = "centre"
 
 TEST(TargetZone, ReadsUniformityOnAPlane) {
   const TempDir folder;
-  const DesignProblem p = problem(folder, std::string(kFloor) + R"([[target.zone]]
+  const DesignProblem p = problem(folder, std::string(kZoneFloor) + R"([[target.zone]]
 name = "lane"
 x_mm = [-300, 300]
 y_mm = 50
@@ -153,16 +153,17 @@ TEST(TargetZone, NamesFaultsOfRegions) {
   EXPECT_THAT(zone("gamma_deg = [1, 2, 3]\nc_deg = 0\n"), HasSubstr("found 3 numbers"));
   EXPECT_THAT(zone("gamma_deg = 10\nc_deg = [-200, 200]\n"), HasSubstr("at most 360"));
   EXPECT_THAT(zone("h_deg = 10\nv_deg = 0\n"), HasSubstr("axis: is missing"));
-  EXPECT_THAT(error_of(std::string(kFloor) + "[[target.zone]]\nx_mm = 0\ny_mm = 0\nmin_lx = 5\n"),
+  EXPECT_THAT(error_of(std::string(kZoneFloor) + "[[target.zone]]\nx_mm = 0\ny_mm = 0\nmin_lx = 5\n"),
               HasSubstr("cell_mm: is missing"));
   EXPECT_THAT(
-      error_of(std::string(kFloor) + "[[target.zone]]\nx_mm = [0, 900]\ny_mm = [0, 10]\nmin_lx = 5\n"),
+      error_of(std::string(kZoneFloor) + "[[target.zone]]\nx_mm = [0, 900]\ny_mm = [0, 10]\nmin_lx = 5\n"),
       HasSubstr("reaches beyond size_mm"));
   EXPECT_THAT(
-      error_of(std::string(kFloor) + "[[target.zone]]\nx_mm = [0, 90]\ny_mm = [0, 10]\nmin_ul = 0.5\n"),
+      error_of(std::string(kZoneFloor) + "[[target.zone]]\nx_mm = [0, 90]\ny_mm = [0, 10]\nmin_ul = 0.5\n"),
       HasSubstr("along a line"));
-  EXPECT_THAT(error_of(std::string(kFloor) + "[[target.zone]]\nx_mm = [0, 90]\ny_mm = [0, 10]\nmin_cd = 5\n"),
-              HasSubstr("belongs to directions"));
+  EXPECT_THAT(
+      error_of(std::string(kZoneFloor) + "[[target.zone]]\nx_mm = [0, 90]\ny_mm = [0, 10]\nmin_cd = 5\n"),
+      HasSubstr("belongs to directions"));
 }
 
 TEST(TargetZone, SaysWhichFamiliesZonesAreDesignedFor) {

@@ -93,10 +93,10 @@ std::vector<double> TentBins::flux_of(const std::function<double(const Direction
       flux[static_cast<std::size_t>(d.bin[k])] += d.weight[k] * value;
     }
   };
-  constexpr int kFine = 8;
+  constexpr int kFineParts = 8;
   if (view_.kind != TentKind::square) {
-    const int fine = is_rings() ? 64 : kFine,
-              around = is_rings() ? 360 : std::max(360, kFine * view_.sectors);
+    const int fine = is_rings() ? 64 : kFineParts,
+              around = is_rings() ? 360 : std::max(360, kFineParts * view_.sectors);
     const double step = view_.cell / fine, turn = 2.0 * std::numbers::pi / around;
     for (int g = 0; g < (view_.count + 1) * fine; ++g) {
       const double gamma = view_.gamma_min + (g + 0.5) * step;
@@ -109,7 +109,7 @@ std::vector<double> TentBins::flux_of(const std::function<double(const Direction
     }
     return flux;
   }
-  over_grid(kFine, [&](double u, double v, double area) {
+  over_grid(kFineParts, [&](double u, double v, double area) {
     const double w2 = 1.0 - u * u - v * v;
     if (w2 <= 0.0) return;
     const double w = std::sqrt(w2);
@@ -135,9 +135,9 @@ void TentBins::over_grid(int fine, const std::function<void(double, double, doub
 std::vector<double> TentBins::flux_on(const std::function<double(double, double)>& density_per_mm2) const {
   LUCERNA_CHECK(view_.kind == TentKind::plane, "a density over directions");
   std::vector<double> flux(static_cast<std::size_t>(view_.count * view_.count), 0.0);
-  constexpr int kFine = 8;
+  constexpr int kFineParts = 8;
   Deposit d;
-  over_grid(kFine, [&](double u, double v, double area) {
+  over_grid(kFineParts, [&](double u, double v, double area) {
     d.n = 0;
     view_.deposit_grid(u, v, d);
     const double value =

@@ -18,13 +18,13 @@ namespace {
 
 /// Cells across the source's light, and the rounds in which what the aperture catches is found.
 constexpr int kSourceCells = 40;
-constexpr int kRounds = 4;
+constexpr int kTransportRounds = 4;
 /// Meridians and places along each where the mirror is put together.
 constexpr int kMeridians = 96, kPlaces = 160;
 /// Beyond the rim the surface is followed so far, over its radius: the spline's edge needs to be held.
 constexpr double kBeyondRim = 1.04;
 /// A mirror that turns back before so much of its radius is none.
-constexpr double kMinReach = 0.85;
+constexpr double kMinRimReach = 0.85;
 /// Weight of a third difference of coefficients against that of a point: nothing where there are points.
 constexpr double kSmoothness = 1e-4;
 
@@ -254,7 +254,7 @@ std::optional<DesignShape> transport_start(const TransportProblem& problem, cons
   const Vec3 vertex{0.0, 0.0, source.z - choice.vertex_distance_mm};
   Catch edges = first_catch(aperture, choice.vertex_distance_mm);
   std::optional<Outline> mirror;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kTransportRounds; ++round) {
     const SplitLight light = split(problem, source, edges);
     const std::vector<DirectedFlux> to = wanted(problem, light, vertex);
     if (light.caught.size() < 16 || to.size() < 4) return std::nullopt;
@@ -264,7 +264,7 @@ std::optional<DesignShape> transport_start(const TransportProblem& problem, cons
     mirror = outline(transport, aperture, source, choice.vertex_distance_mm);
     edges = mirror->edges;
   }
-  if (mirror->reach < kMinReach) return std::nullopt;
+  if (mirror->reach < kMinRimReach) return std::nullopt;
   return fitted_to_points(family, mirror->points);
 }
 

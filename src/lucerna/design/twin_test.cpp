@@ -23,7 +23,7 @@ PlacedSource cylinder() {
   return {make_emitter(options), Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, kSourceZ}), {}};
 }
 
-DesignShape shaken(const DesignShape& shape, double size_mm, std::uint64_t seed) {
+DesignShape shaken_by(const DesignShape& shape, double size_mm, std::uint64_t seed) {
   Eigen::VectorXd p = shape.parameters();
   Rng rng(seed, 0);
   for (double& x : p) x += size_mm * (2.0 * rng.uniform() - 1.0);
@@ -39,7 +39,7 @@ TEST(Twin, IsItsOwnInverseInEveryFamily) {
                                     DesignShape::trough(15, Aperture::rectangle(100, 100), 6),
                                     DesignShape::trough(15, Aperture::rectangle(100, 100), 6, true),
                                     DesignShape::revolution(15, Aperture::circle(100), 8)}) {
-    const DesignShape shape = shaken(family, 1.0, 3), other = twin(shape, kSourceZ);
+    const DesignShape shape = shaken_by(family, 1.0, 3), other = twin(shape, kSourceZ);
     EXPECT_GT((other.parameters() - shape.parameters()).norm(), 0.5);
     EXPECT_LT((twin(other, kSourceZ).parameters() - shape.parameters()).norm(), 1e-6);
   }
@@ -65,7 +65,7 @@ TEST(Twin, ThrowsNearlyTheSameLight) {
   rays.grow(1 << 15);
   const TentBins bins = TentBins::square(Frame(), 0.15, 24);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const DesignShape shape = shaken(square(), 2.0, seed);
+    const DesignShape shape = shaken_by(square(), 2.0, seed);
     const Eigen::VectorXd own = light(shape, rays, bins).flux;
     const auto off = [&](const DesignShape& s) {
       return bin_error(light(s, rays, bins), own, bins, TargetMode::absolute).relative_rms;
@@ -79,7 +79,7 @@ TEST(Twin, ThrowsNearlyTheSameLight) {
 
 /// A fit that begins in the basin of the hidden mirror's twin finds out.
 TEST(TwinSlow, IsWhereAFitLooksForABetterBasin) {
-  const DesignShape truth = shaken(square(), 2.0, 9);
+  const DesignShape truth = shaken_by(square(), 2.0, 9);
   const TentBins bins = TentBins::square(Frame(), 0.143, 48), coarse = rebinned(bins, 1.0, 24);
   DesignRays known({cylinder()}, Frame(), 1000), rays({cylinder()}, Frame(), 5);
   known.grow(1 << 19);

@@ -19,7 +19,7 @@ namespace {
 constexpr double kHeight = 12.0;
 
 /// A disk of light that shines up into a deep free form with a hole, which throws it down.
-Scene scene(double bump_mm = 1.0) {
+Scene bumpy_scene(double bump_mm = 1.0) {
   EmitterOptions emitter;
   emitter.kind = EmitterKind::disk;
   Scene s;
@@ -82,8 +82,8 @@ TEST(ValidationStatistical, SeesTheLightOfTheLibrarysOwnTracer) {
   constexpr std::uint64_t kRays = 1 << 20;
   ValidationOptions fine = rays(kRays);
   fine.tolerance.slope_deg = 0.3;
-  const Validation v = validate(scene(), b, lambert(b), TargetMode::shape, fine);
-  const auto own = traced(scene(), b, kRays);
+  const Validation v = validate(bumpy_scene(), b, lambert(b), TargetMode::shape, fine);
+  const auto own = traced(bumpy_scene(), b, kRays);
   // The tracer's mean as target: what is left is the noise of both. |v - own|^2 less both noises has a
   // relative scatter of sqrt(2 / cells); half as much more is granted, as errors of a net in neighbours hang
   // together. False alarm 1e-6.
@@ -109,17 +109,17 @@ TEST(ValidationStatistical, FindsAMirrorThatIsNotTheOneThatWasAskedFor) {
   const ErrorBoxes b = boxes();
   constexpr std::uint64_t kRays = 1 << 19;
   std::vector<double> target(b.size(), 0.0);
-  for (const BoxSums& r : traced(scene(), b, kRays)) {
+  for (const BoxSums& r : traced(bumpy_scene(), b, kRays)) {
     for (std::size_t c = 0; c < b.size(); ++c) target[c] += r.flux[c] / r.emitted / kReplicates;
   }
-  const Validation v = validate(scene(1.1), b, target, TargetMode::shape, rays(kRays));
+  const Validation v = validate(bumpy_scene(1.1), b, target, TargetMode::shape, rays(kRays));
   EXPECT_GT(v.error.c12.excess, 0.02);
   EXPECT_GT(v.error.c12.excess, 5.0 * v.error.c12.standard_error);
 }
 
 TEST(Validation, LosesNoLight) {
   const ErrorBoxes b = boxes();
-  const Validation v = validate(scene(), b, lambert(b), TargetMode::shape, rays(1 << 17));
+  const Validation v = validate(bumpy_scene(), b, lambert(b), TargetMode::shape, rays(1 << 17));
   EXPECT_NEAR(v.efficiency.mean + v.absorbed.mean + v.back.mean + v.bodies.mean + v.lost.mean, 1.0, 1e-9);
   EXPECT_NEAR(v.error.in_rectangle.mean + v.error.outside_share.mean, v.efficiency.mean, 1e-9);
   EXPECT_LE(v.error.outside_direct.mean, v.error.outside_share.mean);
@@ -136,9 +136,9 @@ TEST(Validation, OwnTreeAndEmbreeAgree) {
   ValidationOptions options = rays(1 << 16);
   options.tolerance.slope_deg = 1.0;
   options.engine = HitEngine::embree;
-  const Validation a = validate(scene(), b, lambert(b), TargetMode::shape, options);
+  const Validation a = validate(bumpy_scene(), b, lambert(b), TargetMode::shape, options);
   options.engine = HitEngine::tree;
-  const Validation t = validate(scene(), b, lambert(b), TargetMode::shape, options);
+  const Validation t = validate(bumpy_scene(), b, lambert(b), TargetMode::shape, options);
   EXPECT_TRUE(a.embree);
   EXPECT_FALSE(t.embree);
   // The same rays: only those that pass an edge within rounding may differ.
@@ -151,7 +151,7 @@ TEST(Validation, IsTheSameForAnyNumberOfThreads) {
   const ErrorBoxes b = boxes();
   const auto run = [&](int threads) {
     const ThreadLimit limit(threads);
-    return validate(scene(), b, lambert(b), TargetMode::shape, rays(1 << 16));
+    return validate(bumpy_scene(), b, lambert(b), TargetMode::shape, rays(1 << 16));
   };
   const Validation one = run(1), three = run(3);
   EXPECT_EQ(one.error.c48.value, three.error.c48.value);
@@ -163,7 +163,7 @@ TEST(Validation, IsTheSameForAnyNumberOfThreads) {
 
 TEST(ValidationStatistical, DirectLightOfALambertianSourceHasItsIntensity) {
   // Turned away from the mirror, the disk's light is the target exactly.
-  Scene s = scene();
+  Scene s = bumpy_scene();
   s.sources[0].world_from_source = Frame::from_axis(Direction::from_unit({0, 0, -1}), 0.0, {0, 0, -20});
   const ErrorBoxes b = boxes();
   const Validation v = validate(s, b, lambert(b), TargetMode::shape, rays(1 << 20));
@@ -177,8 +177,8 @@ TEST(ValidationStatistical, DirectLightOfALambertianSourceHasItsIntensity) {
 
 TEST(Validation, BodiesShadeAndSlopeErrorsSpread) {
   const ErrorBoxes b = boxes();
-  const Validation plain = validate(scene(), b, lambert(b), TargetMode::shape, rays(1 << 16));
-  Scene shaded = scene();
+  const Validation plain = validate(bumpy_scene(), b, lambert(b), TargetMode::shape, rays(1 << 16));
+  Scene shaded = bumpy_scene();
   auto mesh = std::make_shared<Mesh>();
   mesh->vertices_mm = {{-5, -5, -3}, {5, -5, -3}, {5, 5, -3}, {-5, 5, -3}};
   mesh->triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -191,7 +191,7 @@ TEST(Validation, BodiesShadeAndSlopeErrorsSpread) {
   shaded.bodies[0].only_returning_light = true;
   shaded.bodies[0].reflectance = Reflectance(1.0);
   EXPECT_EQ(validate(shaded, b, lambert(b), TargetMode::shape, rays(1 << 14)).bodies.mean, 0.0);
-  Scene rough = scene();
+  Scene rough = bumpy_scene();
   rough.reflectors[0].slope_error_mrad = 50.0;
   const Validation spread = validate(rough, b, lambert(b), TargetMode::shape, rays(1 << 16));
   EXPECT_NE(spread.error.c12.value, plain.error.c12.value);
@@ -199,10 +199,10 @@ TEST(Validation, BodiesShadeAndSlopeErrorsSpread) {
 
 TEST(Validation, RefusesScenesThatItCannotTrace) {
   const ErrorBoxes b = boxes();
-  Scene none = scene();
+  Scene none = bumpy_scene();
   none.sources.clear();
   EXPECT_THROW(validate(none, b, lambert(b), TargetMode::shape, rays(1 << 14)), InputError);
-  Scene glass = scene();
+  Scene glass = bumpy_scene();
   glass.glasses.emplace_back();
   EXPECT_THROW(validate(glass, b, lambert(b), TargetMode::shape, rays(1 << 14)), InputError);
 }

@@ -13,7 +13,7 @@
 namespace lucerna {
 namespace {
 
-constexpr std::uint64_t kRays = 1 << 16;
+constexpr std::uint64_t kPointRays = 1 << 16;
 constexpr double kFocal_mm = 15.0;
 
 DesignRays rays_of(EmitterKind kind) {
@@ -21,13 +21,13 @@ DesignRays rays_of(EmitterKind kind) {
   options.kind = kind;
   DesignRays rays({{make_emitter(options), Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, kFocal_mm}), {}}},
                   Frame(), 3);
-  rays.grow(kRays);
+  rays.grow(kPointRays);
   return rays;
 }
 
-EvaluationOptions reflected() {
+EvaluationOptions reflected_point() {
   EvaluationOptions options;
-  options.rays = kRays;
+  options.rays = kPointRays;
   options.derivatives = false;
   options.direct_light = false;
   return options;
@@ -38,7 +38,7 @@ double least_error(const std::vector<DesignShape>& shapes, const DesignRays& ray
                    const Eigen::VectorXd& target) {
   double least = 1e9;
   for (const DesignShape& s : shapes) {
-    const Evaluation e = evaluate(s, Reflectance(1.0), rays, bins, reflected());
+    const Evaluation e = evaluate(s, Reflectance(1.0), rays, bins, reflected_point());
     least = std::min(least, bin_error(e, target, bins, TargetMode::shape).relative_rms);
   }
   return least;
@@ -60,7 +60,7 @@ std::vector<DirectedFlux> cells(double half_u, double half_v, int count) {
 TEST(ZeroEtendue, FindsThePointThatRaysComeFrom) {
   for (const EmitterKind kind : {EmitterKind::point, EmitterKind::cylinder, EmitterKind::sphere}) {
     const DesignRays rays = rays_of(kind);
-    const PointSource source = point_source(rays, kRays);
+    const PointSource source = point_source(rays, kPointRays);
     EXPECT_LT(length(source.at_mm - Vec3{0, 0, kFocal_mm}), 0.02);
     double flux = 0.0;
     for (const DirectedFlux& l : source.light) flux += l.flux;
@@ -85,7 +85,8 @@ TEST(ZeroEtendue, APointSourceGivesAnyRotationalBeam) {
   }
   const std::vector<double> flux = bins.flux_of(intensity);
   const Eigen::VectorXd target = Eigen::Map<const Eigen::VectorXd>(flux.data(), bins.count());
-  const std::vector<DesignShape> shapes = zero_etendue_shapes(plain, point_source(rays, kRays), wanted, 0.0);
+  const std::vector<DesignShape> shapes =
+      zero_etendue_shapes(plain, point_source(rays, kPointRays), wanted, 0.0);
   ASSERT_GE(shapes.size(), 2u);
   EXPECT_LT(least_error(shapes, rays, bins, target), 0.06);
   EXPECT_GT(least_error({plain}, rays, bins, target), 0.9);
@@ -101,7 +102,8 @@ TEST(ZeroEtendue, ParaboloidsMakeARectangleOfLight) {
       [](const Direction& d) { return std::abs(d.x()) < 0.4 && std::abs(d.y()) < 0.2 ? 1.0 : 0.0; });
   const Eigen::VectorXd target =
       Eigen::Map<const Eigen::VectorXd>(flux.data(), static_cast<Eigen::Index>(flux.size()));
-  const std::vector<DesignShape> shapes = zero_etendue_shapes(plain, point_source(rays, kRays), wanted, 0.05);
+  const std::vector<DesignShape> shapes =
+      zero_etendue_shapes(plain, point_source(rays, kPointRays), wanted, 0.05);
   ASSERT_GE(shapes.size(), 1u);
   EXPECT_LT(least_error(shapes, rays, bins, target), 0.35);
   EXPECT_GT(least_error({plain}, rays, bins, target), 0.8);
@@ -115,7 +117,7 @@ TEST(ZeroEtendue, ATroughSpreadsTheLightOfALine) {
   options.length_mm = 60;
   DesignRays rays({{make_emitter(options), Frame({1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {0, 0, kFocal_mm}), {}}},
                   Frame(), 3);
-  rays.grow(kRays);
+  rays.grow(kPointRays);
   const DesignShape plain = DesignShape::trough(kFocal_mm, Aperture::rectangle(80, 200), 16);
   const auto across = [](const Direction& d) { return std::atan2(d.x(), d.z()); };
   // Twice as much light to one side as to the other, within 25 degrees.
@@ -124,13 +126,14 @@ TEST(ZeroEtendue, ATroughSpreadsTheLightOfALine) {
     const double gamma = radians(25.0) * ((i + 0.5) / 250.0 - 1.0);
     wanted.push_back({Direction::from_unit({std::sin(gamma), 0, std::cos(gamma)}), gamma > 0.0 ? 2.0 : 1.0});
   }
-  const std::vector<DesignShape> shapes = zero_etendue_shapes(plain, point_source(rays, kRays), wanted, 0.0);
+  const std::vector<DesignShape> shapes =
+      zero_etendue_shapes(plain, point_source(rays, kPointRays), wanted, 0.0);
   ASSERT_GE(shapes.size(), 1u);
   const auto shares = [&](const DesignShape& s) {  // of the reflected light in bins of the angle across
     const SmoothTracer<BsplineView> tracer(std::get<BsplineShape>(s.family()).view(), s.aperture());
     Path<BsplineView> path;
     Eigen::VectorXd share = Eigen::VectorXd::Zero(12);
-    for (std::uint64_t b = 0; b < kRays / kBlockRays; ++b) {
+    for (std::uint64_t b = 0; b < kPointRays / kBlockRays; ++b) {
       const DesignRays::Block& block = rays.block(b);
       for (std::size_t k = 0; k < kBlockRays; ++k) {
         tracer.trace({block.x_mm[k], block.y_mm[k], block.z_mm[k]}, {block.kx[k], block.ky[k], block.kz[k]},
@@ -154,7 +157,7 @@ TEST(ZeroEtendue, ATroughSpreadsTheLightOfALine) {
 TEST(ZeroEtendue, NoLightAndNoRoomGiveNoShapes) {
   const DesignRays rays = rays_of(EmitterKind::point);
   const DesignShape plain = DesignShape::revolution(kFocal_mm, Aperture::circle(100), 8);
-  PointSource source = point_source(rays, kRays);
+  PointSource source = point_source(rays, kPointRays);
   EXPECT_TRUE(zero_etendue_shapes(plain, source, {}, 0.0).empty());
   source.at_mm.z = -5.0;  // behind the mirror
   EXPECT_TRUE(zero_etendue_shapes(plain, source, cells(0.3, 0.3, 8), 0.0).empty());

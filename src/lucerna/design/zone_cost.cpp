@@ -12,11 +12,11 @@ namespace lucerna {
 namespace {
 
 /// Of a bound: the margin without noise, with all noise, and of a narrow band (share of its half width).
-constexpr double kMargin = 0.02, kMaxMargin = 0.15, kBandShare = 0.4;
+constexpr double kZoneMargin = 0.02, kMaxMargin = 0.15, kBandShare = 0.4;
 /// Light of a zone whose bounds do not say how much there is, as a share of the sources'.
 constexpr double kUsualShare = 0.2;
 /// Places across a cell where the bins are looked at.
-constexpr int kPlaces = 4;
+constexpr int kCellPlaces = 4;
 /// By level of a search: bounds, and a guide.
 constexpr std::array<ZoneStage, 4> kStages{{{0.02, 1.0}, {0.1, 0.3}, {1.0, 0.05}, {3.0, 0.02}}};
 
@@ -41,11 +41,11 @@ ZoneCost::ZoneCost(const ZoneBands& bands, const TentBins& bins, std::uint64_t r
       rays_(rays),
       seen_(bands.cells->size(), 1) {
   std::vector<Eigen::Triplet<double>> entries;
-  const double per = cells_->unit() * source_flux_ / (kPlaces * kPlaces);
+  const double per = cells_->unit() * source_flux_ / (kCellPlaces * kCellPlaces);
   for (std::size_t c = 0; c < cells_->size(); ++c) {
-    for (int i = 0; i < kPlaces * kPlaces; ++i) {
-      const Ray ray =
-          cells_->ray_into(cells_->cells()[c], (i / kPlaces + 0.5) / kPlaces, (i % kPlaces + 0.5) / kPlaces);
+    for (int i = 0; i < kCellPlaces * kCellPlaces; ++i) {
+      const Ray ray = cells_->ray_into(cells_->cells()[c], (i / kCellPlaces + 0.5) / kCellPlaces,
+                                       (i % kCellPlaces + 0.5) / kCellPlaces);
       TentDeposit d;
       if (!bins_at(bins, bands.mirror_from_world.ray(ray), d)) seen_[c] = 0;
       for (std::size_t k = 0; k < static_cast<std::size_t>(d.n); ++k) {
@@ -90,7 +90,7 @@ double ZoneCost::margin(std::size_t zone, const ZoneBound& bound, std::size_t ce
   const double share =
       absolute ? bound.value * measure / (cells_->unit() * source_flux_) : kUsualShare / cells;
   const double noise = 1.0 / std::sqrt(std::max(1.0, share * static_cast<double>(rays_)));
-  double m = std::min(kMaxMargin, kMargin + noise);
+  double m = std::min(kMaxMargin, kZoneMargin + noise);
   for (const ZoneBound& b : cells_->zones()[zone].bounds) {
     if (b.is_min == bound.is_min || b.reference != bound.reference) continue;
     m = std::min(m, kBandShare * std::abs(b.value - bound.value) / (b.value + bound.value));

@@ -14,23 +14,23 @@
 namespace lucerna {
 namespace {
 
-constexpr std::uint64_t kRays = std::uint64_t{1} << 15;
-constexpr double kFlux = 100.0;
+constexpr std::uint64_t kCostRays = std::uint64_t{1} << 15;
+constexpr double kCostFlux = 100.0;
 
 /// A disk of 1 mm that shines down into a mirror of 60 mm; light leaves along +z. The mirror's frame is the
 /// world's.
-DesignRays disk_rays(std::uint64_t seed = 3) {
+DesignRays cost_rays(std::uint64_t seed = 3) {
   EmitterOptions options;
   options.kind = EmitterKind::disk;
   options.radius_mm = 0.5;
-  options.flux = kFlux;
+  options.flux = kCostFlux;
   PlacedSource source{make_emitter(options), Frame({1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {0, 0, 15}), {}};
   return DesignRays({source}, Frame(), seed);
 }
 
 /// About +z: v towards +y, h towards -x.
 ZoneBands bands(std::vector<TargetZone> zones, bool only = false) {
-  return {std::make_shared<const ZoneCells>(std::move(zones), Direction(), std::nullopt), kFlux, Frame(),
+  return {std::make_shared<const ZoneCells>(std::move(zones), Direction(), std::nullopt), kCostFlux, Frame(),
           only};
 }
 TargetZone zone(ZoneRange h, ZoneRange v, std::vector<ZoneBound> bounds, double cell = 2.0) {
@@ -50,7 +50,7 @@ DesignShape wavy() {
 
 Evaluation light(const DesignShape& shape, const DesignRays& rays, const TentBins& bins, bool derivatives) {
   EvaluationOptions options;
-  options.rays = kRays;
+  options.rays = kCostRays;
   options.derivatives = derivatives;
   options.sparse = derivatives;
   return evaluate(shape, Reflectance(0.9), rays, bins, options);
@@ -64,10 +64,10 @@ TEST(ZoneCost, ValuesAreTheIntensityOfEvenLight) {
   const ZoneCost cost(bands({zone({-20, 20}, {-10, 10}, {{"min_cd", true, 20.0}}),
                              zone({0, 0}, {0, 0}, {{"min_cd", true, 20.0}}),
                              zone({120, 170}, {0, 0}, {{"max_cd", false, 20.0}})}),
-                      bins, kRays, 1.0);
+                      bins, kCostRays, 1.0);
   const Eigen::VectorXd x = cost.values(e);
   const auto seen = static_cast<Eigen::Index>(x.size()) - 25;
-  for (Eigen::Index c = 0; c < seen; ++c) EXPECT_NEAR(x[c], 0.25 * kFlux, 0.02 * kFlux * 0.25) << c;
+  for (Eigen::Index c = 0; c < seen; ++c) EXPECT_NEAR(x[c], 0.25 * kCostFlux, 0.02 * kCostFlux * 0.25) << c;
   EXPECT_TRUE(std::isnan(x[seen]));  // behind: no bin sees it
   EXPECT_EQ(cost.cost(e), 0.0);      // 25 cd where 20 are asked for
   e.flux *= 0.8;                     // exactly the bound: a margin short
@@ -76,10 +76,10 @@ TEST(ZoneCost, ValuesAreTheIntensityOfEvenLight) {
 
 /// The gradient of the cost against central differences along directions in which all parameters move.
 void expect_gradient(const ZoneBands& zones) {
-  DesignRays rays = disk_rays();
-  rays.grow(kRays);
+  DesignRays rays = cost_rays();
+  rays.grow(kCostRays);
   const TentBins bins = fine_bins();
-  const ZoneCost cost(zones, bins, kRays, 1.0);
+  const ZoneCost cost(zones, bins, kCostRays, 1.0);
   const DesignShape shape = wavy();
   const Evaluation e = light(shape, rays, bins, true);
   SparseEquations equations;
@@ -112,12 +112,12 @@ TEST(ZoneCost, GradientOfUniformity) {
 
 /// The Hessian is that of Gauss-Newton: positive, and along a direction the squares of the rows' slopes.
 TEST(ZoneCost, ProductsMakeTheGaussNewtonHessianOfARatio) {
-  DesignRays rays = disk_rays();
-  rays.grow(kRays);
+  DesignRays rays = cost_rays();
+  rays.grow(kCostRays);
   const TentBins bins = fine_bins();
   const ZoneCost cost(
       bands({zone({-20, 20}, {-10, 10}, {{"min_of_mean", true, 0.9, ZoneReference::mean, 0}}, 4.0)}), bins,
-      kRays, 1.0);
+      kCostRays, 1.0);
   const DesignShape shape = wavy();
   Evaluation e = light(shape, rays, bins, true);
   SparseEquations equations;
@@ -145,7 +145,7 @@ TEST(ZoneCost, ProductsMakeTheGaussNewtonHessianOfARatio) {
 
 /// A table of zones alone: the search raises the field above its minimum and holds the glare down.
 TEST(ZoneCost, ASearchEndsWithTheBandsHeld) {
-  DesignRays rays = disk_rays();
+  DesignRays rays = cost_rays();
   rays.grow(std::uint64_t{1} << 14);
   FitProblem p{&rays, Reflectance(0.9), {}, TentBins::square(Frame(), 0.6, 48), TargetMode::shape};
   p.zones = bands({zone({-16, 16}, {-8, 8}, {{"min_cd", true, 250.0}}),
@@ -168,7 +168,7 @@ TEST(ZoneCost, ASearchEndsWithTheBandsHeld) {
     const auto& done = search.state().done;
     if (std::any_of(done.begin(), done.end(), [](const FreeFormMark& m) { return m.level == 2; })) break;
   }
-  DesignRays fresh = disk_rays(99);
+  DesignRays fresh = cost_rays(99);
   fresh.grow(std::uint64_t{1} << 19);
   const TentBins bins = graded_bins(p.rectangle, Frame(), 64, 1.25, 24);
   EvaluationOptions options;

@@ -12,7 +12,7 @@ namespace {
 /// How far above a minimum, and below a maximum, the guide lies.
 constexpr double kAbove = 1.15, kBelow = 0.85;
 /// Places that stand for a zone, about.
-constexpr double kPlaces = 200.0;
+constexpr double kGuidePlaces = 200.0;
 /// Around a place the guide is level as far as its cell's corners, then falls off over so many cells, or over
 /// this share of the way to the next place.
 constexpr double kFlat = 0.75, kFadeCells = 1.5, kFadeShare = 0.6;
@@ -107,7 +107,7 @@ class Guide {
   void add_places(const ZoneCells& zones, std::size_t z, double level) {
     const std::size_t first = zones.first(z), end = zones.first(z + 1);
     const auto every =
-        static_cast<std::size_t>(std::max(1.0, std::ceil(static_cast<double>(end - first) / kPlaces)));
+        static_cast<std::size_t>(std::max(1.0, std::ceil(static_cast<double>(end - first) / kGuidePlaces)));
     const double side = zones.zones()[z].cell * std::sqrt(static_cast<double>(every));
     for (std::size_t c = first; c < end; c += every) {
       const Ray ray = zones.ray_into(zones.cells()[c]);

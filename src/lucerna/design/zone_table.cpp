@@ -15,7 +15,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kZones = 100, kLevels = 5;
+constexpr std::size_t kZones = 100, kHeightLevels = 5;
 /// Cells of arriving light per zone at most, and turns.
 constexpr double kMostCells = 4096.0, kMostTurns = 400.0;
 /// Longest step of an angle over what the source spreads.
@@ -24,7 +24,6 @@ constexpr double kStepShare = 0.06;
 constexpr double kMostGain = 8.0;
 /// Parts that the rays are counted in, by their number alone: sums never depend on threads.
 constexpr std::uint64_t kParts = 4;
-constexpr double kPi = std::numbers::pi;
 
 /// Of so many blocks of rays one is looked at for where the source is and how far it spreads its light.
 constexpr std::uint64_t kLookAtBlocks = 16;
@@ -79,9 +78,9 @@ ZoneTable::ZoneTable(const DesignShape& family, const Reflectance& reflectance, 
       radius_mm_(family.aperture().outer_radius_mm()),
       hole_mm_(family.aperture().hole_radius_mm()),
       half_height_mm_(half_height_mm),
-      level_step_mm_(2.0 * half_height_mm / (kLevels - 1)),
+      level_step_mm_(2.0 * half_height_mm / (kHeightLevels - 1)),
       middle_z_mm_(middle_z_of(rays, count / kBlockRays)),
-      axis_turn_(bins.axes().ez().z > 0.0 ? 0.0 : kPi),
+      axis_turn_(bins.axes().ez().z > 0.0 ? 0.0 : std::numbers::pi),
       constant_(std::move(constant)) {
   LUCERNA_CHECK(family.is_revolution() && bins.is_rings(), "zones of a mirror without symmetry");
   for (std::size_t j = 0; j < kZones; ++j) {
@@ -90,8 +89,8 @@ ZoneTable::ZoneTable(const DesignShape& family, const Reflectance& reflectance, 
   const double cell = bins.extent() / static_cast<double>(rings_);
   const Grid grid = make_grid(rays, count / kBlockRays, bins.extent(), cell);
   const std::vector<Light> light = arriving(rays, count / kBlockRays, grid);
-  table_.assign(kLevels * kZones * turns_ * rings_, 0.0f);
-  parallel_blocks(kLevels * kZones, 4, [&](std::size_t first, std::size_t last) {
+  table_.assign(kHeightLevels * kZones * turns_ * rings_, 0.0f);
+  parallel_blocks(kHeightLevels * kZones, 4, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       fill(i / kZones, i % kZones, light[i / kZones], reflectance, grid);
     }
@@ -113,7 +112,7 @@ ZoneTable::Grid ZoneTable::make_grid(const DesignRays& rays, std::uint64_t block
     }
   }
   // Fine beside the rings, and beside what one zone throws.
-  const double extent_of_turns = std::min(kPi, extent + cell + half_chi + most_beta);
+  const double extent_of_turns = std::min(std::numbers::pi, extent + cell + half_chi + most_beta);
   grid.step = std::min(0.5 * cell, kStepShare * std::max(half_chi, most_beta));
   grid.step = std::max(grid.step, extent_of_turns / kMostTurns);
   const double cells = (2.0 * half_chi / grid.step + 1.0) * (most_beta / grid.step + 1.0);
@@ -162,7 +161,7 @@ bool ZoneTable::arrive(const DesignRays::Block& block, std::size_t i, double lev
 
 std::vector<ZoneTable::Light> ZoneTable::arriving(const DesignRays& rays, std::uint64_t blocks,
                                                   const Grid& grid) const {
-  std::vector<Light> parts(kLevels * kParts);
+  std::vector<Light> parts(kHeightLevels * kParts);
   parallel_blocks(parts.size(), 1, [&](std::size_t p, std::size_t) {
     const std::uint64_t part = p % kParts;
     Light& light = parts[p];
@@ -171,7 +170,7 @@ std::vector<ZoneTable::Light> ZoneTable::arriving(const DesignRays& rays, std::u
       count(rays.block(b), level_mm(p / kParts), grid, light);
     }
   });
-  std::vector<Light> levels(kLevels);
+  std::vector<Light> levels(kHeightLevels);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     Light& sum = levels[p / kParts];
     sum.all += parts[p].all;
@@ -230,7 +229,7 @@ void ZoneTable::fill(std::size_t level, std::size_t zone, const Light& light, co
   column[grid.chis] = cells.size();
   for (std::size_t t = 0; t < turns_; ++t) {
     const double turn = static_cast<double>(t) * turn_step_ - half_turn_ + axis_turn_;
-    const double slope = std::remainder(0.5 * (turn + middle), kPi);
+    const double slope = std::remainder(0.5 * (turn + middle), std::numbers::pi);
     float* const to = row(level, zone, t);
     for (std::size_t c = 0; c < grid.chis; ++c) {
       if (column[c] == column[c + 1]) continue;
@@ -272,12 +271,13 @@ Evaluation ZoneTable::evaluate(const DesignShape& shape) const {
     const CubicBasis basis = cubic_basis(place.t), slope = cubic_basis_slope(place.t);
     const auto [s, s_r] = view.offset_at(r);
     const double p = base + s_r, z = 0.5 * base * r + s;
-    const double turn = std::remainder(2.0 * std::atan(p) - middle_chi(r, z) - axis_turn_, 2.0 * kPi);
+    const double turn =
+        std::remainder(2.0 * std::atan(p) - middle_chi(r, z) - axis_turn_, 2.0 * std::numbers::pi);
     const double a = (turn + half_turn_) / turn_step_;
     const double b = (s + half_height_mm_) / level_step_mm_;
     if (!(a >= 0.0 && a < static_cast<double>(turns_ - 1))) continue;  // out of the window
     const auto it = static_cast<std::size_t>(a);
-    const auto ih = static_cast<std::size_t>(std::clamp(b, 0.0, static_cast<double>(kLevels) - 1.001));
+    const auto ih = static_cast<std::size_t>(std::clamp(b, 0.0, static_cast<double>(kHeightLevels) - 1.001));
     const auto ft = static_cast<float>(a - static_cast<double>(it));
     const auto fh = static_cast<float>(std::clamp(b - static_cast<double>(ih), 0.0, 1.0));
     const Row low(row(ih, j, it), m), low_next(row(ih, j, it + 1), m);

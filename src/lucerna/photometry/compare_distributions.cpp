@@ -81,13 +81,13 @@ Common common_grid(const IntensityDistribution& a, const IntensityDistribution& 
   return common;
 }
 
-struct Sums {
+struct CommonSums {
   double difference = 0.0, reference = 0.0, both = 0.0;
   double rms() const { return std::sqrt(difference / reference); }
 };
 
-Sums sums_of(const Common& common, bool weighted) {
-  Sums sums;
+CommonSums sums_of(const Common& common, bool weighted) {
+  CommonSums sums;
   for (std::size_t i = 0; i < common.a.size(); ++i) {
     const double w = weighted ? common.weight_sr[i] : 1.0, d = common.a[i] - common.b[i],
                  s = common.a[i] + common.b[i];
@@ -245,7 +245,7 @@ constexpr std::size_t kCopies = 8;
 /// All figures but those of noise and alignment.
 DistributionComparison compared(const Common& common, const IntensityDistribution& reference,
                                 const IntensityDistribution& test) {
-  const Sums weighted = sums_of(common, true), plain = sums_of(common, false);
+  const CommonSums weighted = sums_of(common, true), plain = sums_of(common, false);
   DistributionComparison result;
   result.relative_rms = weighted.rms();
   result.bergen_fit = 100.0 * (1.0 - std::sqrt(weighted.difference / weighted.both));

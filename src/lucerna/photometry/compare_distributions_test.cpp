@@ -15,8 +15,8 @@
 namespace lucerna {
 namespace {
 
-IntensityDistribution filled(const std::function<double(double c, double g)>& cd, double c_step = 10.0,
-                             double g_step = 2.0) {
+IntensityDistribution filled_grid(const std::function<double(double c, double g)>& cd, double c_step = 10.0,
+                                  double g_step = 2.0) {
   IntensityDistribution d = uniform_distribution(c_step, g_step);
   for (std::size_t c = 0; c < d.c_deg.size(); ++c) {
     for (std::size_t g = 0; g < d.gamma_deg.size(); ++g) d.at(c, g) = cd(radians(d.c_deg[c]), d.gamma_deg[g]);
@@ -34,7 +34,7 @@ IntensityDistribution dirac(std::size_t c, std::size_t g) {
 }
 
 IntensityDistribution spot() {
-  return filled(
+  return filled_grid(
       [](double c, double g) {
         return 1000.0 * std::exp(-g * g / 200.0) * (1.0 + 0.3 * std::sin(radians(g)) * std::cos(2.0 * c));
       },
@@ -117,15 +117,16 @@ TEST(CompareDistributions, ScaleShowsInFluxAndRmsButNotInShape) {
 }
 
 TEST(CompareDistributions, GridsNeedNotAgree) {
-  const IntensityDistribution coarse = filled([](double, double g) { return 100.0 - 0.5 * g; }, 30.0, 10.0);
-  const IntensityDistribution fine = filled([](double, double g) { return 100.0 - 0.5 * g; }, 7.5, 1.5);
+  const IntensityDistribution coarse =
+      filled_grid([](double, double g) { return 100.0 - 0.5 * g; }, 30.0, 10.0);
+  const IntensityDistribution fine = filled_grid([](double, double g) { return 100.0 - 0.5 * g; }, 7.5, 1.5);
   const DistributionComparison c = compare_distributions(coarse, fine);
   EXPECT_NEAR(c.relative_rms, 0.0, 1e-12);
   EXPECT_NEAR(c.wasserstein_deg, 0.0, 1e-9);
 }
 
 TEST(CompareDistributions, AlignmentFindsTiltAndTurn) {
-  const auto street = filled(
+  const auto street = filled_grid(
       [](double c, double g) {
         return g < 90.0 ? 100.0 * std::cos(radians(g)) + 400.0 * std::exp(-std::pow((g - 55.0) / 12.0, 2.0)) *
                                                              std::pow(0.5 + 0.5 * std::sin(c + 0.4), 3.0)
@@ -147,7 +148,7 @@ TEST(CompareDistributions, AlignmentFindsTiltAndTurn) {
 
 TEST(CompareDistributionsStatistical, NoiseFloorIsWhatNoiseGives) {
   const IntensityDistribution truth =
-      filled([](double, double g) { return g < 90.0 ? 500.0 * std::cos(radians(g)) : 0.0; }, 15.0, 5.0);
+      filled_grid([](double, double g) { return g < 90.0 ? 500.0 * std::cos(radians(g)) : 0.0; }, 15.0, 5.0);
   IntensityDistribution noisy = truth;
   std::vector<double> error(truth.cd.size());
   for (std::size_t i = 0; i < error.size(); ++i) {

@@ -10,10 +10,9 @@ namespace lucerna {
 
 namespace {
 
-constexpr double kSame_deg = 1e-4;  // angles are printed with 1 to 3 decimals
-constexpr double kSpread = 1e-3;    // photometric-formats 1.4: warn above 0.1 %
+constexpr double kSpread = 1e-3;  // photometric-formats 1.4: warn above 0.1 %
 
-bool same(double a, double b) { return std::abs(a - b) <= kSame_deg; }
+bool same(double a, double b) { return std::abs(a - b) <= kEqualAngle_deg; }
 
 void check_ascending(const std::vector<double>& angles, std::size_t line, const char* what,
                      const RepairLog& log) {
@@ -105,7 +104,7 @@ struct Plane {
 void add_plane(std::vector<Plane>& planes, double c_deg, std::size_t stored) {
   double c = std::fmod(c_deg, 360.0);
   if (c < 0.0) c += 360.0;
-  if (360.0 - c <= kSame_deg || c <= kSame_deg) c = 0.0;
+  if (360.0 - c <= kEqualAngle_deg || c <= kEqualAngle_deg) c = 0.0;
   for (Plane& plane : planes) {
     if (same(plane.c_deg, c)) {
       plane.second = stored;
@@ -123,7 +122,7 @@ std::vector<Plane> mirrored_planes(const ListedGrid& grid, ListedSymmetry symmet
     log.fail(grid.planes_line, "planes {} to {} found, {} to {} expected", h.front(), h.back(), span.from,
              span.to);
   }
-  if (!same(h.front(), span.from) || h.back() > span.to + kSame_deg) {
+  if (!same(h.front(), span.from) || h.back() > span.to + kEqualAngle_deg) {
     log.fail(grid.planes_line, "planes {} to {} found, {} to at most {} expected", h.front(), h.back(),
              span.from, span.to);
   }

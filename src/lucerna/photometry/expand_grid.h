@@ -15,6 +15,9 @@ struct ListedGrid {
   std::size_t planes_line = 0, gammas_line = 0, values_line = 0;  ///< where they stand in the file
 };
 
+/// Angles that are this close are one: files print them with 1 to 3 decimals.
+inline constexpr double kEqualAngle_deg = 1e-4;
+
 /// What the stored planes stand for.
 enum class ListedSymmetry {
   rotational,   ///< one plane

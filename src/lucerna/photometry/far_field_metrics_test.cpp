@@ -14,11 +14,11 @@ namespace lucerna {
 namespace {
 
 constexpr std::size_t kReplicates = 16;
-using Intensity = std::function<double(const Direction&)>;
+using IntensityOf = std::function<double(const Direction&)>;
 
 /// Flux of an intensity in cells of 1 x 1/3 degrees, or others, as `rays` rays would count it; 0 rays:
 /// exactly.
-CountedSphere sphere(const Intensity& cd, double rays, std::uint64_t seed = 1, std::size_t planes = 360,
+CountedSphere sphere(const IntensityOf& cd, double rays, std::uint64_t seed = 1, std::size_t planes = 360,
                      std::size_t gammas = 541) {
   std::vector<double> flux(planes * gammas);
   const double dc = 2.0 * std::numbers::pi / static_cast<double>(planes),
@@ -62,7 +62,7 @@ Direction at(double c_deg, double gamma_deg) {
 }
 
 /// A Gaussian lobe.
-Intensity lobe(double c_deg, double gamma_deg, double sigma_deg, double cd = 1000.0) {
+IntensityOf lobe(double c_deg, double gamma_deg, double sigma_deg, double cd = 1000.0) {
   const Direction centre = at(c_deg, gamma_deg);
   return [=](const Direction& d) {
     const double t = degrees(angle_between(d, centre)) / sigma_deg;

@@ -11,10 +11,10 @@ namespace lucerna {
 
 namespace {
 
-constexpr double kCutOff = 0.025;  // photometric-formats 3.1: less than 2.5 % of the maximum
+constexpr double kCutOffShare = 0.025;  // photometric-formats 3.1: less than 2.5 % of the maximum
 
 double cut_off_of(const IntensityDistribution& d, const BeamFigures& beam) {
-  const double threshold = kCutOff * beam.peak.cd;
+  const double threshold = kCutOffShare * beam.peak.cd;
   double widest = 0.0;
   for (std::size_t i = 0; i < d.cd.size(); ++i) {
     if (threshold > 0.0 && d.cd[i] >= threshold) {

@@ -14,7 +14,6 @@ namespace lucerna {
 
 namespace {
 
-constexpr double kSame_deg = 1e-4;
 constexpr double kMmPerFoot = 304.8;
 
 std::string upper_case(std::string_view text) {
@@ -244,16 +243,16 @@ void wrap_planes(ListedGrid& grid, RepairLog& log) {
   auto& h = grid.planes_deg;
   const std::size_t n = h.size(), nv = grid.gammas_deg.size();
   const double span = h.back() - h.front();
-  if (h.front() == 0.0 || span < 180.0 || span > 360.0 + kSame_deg) return;
+  if (h.front() == 0.0 || span < 180.0 || span > 360.0 + kEqualAngle_deg) return;
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < n; ++i) {
     double c = std::fmod(h[i], 360.0);
     if (c < 0.0) c += 360.0;
-    if (i + 1 == n && std::abs(span - 360.0) <= kSame_deg) continue;  // the first plane again
+    if (i + 1 == n && std::abs(span - 360.0) <= kEqualAngle_deg) continue;  // the first plane again
     order.emplace_back(c, i);
   }
   std::sort(order.begin(), order.end());
-  if (std::abs(order.front().first) > kSame_deg) return;
+  if (std::abs(order.front().first) > kEqualAngle_deg) return;
   log.repair(grid.planes_line, "horizontal angles {} to {}: counted from 0 to 360", h.front(), h.back());
   ListedGrid sorted = grid;
   sorted.planes_deg.clear();
@@ -269,7 +268,7 @@ void wrap_planes(ListedGrid& grid, RepairLog& log) {
 /// What the last horizontal angle of Type C says.
 ListedSymmetry type_c_symmetry(ListedGrid& grid, int year, RepairLog& log) {
   auto& h = grid.planes_deg;
-  const auto is = [](double a, double b) { return std::abs(a - b) <= kSame_deg; };
+  const auto is = [](double a, double b) { return std::abs(a - b) <= kEqualAngle_deg; };
   if (h.size() == 1) {
     if (h.front() != 0.0)
       log.repair(grid.planes_line, "the only horizontal angle is {}, 0 expected: taken as axial", h.front());

@@ -10,7 +10,7 @@
 namespace lucerna {
 namespace {
 
-constexpr std::size_t kReplicates = 16;
+constexpr std::size_t kSampleReplicates = 16;
 
 double normal(Rng& rng) {
   double sum = -6.0;
@@ -20,10 +20,10 @@ double normal(Rng& rng) {
 
 /// A mean of replicates that scatter by `spread` about `mean`.
 Jackknife noisy(double mean, double spread, Rng& rng) {
-  double part[kReplicates], sum = 0.0;
+  double part[kSampleReplicates], sum = 0.0;
   for (double& p : part) sum += p = mean + spread * normal(rng);
-  std::vector<double> values{sum / kReplicates};
-  for (const double p : part) values.push_back((sum - p) / (kReplicates - 1.0));
+  std::vector<double> values{sum / kSampleReplicates};
+  for (const double p : part) values.push_back((sum - p) / (kSampleReplicates - 1.0));
   return Jackknife(std::move(values));
 }
 

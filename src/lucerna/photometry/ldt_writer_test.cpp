@@ -21,7 +21,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-PhotometricFile example() {
+PhotometricFile ldt_example() {
   PhotometricFile file;
   file.distribution = zero_distribution({0.0, 90.0, 180.0, 270.0}, {0.0, 45.0, 90.0});
   // Brighter to C90 than to C270, alike to both sides: Isym 3.
@@ -35,7 +35,7 @@ PhotometricFile example() {
 }
 
 TEST(LdtWriter, PutsEveryFieldOnItsLine) {
-  const auto lines = lines_of(ldt_text(example()));
+  const auto lines = lines_of(ldt_text(ldt_example()));
   // 25 lines, lamp count, 6 of the lamp, 10 ratios, 4 planes, 3 gammas, 3 stored planes of 3.
   ASSERT_EQ(lines.size(), 25u + 1 + 6 + 10 + 4 + 3 + 9);
   EXPECT_EQ(lines[0], "A  B");
@@ -57,7 +57,7 @@ TEST(LdtWriter, PutsEveryFieldOnItsLine) {
 }
 
 TEST(LdtWriter, RelativeValuesReferToTheFirstLampSet) {
-  PhotometricFile file = example();
+  PhotometricFile file = ldt_example();
   file.luminaire.absolute = false;
   file.luminaire.lamps = {{.count = 2, .type = "T5", .flux_lm = 500.0}};
   const auto lines = lines_of(ldt_text(file));
@@ -80,7 +80,7 @@ TEST(LdtWriter, OnePlaneIsIsym1) {
 }
 
 TEST(LdtWriter, RefusesWatts) {
-  PhotometricFile file = example();
+  PhotometricFile file = ldt_example();
   file.distribution.unit = FluxUnit::watt;
   EXPECT_THROW(ldt_text(file), InputError);
 }

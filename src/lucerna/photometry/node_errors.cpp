@@ -13,7 +13,7 @@ namespace {
 /// Rings to either side: five rings of three planes have 15 * 15 degrees of freedom, an error's error of 5 %.
 constexpr std::size_t kRings = 2;
 
-struct Sums {
+struct CellSums {
   double flux = 0.0, squares = 0.0;
 };
 
@@ -25,8 +25,8 @@ std::vector<double> pooled_errors(const IntensityDistribution& d, std::span<cons
   const std::size_t planes = d.c_deg.size(), gammas = d.gamma_deg.size(), n = d.cd.size();
   LUCERNA_CHECK(variance.size() == n && solid_angle_sr.size() == n && pooled_planes.size() == gammas,
                 "{} variances and {} solid angles for {} values", variance.size(), solid_angle_sr.size(), n);
-  Sums all;
-  std::vector<Sums> of(n);
+  CellSums all;
+  std::vector<CellSums> of(n);
   for (std::size_t i = 0; i < n; ++i) {
     of[i] = {d.cd[i] * solid_angle_sr[i], variance[i] * solid_angle_sr[i] * solid_angle_sr[i]};
     all.flux += of[i].flux;
@@ -36,13 +36,13 @@ std::vector<double> pooled_errors(const IntensityDistribution& d, std::span<cons
   if (all.flux <= 0.0) return errors;
   for (std::size_t c = 0; c < planes; ++c) {
     for (std::size_t g = 0; g < gammas; ++g) {
-      Sums near;
+      CellSums near;
       for (std::size_t k = g - std::min(g, kRings); k <= std::min(gammas - 1, g + kRings); ++k) {
         const std::size_t reach = std::min(std::max<std::size_t>(1, pooled_planes[k]), (planes - 1) / 2);
         // Values that were pooled from the same cells say the same.
         const double share = 1.0 / static_cast<double>(std::max<std::size_t>(1, 2 * pooled_planes[k]));
         for (std::size_t j = 0; j <= 2 * reach; ++j) {
-          const Sums& s = of[(c + planes - reach + j) % planes * gammas + k];
+          const CellSums& s = of[(c + planes - reach + j) % planes * gammas + k];
           near.flux += share * s.flux;
           near.squares += share * s.squares;
         }

@@ -15,7 +15,7 @@
 namespace lucerna {
 namespace {
 
-IntensityDistribution filled(const std::function<double(double c_rad, double g_rad)>& cd) {
+IntensityDistribution filled_by_angle(const std::function<double(double c_rad, double g_rad)>& cd) {
   IntensityDistribution d = uniform_distribution(5.0, 1.0);
   for (std::size_t c = 0; c < d.c_deg.size(); ++c) {
     for (std::size_t g = 0; g < d.gamma_deg.size(); ++g)
@@ -25,7 +25,7 @@ IntensityDistribution filled(const std::function<double(double c_rad, double g_r
 }
 
 IntensityDistribution lambertian() {
-  return filled([](double, double g) { return 800.0 * std::max(0.0, std::cos(g)); });
+  return filled_by_angle([](double, double g) { return 800.0 * std::max(0.0, std::cos(g)); });
 }
 
 PlaneIlluminance below(const IntensityDistribution& d, double distance_mm, double size_mm) {
@@ -69,7 +69,7 @@ TEST(PlaneIlluminance, InverseSquareOfTheDistance) {
 }
 
 TEST(PlaneIlluminance, CosineOfTheTilt) {
-  const auto isotropic = filled([](double, double) { return 90.0; });
+  const auto isotropic = filled_by_angle([](double, double) { return 90.0; });
   for (const double tilt : {-60.0, 0.0, 25.0, 80.0, 90.0, 120.0}) {
     for (const Direction& aim :
          {Direction::from({0.0, 0.0, -1.0}), Direction::from({0.3, -0.7, 0.2}), Direction::from({0, 0, 1})}) {
@@ -88,7 +88,7 @@ TEST(PlaneIlluminance, CosineOfTheTilt) {
 }
 
 TEST(PlaneIlluminance, AxesOfThePlaneAreC0AndC90) {
-  const auto toward_c90 = filled([](double c, double g) {
+  const auto toward_c90 = filled_by_angle([](double c, double g) {
     return g < 1.5 ? 100.0 * std::pow(std::max(0.0, std::cos(c - 0.5 * std::numbers::pi)), 8.0) : 0.0;
   });
   const PlaneIlluminance e = below(toward_c90, 1000.0, 2000.0);
@@ -100,7 +100,7 @@ TEST(PlaneIlluminance, AxesOfThePlaneAreC0AndC90) {
 // Six faces of a cube catch all light. The trade's quadrature and bilinear interpolation part by less than
 // 1e-4 on a 1 degree grid, midpoints on 101 x 101 cells by less still.
 TEST(PlaneIlluminance, CubeCatchesAllFlux) {
-  const auto d = filled([](double c, double g) {
+  const auto d = filled_by_angle([](double c, double g) {
     return 300.0 * std::exp(-3.0 * (1.0 - std::cos(g))) * (2.0 + std::sin(g) * std::cos(c - 1.0)) + 20.0;
   });
   double flux = 0.0;

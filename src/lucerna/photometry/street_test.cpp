@@ -13,8 +13,8 @@
 namespace lucerna {
 namespace {
 
-IntensityDistribution filled(const std::function<double(double c_deg, double g_deg)>& cd,
-                             double c_step = 5.0) {
+IntensityDistribution street_light(const std::function<double(double c_deg, double g_deg)>& cd,
+                                   double c_step = 5.0) {
   IntensityDistribution d = uniform_distribution(c_step, 1.0);
   for (std::size_t c = 0; c < d.c_deg.size(); ++c) {
     for (std::size_t g = 0; g < d.gamma_deg.size(); ++g) d.at(c, g) = cd(d.c_deg[c], d.gamma_deg[g]);
@@ -23,7 +23,7 @@ IntensityDistribution filled(const std::function<double(double c_deg, double g_d
 }
 
 TEST(Street, ZonesOfAnEvenSourceAreTheirSolidAngles) {
-  const auto d = filled([](double, double) { return 100.0; });
+  const auto d = street_light([](double, double) { return 100.0; });
   const LuminaireZones z = luminaire_zones(d, 90.0);
   const auto half = [](double from, double to) {
     return 100.0 * std::numbers::pi * (std::cos(radians(from)) - std::cos(radians(to)));
@@ -41,7 +41,7 @@ TEST(Street, ZonesOfAnEvenSourceAreTheirSolidAngles) {
 // the sum stays, also where the border lies between planes (30 degree steps, border at C5 and C185).
 TEST(Street, FrontAndBackFollowTheStreetSide) {
   for (const double street : {0.0, 90.0, 95.0, 210.0}) {
-    const auto d = filled(
+    const auto d = street_light(
         [&](double c, double g) {
           return g < 85.0 ? 500.0 * std::max(0.0, std::cos(radians(c - street))) + 20.0 : 20.0;
         },
@@ -60,7 +60,7 @@ TEST(Street, FrontAndBackFollowTheStreetSide) {
 
 /// Flux `lm` in one zone alone, as even light in the middle of it (front: about C90).
 IntensityDistribution only(double from, double to, bool front, double lm) {
-  auto d = filled([&](double c, double g) {
+  auto d = street_light([&](double c, double g) {
     const bool lit = (front ? 1.0 : -1.0) * std::sin(radians(c)) > 0.01;  // dark at C0 and C180
     return g > from && g < to && (from >= 90.0 || lit) ? 1.0 : 0.0;
   });
@@ -118,9 +118,9 @@ TEST(Street, ThresholdTurnsNoiseIntoU0AndSaysSo) {
 
 /// cd/klm `at` 70, 80, 90 degrees, falling in between, on top of light below 60 degrees that makes 1000 lm.
 IntensityDistribution glaring(double at_70, double at_80, double at_90, double beyond) {
-  auto d = filled([](double, double g) { return g < 60.0 ? 1.0 : 0.0; });
+  auto d = street_light([](double, double g) { return g < 60.0 ? 1.0 : 0.0; });
   const double rest = 1000.0 / total_flux(d);
-  return filled([=](double c, double g) {
+  return street_light([=](double c, double g) {
     if (g < 60.0) return rest;
     const double here = c == 40.0 ? 1.0 : 0.0;  // one plane only: the flux stays within a few percent
     if (g < 70.0) return 0.0;
@@ -148,7 +148,7 @@ TEST(Street, GlareClassesOfEn13201) {
 }
 
 TEST(Street, RefusesWhatItIsNotDefinedFor) {
-  auto d = filled([](double, double) { return 1.0; });
+  auto d = street_light([](double, double) { return 1.0; });
   EXPECT_THROW(bug_rating(d, {.dark_below_lm = -1.0}), InputError);
   EXPECT_THROW(glare_class(d, std::nan("")), InputError);
   EXPECT_THROW(glare_class(uniform_distribution(90.0, 10.0)), InputError);

@@ -12,7 +12,7 @@
 namespace lucerna {
 namespace {
 
-IntensityDistribution filled(const std::function<double(double, double)>& cd, double c_step = 15.0) {
+IntensityDistribution filled_planes(const std::function<double(double, double)>& cd, double c_step = 15.0) {
   IntensityDistribution d = uniform_distribution(c_step, 10.0);
   for (std::size_t c = 0; c < d.c_deg.size(); ++c) {
     for (std::size_t g = 0; g < d.gamma_deg.size(); ++g) {
@@ -24,30 +24,32 @@ IntensityDistribution filled(const std::function<double(double, double)>& cd, do
 
 TEST(Symmetry, IsFound) {
   const double tolerance = 1e-9;
-  EXPECT_EQ(find_symmetry(filled([](double, double g) { return 2.0 + std::cos(g); }), tolerance),
+  EXPECT_EQ(find_symmetry(filled_planes([](double, double g) { return 2.0 + std::cos(g); }), tolerance),
             Symmetry::rotational);
-  EXPECT_EQ(
-      find_symmetry(filled([](double c, double g) { return 3.0 + std::sin(g) * std::cos(c); }), tolerance),
-      Symmetry::plane_c0_c180);
-  EXPECT_EQ(
-      find_symmetry(filled([](double c, double g) { return 3.0 + std::sin(g) * std::sin(c); }), tolerance),
-      Symmetry::plane_c90_c270);
-  EXPECT_EQ(find_symmetry(filled([](double c, double g) { return 3.0 + std::sin(g) * std::cos(2.0 * c); }),
+  EXPECT_EQ(find_symmetry(filled_planes([](double c, double g) { return 3.0 + std::sin(g) * std::cos(c); }),
                           tolerance),
-            Symmetry::both_planes);
-  EXPECT_EQ(find_symmetry(filled([](double c, double g) { return 3.0 + std::sin(g) * std::cos(c - 0.3); }),
+            Symmetry::plane_c0_c180);
+  EXPECT_EQ(find_symmetry(filled_planes([](double c, double g) { return 3.0 + std::sin(g) * std::sin(c); }),
                           tolerance),
-            Symmetry::none);
+            Symmetry::plane_c90_c270);
+  EXPECT_EQ(
+      find_symmetry(filled_planes([](double c, double g) { return 3.0 + std::sin(g) * std::cos(2.0 * c); }),
+                    tolerance),
+      Symmetry::both_planes);
+  EXPECT_EQ(
+      find_symmetry(filled_planes([](double c, double g) { return 3.0 + std::sin(g) * std::cos(c - 0.3); }),
+                    tolerance),
+      Symmetry::none);
 }
 
 TEST(Symmetry, NeedsItsMirrorPlanesOnTheGrid) {
   // Planes 0, 40, ..., 320 mirror onto each other about C0 but 180 is not among them.
-  const auto d = filled([](double c, double g) { return 3.0 + std::sin(g) * std::cos(c); }, 40.0);
+  const auto d = filled_planes([](double c, double g) { return 3.0 + std::sin(g) * std::cos(c); }, 40.0);
   EXPECT_EQ(find_symmetry(d, 1e-9), Symmetry::none);
 }
 
 TEST(Symmetry, TurningKeepsEveryIntensityAndTheFlux) {
-  const auto d = filled([](double c, double g) { return 3.0 + std::sin(g) * std::cos(c - 0.3); });
+  const auto d = filled_planes([](double c, double g) { return 3.0 + std::sin(g) * std::cos(c - 0.3); });
   for (const double origin : {90.0, -90.0, 37.5, 359.0}) {
     const IntensityDistribution t = turned(d, origin);
     EXPECT_EQ(grid_fault(t), "");
@@ -62,7 +64,7 @@ TEST(Symmetry, TurningKeepsEveryIntensityAndTheFlux) {
 }
 
 TEST(Symmetry, SymmetrisingKeepsTheFlux) {
-  const auto d = filled([](double c, double g) { return 3.0 + std::sin(g) * std::cos(c - 0.3); });
+  const auto d = filled_planes([](double c, double g) { return 3.0 + std::sin(g) * std::cos(c - 0.3); });
   for (const Symmetry s :
        {Symmetry::rotational, Symmetry::plane_c0_c180, Symmetry::plane_c90_c270, Symmetry::both_planes}) {
     const IntensityDistribution even = symmetrised(d, s);

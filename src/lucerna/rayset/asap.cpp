@@ -15,10 +15,10 @@ namespace {
 constexpr std::int32_t kCode = 247, kCodeStep = 1024;
 constexpr std::size_t kFewestWords = 7, kMostWords = 64, kHeaderRecords = 5, kNameSize = 8, kLabelSize = 16;
 constexpr std::string_view kFluxName = "Tot Flux", kLetters = "XYZABCF";
-struct Unit {
+struct AsapUnit {
   std::string_view name, label;
 };
-constexpr std::array<Unit, 4> kUnits{{{"mm", "MM"}, {"cm", "CM"}, {"m", "M"}, {"inch", "INCH"}}};
+constexpr std::array<AsapUnit, 4> kAsapUnits{{{"mm", "MM"}, {"cm", "CM"}, {"m", "M"}, {"inch", "INCH"}}};
 
 /// Words per record from the first word; 0 if it is none of ours.
 std::size_t words_from(std::int32_t code) {
@@ -65,8 +65,8 @@ RecordLayout layout_from(const std::string& label, std::size_t words, const Inpu
     layout.main[c].at = static_cast<int>(at);
   }
   const std::string unit = parts.size() > 1 ? parts[1] : "";
-  const auto known = std::ranges::find(kUnits, unit, &Unit::label);
-  if (known == kUnits.end()) {
+  const auto known = std::ranges::find(kAsapUnits, unit, &AsapUnit::label);
+  if (known == kAsapUnits.end()) {
     throw_input_error(file.name(), fmt::format("byte {}", place),
                       "length unit '{}' found, MM, CM, M or INCH expected", unit);
   }
@@ -103,7 +103,7 @@ class AsapWriter final : public RayWriter {
     text(kRecord, 24, header.texts.light_source);
     text(2 * kRecord, kNameSize, kFluxName);
     store(head, 2 * kRecord + kNameSize, static_cast<float>(header.flux().value_or(0.0)));
-    const auto unit = std::ranges::find(kUnits, options.length_unit, &Unit::name);
+    const auto unit = std::ranges::find(kAsapUnits, options.length_unit, &AsapUnit::name);
     text(2 * kRecord + kNameSize + 4, kLabelSize,
          fmt::format("{} {} {}", kLetters, unit->label, header.flux_unit == FluxUnit::lumen ? "LM" : "W"));
     text(kCountRecord, 16, "Ray number");
@@ -133,7 +133,7 @@ class AsapWriter final : public RayWriter {
   static constexpr std::size_t kCountRecord = 3 * 4 * kFewestWords;
 
   static RecordLayout layout_for(const RaySetHeader& header, const WriteOptions& options) {
-    if (std::ranges::find(kUnits, options.length_unit, &Unit::name) == kUnits.end()) {
+    if (std::ranges::find(kAsapUnits, options.length_unit, &AsapUnit::name) == kAsapUnits.end()) {
       throw UsageError(fmt::format("asap: lengths in mm, cm, m or inch, not {}", options.length_unit));
     }
     return written_layout(header, options.length_unit);

@@ -12,7 +12,7 @@ namespace lucerna {
 namespace {
 
 /// Rays counted apart before they are summed: one block's counts (about 0.3 MB) are small beside its time.
-constexpr std::size_t kBlock = std::size_t{1} << 18;
+constexpr std::size_t kCompareBlock = std::size_t{1} << 18;
 
 struct Part {
   double total = 0.0;
@@ -81,9 +81,9 @@ ViewCounts::ViewCounts(const Views& views) : views_(&views) {
 }
 
 void ViewCounts::add(const RayBlock& rays) {
-  const auto parts = parallel_map_blocks<Part>(rays.size(), kBlock, [&](std::size_t first, std::size_t last) {
-    return count(*views_, rays, first, last);
-  });
+  const auto parts = parallel_map_blocks<Part>(
+      rays.size(), kCompareBlock,
+      [&](std::size_t first, std::size_t last) { return count(*views_, rays, first, last); });
   for (const Part& part : parts) {
     total_weight_ += part.total;
     for (std::size_t k = 0; k < weights_.size(); ++k) {

@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/rayset/convert.h"
 
-#include <numeric>
-
 #include "lucerna/core/error.h"
 #include "lucerna/rayset/ray_file.h"
+#include "lucerna/rayset/ray_statistics.h"
 #include "lucerna/rayset/subset.h"
 
 namespace lucerna {
 
 namespace {
-
-double weight_sum(const RayBlock& block) {
-  return std::accumulate(block.weight.begin(), block.weight.end(), 0.0);
-}
 
 /// What the chosen rays' weights must grow by so that their sum is that of all rays.
 double weight_factor(const std::filesystem::path& in, const RaySubset& subset, const ReadOptions& options,
@@ -25,8 +20,8 @@ double weight_factor(const std::filesystem::path& in, const RaySubset& subset, c
     RayBlock part;
     subset.select(block, first, part);
     first += block.size();
-    all += weight_sum(block);
-    chosen += weight_sum(part);
+    all += sum_of_weights(block);
+    chosen += sum_of_weights(part);
   });
   return chosen > 0.0 ? all / chosen : 1.0;
 }

@@ -12,7 +12,7 @@ namespace lucerna {
 namespace {
 
 /// A Lambertian disk of radius 1 mm: étendue pi^2 mm^2 sr, the same luminance everywhere.
-RayBlock disk(std::size_t n, const Frame& placed) {
+RayBlock disk_rays(std::size_t n, const Frame& placed) {
   RayBlock rays;
   rays.resize(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
@@ -31,7 +31,7 @@ constexpr double kDisk = std::numbers::pi * std::numbers::pi;
 
 TEST(EtendueCurve, LambertianDiskOfAnyTilt) {
   for (const Frame& placed : {Frame{}, Frame::from_axis(Direction::from({1, 2, -3}), 0.7, {5, -7, 30})}) {
-    const EtendueCurve curve = etendue_curve(disk(100000, placed));
+    const EtendueCurve curve = etendue_curve(disk_rays(100000, placed));
     EXPECT_NEAR(curve.at(0.5), 0.5 * kDisk, 0.05 * 0.5 * kDisk);
     EXPECT_NEAR(curve.at(0.9), 0.9 * kDisk, 0.10 * 0.9 * kDisk);
     EXPECT_LT(curve.at(0.5), curve.at(0.9));
@@ -40,7 +40,7 @@ TEST(EtendueCurve, LambertianDiskOfAnyTilt) {
 }
 
 TEST(EtendueCurve, ABrightSpotComesFirst) {
-  RayBlock rays = disk(60000, {});
+  RayBlock rays = disk_rays(60000, {});
   for (std::size_t i = 0; i < 30000; ++i) rays.x_mm[i] *= 0.25F, rays.y_mm[i] *= 0.25F;
   const EtendueCurve curve = etendue_curve(rays);
   EXPECT_NEAR(curve.at(0.45), 0.45 / (0.5 + 0.5 / 16.0) * kDisk / 16.0, 0.15 * kDisk / 16.0);
@@ -48,7 +48,7 @@ TEST(EtendueCurve, ABrightSpotComesFirst) {
 }
 
 TEST(EtendueCurve, PointsBeamsAndNothing) {
-  RayBlock rays = disk(1000, {});
+  RayBlock rays = disk_rays(1000, {});
   RayBlock beam = rays;
   rays.x_mm.assign(1000, 1.0F), rays.y_mm.assign(1000, 1.0F), rays.z_mm.assign(1000, 1.0F);
   EXPECT_LT(etendue_curve(rays).at(0.9), 1e-6);

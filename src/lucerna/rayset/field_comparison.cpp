@@ -10,13 +10,14 @@
 #include "lucerna/core/parallel.h"
 #include "lucerna/core/parallel_sort.h"
 #include "lucerna/core/random.h"
+#include "lucerna/rayset/ray_statistics.h"
 #include "lucerna/rayset/view_window.h"
 
 namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 16;
+constexpr std::size_t kFieldBlock = std::size_t{1} << 16;
 constexpr double kLeastRays = 1000.0;
 /// Of the dealing out of rays: not the seed of any source.
 constexpr std::uint64_t kDealSeed = 0x9e3779b97f4a7c15u;
@@ -27,19 +28,13 @@ struct PlaneRay {
   bool of_test = false, dealt_to_test = false;
 };
 
-double weight_sum(const RayBlock& rays) {
-  double sum = 0.0;
-  for (const float w : rays.weight) sum += static_cast<double>(w);
-  return sum;
-}
-
 void append_plane_rays(const Views& views, const RayBlock& rays, bool of_test, double test_share,
                        std::vector<PlaneRay>& out) {
-  const double mean = weight_sum(rays) / static_cast<double>(rays.size());
+  const double mean = sum_of_weights(rays) / static_cast<double>(rays.size());
   if (!(mean > 0.0)) throw InputError("a set of rays without flux cannot be compared");
   const std::size_t before = out.size();
   out.resize(before + rays.size());
-  parallel_blocks(rays.size(), kBlock, [&](std::size_t first, std::size_t last) {
+  parallel_blocks(rays.size(), kFieldBlock, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       PlaneRay& ray = out[before + i];
       const auto at = views.coordinates(ViewKind::focus, rays.ray(i));
@@ -69,7 +64,7 @@ struct Keyed {
 
 PlaneDifference difference_at(const std::vector<PlaneRay>& rays, double cell_um) {
   std::vector<Keyed> keyed(rays.size());
-  parallel_blocks(rays.size(), kBlock, [&](std::size_t first, std::size_t last) {
+  parallel_blocks(rays.size(), kFieldBlock, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       keyed[i] = {cell_number(rays[i].x_mm, 1e-3 * cell_um), cell_number(rays[i].y_mm, 1e-3 * cell_um),
                   static_cast<std::uint32_t>(i)};
@@ -159,7 +154,7 @@ template <class MarkOf>
 MarkCounts count_marks(const RayBlock& rays, const ViewWindow& window, std::size_t cells,
                        const MarkOf& mark) {
   const auto parts =
-      parallel_map_blocks<MarkCounts>(rays.size(), 4 * kBlock, [&](std::size_t first, std::size_t last) {
+      parallel_map_blocks<MarkCounts>(rays.size(), 4 * kFieldBlock, [&](std::size_t first, std::size_t last) {
         MarkCounts part{std::vector<double>(cells + 1, 0.0), std::vector<double>(cells + 1, 0.0)};
         for (std::size_t i = first; i < last; ++i) {
           const auto m = mark(rays.ray(i), static_cast<double>(rays.weight[i]));
@@ -286,7 +281,7 @@ std::optional<LuminanceImage> luminance_image(const Views& views, const RayBlock
   const double cell_mm = 2.0 * half / n, cone_sr = 2.0 * std::numbers::pi * (1.0 - least_cosine);
   const auto picture = [&](const RayBlock& rays) {
     std::vector<double> cells = count_marks(rays, image.window, n * n, mark).weights;
-    const double total = weight_sum(rays);
+    const double total = sum_of_weights(rays);
     for (std::size_t i = 0; i < n * n; ++i) cells[i] /= total * cell_mm * cell_mm * cone_sr;
     cells[n * n] /= total;
     return cells;

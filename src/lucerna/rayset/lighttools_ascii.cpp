@@ -13,18 +13,18 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kHead = 1 << 16, kTail = 4096;
-constexpr std::string_view kStart = "lt_startofdata", kEnd = "lt_endofdata";
-struct Unit {
+constexpr std::size_t kAsciiHead = 1 << 16, kAsciiTail = 4096;
+constexpr std::string_view kDataStart = "lt_startofdata", kDataEnd = "lt_endofdata";
+struct UnitName {
   std::string_view name, label;
 };
-constexpr std::array<Unit, 7> kUnits{{{"mm", "millimeters"},
-                                      {"cm", "centimeters"},
-                                      {"m", "meters"},
-                                      {"inch", "inches"},
-                                      {"feet", "feet"},
-                                      {"um", "micrometers"},
-                                      {"nm", "nanometers"}}};
+constexpr std::array<UnitName, 7> kUnitNames{{{"mm", "millimeters"},
+                                              {"cm", "centimeters"},
+                                              {"m", "meters"},
+                                              {"inch", "inches"},
+                                              {"feet", "feet"},
+                                              {"um", "micrometers"},
+                                              {"nm", "nanometers"}}};
 
 std::string lower(std::string_view text) {
   std::string out;
@@ -44,20 +44,20 @@ struct Value {
 };
 
 /// The header's keys in lower case, and where the rays begin.
-struct Head {
+struct AsciiHead {
   std::map<std::string, Value> keys;
   std::uint64_t data_byte = 0;
   std::size_t data_line = 0;  // 0: no lt_startofdata
   std::size_t numbers = 0;    // on the first line of data
 };
 
-Head read_head(const InputFile& file) {
-  Head head;
-  const std::string text = head_of(file, kHead);
+AsciiHead read_ascii_head(const InputFile& file) {
+  AsciiHead head;
+  const std::string text = head_of(file, kAsciiHead);
   const auto lines = lines_in(text);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const std::string_view line = trimmed(lines[i]);
-    if (lower(line) == kStart) {
+    if (lower(line) == kDataStart) {
       head.data_line = i + 2;
       const std::size_t line_end = text.find('\n', static_cast<std::size_t>(lines[i].data() - text.data()));
       head.data_byte = line_end == text.npos ? text.size() : line_end + 1;
@@ -72,15 +72,16 @@ Head read_head(const InputFile& file) {
   return head;
 }
 
-class Opener {
+class AsciiOpener {
  public:
-  Opener(InputFile file, bool salvage) : file_(std::move(file)), salvage_(salvage), head_(read_head(file_)) {}
+  AsciiOpener(InputFile file, bool salvage)
+      : file_(std::move(file)), salvage_(salvage), head_(read_ascii_head(file_)) {}
 
   std::unique_ptr<RayReader> open() {
     facts_.format = "lighttools-ascii";
     if (head_.data_line == 0)
       throw_input_error(file_.name(), "line 1", "a line 'lt_startofdata' expected in the first {} bytes",
-                        kHead);
+                        kAsciiHead);
     facts_.header.flux_unit = choice("lt_datatype", "radiant_power", {"radiant_power", "luminous_flux"}) == 1
                                   ? FluxUnit::lumen
                                   : FluxUnit::watt;
@@ -129,9 +130,9 @@ class Opener {
     }
     std::string text = lower(found->second.text);
     if (text == "microns") text = "micrometers";
-    const auto unit =
-        std::ranges::find_if(kUnits, [&](const Unit& u) { return text == u.label || text == u.name; });
-    if (unit == kUnits.end()) fail(found->second, "lt_length_units", "millimeters or another unit");
+    const auto unit = std::ranges::find_if(
+        kUnitNames, [&](const UnitName& u) { return text == u.label || text == u.name; });
+    if (unit == kUnitNames.end()) fail(found->second, "lt_length_units", "millimeters or another unit");
     facts_.length_unit = unit->name;
   }
 
@@ -164,10 +165,11 @@ class Opener {
     layout_.begin = head_.data_byte;
     layout_.first_line = head_.data_line;
     layout_.end = file_.size();
-    const std::uint64_t from = std::max(layout_.begin, file_.size() > kTail ? file_.size() - kTail : 0);
+    const std::uint64_t from =
+        std::max(layout_.begin, file_.size() > kAsciiTail ? file_.size() - kAsciiTail : 0);
     std::string tail(file_.size() - from, '\0');
     file_.read_at(from, std::as_writable_bytes(std::span(tail)));
-    if (const std::size_t at = lower(tail).rfind(kEnd); at != tail.npos) {
+    if (const std::size_t at = lower(tail).rfind(kDataEnd); at != tail.npos) {
       layout_.end = from + at;
     } else if (salvage_) {
       facts_.warnings.push_back(
@@ -184,7 +186,7 @@ class Opener {
 
   InputFile file_;
   bool salvage_;
-  Head head_;
+  AsciiHead head_;
   RayFileFacts facts_;
   TextLayout layout_;
 };
@@ -204,23 +206,24 @@ class LightToolsAsciiWriter final : public RayWriter {
     writer_.write_text(
         fmt::format("# Ray data\nlt_rdf_version: 2.0\ndataname: {}\nlt_datatype: {}\nlt_far_field_data: no\n",
                     name, lumen ? "luminous_flux" : "radiant_power"));
-    writer_.write_text(fmt::format("lt_color_info: {}\nlt_length_units: {}\nlt_data_origin: 0 0 0\n",
-                                   wavelengths ? "wavelength" : "none",
-                                   std::ranges::find(kUnits, options.length_unit, &Unit::name)->label));
+    writer_.write_text(
+        fmt::format("lt_color_info: {}\nlt_length_units: {}\nlt_data_origin: 0 0 0\n",
+                    wavelengths ? "wavelength" : "none",
+                    std::ranges::find(kUnitNames, options.length_unit, &UnitName::name)->label));
     if (const auto flux = header.flux())
       writer_.write_text(fmt::format("lt_radiant_flux: {}\n", static_cast<float>(*flux)));
-    writer_.write_text(fmt::format("{}\n", kStart));
+    writer_.write_text(fmt::format("{}\n", kDataStart));
   }
 
   void write(const RayBlock& block) override { writer_.write_rays(block); }
   void finish() override {
-    writer_.write_text(fmt::format("{}\n", kEnd));
+    writer_.write_text(fmt::format("{}\n", kDataEnd));
     writer_.file().commit();
   }
 
  private:
   static RecordLayout layout_for(const RaySetHeader& header, const WriteOptions& options) {
-    if (std::ranges::find(kUnits, options.length_unit, &Unit::name) == kUnits.end()) {
+    if (std::ranges::find(kUnitNames, options.length_unit, &UnitName::name) == kUnitNames.end()) {
       throw UsageError(
           fmt::format("lighttools: lengths in mm, cm, m, inch, feet, um or nm, not {}", options.length_unit));
     }
@@ -240,7 +243,7 @@ bool looks_like_lighttools_ascii(const InputFile& file) {
 }
 
 std::unique_ptr<RayReader> open_lighttools_ascii(InputFile file, const ReadOptions& options) {
-  return Opener(std::move(file), options.salvage).open();
+  return AsciiOpener(std::move(file), options.salvage).open();
 }
 
 std::unique_ptr<RayWriter> create_lighttools_ascii(const std::filesystem::path& path,

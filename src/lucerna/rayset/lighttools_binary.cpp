@@ -12,10 +12,10 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::string_view kMagic = "LTRF", kEnd = "LTRFEND";
+constexpr std::string_view kMagic = "LTRF", kEndMark = "LTRFEND";
 constexpr std::size_t kMajor = 4, kDataType = 12, kFarField = 16, kColour = 20, kUnit = 24, kOrigin = 28,
-                      kFlux = 40, kHeaderSize = 44;
-constexpr std::array<std::string_view, 8> kUnits{"mm", "mm", "cm", "m", "inch", "feet", "um", "nm"};
+                      kFlux = 40, kLtrfHeaderSize = 44;
+constexpr std::array<std::string_view, 8> kUnitCodes{"mm", "mm", "cm", "m", "inch", "feet", "um", "nm"};
 constexpr std::uint32_t kNoColour = 0, kTristimulus = 1, kWavelengths = 2;
 
 bool has_text_at(const InputFile& file, std::uint64_t offset, std::string_view text) {
@@ -25,10 +25,10 @@ bool has_text_at(const InputFile& file, std::uint64_t offset, std::string_view t
   return found == text;
 }
 
-class Opener {
+class BinaryOpener {
  public:
-  Opener(InputFile file, bool salvage) : file_(std::move(file)), salvage_(salvage) {
-    head_.resize(kHeaderSize);
+  BinaryOpener(InputFile file, bool salvage) : file_(std::move(file)), salvage_(salvage) {
+    head_.resize(kLtrfHeaderSize);
     file_.read_at(0, head_);
   }
 
@@ -47,7 +47,7 @@ class Opener {
     }
     const std::uint32_t unit = code(kUnit, "length unit", 0, 7);
     if (unit == 0) warn("byte {}: lengths in 'system' units: mm assumed", kUnit);
-    facts_.length_unit = kUnits[unit];
+    facts_.length_unit = kUnitCodes[unit];
     lay_out(far_field, colour == kWavelengths);
     if (major == 3) extend_to_version_3();
     place_origin();
@@ -71,7 +71,7 @@ class Opener {
   }
 
   void lay_out(bool far_field, bool wavelengths) {
-    layout_.first_byte = kHeaderSize;
+    layout_.first_byte = kLtrfHeaderSize;
     if (far_field) layout_.main = {{{-1}, {-1}, {-1}, {0}, {1}, {2}, {3}}};
     layout_.floats = far_field ? 4 : 7;
     layout_.scale_lengths(*mm_per(facts_.length_unit));
@@ -90,11 +90,11 @@ class Opener {
   /// One more word in the header, and S0..S3 after the rest of each ray.
   void extend_to_version_3() {
     warn("byte {}: version 3 (polarised), whose layout is known from one source only", kMajor);
-    head_.resize(kHeaderSize + 4);
+    head_.resize(kLtrfHeaderSize + 4);
     file_.read_at(0, head_);
-    layout_.first_byte = kHeaderSize + 4;
+    layout_.first_byte = kLtrfHeaderSize + 4;
     // Sources differ on where the flag stands: where the flux is not.
-    if (load<std::uint32_t>(head_, kHeaderSize) > 1) set_flux(kHeaderSize);
+    if (load<std::uint32_t>(head_, kLtrfHeaderSize) > 1) set_flux(kLtrfHeaderSize);
   }
 
   void place_origin() {
@@ -111,9 +111,9 @@ class Opener {
   }
 
   void count_rays(bool may_be_polarised) {
-    const bool marked = file_.size() >= layout_.first_byte + kEnd.size() &&
-                        has_text_at(file_, file_.size() - kEnd.size(), kEnd);
-    const std::uint64_t bytes = file_.size() - layout_.first_byte - (marked ? kEnd.size() : 0);
+    const bool marked = file_.size() >= layout_.first_byte + kEndMark.size() &&
+                        has_text_at(file_, file_.size() - kEndMark.size(), kEndMark);
+    const std::uint64_t bytes = file_.size() - layout_.first_byte - (marked ? kEndMark.size() : 0);
     if (may_be_polarised && bytes % layout_.record_bytes() != 0 &&
         bytes % (layout_.record_bytes() + 16) == 0) {
       for (const char* label : {"S0", "S1", "S2", "S3"}) {
@@ -148,13 +148,13 @@ class LightToolsBinaryWriter final : public RayWriter {
     const auto wavelength = find_column(header.columns, ColumnKind::wavelength_nm);
     warnings_ = losses(header, "lighttools-binary",
                        {.wavelengths = true, .one_wavelength = false, .table = false, .texts = false});
-    std::vector<std::byte> head(kHeaderSize);
+    std::vector<std::byte> head(kLtrfHeaderSize);
     std::memcpy(head.data(), kMagic.data(), kMagic.size());
     store(head, kMajor, std::uint32_t{2});
     store(head, kDataType, std::uint32_t{header.flux_unit == FluxUnit::lumen});
     store(head, kColour, wavelength ? kWavelengths : kNoColour);
-    const auto unit = std::find(kUnits.begin() + 1, kUnits.end(), options.length_unit);
-    store(head, kUnit, static_cast<std::uint32_t>(unit - kUnits.begin()));
+    const auto unit = std::find(kUnitCodes.begin() + 1, kUnitCodes.end(), options.length_unit);
+    store(head, kUnit, static_cast<std::uint32_t>(unit - kUnitCodes.begin()));
     store(head, kFlux, static_cast<float>(header.flux().value_or(0.0)));
     writer_.write_bytes(head);
   }
@@ -162,15 +162,15 @@ class LightToolsBinaryWriter final : public RayWriter {
   void write(const RayBlock& block) override { writer_.write_rays(block); }
 
   void finish() override {
-    writer_.write_bytes(std::as_bytes(std::span(kEnd)));
+    writer_.write_bytes(std::as_bytes(std::span(kEndMark)));
     writer_.file().commit();
   }
 
  private:
   static RecordLayout layout_for(const RaySetHeader& header, const WriteOptions& options) {
-    if (std::ranges::find(kUnits, options.length_unit) == kUnits.end()) {
+    if (std::ranges::find(kUnitCodes, options.length_unit) == kUnitCodes.end()) {
       throw UsageError(fmt::format("lighttools: lengths in {}, not {}",
-                                   fmt::join(std::span(kUnits).subspan(1), ", "), options.length_unit));
+                                   fmt::join(std::span(kUnitCodes).subspan(1), ", "), options.length_unit));
     }
     return written_layout(header, options.length_unit, 1.0);
   }
@@ -183,7 +183,7 @@ class LightToolsBinaryWriter final : public RayWriter {
 bool looks_like_lighttools_binary(const InputFile& file) { return has_text_at(file, 0, kMagic); }
 
 std::unique_ptr<RayReader> open_lighttools_binary(InputFile file, const ReadOptions& options) {
-  return Opener(std::move(file), options.salvage).open();
+  return BinaryOpener(std::move(file), options.salvage).open();
 }
 
 std::unique_ptr<RayWriter> create_lighttools_binary(const std::filesystem::path& path,

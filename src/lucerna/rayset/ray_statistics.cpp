@@ -4,22 +4,21 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "lucerna/core/parallel.h"
+#include "lucerna/rayset/eigen_vec.h"
 
 namespace lucerna {
 
 namespace {
 
 /// Rays summed by one thread at a time.
-constexpr std::size_t kPart = 1 << 14;
+constexpr std::size_t kSummedRays = 1 << 14;
 
 /// Mean squared sine of the rays about their common axis below which they count as parallel (10 microradian
 /// squared).
 constexpr double kParallel = 1e-10;
-
-Vec3 vec3(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-Eigen::Vector3d eigen(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
@@ -77,7 +76,7 @@ void RayStatistics::add(const RayBlock& block) {
   if (block.empty()) return;
   if (count_ == 0) about_ = block.origin_mm(0);
   for (const Sums& part : parallel_map_blocks<Sums>(
-           block.size(), kPart,
+           block.size(), kSummedRays,
            [&](std::size_t first, std::size_t last) { return sums_of(block, first, last, about_); })) {
     sums_.add(part);
   }
@@ -105,9 +104,9 @@ RaySummary RayStatistics::result() const {
   Eigen::Matrix3d kk;
   kk << s.kk[0], s.kk[1], s.kk[2], s.kk[1], s.kk[3], s.kk[4], s.kk[2], s.kk[4], s.kk[5];
   const Eigen::Matrix3d a = (kk.trace() * Eigen::Matrix3d::Identity() - kk) / s.w;
-  const Eigen::Vector3d mean = eigen(s.x) / s.w;
+  const Eigen::Vector3d mean = to_eigen(s.x) / s.w;
   // About the mean start, so that an axis without information leaves the mean where it is.
-  const Eigen::Vector3d b = (eigen(s.x) - eigen(s.kkx)) / s.w - a * mean;
+  const Eigen::Vector3d b = (to_eigen(s.x) - to_eigen(s.kkx)) / s.w - a * mean;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(a);
   Eigen::Vector3d focus = mean;
   VirtualFocus found;
@@ -120,7 +119,7 @@ RaySummary RayStatistics::result() const {
       found.determined = false;
     }
   }
-  found.point_mm = about_ + vec3(focus);
+  found.point_mm = about_ + to_vec3(focus);
   r.virtual_focus = found;
   return r;
 }
@@ -129,6 +128,10 @@ RaySummary summarize(const RayBlock& rays) {
   RayStatistics statistics;
   statistics.add(rays);
   return statistics.result();
+}
+
+double sum_of_weights(const RayBlock& rays) {
+  return std::accumulate(rays.weight.begin(), rays.weight.end(), 0.0);
 }
 
 }  // namespace lucerna

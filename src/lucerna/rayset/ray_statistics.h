@@ -67,4 +67,7 @@ class RayStatistics {
 /// The summary of rays in memory.
 RaySummary summarize(const RayBlock& rays);
 
+/// Added in double, in order.
+double sum_of_weights(const RayBlock& rays);
+
 }  // namespace lucerna

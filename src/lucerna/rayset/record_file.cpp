@@ -15,7 +15,7 @@ static_assert(std::endian::native == std::endian::little,
 namespace {
 
 /// Rays that one thread converts at a time: records and arrays together stay in the second-level cache.
-constexpr std::size_t kPart = 8192;
+constexpr std::size_t kRecordPart = 8192;
 
 std::array<std::vector<float>*, 7> arrays_of(RayBlock& b) {
   return {&b.x_mm, &b.y_mm, &b.z_mm, &b.kx, &b.ky, &b.kz, &b.weight};
@@ -119,7 +119,7 @@ std::size_t RecordReader::read(RayBlock& block, std::size_t max_rays) {
     const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(max_rays, ray_count_ - next_));
     block.resize(n, layout_.extra.size());
     const auto faults = parallel_map_blocks<std::optional<RayFault>>(
-        n, kPart, [&](std::size_t first, std::size_t last) { return read_part(block, first, last); });
+        n, kRecordPart, [&](std::size_t first, std::size_t last) { return read_part(block, first, last); });
     const auto bad = std::find_if(faults.begin(), faults.end(), [](const auto& f) { return f.has_value(); });
     if (bad != faults.end()) {
       if (!salvage_) fail(**bad);
@@ -149,7 +149,7 @@ void RecordWriter::write_rays(const RayBlock& block) {
   for (std::size_t done = 0; done < block.size(); done += kStreamBlock) {
     const std::size_t n = std::min(kStreamBlock, block.size() - done);
     records_.resize(n * stride);
-    parallel_blocks(n, kPart, [&](std::size_t first, std::size_t last) {
+    parallel_blocks(n, kRecordPart, [&](std::size_t first, std::size_t last) {
       float* out = records_.data() + first * stride;
       for (std::size_t c = 0; c < 7; ++c) {
         scatter(main[c]->data() + done + first, last - first, layout_.main[c], stride, out);

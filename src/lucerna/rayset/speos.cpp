@@ -12,7 +12,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kWatts = 0, kVersion = 4, kVersions = 5, kLumens = 24, kHeaderSize = 28;
+constexpr std::size_t kWatts = 0, kVersion = 4, kVersions = 5, kLumens = 24, kSpeosHeaderSize = 28;
 constexpr std::size_t kPlain = 8, kPolarised = 13;
 constexpr float kGreen_nm = 555.0F;  // the peak of V(lambda)
 
@@ -28,7 +28,7 @@ class SpeosWriter final : public RayWriter {
     const bool lumen_only = header.flux_unit == FluxUnit::lumen && (wavelength_ || !header.flux_w);
     if (lumen_only)
       warnings_.push_back("speos energies are meant in watt; the lumens of the rays are written");
-    std::vector<std::byte> head(kHeaderSize);
+    std::vector<std::byte> head(kSpeosHeaderSize);
     store(head, kWatts, lumen_only ? 0.0F : static_cast<float>(header.flux_w.value_or(0.0)));
     for (std::size_t v = 0; v < kVersions; ++v) store(head, kVersion + 4 * v, 2.0F);
     store(head, kLumens, static_cast<float>(header.flux_lm.value_or(0.0)));
@@ -75,8 +75,8 @@ class SpeosWriter final : public RayWriter {
 }  // namespace
 
 bool looks_like_speos(const InputFile& file) {
-  if (file.size() < kHeaderSize) return false;
-  std::array<std::byte, kHeaderSize> head{};
+  if (file.size() < kSpeosHeaderSize) return false;
+  std::array<std::byte, kSpeosHeaderSize> head{};
   file.read_at(0, head);
   const auto version = load<float>(head, kVersion);
   for (std::size_t v = 1; v < kVersions; ++v) {
@@ -88,7 +88,7 @@ bool looks_like_speos(const InputFile& file) {
 }
 
 std::unique_ptr<RayReader> open_speos(InputFile file, const ReadOptions& options) {
-  std::vector<std::byte> head(kHeaderSize);
+  std::vector<std::byte> head(kSpeosHeaderSize);
   file.read_at(0, head);
   if (!looks_like_speos(file)) {
     throw_input_error(file.name(), fmt::format("byte {}", kVersion),
@@ -105,10 +105,10 @@ std::unique_ptr<RayReader> open_speos(InputFile file, const ReadOptions& options
   facts.header.flux_unit = watts > 0.0F || !(lumens > 0.0F) ? FluxUnit::watt : FluxUnit::lumen;
   facts.header.columns = {{ColumnKind::wavelength_nm, standard_label(ColumnKind::wavelength_nm)}};
   RecordLayout layout;
-  layout.first_byte = kHeaderSize;
+  layout.first_byte = kSpeosHeaderSize;
   layout.main[6].at = 7;
   layout.extra = {{6}};
-  const std::uint64_t bytes = file.size() - kHeaderSize;
+  const std::uint64_t bytes = file.size() - kSpeosHeaderSize;
   const bool polarised = bytes % (4 * kPlain) != 0 && bytes % (4 * kPolarised) == 0;
   layout.floats = polarised ? kPolarised : kPlain;
   if (polarised) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lucerna/core/random.h"
+#include "lucerna/rayset/eigen_vec.h"
 
 namespace lucerna {
 
@@ -22,11 +23,8 @@ constexpr std::size_t kSample = 4096;
 /// Trials of each consensus search: with 30 % of the points on the face in question, four of them on it are
 /// missed in 200 trials with probability 0.2; on a surface that holds 90 % of the starts, never.
 constexpr std::uint64_t kTrials = 200;
-constexpr std::size_t kFewest = 8;  // points on a surface that make it one
+constexpr std::size_t kFewestOnFace = 8;  // points on a surface that make it one
 constexpr double kSimplerBy = 0.03;
-
-Vec3 vec3(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-Vector3d eigen(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 /// Some of the starts, and what is needed of them.
 struct Starts {
@@ -55,7 +53,7 @@ Starts sample_starts(const RayBlock& rays) {
     // One ray of each of n equal ranges, at a random place in it: file order may be anything.
     const std::size_t first = rays.size() * j / n, next = rays.size() * (j + 1) / n;
     const auto i = first + static_cast<std::size_t>(Rng(1, j).uniform() * static_cast<double>(next - first));
-    s.points.push_back(eigen(rays.origin_mm(i)));
+    s.points.push_back(to_eigen(rays.origin_mm(i)));
     s.weights.push_back(static_cast<double>(rays.weight[i]));
     s.total += s.weights.back();
     low = low.cwiseMin(s.points.back());
@@ -168,7 +166,7 @@ std::optional<Sphere> fit_round(const std::vector<Vector3d>& points, int dimensi
 Plane find_plane(const Starts& s) { return consensus<Plane>(s, 3, fit_plane); }
 
 Frame frame_of(const Matrix3d& axes, const Vector3d& origin) {
-  return {vec3(axes.col(0)), vec3(axes.col(1)), vec3(axes.col(2)), vec3(origin)};
+  return {to_vec3(axes.col(0)), to_vec3(axes.col(1)), to_vec3(axes.col(2)), to_vec3(origin)};
 }
 
 /// Right-handed axes with z along `z`, x as near to the world's x (or y) as can be.
@@ -199,7 +197,7 @@ std::pair<double, double> faces(const Starts& s, int axis) {
   for (const Vector3d& p : s.points) x.push_back(p[axis]);
   if (x.empty()) return {0.0, 0.0};
   std::ranges::sort(x);
-  const std::size_t many = std::max(kFewest, x.size() / 100);
+  const std::size_t many = std::max(kFewestOnFace, x.size() / 100);
   const auto outermost = [&](const std::vector<double>& sorted) {
     for (std::size_t i = 0; i + many <= sorted.size(); ++i) {
       if (std::abs(sorted[i + many - 1] - sorted[i]) <= s.tolerance) {
@@ -224,7 +222,7 @@ SurfaceGuess guess_with(const Starts& s, const BoundingSurface& surface) {
   guess.shape = StartShape::surface;
   guess.surface = surface;
   guess.tolerance_mm = s.tolerance;
-  guess.share = s.share([&](const Vector3d& p) { return surface.outside_mm(vec3(p)); });
+  guess.share = s.share([&](const Vector3d& p) { return surface.outside_mm(to_vec3(p)); });
   return guess;
 }
 
@@ -286,7 +284,7 @@ SurfaceGuess try_cylinder(const Starts& s, const Matrix3d& roughly) {
   for (const Matrix3d& axes : {roughly, straightened(s, roughly)}) {
     const Starts t = turned(s, axes);
     const Circle circle = find_circle(t);
-    if (near_points(t, circle).size() < kFewest) continue;
+    if (near_points(t, circle).size() < kFewestOnFace) continue;
     const auto [low, high] = faces(t, 2);
     const Vector3d middle(circle.centre.x(), circle.centre.y(), 0.5 * (low + high));
     BoundingSurface surface = BoundingSurface::cylinder(circle.radius, high - low);
@@ -299,7 +297,7 @@ SurfaceGuess try_cylinder(const Starts& s, const Matrix3d& roughly) {
 
 SurfaceGuess try_box(const Starts& s, const Matrix3d& axes) {
   const auto [low, high] = extent(turned(s, axes));
-  BoundingSurface surface = BoundingSurface::box(vec3(high - low));
+  BoundingSurface surface = BoundingSurface::box(to_vec3(high - low));
   surface.world_from_surface = frame_of(axes, axes * (0.5 * (low + high)));
   return guess_with(s, surface);
 }
@@ -356,12 +354,12 @@ SurfaceGuess guess_surface(const RayBlock& rays, double min_share) {
   SurfaceGuess none;
   if (s.points.empty()) return none;
   none.tolerance_mm = s.tolerance;
-  none.point_mm = vec3(s.mean);
+  none.point_mm = to_vec3(s.mean);
   const double point_tolerance =
       4.0 * static_cast<double>(std::numeric_limits<float>::epsilon()) * (1.0 + s.mean.norm());
   if (s.spread[2] <= point_tolerance || s.spread[1] <= 1e-6 * s.spread[2]) {
     none.shape = s.spread[2] <= point_tolerance ? StartShape::point : StartShape::line;
-    none.line = Direction::from_unit(vec3(s.axes.col(2)));
+    none.line = Direction::from_unit(to_vec3(s.axes.col(2)));
     none.share = 1.0;
     return none;
   }
@@ -381,7 +379,7 @@ SurfaceGuess guess_surface(const RayBlock& rays, double min_share) {
   if (guesses.back().share >= enough) return guesses.back();
   const auto sphere =
       consensus<Sphere>(s, 4, [](const std::vector<Vector3d>& points) { return fit_round(points, 3); });
-  if (near_points(s, sphere).size() >= kFewest) {
+  if (near_points(s, sphere).size() >= kFewestOnFace) {
     BoundingSurface surface = BoundingSurface::sphere(sphere.radius);
     surface.world_from_surface = frame_of(Matrix3d::Identity(), sphere.centre);
     guesses.push_back(guess_with(s, surface));

@@ -13,7 +13,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kHead = 1 << 16;
+constexpr std::size_t kTextHead = 1 << 16;
 constexpr std::string_view kColumns = "# columns:";
 constexpr std::array<std::string_view, 7> kMain{"x", "y", "z", "kx", "ky", "kz", "flux"};
 
@@ -31,16 +31,16 @@ std::vector<std::string> words_in(std::string_view text) {
 }
 
 /// What is known before the rays.
-struct Head {
+struct TextHead {
   std::vector<std::string> columns;  // declared
   std::optional<double> flux_lm, flux_w;
   std::uint64_t data_byte = 0, data_line = 1;
   std::vector<double> first;  // numbers of the first ray
 };
 
-Head read_head(const InputFile& file) {
-  Head head;
-  const std::string text = head_of(file, kHead);
+TextHead read_text_head(const InputFile& file) {
+  TextHead head;
+  const std::string text = head_of(file, kTextHead);
   const auto lines = lines_in(text);
   head.data_byte = file.size();
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -64,9 +64,9 @@ Head read_head(const InputFile& file) {
 }
 
 /// Turns names of columns into a layout.
-class Columns {
+class TextColumns {
  public:
-  Columns(const InputFile& file, const std::vector<std::string>& names, RayFileFacts& facts)
+  TextColumns(const InputFile& file, const std::vector<std::string>& names, RayFileFacts& facts)
       : file_(file), facts_(facts) {
     layout.floats = names.size();
     for (RecordColumn& column : layout.main) column.at = -1;
@@ -167,7 +167,7 @@ class TextRaysWriter final : public RayWriter {
 
 bool looks_like_text_rays(const InputFile& file) {
   if (!is_text(file) || looks_like_lighttools_ascii(file) || looks_like_zemax_text(file)) return false;
-  const Head head = read_head(file);
+  const TextHead head = read_text_head(file);
   if (!head.columns.empty()) return true;
   if (head.first.size() < 7) return false;
   const double square =
@@ -176,18 +176,19 @@ bool looks_like_text_rays(const InputFile& file) {
 }
 
 std::unique_ptr<RayReader> open_text_rays(InputFile file, const ReadOptions& options) {
-  const Head head = read_head(file);
+  const TextHead head = read_text_head(file);
   RayFileFacts facts;
   facts.format = "text";
   std::vector<std::string> names = options.text_columns.empty() ? head.columns : options.text_columns;
   if (names.empty()) {
     if (head.first.empty())
-      throw_input_error(file.name(), "", "a line of 7 numbers or more expected in the first {} bytes", kHead);
+      throw_input_error(file.name(), "", "a line of 7 numbers or more expected in the first {} bytes",
+                        kTextHead);
     names.assign(kMain.begin(), kMain.end());
     for (std::size_t c = 7; c < head.first.size(); ++c) names.push_back(fmt::format("column{}", c + 1));
     facts.warnings.push_back("no columns are declared: x y z (mm) kx ky kz flux assumed");
   }
-  const Columns columns(file, names, facts);
+  const TextColumns columns(file, names, facts);
   facts.header.flux_lm = head.flux_lm;
   facts.header.flux_w = head.flux_w;
   if (!columns.has_flux_unit) {

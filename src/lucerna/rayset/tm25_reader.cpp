@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint64_t kMaxSpectralPairs = 1 << 20, kMaxItems = 256, kMaxTextBytes = 1 << 24;
 
 /// Rays whose directions are looked at to tell a right start of the ray block from a wrong one.
-constexpr std::uint64_t kProbe = 64;
+constexpr std::uint64_t kTm25Probe = 64;
 
 class Tm25Opener {
  public:
@@ -259,7 +259,7 @@ void Tm25Opener::set_stokes(std::size_t columns) {
 }
 
 bool Tm25Opener::plausible(std::uint64_t start) const {
-  const std::uint64_t n = std::min(kProbe, facts_.ray_count);
+  const std::uint64_t n = std::min(kTm25Probe, facts_.ray_count);
   const std::vector<float> records = peek_records(file_, start, layout_.floats, n);
   if (records.size() < n * layout_.floats) return false;
   for (std::size_t i = 0; i < n; ++i) {

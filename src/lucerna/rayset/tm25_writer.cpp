@@ -19,7 +19,7 @@ namespace {
 constexpr float kNotStated = std::numeric_limits<float>::quiet_NaN();
 
 /// Where each column of the header goes in a record, and the flags that say so.
-struct Columns {
+struct Tm25Columns {
   std::array<bool, flag_count> flag{};
   RecordLayout layout;
   std::vector<std::string> labels;  // of the additional items
@@ -35,8 +35,8 @@ std::vector<std::size_t> of_kind(const RaySetHeader& header, ColumnKind kind) {
 
 /// Puts the columns into the order of the standard. What it has no place for (a second wavelength, X without
 /// Z, a Stokes vector of neither 3 nor 6 numbers) becomes an additional item.
-Columns arrange(const RaySetHeader& header, std::vector<std::string>& warnings) {
-  Columns out;
+Tm25Columns arrange(const RaySetHeader& header, std::vector<std::string>& warnings) {
+  Tm25Columns out;
   out.flag[position] = out.flag[direction] = true;
   out.layout.floats = 6;
   out.layout.extra.assign(header.columns.size(), RecordColumn{});
@@ -116,7 +116,7 @@ class Tm25Writer final : public RayWriter {
   std::vector<std::uint32_t> field(const std::string& text, std::size_t size, const std::string& name);
   int spectral_id(const RaySetHeader& header);
 
-  Columns columns_;
+  Tm25Columns columns_;
   std::optional<std::size_t> wavelength_column_;
   RecordWriter writer_;
   float shortest_ = std::numeric_limits<float>::max(), longest_ = std::numeric_limits<float>::lowest();

@@ -14,7 +14,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 16;
+constexpr std::size_t kViewBlock = std::size_t{1} << 16;
 constexpr std::array<std::string_view, 5> kViewNames{"far", "near", "focus", "beam", "four_d"};
 /// Shares that design.md section 5 fixes.
 constexpr double kRadiusShare = 0.98, kLeastMeanLength = 0.2, kNearPlaneGap_mm = 1.0;
@@ -31,7 +31,7 @@ struct Reach {
 
 Reach reach_of(const RayBlock& rays, const Frame& view_from_world) {
   const auto parts =
-      parallel_map_blocks<Reach>(rays.size(), kBlock, [&](std::size_t first, std::size_t last) {
+      parallel_map_blocks<Reach>(rays.size(), kViewBlock, [&](std::size_t first, std::size_t last) {
         Reach reach;
         for (std::size_t i = first; i < last; ++i) {
           if (!(rays.weight[i] > 0.0f)) continue;

@@ -14,14 +14,14 @@ namespace lucerna {
 namespace {
 
 constexpr std::int32_t kZemax = 1010, kProSource = 8675309;
-constexpr std::size_t kRayCount = 4, kDescription = 8, kDescriptionSize = 100, kSourceFlux = 108,
-                      kRaySetFlux = 112, kWavelength = 116, kUnits = 136, kRayFormat = 192, kFluxType = 196,
-                      kHeaderSize = 208;
+constexpr std::size_t kRayCountAt = 4, kDescriptionAt = 8, kDescriptionSize = 100, kSourceFluxAt = 108,
+                      kRaySetFluxAt = 112, kWavelengthAt = 116, kUnitsAt = 136, kRayFormatAt = 192,
+                      kFluxTypeAt = 196, kZemaxHeaderSize = 208;
 constexpr std::int32_t kFluxOnly = 0, kSpectral = 2;
-constexpr std::uint64_t kProbe = 1024;
+constexpr std::uint64_t kZemaxProbe = 1024;
 
 std::vector<std::byte> header_of(const InputFile& file) {
-  std::vector<std::byte> head(kHeaderSize);
+  std::vector<std::byte> head(kZemaxHeaderSize);
   file.read_at(0, head);
   return head;
 }
@@ -36,7 +36,7 @@ bool visible_um(float value) { return value >= 0.3F && value <= 0.9F; }
 
 /// True if the seventh numbers all look like visible wavelengths in micrometres and none of the eighth does.
 bool is_swapped(const InputFile& file, std::uint64_t rays) {
-  const std::vector<float> records = peek_records(file, kHeaderSize, 8, std::min(kProbe, rays));
+  const std::vector<float> records = peek_records(file, kZemaxHeaderSize, 8, std::min(kZemaxProbe, rays));
   for (std::size_t i = 0; i < records.size(); i += 8) {
     if (!visible_um(records[i + 6]) || visible_um(records[i + 7])) return false;
   }
@@ -51,16 +51,16 @@ class ZemaxBinaryWriter final : public RayWriter {
     warnings_ =
         losses(header, "zemax-binary",
                {.wavelengths = spectral_, .one_wavelength = !spectral_, .table = false, .texts = false});
-    std::vector<std::byte> head(kHeaderSize);
+    std::vector<std::byte> head(kZemaxHeaderSize);
     store(head, 0, kZemax);
-    store_text(head, kDescription, kDescriptionSize, header.texts.light_source);
+    store_text(head, kDescriptionAt, kDescriptionSize, header.texts.light_source);
     const auto flux = static_cast<float>(header.flux().value_or(0.0));
-    store(head, kSourceFlux, flux);
-    store(head, kRaySetFlux, flux);
-    if (!spectral_ && header.wavelength_nm) store(head, kWavelength, *header.wavelength_nm / 1000.0F);
-    store(head, kUnits, zemax::unit_code(options.length_unit));
-    store(head, kRayFormat, spectral_ ? kSpectral : kFluxOnly);
-    store(head, kFluxType, std::int32_t{header.flux_unit == FluxUnit::lumen});
+    store(head, kSourceFluxAt, flux);
+    store(head, kRaySetFluxAt, flux);
+    if (!spectral_ && header.wavelength_nm) store(head, kWavelengthAt, *header.wavelength_nm / 1000.0F);
+    store(head, kUnitsAt, zemax::unit_code(options.length_unit));
+    store(head, kRayFormatAt, spectral_ ? kSpectral : kFluxOnly);
+    store(head, kFluxTypeAt, std::int32_t{header.flux_unit == FluxUnit::lumen});
     writer_.write_bytes(head);
   }
 
@@ -74,7 +74,7 @@ class ZemaxBinaryWriter final : public RayWriter {
 
   void finish() override {
     const auto count = static_cast<std::uint32_t>(writer_.ray_count());
-    writer_.file().patch(kRayCount, std::as_bytes(std::span(&count, 1)));
+    writer_.file().patch(kRayCountAt, std::as_bytes(std::span(&count, 1)));
     writer_.file().commit();
   }
 
@@ -97,9 +97,9 @@ bool looks_like_zemax_binary(const InputFile& file) {
   file.read_at(0, word);
   const auto id = load<std::int32_t>(word, 0);
   if (id != kZemax && id != kProSource) return false;
-  if (file.size() < kHeaderSize) return true;  // cut short: the opener says so
+  if (file.size() < kZemaxHeaderSize) return true;  // cut short: the opener says so
   const auto head = header_of(file);
-  const auto units = load<std::int32_t>(head, kUnits), format = load<std::int32_t>(head, kRayFormat);
+  const auto units = load<std::int32_t>(head, kUnitsAt), format = load<std::int32_t>(head, kRayFormatAt);
   return units >= 0 && units < 5 && format >= 0 && format <= 2;
 }
 
@@ -117,32 +117,32 @@ std::unique_ptr<RayReader> open_zemax_binary(InputFile file, const ReadOptions& 
   code(0, "identifier", {kZemax, kProSource});
   RayFileFacts facts;
   facts.format = "zemax-binary";
-  facts.length_unit = zemax::kUnits[static_cast<std::size_t>(code(kUnits, "length unit", {0, 1, 2, 3, 4}))];
-  const bool spectral = code(kRayFormat, "ray format", {kFluxOnly, kSpectral}) == kSpectral;
-  const bool lumen = code(kFluxType, "flux type", {0, 1}) == 1;
+  facts.length_unit = zemax::kUnits[static_cast<std::size_t>(code(kUnitsAt, "length unit", {0, 1, 2, 3, 4}))];
+  const bool spectral = code(kRayFormatAt, "ray format", {kFluxOnly, kSpectral}) == kSpectral;
+  const bool lumen = code(kFluxTypeAt, "flux type", {0, 1}) == 1;
   if (spectral && lumen)
-    facts.warnings.push_back(fmt::format("byte {}: spectral rays with lumen, watt expected", kFluxType));
+    facts.warnings.push_back(fmt::format("byte {}: spectral rays with lumen, watt expected", kFluxTypeAt));
   RaySetHeader& header = facts.header;
   header.flux_unit = lumen ? FluxUnit::lumen : FluxUnit::watt;
-  const auto source = stated(head, kSourceFlux), rays = stated(head, kRaySetFlux);
+  const auto source = stated(head, kSourceFluxAt), rays = stated(head, kRaySetFluxAt);
   if (const auto flux = rays ? rays : source) header.set_flux(*flux);
   if (source && rays && std::abs(*source - *rays) > 0.01 * *rays) {
     facts.warnings.push_back(
         fmt::format("byte {}: the source has {:g} {unit}, the ray set {:g} {unit}: the ray set's is taken",
-                    kSourceFlux, *source, *rays, fmt::arg("unit", symbol(header.flux_unit))));
+                    kSourceFluxAt, *source, *rays, fmt::arg("unit", symbol(header.flux_unit))));
   }
-  header.texts.light_source = load_text(head, kDescription, kDescriptionSize);
+  header.texts.light_source = load_text(head, kDescriptionAt, kDescriptionSize);
   RecordLayout layout;
-  layout.first_byte = kHeaderSize;
+  layout.first_byte = kZemaxHeaderSize;
   layout.scale_lengths(*mm_per(facts.length_unit));
   if (spectral) {
     layout.floats = 8;
     header.columns = {{ColumnKind::wavelength_nm, standard_label(ColumnKind::wavelength_nm)}};
     layout.extra = {{7, 1000.0}};
-  } else if (const auto wavelength = stated(head, kWavelength)) {
+  } else if (const auto wavelength = stated(head, kWavelengthAt)) {
     header.wavelength_nm = static_cast<float>(1000.0 * *wavelength);
   }
-  facts.ray_count = whole_records(file, load<std::uint32_t>(head, kRayCount), kRayCount, kHeaderSize,
+  facts.ray_count = whole_records(file, load<std::uint32_t>(head, kRayCountAt), kRayCountAt, kZemaxHeaderSize,
                                   layout.record_bytes(), options.salvage, facts.warnings);
   if (spectral && is_swapped(file, facts.ray_count)) {
     constexpr std::string_view kSwapped =

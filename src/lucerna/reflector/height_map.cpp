@@ -21,7 +21,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kMostBytes = std::uint64_t{2} << 30;
+constexpr std::uint64_t kMostMapBytes = std::uint64_t{2} << 30;
 constexpr std::size_t kMostHeights = std::size_t{1} << 24;
 
 /// What a NumPy header says: {'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }.
@@ -35,7 +35,7 @@ struct NpyHeader {
 class NpyReader {
  public:
   explicit NpyReader(const std::filesystem::path& path)
-      : file_(path.string()), bytes_(read_file(path, kMostBytes)) {}
+      : file_(path.string()), bytes_(read_file(path, kMostMapBytes)) {}
 
   HeightMap read() const {
     const NpyHeader h = header();

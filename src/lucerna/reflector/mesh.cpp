@@ -18,7 +18,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kMostBytes = std::uint64_t{2} << 30;
+constexpr std::uint64_t kMostMeshBytes = std::uint64_t{2} << 30;
 
 /// Words of a text, line by line.
 class Lines {
@@ -118,7 +118,7 @@ Mesh read_text_stl(const std::string& text, const std::string& file) {
 }  // namespace
 
 Mesh read_stl(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path, kMostBytes);
+  const std::string bytes = read_file(path, kMostMeshBytes);
   std::uint32_t count = 0;
   if (bytes.size() >= 84) std::memcpy(&count, bytes.data() + 80, sizeof count);
   // A binary file's size follows from its count; many begin with "solid" all the same.
@@ -133,7 +133,7 @@ Mesh read_stl(const std::filesystem::path& path) {
 }
 
 Mesh read_obj(const std::filesystem::path& path) {
-  const std::string text = read_file(path, kMostBytes);
+  const std::string text = read_file(path, kMostMeshBytes);
   Lines lines(text, path.string());
   Mesh mesh;
   while (lines.next()) {

@@ -9,19 +9,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
 }  // namespace
 
+Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json number_json(const std::optional<double>& value) { return value ? number_json(*value) : Json(); }
+
 Json estimate_json(const Estimate& e) {
-  return {{"value", number(e.mean)}, {"standard_error", number(e.standard_error)}};
+  return {{"value", number_json(e.mean)}, {"standard_error", number_json(e.standard_error)}};
 }
 
 Json estimate_json(const BoxErrorEstimate& e) {
-  return {{"value", number(e.value)},
-          {"floor", number(e.floor)},
-          {"excess", number(e.excess)},
-          {"standard_error", number(e.standard_error)}};
+  return {{"value", number_json(e.value)},
+          {"floor", number_json(e.floor)},
+          {"excess", number_json(e.excess)},
+          {"standard_error", number_json(e.standard_error)}};
 }
 
 Json error_json(const DesignError& e) {

@@ -14,7 +14,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr double kLeft = 74.0, kTop = 64.0, kRight = 112.0;
+constexpr double kMapLeft = 74.0, kMapTop = 64.0, kMapRight = 112.0;
 
 std::pair<double, double> range_of(const GridMap& map) {
   if (map.range) return *map.range;
@@ -37,18 +37,18 @@ std::string grid_svg(const GridMap& map) {
     width = std::max(60.0, map.size * std::min(1.0, across / up));
     height = std::max(60.0, map.size * std::min(1.0, up / across));
   }
-  const PlotAxis x{map.x_first, map.x_last, kLeft, kLeft + width};
-  const PlotAxis y{map.y_first, map.y_last, kTop + height, kTop};
-  SvgCanvas canvas(kLeft + map.size + kRight, kTop + height + 58.0);
+  const PlotAxis x{map.x_first, map.x_last, kMapLeft, kMapLeft + width};
+  const PlotAxis y{map.y_first, map.y_last, kMapTop + height, kMapTop};
+  SvgCanvas canvas(kMapLeft + map.size + kMapRight, kMapTop + height + 58.0);
   canvas.data("plot", "grid");
   canvas.data("x", x.data());
   canvas.data("y", y.data());
   draw_title(canvas, map.title, map.below);
   const double cells_x = std::max(2.0, width / 60.0), cells_y = std::max(2.0, height / 50.0);
   draw_grid(canvas, x, ticks(x, static_cast<int>(cells_x)), "", y, ticks(y, static_cast<int>(cells_y)), "");
-  canvas.text({kLeft + 0.5 * width, kTop + height + 38.0}, map.x_label,
+  canvas.text({kMapLeft + 0.5 * width, kMapTop + height + 38.0}, map.x_label,
               {.size = 12.5, .anchor = "middle", .fill = "#444"});
-  canvas.text({16.0, kTop + 0.5 * height}, map.y_label,
+  canvas.text({16.0, kMapTop + 0.5 * height}, map.y_label,
               {.size = 12.5, .anchor = "middle", .fill = "#444", .turn_deg = -90.0});
   return canvas.str();
 }

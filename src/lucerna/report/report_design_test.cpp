@@ -16,6 +16,7 @@
 #include "tests/support/html_check.h"
 #include "tests/support/random_rays.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/text_scan.h"
 
 namespace lucerna {
 namespace {
@@ -91,7 +92,7 @@ std::string report_of(const test::TempDir& dir) {
   return read_file(dir / "report.html", 1 << 24);
 }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using test::has;
 
 TEST(ReportDesign, ShowsTheTargetTheConvergenceAndTheLosses) {
   const test::TempDir dir;

@@ -16,6 +16,7 @@
 #include "tests/support/html_check.h"
 #include "tests/support/random_rays.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/text_scan.h"
 
 namespace lucerna {
 namespace {
@@ -56,7 +57,7 @@ void make_trace(const test::TempDir& dir, const std::string& project_toml = kPro
   write_trace_files(dir.path(), trace_origin(project), figures, {}, json);
 }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using test::has;
 
 TEST(ReportTrace, IsOneWellFormedFileThatAsksNothingOfAnyNetwork) {
   const test::TempDir dir;

@@ -63,6 +63,10 @@ std::vector<double> angle_ticks(double first_deg, double last_deg) {
   return values;
 }
 
+std::string degrees_text(const std::optional<double>& angle_deg) {
+  return angle_deg ? fmt::format("{:.1f}°", *angle_deg) : "–";
+}
+
 void draw_grid(SvgCanvas& canvas, const PlotAxis& x, const std::vector<double>& x_ticks,
                const std::string& x_suffix, const PlotAxis& y, const std::vector<double>& y_ticks,
                const std::string& y_suffix) {

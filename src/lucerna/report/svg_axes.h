@@ -58,6 +58,9 @@ std::vector<double> ticks(const PlotAxis& axis, int wanted);
 /// Steps that divide an angular range: 2 to 30 degrees, about 12 from one end to the other at most.
 std::vector<double> angle_ticks(double first_deg, double last_deg);
 
+/// "37.5°", or a dash where there is none.
+std::string degrees_text(const std::optional<double>& angle_deg);
+
 /// Grid lines, frame and numbers (each with `suffix`) of a plot; y numbers to the left, x numbers below.
 void draw_grid(SvgCanvas& canvas, const PlotAxis& x, const std::vector<double>& x_ticks,
                const std::string& x_suffix, const PlotAxis& y, const std::vector<double>& y_ticks,

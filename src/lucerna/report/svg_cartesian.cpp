@@ -13,7 +13,8 @@ namespace lucerna {
 
 namespace {
 
-constexpr double kWidth = 640.0, kLeft = 78.0, kRight = 606.0, kTop = 84.0, kBottom = 424.0;
+constexpr double kCartesianWidth = 640.0, kCartesianLeft = 78.0, kCartesianRight = 606.0,
+                 kCartesianTop = 84.0, kCartesianBottom = 424.0;
 constexpr double kDecades = 1e-4;
 
 /// The curve of the great circle through C and C + 180, from -range to +range about the axis.
@@ -30,22 +31,18 @@ std::vector<SvgPoint> curve(const IntensityDistribution& d, double c_deg, double
   return points;
 }
 
-std::string angle_text(const std::optional<double>& angle) {
-  return angle ? fmt::format("{:.1f}°", *angle) : "–";
-}
-
 void draw_legend(SvgCanvas& canvas, const IntensityDistribution& d, const std::optional<DrawnFigures>& drawn,
                  const SvgStyle& across, const SvgStyle& along) {
   const auto angles = [&](double c) {
     if (drawn) return c == 0.0 ? drawn->c0 : drawn->c90;
     return fmt::format("beam 50 % {}, field 10 % {}",
-                       angle_text(beam_angle_deg(d, c, 0.5, BeamReference::maximum)),
-                       angle_text(beam_angle_deg(d, c, 0.1, BeamReference::maximum)));
+                       degrees_text(beam_angle_deg(d, c, 0.5, BeamReference::maximum)),
+                       degrees_text(beam_angle_deg(d, c, 0.1, BeamReference::maximum)));
   };
-  canvas.line({kLeft, 482.0}, {kLeft + 42.0, 482.0}, across);
-  canvas.text({kLeft + 50.0, 486.5}, "C0 – C180: " + angles(0.0));
-  canvas.line({kLeft, 502.0}, {kLeft + 42.0, 502.0}, along);
-  canvas.text({kLeft + 50.0, 506.5}, "C90 – C270: " + angles(90.0));
+  canvas.line({kCartesianLeft, 482.0}, {kCartesianLeft + 42.0, 482.0}, across);
+  canvas.text({kCartesianLeft + 50.0, 486.5}, "C0 – C180: " + angles(0.0));
+  canvas.line({kCartesianLeft, 502.0}, {kCartesianLeft + 42.0, 502.0}, along);
+  canvas.text({kCartesianLeft + 50.0, 506.5}, "C90 – C270: " + angles(90.0));
 }
 
 }  // namespace
@@ -57,9 +54,9 @@ std::string cartesian_svg(const IntensityDistribution& d, const DiagramOptions& 
   const PeakIntensity peak = peak_intensity(d);
   const double range =
       range_holding(d, axis, log_scale ? 1e-3 : 1e-2, {5.0, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 180.0});
-  const PlotAxis x{-range, range, kLeft, kRight};
+  const PlotAxis x{-range, range, kCartesianLeft, kCartesianRight};
   const double top = peak.cd > 0.0 ? peak.cd * unit.per_cd : 1.0;
-  PlotAxis y{0.0, 1.0, kBottom, kTop, log_scale};
+  PlotAxis y{0.0, 1.0, kCartesianBottom, kCartesianTop, log_scale};
   if (log_scale) {
     y.last = 1.2 * top;
     y.first = kDecades * top;
@@ -68,7 +65,7 @@ std::string cartesian_svg(const IntensityDistribution& d, const DiagramOptions& 
     y.last = step * std::ceil(1.02 * top / step);
   }
 
-  SvgCanvas canvas(kWidth, 524.0);
+  SvgCanvas canvas(kCartesianWidth, 524.0);
   canvas.data("plot", "cartesian");
   canvas.data("x", x.data());
   canvas.data("y", y.data());
@@ -79,17 +76,18 @@ std::string cartesian_svg(const IntensityDistribution& d, const DiagramOptions& 
                                          : fmt::format("peak {} {} at C {:g}°, γ {:g}°", label_number(top),
                                                        unit.name, peak.c_deg, peak.gamma_deg)));
   draw_grid(canvas, x, angle_ticks(-range, range), "°", y, ticks(y, 6), "");
-  canvas.text({kLeft, 76.0}, "← C180, C270", {.size = 12.0, .fill = "#555"});
-  canvas.text({kRight, 76.0}, "C0, C90 →", {.size = 12.0, .anchor = "end", .fill = "#555"});
+  canvas.text({kCartesianLeft, 76.0}, "← C180, C270", {.size = 12.0, .fill = "#555"});
+  canvas.text({kCartesianRight, 76.0}, "C0, C90 →", {.size = 12.0, .anchor = "end", .fill = "#555"});
   for (const double share : {0.5, 0.1}) {
     const double at = y.at(share * top);
-    canvas.line({kLeft, at}, {kRight, at}, {.stroke = "#888", .width = 1.0, .dash = "2 3"});
-    canvas.text({kRight + 3.0, at + 4.0}, fmt::format("{:g} %", 100.0 * share),
+    canvas.line({kCartesianLeft, at}, {kCartesianRight, at}, {.stroke = "#888", .width = 1.0, .dash = "2 3"});
+    canvas.text({kCartesianRight + 3.0, at + 4.0}, fmt::format("{:g} %", 100.0 * share),
                 {.size = 11.0, .fill = "#555"});
   }
   const SvgStyle across{.stroke = std::string(kCurveColors[0]), .width = 2.4};
   const SvgStyle along{.stroke = std::string(kCurveColors[1]), .width = 2.4, .dash = "9 5"};
-  canvas.begin_clip({kLeft, kTop}, kRight - kLeft, kBottom - kTop + 1.5);
+  canvas.begin_clip({kCartesianLeft, kCartesianTop}, kCartesianRight - kCartesianLeft,
+                    kCartesianBottom - kCartesianTop + 1.5);
   if (!options.standard_error.empty()) {
     const IntensityDistribution low = moved_by_errors(d, options.standard_error, -kIntervalErrors),
                                 high = moved_by_errors(d, options.standard_error, kIntervalErrors);
@@ -103,7 +101,7 @@ std::string cartesian_svg(const IntensityDistribution& d, const DiagramOptions& 
   canvas.polyline(curve(d, 0.0, axis, x, y, unit.per_cd), across);
   canvas.polyline(curve(d, 90.0, axis, x, y, unit.per_cd), along);
   canvas.end_clip();
-  canvas.text({0.5 * (kLeft + kRight), kBottom + 38.0},
+  canvas.text({0.5 * (kCartesianLeft + kCartesianRight), kCartesianBottom + 38.0},
               fmt::format("angle from {}", axis > 90.0 ? "zenith" : "nadir (γ)"),
               {.size = 12.5, .anchor = "middle", .fill = "#444"});
   draw_legend(canvas, d, options.figures, across, along);

@@ -14,7 +14,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr double kLeft = 86.0, kRight = 616.0, kTop = 84.0, kBottom = 404.0;
+constexpr double kCurvesLeft = 86.0, kCurvesRight = 616.0, kCurvesTop = 84.0, kCurvesBottom = 404.0;
 
 bool shown(const CurveAxis& axis, double value) { return std::isfinite(value) && (!axis.log || value > 0.0); }
 
@@ -55,7 +55,7 @@ void draw_curve(SvgCanvas& canvas, const CurvePlot& plot, const Curve& curve, co
 }
 
 void draw_legend(SvgCanvas& canvas, const std::vector<Curve>& curves) {
-  double x = kLeft;
+  double x = kCurvesLeft;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const std::string color(kCurveColors[i % std::size(kCurveColors)]);
     if (curves[i].dots) {
@@ -80,21 +80,23 @@ std::string curves_svg(const CurvePlot& plot) {
     });
   }
   if (!(x0 <= x1)) throw InputError(plot.title + ": there is nothing to draw");
-  const PlotAxis x = axis_of(plot.x, x0, x1, kLeft, kRight), y = axis_of(plot.y, y0, y1, kBottom, kTop);
+  const PlotAxis x = axis_of(plot.x, x0, x1, kCurvesLeft, kCurvesRight),
+                 y = axis_of(plot.y, y0, y1, kCurvesBottom, kCurvesTop);
   SvgCanvas canvas(640.0, 458.0);
   canvas.data("plot", "curves");
   canvas.data("x", x.data());
   canvas.data("y", y.data());
   draw_title(canvas, plot.title, plot.below);
   draw_grid(canvas, x, ticks(x, 8), "", y, ticks(y, 6), "");
-  canvas.begin_clip({kLeft, kTop - 2.0}, kRight - kLeft, kBottom - kTop + 4.0);
+  canvas.begin_clip({kCurvesLeft, kCurvesTop - 2.0}, kCurvesRight - kCurvesLeft,
+                    kCurvesBottom - kCurvesTop + 4.0);
   for (std::size_t i = 0; i < plot.curves.size(); ++i)
     draw_curve(canvas, plot, plot.curves[i], x, y, std::string(kCurveColors[i % std::size(kCurveColors)]));
   canvas.end_clip();
   draw_legend(canvas, plot.curves);
-  canvas.text({0.5 * (kLeft + kRight), kBottom + 40.0}, plot.x.label,
+  canvas.text({0.5 * (kCurvesLeft + kCurvesRight), kCurvesBottom + 40.0}, plot.x.label,
               {.size = 12.5, .anchor = "middle", .fill = "#444"});
-  canvas.text({18.0, 0.5 * (kTop + kBottom)}, plot.y.label,
+  canvas.text({18.0, 0.5 * (kCurvesTop + kCurvesBottom)}, plot.y.label,
               {.size = 12.5, .anchor = "middle", .fill = "#444", .turn_deg = -90.0});
   return canvas.str();
 }

@@ -16,7 +16,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr double kWidth = 640.0, kRadius = 250.0, kTop = 62.0, kMargin = 34.0;
+constexpr double kPolarWidth = 640.0, kPolarRadius = 250.0, kPolarTop = 62.0, kPolarMargin = 34.0;
 
 /// Where the disc lies and how long a candela is.
 struct PolarFrame {
@@ -52,9 +52,9 @@ PolarFrame frame_for(const IntensityDistribution& d, const IntensityDistribution
   // Less than half a percent is not visible in the drawing.
   frame.down = down >= 0.005 * up || up == 0.0;
   frame.up = up > 0.005 * down;
-  frame.unit_per_cd = kRadius / ring_cd_end;
-  frame.centre = {0.5 * kWidth, kTop + kMargin + (frame.up ? kRadius : 0.0)};
-  frame.bottom = frame.centre.y + (frame.down ? kRadius : 0.0) + kMargin;
+  frame.unit_per_cd = kPolarRadius / ring_cd_end;
+  frame.centre = {0.5 * kPolarWidth, kPolarTop + kPolarMargin + (frame.up ? kPolarRadius : 0.0)};
+  frame.bottom = frame.centre.y + (frame.down ? kPolarRadius : 0.0) + kPolarMargin;
   return frame;
 }
 
@@ -113,9 +113,9 @@ void draw_spokes(SvgCanvas& canvas, const PolarFrame& frame) {
     if ((gamma < 90 && !frame.down) || (gamma > 90 && !frame.up)) continue;
     for (const double side : {1.0, -1.0}) {
       if (side < 0.0 && gamma % 180 == 0) continue;
-      canvas.line(frame.centre, frame.at(gamma, side, kRadius), thin);
+      canvas.line(frame.centre, frame.at(gamma, side, kPolarRadius), thin);
       if (gamma % 30 != 0) continue;
-      const SvgPoint label = frame.at(gamma, side, kRadius + 16.0);
+      const SvgPoint label = frame.at(gamma, side, kPolarRadius + 16.0);
       const bool middle = gamma % 180 == 0;
       canvas.text({label.x, label.y + 5.0}, fmt::format("{}°", gamma),
                   {.size = 13.0,
@@ -145,10 +145,6 @@ void draw_rings(SvgCanvas& canvas, const PolarFrame& frame, double step, int rin
     canvas.rectangle({at.x - 0.5 * width, at.y - 8.5}, width, 14.0, {.fill = "#fff", .opacity = 0.8});
     canvas.text({at.x, at.y + 3.0}, label, {.size = 11.5, .anchor = "middle", .fill = "#444"});
   }
-}
-
-std::string angle_text(const std::optional<double>& angle) {
-  return angle ? fmt::format("{:.1f}°", *angle) : "–";
 }
 
 void draw_legend(SvgCanvas& canvas, const PolarFrame& frame, const PolarOptions& options,
@@ -183,8 +179,8 @@ void draw_figures(SvgCanvas& canvas, const IntensityDistribution& d, const std::
   const auto p0 = plane(0.0), p90 = plane(90.0);
   canvas.text({60.0, y + 19.0},
               fmt::format("Beam 50 % of maximum: C0 {}, C90 {} · field 10 %: C0 {}, C90 {}",
-                          angle_text(p0.beam_of_maximum), angle_text(p90.beam_of_maximum),
-                          angle_text(p0.field_of_maximum), angle_text(p90.field_of_maximum)));
+                          degrees_text(p0.beam_of_maximum), degrees_text(p90.beam_of_maximum),
+                          degrees_text(p0.field_of_maximum), degrees_text(p90.field_of_maximum)));
 }
 
 }  // namespace
@@ -202,18 +198,18 @@ std::string polar_svg(const IntensityDistribution& d, const PolarOptions& option
   const int rings = std::max(1, static_cast<int>(std::ceil(peak / step - 1e-9)));
   const PolarFrame frame = frame_for(d, options.reference, step * rings);
 
-  SvgCanvas canvas(kWidth, frame.bottom + (options.figures ? 95.0 : 76.0));
+  SvgCanvas canvas(kPolarWidth, frame.bottom + (options.figures ? 95.0 : 76.0));
   canvas.data("plot", "polar");
   canvas.data("polar", fmt::format("{:g} {:g} {:.9g}", frame.centre.x, frame.centre.y, frame.unit_per_cd));
-  canvas.text({0.5 * kWidth, 28.0}, options.title.empty() ? "Luminous intensity" : options.title,
+  canvas.text({0.5 * kPolarWidth, 28.0}, options.title.empty() ? "Luminous intensity" : options.title,
               {.size = 17.0, .anchor = "middle", .bold = true});
-  canvas.text({0.5 * kWidth, 48.0},
+  canvas.text({0.5 * kPolarWidth, 48.0},
               fmt::format("{}  –  rings every {} {}", unit, label_number(step * shown_per_cd), unit),
               {.size = 12.5, .anchor = "middle", .fill = "#444"});
   draw_spokes(canvas, frame);
   draw_rings(canvas, frame, step, rings, shown_per_cd);
   canvas.text({40.0, 72.0}, "← C180, C270", {.size = 12.0, .fill = "#555"});
-  canvas.text({kWidth - 40.0, 72.0}, "C0, C90 →", {.size = 12.0, .anchor = "end", .fill = "#555"});
+  canvas.text({kPolarWidth - 40.0, 72.0}, "C0, C90 →", {.size = 12.0, .anchor = "end", .fill = "#555"});
   const SvgStyle across{.stroke = std::string(kCurveColors[0]), .width = 2.4};
   const SvgStyle along{.stroke = std::string(kCurveColors[1]), .width = 2.4, .dash = "9 5"};
   const SvgStyle behind{.stroke = "#999", .width = 3.4};

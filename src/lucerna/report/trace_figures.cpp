@@ -61,9 +61,6 @@ PlaneFigures plane_figures(PlaneImage image, const PlaneExtremes& extremes,
   return f;
 }
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-Json number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
-
 Json ledger_json(const Ledger& l) {
   Json out, absorbed = Json::object(), causes = Json::object();
   for (const auto& [cause, estimate] : l.absorbed) absorbed[cause] = estimate_json(estimate);
@@ -88,7 +85,7 @@ Json plane_angles_json(double c_deg, const Angle& beam_of_maximum, const Angle& 
     if constexpr (std::is_same_v<Angle, std::optional<Estimate>>) {
       return estimate_json(a);
     } else {
-      return number(a);
+      return number_json(a);
     }
   };
   return {{"c_deg", c_deg},
@@ -116,7 +113,7 @@ Json peak_json(const std::optional<PeakEstimate>& peak) {
   return {{"intensity", estimate_json(peak->cd)},
           {"c_deg", estimate_json(peak->c_deg)},
           {"gamma_deg", estimate_json(peak->gamma_deg)},
-          {"direction_error_deg", number(peak->direction_error_deg)},
+          {"direction_error_deg", number_json(peak->direction_error_deg)},
           {"half_width_deg", peak->half_width_deg},
           {"fit_radius_deg", peak->radius_deg},
           {"fit_radius_along_c_deg", peak->c_radius_deg}};
@@ -154,8 +151,8 @@ Json far_field_json(const FarFieldFigures& f) {
   json["zones"] = zones_json(f.metrics);
   json["glare"] = {{"radius_deg", f.metrics.glare_radius_deg}, {"intensity", list_json(f.metrics.glare_cd)}};
   json["closure"] = f.intensity.closure;
-  json["noise"] = number(f.noise);
-  json["node_noise"] = number(f.node_noise);
+  json["noise"] = number_json(f.noise);
+  json["node_noise"] = number_json(f.node_noise);
   return json;
 }
 
@@ -186,7 +183,7 @@ Json plane_json(const PlaneFigures& f) {
   json["least"] = estimate_json(f.extremes.least);
   json["uniformity"] = estimate_json(f.extremes.uniformity);
   json["peak"] = peak;
-  json["noise"] = number(f.noise);
+  json["noise"] = number_json(f.noise);
   return json;
 }
 

@@ -18,7 +18,7 @@
 namespace lucerna {
 namespace {
 
-RaySet drawn(EmitterKind kind, std::size_t n) {
+RaySet few_drawn(EmitterKind kind, std::size_t n) {
   EmitterOptions options;
   options.kind = kind;
   const auto emitter = make_emitter(options);
@@ -124,7 +124,7 @@ class Grids {
 };
 
 /// Agreement of samples, moved along x by `moved` of the size of the source, with the density.
-double agreement(const AdaptiveModel& model, const RayBlock& rays, double moved) {
+double moved_agreement(const AdaptiveModel& model, const RayBlock& rays, double moved) {
   constexpr std::uint64_t kRays = 100'000, kPoints = 400'000;
   Support about;
   about.world_from_support = Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, summarize(rays).virtual_focus->point_mm);
@@ -154,7 +154,7 @@ double agreement(const AdaptiveModel& model, const RayBlock& rays, double moved)
 class AdaptiveEmittersSlow : public testing::TestWithParam<EmitterKind> {};
 
 TEST_P(AdaptiveEmittersSlow, SamplesAreWhatTheModelSays) {
-  const RaySet rays = drawn(GetParam(), 100000);
+  const RaySet rays = few_drawn(GetParam(), 100000);
   const auto model = compress_adaptive(rays, {});
   ASSERT_TRUE(model->has_etendue());
   EXPECT_NEAR(model->flux() / *rays.header.flux(), 1.0, 1e-6);
@@ -170,8 +170,8 @@ TEST_P(AdaptiveEmittersSlow, SamplesAreWhatTheModelSays) {
   EXPECT_LT(off, 1e-5);
   EXPECT_LT(static_cast<double>(dark) / weight, 0.003);
   EXPECT_NEAR(weight / static_cast<double>(out.size()), 1.0, 1e-6);
-  EXPECT_GT(agreement(*model, rays.rays, 0.0), test::kFalseAlarm);
-  EXPECT_LT(agreement(*model, rays.rays, 0.03), test::kFalseAlarm) << "a wrong sampler passes";
+  EXPECT_GT(moved_agreement(*model, rays.rays, 0.0), test::kFalseAlarm);
+  EXPECT_LT(moved_agreement(*model, rays.rays, 0.03), test::kFalseAlarm) << "a wrong sampler passes";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, AdaptiveEmittersSlow,

@@ -16,7 +16,7 @@
 namespace lucerna {
 namespace {
 
-RaySet drawn(EmitterKind kind, std::size_t n, std::optional<BoundingSurface> surface = {}) {
+RaySet drawn_on(EmitterKind kind, std::size_t n, std::optional<BoundingSurface> surface = {}) {
   EmitterOptions options;
   options.kind = kind;
   options.surface = surface;
@@ -225,7 +225,7 @@ TEST(AdaptiveModelStatistical, SamplesAgreeWithTheDensity) {
 }
 
 TEST(AdaptiveModel, DensitiesOfDegenerateSourcesAreNamed) {
-  const auto point = compress_adaptive(drawn(EmitterKind::point, 20000), {});
+  const auto point = compress_adaptive(drawn_on(EmitterKind::point, 20000), {});
   EXPECT_FALSE(point->has_etendue());
   EXPECT_THROW(point->pdf_etendue({{}, Direction()}), InputError);
   EXPECT_THROW(point->pdf_area({}), InputError);
@@ -235,7 +235,7 @@ TEST(AdaptiveModel, DensitiesOfDegenerateSourcesAreNamed) {
 }
 
 TEST(AdaptiveModel, RectanglesHaveTheirClosedForms) {
-  const auto model = compress_adaptive(drawn(EmitterKind::rectangle, 50000), {});
+  const auto model = compress_adaptive(drawn_on(EmitterKind::rectangle, 50000), {});
   const double radiance = 1.0 / std::numbers::pi;  // of flux 1 on 1 mm^2
   EXPECT_NEAR(model->pdf_etendue({{0.1, 0.2, 0.0}, Direction::from({0.3, 0, 1})}), radiance, 0.02 * radiance);
   EXPECT_EQ(model->pdf_etendue({{0.7, 0.2, 0.0}, Direction()}), 0.0);

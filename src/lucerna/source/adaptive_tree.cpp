@@ -99,7 +99,7 @@ struct Cut {
 
 using Nodes = std::vector<GrownTree::Node>;
 
-struct Grower {
+struct TreeGrower {
   TreeBox root;
   GrowOptions options;
 
@@ -210,8 +210,8 @@ std::vector<double> coarser(const std::vector<double>& table, std::size_t rows, 
   return sum;
 }
 
-std::uint32_t Grower::dependent_axis(std::span<const TreeItem> items, const TreeBinning& binning,
-                                     double scale, double rays, const TreeBox& box) const {
+std::uint32_t TreeGrower::dependent_axis(std::span<const TreeItem> items, const TreeBinning& binning,
+                                         double scale, double rays, const TreeBox& box) const {
   constexpr double kFewest = 300.0, kSome = 2000.0, kMany = 20000.0, kSignificant = 6.0;
   if (rays < kFewest) return kNoAxis;
   const std::size_t shift = rays < kSome ? 3 : rays < kMany ? 2 : 1, bins = kTreeCuts >> shift, coarse = 4;
@@ -240,8 +240,8 @@ std::uint32_t Grower::dependent_axis(std::span<const TreeItem> items, const Tree
   return axis;
 }
 
-Grower::Choice Grower::choose(std::span<const TreeItem> items, const TreeBox& box, const Place& at,
-                              std::uint64_t tree) const {
+TreeGrower::Choice TreeGrower::choose(std::span<const TreeItem> items, const TreeBox& box, const Place& at,
+                                      std::uint64_t tree) const {
   const TreeBinning binning(box);
   const TreeCounts counts = count(items, binning);
   const TreeSums below = sums_below(counts);
@@ -263,8 +263,8 @@ Grower::Choice Grower::choose(std::span<const TreeItem> items, const TreeBox& bo
   return choice;
 }
 
-void Grower::grow(std::span<TreeItem> items, const TreeBox& box, const Place& at, std::uint64_t first_tree,
-                  std::span<Nodes> out) const {
+void TreeGrower::grow(std::span<TreeItem> items, const TreeBox& box, const Place& at,
+                      std::uint64_t first_tree, std::span<Nodes> out) const {
   if (out.size() > 1 && items.size() <= kAllCuts) {
     for (std::size_t t = 0; t < out.size(); ++t) grow(items, box, at, first_tree + t, out.subspan(t, 1));
     return;
@@ -369,7 +369,7 @@ double tree_share(const TreeNode& node, double rays) {
 std::vector<GrownTree> grow_trees(std::span<TreeItem> items, const TreeBox& box, const GrowOptions& options,
                                   std::size_t trees) {
   std::vector<Nodes> nodes(trees);
-  Grower{box, options}.grow(items, box, {kRootPath, kBlindSplits}, options.tree_number, nodes);
+  TreeGrower{box, options}.grow(items, box, {kRootPath, kBlindSplits}, options.tree_number, nodes);
   double squares = 0.0;
   for (const TreeItem& item : items)
     squares += static_cast<double>(item.weight) * static_cast<double>(item.weight);

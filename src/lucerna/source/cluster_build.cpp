@@ -20,7 +20,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 16;
+constexpr std::size_t kBuildBlock = std::size_t{1} << 16;
 /// Points of a plane's rim that are representatives from the start: a disk loses 0.1 % of its radius between
 /// them.
 constexpr std::size_t kRimPoints = 64;
@@ -29,7 +29,7 @@ constexpr int kFitRounds = 20;
 
 void slide_to(const MeshSurface& surface, RayBlock& rays) {
   const BoundingSurface sphere{SurfaceKind::sphere, surface.world_from_surface, surface.radius_mm, {}};
-  parallel_blocks(rays.size(), kBlock, [&](std::size_t first, std::size_t last) {
+  parallel_blocks(rays.size(), kBuildBlock, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const Ray ray = rays.ray(i);
       if (const auto t = sphere.exit_distance_mm(ray)) rays.set(i, {ray.at(*t), ray.direction});
@@ -44,7 +44,7 @@ RayBlock in_order(const RayBlock& rays, const std::vector<std::uint32_t>& order)
   double sum = 0.0;
   for (const std::uint32_t i : order) sum += static_cast<double>(rays.weight[i]);
   const double scale = static_cast<double>(order.size()) / sum;
-  parallel_blocks(order.size(), kBlock, [&](std::size_t first, std::size_t last) {
+  parallel_blocks(order.size(), kBuildBlock, [&](std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
       const std::uint32_t i = order[k];
       sorted.x_mm[k] = rays.x_mm[i];
@@ -94,7 +94,7 @@ std::vector<Vec3> rim_points(const MeshSurface& surface, const RayBlock& rays) {
   }
   using Extremes = std::vector<std::pair<double, std::size_t>>;
   const auto parts =
-      parallel_map_blocks<Extremes>(rays.size(), 4 * kBlock, [&](std::size_t first, std::size_t last) {
+      parallel_map_blocks<Extremes>(rays.size(), 4 * kBuildBlock, [&](std::size_t first, std::size_t last) {
         Extremes best(n, {-std::numeric_limits<double>::infinity(), 0});
         for (std::size_t i = first; i < last; ++i) {
           const Vec3 p = rays.origin_mm(i) - surface.world_from_surface.origin_mm();
@@ -164,7 +164,7 @@ PreparedRays prepare_rays(const RayBlock& rays, std::size_t min_rays_per_leaf, s
   p.rays = in_order(used, octree.order);
   p.leaf_begin = std::move(octree.begin);
   p.code.resize(p.rays.size());
-  parallel_blocks(p.rays.size(), kBlock, [&](std::size_t first, std::size_t last) {
+  parallel_blocks(p.rays.size(), kBuildBlock, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) p.code[i] = direction_code(p.rays.direction(i));
   });
   std::vector<Vec3> points = leaf_points(p.rays, p.leaf_begin);
@@ -203,7 +203,7 @@ std::vector<double> assign_to_triangles(const PreparedRays& p, const std::vector
                                         ClusterData& data, std::vector<Member>& members) {
   const Triangulation mesh = triangulate(p.surface, points);
   const auto parts =
-      parallel_map_blocks<Shares>(p.rays.size(), 4 * kBlock, [&](std::size_t first, std::size_t last) {
+      parallel_map_blocks<Shares>(p.rays.size(), 4 * kBuildBlock, [&](std::size_t first, std::size_t last) {
         Shares s{std::vector<double>(mesh.arms.size(), 0.0), std::vector<double>(mesh.triangles.size(), 0.0)};
         std::uint32_t hint = 0;  // neighbours in the octree are neighbours in the mesh
         for (std::size_t i = first; i < last; ++i) {

@@ -18,8 +18,8 @@
 namespace lucerna {
 namespace {
 
-RaySet emitter_rays(EmitterKind kind, std::size_t n, std::uint64_t seed,
-                    std::optional<BoundingSurface> surface = {}) {
+RaySet seeded_rays(EmitterKind kind, std::size_t n, std::uint64_t seed,
+                   std::optional<BoundingSurface> surface = {}) {
   EmitterOptions options;
   options.kind = kind;
   options.surface = surface;
@@ -30,12 +30,12 @@ RaySet emitter_rays(EmitterKind kind, std::size_t n, std::uint64_t seed,
   return set;
 }
 
-RayBlock drawn(const SourceModel& model, std::size_t n) {
+RayBlock drawn_from(const SourceModel& model, std::size_t n) {
   return draw_rays(model, Sequence(SequenceKind::random, 99), n);
 }
 
 TEST(CompressClusters, SameSeedSameBytesForAnyNumberOfThreads) {
-  const RaySet rays = emitter_rays(EmitterKind::led, 150'000, 1);
+  const RaySet rays = seeded_rays(EmitterKind::led, 150'000, 1);
   const auto run = [&](int threads, std::uint64_t seed) {
     const ThreadLimit limit(threads);
     ClusterOptions options;
@@ -49,13 +49,13 @@ TEST(CompressClusters, SameSeedSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(CompressClusters, FluxIsExactWhateverTheWeights) {
-  RaySet rays = emitter_rays(EmitterKind::disk, 30'000, 2, BoundingSurface::sphere(4.0));
+  RaySet rays = seeded_rays(EmitterKind::disk, 30'000, 2, BoundingSurface::sphere(4.0));
   rays.header.set_flux(337.0);
   for (std::size_t i = 0; i < rays.rays.size(); ++i) rays.rays.weight[i] = static_cast<float>(i % 3);
   const auto model = compress_clusters(rays);
   EXPECT_NEAR(model->flux() / 337.0, 1.0, 1e-12);
   EXPECT_EQ(model->training_rays(), 20'000u);
-  const RayBlock out = drawn(*model, 1000);
+  const RayBlock out = drawn_from(*model, 1000);
   for (const float w : out.weight) EXPECT_EQ(w, 1.0f);
   ClusterOptions options;
   options.flux = 12.5;
@@ -93,7 +93,7 @@ struct SurfaceCase {
   MeshSurfaceKind found;
 
   RaySet rays(std::size_t n, std::uint64_t seed) const {
-    return kind ? emitter_rays(*kind, n, seed, surface) : octahedron_rays(n, seed);
+    return kind ? seeded_rays(*kind, n, seed, surface) : octahedron_rays(n, seed);
   }
   friend void PrintTo(const SurfaceCase& c, std::ostream* out) { *out << c.name; }
 };
@@ -108,7 +108,7 @@ TEST_P(CompressClustersStatistical, SurfacesGiveBackTheirRays) {
   const auto model = compress_clusters(rays);
   const MeshSurface& surface = model->data().surface;
   EXPECT_EQ(surface.kind, GetParam().found) << to_string(surface.kind);
-  const RayBlock truth = GetParam().rays(kRays, 4).rays, out = drawn(*model, kRays);
+  const RayBlock truth = GetParam().rays(kRays, 4).rays, out = drawn_from(*model, kRays);
   const RaySetComparison r = compare_ray_sets(truth, out, &rays.rays);
   const auto bound = [](const ViewDifference& near) { return 0.13 + 4.0 * near.standard_error; };
   EXPECT_LT(r.near.excess, bound(r.near));
@@ -138,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& p) { return std::string(p.param.name); });
 
 TEST(CompressClusters, ALargestSizeIsKeptAndItsRoomUsed) {
-  const RaySet rays = emitter_rays(EmitterKind::filament, 60'000, 7);
+  const RaySet rays = seeded_rays(EmitterKind::filament, 60'000, 7);
   const auto run = [&](std::optional<std::uint64_t> largest, ClusterStatistics& s) {
     ClusterOptions options;
     options.max_bytes = largest;
@@ -155,7 +155,7 @@ TEST(CompressClusters, ALargestSizeIsKeptAndItsRoomUsed) {
 }
 
 TEST(CompressClusters, ASizeToUseUpRefinesToo) {
-  const RaySet rays = emitter_rays(EmitterKind::led, 30'000, 7);
+  const RaySet rays = seeded_rays(EmitterKind::led, 30'000, 7);
   ClusterStatistics plain, coarse, fine;
   ClusterOptions options;
   const auto model = compress_clusters(rays, options, no_progress(), &plain);
@@ -171,14 +171,14 @@ TEST(CompressClusters, ASizeToUseUpRefinesToo) {
   EXPECT_GT(fine.clusters, plain.clusters);
   // More than there is to tell: every ray a triangle of its own, and no error.
   options.target_bytes = 1'000'000'000;
-  compress_clusters(emitter_rays(EmitterKind::led, 3'000, 7), options, no_progress(), &fine);
+  compress_clusters(seeded_rays(EmitterKind::led, 3'000, 7), options, no_progress(), &fine);
   EXPECT_LT(fine.bytes, 300'000u);
   options.max_bytes = 5000;
   EXPECT_THROW(compress_clusters(rays, options), UsageError);
 }
 
 TEST(CompressClusters, AMostNumberOfClustersIsKept) {
-  const RaySet rays = emitter_rays(EmitterKind::phong500, 60'000, 7);
+  const RaySet rays = seeded_rays(EmitterKind::phong500, 60'000, 7);
   ClusterStatistics plain, few;
   ClusterOptions options;
   compress_clusters(rays, options, no_progress(), &plain);
@@ -221,7 +221,7 @@ TEST(CompressClusters, PointsLinesAndFewRaysAreOrdinaryInput) {
   }));
   EXPECT_EQ(line->data().surface.kind, MeshSurfaceKind::line);
   double mean = 0.0, low = 1e9, high = -1e9;
-  const RayBlock out = drawn(*line, 20'000);
+  const RayBlock out = drawn_from(*line, 20'000);
   for (std::size_t i = 0; i < out.size(); ++i) {
     mean += static_cast<double>(out.x_mm[i]) / 20'000;
     low = std::min(low, static_cast<double>(out.x_mm[i]));
@@ -236,7 +236,7 @@ TEST(CompressClusters, PointsLinesAndFewRaysAreOrdinaryInput) {
       return Vec3{rng.uniform(), rng.uniform(), rng.uniform()};
     }));
     EXPECT_EQ(few->flux(), 10.0);
-    EXPECT_EQ(drawn(*few, 100).size(), 100u);
+    EXPECT_EQ(drawn_from(*few, 100).size(), 100u);
   }
 }
 
@@ -245,7 +245,7 @@ TEST(CompressClusters, GapsBetweenEmittersAreNearlyDark) {
   const auto model = compress_clusters(rays_from(100'000, [](Rng& rng) {
     return Vec3{(rng.uniform() < 0.5 ? -2.5 : 1.5) + rng.uniform(), rng.uniform(), 0.0};
   }));
-  const RayBlock out = drawn(*model, 100'000);
+  const RayBlock out = drawn_from(*model, 100'000);
   const auto between =
       std::count_if(out.x_mm.begin(), out.x_mm.end(), [](float x) { return x > -1.4f && x < 1.4f; });
   EXPECT_LT(static_cast<double>(between), 0.05 * 100'000);
@@ -273,7 +273,7 @@ struct Stopper final : Progress {
 
 TEST(CompressClusters, StopsWhenAsked) {
   Stopper stopper;
-  EXPECT_THROW(compress_clusters(emitter_rays(EmitterKind::led, 20'000, 1), {}, stopper), Interrupted);
+  EXPECT_THROW(compress_clusters(seeded_rays(EmitterKind::led, 20'000, 1), {}, stopper), Interrupted);
 }
 
 }  // namespace

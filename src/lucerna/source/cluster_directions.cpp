@@ -14,9 +14,10 @@ namespace {
 constexpr double kLargestGain = 1.7;
 
 /// Bottom-up pruning over sorted samples.
-class Grower {
+class DirectionGrower {
  public:
-  Grower(std::span<const DirectionSample> samples, double penalty, std::vector<DirectionLeaf>* leaves)
+  DirectionGrower(std::span<const DirectionSample> samples, double penalty,
+                  std::vector<DirectionLeaf>* leaves)
       : samples_(samples), penalty_(penalty), leaves_(leaves), before_(samples.size() + 1, 0.0) {
     for (std::size_t i = 0; i < samples.size(); ++i)
       before_[i + 1] = before_[i] + static_cast<double>(samples[i].weight);
@@ -80,12 +81,12 @@ class Grower {
 
 std::vector<DirectionLeaf> direction_tree(std::span<const DirectionSample> samples, double penalty_nats) {
   std::vector<DirectionLeaf> leaves;
-  Grower(samples, penalty_nats, &leaves).grow();
+  DirectionGrower(samples, penalty_nats, &leaves).grow();
   return leaves;
 }
 
 double direction_gain_nats(std::span<const DirectionSample> samples, double penalty_nats) {
-  return Grower(samples, penalty_nats, nullptr).grow();
+  return DirectionGrower(samples, penalty_nats, nullptr).grow();
 }
 
 }  // namespace lucerna

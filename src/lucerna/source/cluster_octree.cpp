@@ -13,8 +13,8 @@ namespace lucerna {
 
 namespace {
 
-constexpr int kLevels = 21;  // three coordinates of 21 bits fill a 64-bit key
-constexpr std::size_t kBlock = std::size_t{1} << 16;
+constexpr int kOctreeLevels = 21;  // three coordinates of 21 bits fill a 64-bit key
+constexpr std::size_t kOctreeBlock = std::size_t{1} << 16;
 
 struct Bounds {
   Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
@@ -22,7 +22,7 @@ struct Bounds {
 
 Bounds bounds_of(const RayBlock& rays) {
   const auto parts =
-      parallel_map_blocks<Bounds>(rays.size(), kBlock, [&](std::size_t first, std::size_t last) {
+      parallel_map_blocks<Bounds>(rays.size(), kOctreeBlock, [&](std::size_t first, std::size_t last) {
         Bounds b;
         for (std::size_t i = first; i < last; ++i) {
           if (!(rays.weight[i] > 0.0f)) continue;
@@ -63,11 +63,11 @@ struct Split {
 
 void split(const std::vector<Keyed>& keyed, std::size_t first, std::size_t last, int level,
            std::size_t max_rays, std::vector<std::uint32_t>& begin, std::vector<Split>& splits) {
-  if (last - first <= max_rays || level == kLevels) {
+  if (last - first <= max_rays || level == kOctreeLevels) {
     begin.push_back(static_cast<std::uint32_t>(first));
     return;
   }
-  const int shift = 3 * (kLevels - 1 - level);
+  const int shift = 3 * (kOctreeLevels - 1 - level);
   std::size_t children = 0;
   for (std::size_t from = first; from < last; ++children) {
     const std::uint64_t cell = keyed[from].key >> shift;
@@ -105,7 +105,7 @@ PositionOctree build_position_octree(const RayBlock& rays, std::size_t min_rays,
   const double scale = edge > 0.0 ? 2097151.0 / edge : 0.0;
 
   std::vector<Keyed> keyed(rays.size());
-  parallel_blocks(rays.size(), kBlock, [&](std::size_t first, std::size_t last) {
+  parallel_blocks(rays.size(), kOctreeBlock, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const Vec3 p = scale * (rays.origin_mm(i) - bounds.low);
       const auto cell = [](double x) {

@@ -17,7 +17,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 16;
+constexpr std::size_t kRemovalBlock = std::size_t{1} << 16;
 /// Expected rays from which an empty triangle is an opening.
 constexpr double kHoleRays = 12.0;
 
@@ -135,7 +135,7 @@ Round measure(const MeshSurface& surface, const std::vector<Vec3>& points, std::
   Round round;
   round.mesh = triangulate(surface, points);
   const auto parts =
-      parallel_map_blocks<Splat>(rays.size(), 4 * kBlock, [&](std::size_t first, std::size_t last) {
+      parallel_map_blocks<Splat>(rays.size(), 4 * kRemovalBlock, [&](std::size_t first, std::size_t last) {
         Splat s{std::vector<double>(round.mesh.arms.size(), 0.0),
                 std::vector<double>(round.mesh.triangles.size(), 0.0)};
         for (std::size_t i = first; i < last; ++i) {

@@ -11,10 +11,8 @@ namespace lucerna {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// pdf_etendue of Lambertian light of unit flux from `area_mm2`.
-double lambertian_pdf(double area_mm2) { return 1.0 / (kPi * area_mm2); }
+double lambertian_pdf(double area_mm2) { return 1.0 / (std::numbers::pi * area_mm2); }
 
 /// Light to +z from z = 0, where `pdf(x, y)` is its density.
 template <class Pdf>
@@ -27,7 +25,8 @@ std::optional<LineLight> from_plane(const Ray& ray, const Pdf& pdf) {
 }
 
 double disk_pdf(double radius_mm, double x, double y) {
-  return x * x + y * y <= radius_mm * radius_mm ? lambertian_pdf(kPi * radius_mm * radius_mm) : 0.0;
+  return x * x + y * y <= radius_mm * radius_mm ? lambertian_pdf(std::numbers::pi * radius_mm * radius_mm)
+                                                : 0.0;
 }
 
 double led_pdf(double x, double y) {
@@ -54,7 +53,7 @@ std::optional<LineLight> from_cylinder(const EmitterShape& s, const Ray& ray) {
   if (across.x == 0.0 && across.y == 0.0) return std::nullopt;
   const auto inside = detail::inside_round({ray.origin_mm.x, ray.origin_mm.y, 0.0}, across, s.radius_mm);
   if (!inside || std::abs(ray.at(inside->far).z) > 0.5 * s.length_mm) return std::nullopt;
-  return from_outside(inside->far, 2.0 * kPi * s.radius_mm * s.length_mm);
+  return from_outside(inside->far, 2.0 * std::numbers::pi * s.radius_mm * s.length_mm);
 }
 
 }  // namespace
@@ -85,7 +84,7 @@ std::optional<LineLight> emitter_light(const EmitterShape& s, const Ray& ray) {
       return from_cylinder(s, ray);
     case EmitterKind::sphere:
       return from_outside(BoundingSurface::sphere(s.radius_mm).exit_distance_mm(ray),
-                          4.0 * kPi * s.radius_mm * s.radius_mm);
+                          4.0 * std::numbers::pi * s.radius_mm * s.radius_mm);
     case EmitterKind::led:
       return from_plane(ray, led_pdf);
     default:

@@ -8,40 +8,40 @@
 
 namespace lucerna {
 
-namespace {
-
-constexpr std::size_t kRays = 60'000, kBlock = 4096;
-constexpr int kFirstSteps = 8, kSteps = 6;
-/// Share of the plain density in every mixture, as in SupportJudge.
-constexpr double kPlainShare = 0.02;
-/// Less light than this is left to the background.
-constexpr double kLeastShare = 0.004;
-/// The mixture must gain so many standard errors; and as much for each leaf that it has more than the first
-/// support alone as a split of a tree must: some gain is had wherever two different trees are mixed.
-constexpr double kClear = 4.0;
-
 /// Some rays in two halves: each is judged by densities made from the other.
-struct Halves {
+struct SplitHalves {
   std::array<RayBlock, 2> rays;
   std::array<std::vector<double>, 2> plain;
 };
 
+namespace {
+
+constexpr std::size_t kSplitRays = 60'000, kSplitBlock = 4096;
+constexpr int kFirstSteps = 8, kSteps = 6;
+/// Share of the plain density in every mixture, as in SupportJudge.
+constexpr double kSplitPlainShare = 0.02;
+/// Less light than this is left to the background.
+constexpr double kLeastLayerShare = 0.004;
+/// The mixture must gain so many standard errors; and as much for each leaf that it has more than the first
+/// support alone as a split of a tree must: some gain is had wherever two different trees are mixed.
+constexpr double kClear = 4.0;
+
 /// One number for each ray of each half.
-using Numbers = std::array<std::vector<double>, 2>;
+using HalfNumbers = std::array<std::vector<double>, 2>;
 
 double weight_of(const RayBlock& rays, std::size_t i) { return static_cast<double>(rays.weight[i]); }
 
 template <class Density>
 std::vector<double> densities(const RayBlock& rays, const Density& density) {
   std::vector<double> out(rays.size());
-  parallel_blocks(rays.size(), kBlock, [&](std::size_t a, std::size_t b) {
+  parallel_blocks(rays.size(), kSplitBlock, [&](std::size_t a, std::size_t b) {
     density.densities(rays, a, std::span(out).subspan(a, b - a));
   });
   return out;
 }
 
-Halves halves_of(const RayBlock& rays, const Vec3& focus_mm, double tolerance_mm) {
-  Halves h;
+SplitHalves halves_of(const RayBlock& rays, const Vec3& focus_mm, double tolerance_mm) {
+  SplitHalves h;
   for (std::size_t i = 0; i < rays.size(); ++i) h.rays[i % 2].append(rays, i);
   for (std::size_t k = 0; k < 2; ++k) {
     const RayBlock& other = h.rays[1 - k];
@@ -61,8 +61,8 @@ std::vector<float> parted(const RayBlock& rays, const std::vector<double>& part,
 
 /// The posterior parts of two densities in the shares 1 - `share` and `share`; returns the second's new
 /// share.
-double expectation(const Halves& h, const Numbers& first, const Numbers& second, double share,
-                   Numbers& part) {
+double expectation(const SplitHalves& h, const HalfNumbers& first, const HalfNumbers& second, double share,
+                   HalfNumbers& part) {
   double sum = 0.0, weight = 0.0;
   for (std::size_t k = 0; k < 2; ++k) {
     part[k].resize(h.rays[k].size());
@@ -78,7 +78,7 @@ double expectation(const Halves& h, const Numbers& first, const Numbers& second,
 /// Densities of each half, of the rays' parts in the first layer and, where there is one, in the second. All
 /// at once.
 using Fitted = std::array<FittedSupport, 2>;
-std::vector<Fitted> maximisation(const Halves& h, const Numbers& part, const BoundedSupport& first,
+std::vector<Fitted> maximisation(const SplitHalves& h, const HalfNumbers& part, const BoundedSupport& first,
                                  const BoundedSupport* second, double tolerance_mm) {
   std::vector<Fitted> layers(second ? 2 : 1);
   parallel_blocks(2 * layers.size(), 1, [&](std::size_t i, std::size_t) {
@@ -89,24 +89,24 @@ std::vector<Fitted> maximisation(const Halves& h, const Numbers& part, const Bou
   return layers;
 }
 
-Numbers crossed(const Halves& h, const Fitted& fitted) {
+HalfNumbers crossed(const SplitHalves& h, const Fitted& fitted) {
   return {densities(h.rays[0], fitted[1]), densities(h.rays[1], fitted[0])};
 }
 
 /// Log density of every ray of a mixture with a little of the plain density in it.
-Numbers logs(const Halves& h, const Numbers& first, const Numbers& second, double share) {
-  Numbers out;
+HalfNumbers logs(const SplitHalves& h, const HalfNumbers& first, const HalfNumbers& second, double share) {
+  HalfNumbers out;
   for (std::size_t k = 0; k < 2; ++k) {
     for (std::size_t i = 0; i < h.rays[k].size(); ++i) {
       const double mixed = (1.0 - share) * first[k][i] + share * second[k][i];
-      out[k].push_back(std::log((1.0 - kPlainShare) * mixed + kPlainShare * h.plain[k][i]));
+      out[k].push_back(std::log((1.0 - kSplitPlainShare) * mixed + kSplitPlainShare * h.plain[k][i]));
     }
   }
   return out;
 }
 
 /// Weighted mean of b - a, and its standard error.
-std::array<double, 2> gain(const Halves& h, const Numbers& a, const Numbers& b) {
+std::array<double, 2> gain(const SplitHalves& h, const HalfNumbers& a, const HalfNumbers& b) {
   double sum = 0.0, squares = 0.0, weight = 0.0, weight2 = 0.0;
   for (std::size_t k = 0; k < 2; ++k) {
     for (std::size_t i = 0; i < a[k].size(); ++i) {
@@ -123,7 +123,7 @@ std::array<double, 2> gain(const Halves& h, const Numbers& a, const Numbers& b) 
 std::vector<float> LayerSplit::second_parts(const RayBlock& rays) const {
   constexpr double kNearly = 0.02;
   std::vector<float> out(rays.size());
-  parallel_blocks(rays.size(), kBlock, [&](std::size_t first, std::size_t last) {
+  parallel_blocks(rays.size(), kSplitBlock, [&](std::size_t first, std::size_t last) {
     RayBatch batch;
     ChartBatch lines;
     BatchColumn density;
@@ -152,13 +152,13 @@ std::vector<float> LayerSplit::second_parts(const RayBlock& rays) const {
 
 /// The first support alone, and what it leaves to a second.
 struct LayerSplitter {
-  const Halves& halves;
+  const SplitHalves& halves;
   const BoundedSupport& first;
   double tolerance_mm;
-  Numbers alone, part;  // density of every ray; its part that light from anywhere explains better
+  HalfNumbers alone, part;  // density of every ray; its part that light from anywhere explains better
   double leaves = 0.0, share = 0.0;
 
-  LayerSplitter(const Halves& h, const BoundedSupport& first_support, double tolerance)
+  LayerSplitter(const SplitHalves& h, const BoundedSupport& first_support, double tolerance)
       : halves(h), first(first_support), tolerance_mm(tolerance) {
     constexpr double kFirstGuess = 0.05;
     for (std::size_t k = 0; k < 2; ++k) part[k].assign(h.rays[k].size(), 0.0);
@@ -166,7 +166,7 @@ struct LayerSplitter {
     leaves = static_cast<double>(single[0].leaves() + single[1].leaves());
     alone = crossed(h, single);
     share = kFirstGuess;
-    Numbers one = alone;
+    HalfNumbers one = alone;
     for (int step = 0; step < kFirstSteps; ++step) {
       share = expectation(h, one, h.plain, share, part);
       if (step % 3 == 2) one = crossed(h, maximisation(h, part, first, nullptr, tolerance_mm).front());
@@ -188,7 +188,7 @@ struct LayerSplitter {
   std::optional<LayerSplit> with(const BoundedSupport& second, Progress& progress) const {
     LayerSplit split;
     split.second_ = second;
-    Numbers its_part = part, one, two;
+    HalfNumbers its_part = part, one, two;
     double its_share = share, more_leaves = -leaves;
     for (int step = 0; step < kSteps; ++step) {
       if (progress.stop_requested()) throw Interrupted();
@@ -204,7 +204,7 @@ struct LayerSplitter {
     const auto [nats, error] = gain(halves, logs(halves, alone, two, 0.0), logs(halves, one, two, its_share));
     const auto rays = static_cast<double>(halves.rays[0].size() + halves.rays[1].size());
     const bool worth = nats * rays > kQuickPenaltyNats * more_leaves;
-    if (its_share < kLeastShare || nats < kClear * error || !worth) return std::nullopt;
+    if (its_share < kLeastLayerShare || nats < kClear * error || !worth) return std::nullopt;
     split.gain_nats_ = nats, split.gain_error_ = error, split.second_share_ = its_share;
     return split;
   }
@@ -214,13 +214,13 @@ std::optional<LayerSplit> split_layers(const RayBlock& rays, const SearchResult&
                                        const BoundingSurface& surface, std::uint64_t seed,
                                        Progress& progress) {
   if (first.degenerate) return std::nullopt;
-  const RayBlock some = stratified_choice(rays, kRays, seed);
+  const RayBlock some = stratified_choice(rays, kSplitRays, seed);
   const RaySummary summary = summarize(some);
   const Vec3 focus_mm = summary.virtual_focus ? summary.virtual_focus->point_mm : Vec3{};
   const double tolerance_mm = rounding_mm(some, focus_mm);
-  const Halves halves = halves_of(some, focus_mm, tolerance_mm);
+  const SplitHalves halves = halves_of(some, focus_mm, tolerance_mm);
   const LayerSplitter splitter(halves, first.best.on, tolerance_mm);
-  if (splitter.share < kLeastShare) return std::nullopt;
+  if (splitter.share < kLeastLayerShare) return std::nullopt;
   const RayBlock odd = splitter.odd_rays();
   SearchResult found = search_support(odd, surface, seed + 1, progress);
   // Most of what is odd is no second source: that shows before the support is exact.

@@ -15,8 +15,8 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::array<std::string_view, 7> kNames{"point",    "line", "plane", "sphere",
-                                                 "cylinder", "box",  "hull"};
+constexpr std::array<std::string_view, 7> kSurfaceNames{"point",    "line", "plane", "sphere",
+                                                        "cylinder", "box",  "hull"};
 /// Share of the flux that must start on a surface; strays are put back on it.
 constexpr double kLeastShare = 0.99;
 /// The facets of a hull of some thousand points lie below the surface that they sample by up to about this
@@ -84,7 +84,7 @@ Vec3 box_normal(const Vec3& local, const Vec3& half) {
 
 }  // namespace
 
-std::string_view to_string(MeshSurfaceKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
+std::string_view to_string(MeshSurfaceKind kind) { return kSurfaceNames[static_cast<std::size_t>(kind)]; }
 
 Vec3 MeshSurface::normal(const Vec3& point_mm) const {
   if (kind == MeshSurfaceKind::plane) return world_from_surface.ez();

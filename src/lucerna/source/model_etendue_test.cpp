@@ -13,7 +13,7 @@
 namespace lucerna {
 namespace {
 
-RaySet emitter_rays(EmitterKind kind, std::size_t n) {
+RaySet rays_of_kind(EmitterKind kind, std::size_t n) {
   EmitterOptions options;
   options.kind = kind;
   const auto source = make_emitter(options);
@@ -27,7 +27,7 @@ RaySet emitter_rays(EmitterKind kind, std::size_t n) {
 // it.
 TEST(ModelEtendueStatistical, OfADiskIsTheKnownOne) {
   constexpr double kWhole = std::numbers::pi * std::numbers::pi;
-  const RaySet rays = emitter_rays(EmitterKind::disk, 30'000);
+  const RaySet rays = rays_of_kind(EmitterKind::disk, 30'000);
   const EtendueCurve adaptive = etendue_curve(*compress_adaptive(rays, {}));
   EXPECT_NEAR(adaptive.at(0.5) / (0.5 * kWhole), 1.0, 0.05);
   EXPECT_NEAR(adaptive.at(0.99) / (0.99 * kWhole), 1.0, 0.05);
@@ -41,7 +41,7 @@ TEST(ModelEtendueStatistical, OfADiskIsTheKnownOne) {
 // A coil's étendue is that of its wire's surface, pi times 17.3 mm^2, less where windings overlap; a tree on
 // the plane of the focus finds twice as much, since no box holds a wire.
 TEST(ModelEtendueStatistical, OfACoilNeedsItsSupport) {
-  const RaySet rays = emitter_rays(EmitterKind::filament, 130'000);
+  const RaySet rays = rays_of_kind(EmitterKind::filament, 130'000);
   const double wire = std::numbers::pi * 17.3, found = searched_etendue_curve(rays.rays).at(0.5);
   EXPECT_GT(found, 0.35 * wire);
   EXPECT_LT(found, 0.70 * wire);
@@ -49,8 +49,8 @@ TEST(ModelEtendueStatistical, OfACoilNeedsItsSupport) {
 }
 
 TEST(ModelEtendue, IsNoneForRaysFromOnePoint) {
-  EXPECT_TRUE(etendue_curve(*compress_adaptive(emitter_rays(EmitterKind::point, 5'000), {})).degenerate());
-  EXPECT_TRUE(etendue_curve(*compress_clusters(emitter_rays(EmitterKind::point, 5'000))).degenerate());
+  EXPECT_TRUE(etendue_curve(*compress_adaptive(rays_of_kind(EmitterKind::point, 5'000), {})).degenerate());
+  EXPECT_TRUE(etendue_curve(*compress_clusters(rays_of_kind(EmitterKind::point, 5'000))).degenerate());
 }
 
 }  // namespace

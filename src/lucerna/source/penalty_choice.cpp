@@ -11,7 +11,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kRays = 250'000, kBlock = 4096;
+constexpr std::size_t kPenaltyRays = 250'000, kPenaltyBlock = 4096;
 /// Nothing is impossible: the least density of a held-out ray, as a share of even light.
 constexpr double kFloor = 1e-4;
 
@@ -19,7 +19,7 @@ constexpr double kFloor = 1e-4;
 double log_likelihood(const std::vector<TreeLookup>& trees, const std::vector<TreeItem>& held,
                       double volume) {
   const auto sums =
-      parallel_map_blocks<double>(held.size(), kBlock, [&](std::size_t first, std::size_t last) {
+      parallel_map_blocks<double>(held.size(), kPenaltyBlock, [&](std::size_t first, std::size_t last) {
         std::vector<std::array<double, 4>> points(last - first);
         std::vector<double> density(last - first, 0.0);
         for (std::size_t i = first; i < last; ++i) {
@@ -43,7 +43,7 @@ double log_likelihood(const std::vector<TreeLookup>& trees, const std::vector<Tr
 
 double choose_penalty(const RayBlock& rays, const BoundedSupport& on, double tolerance_mm, int trees,
                       std::uint64_t seed) {
-  const RayBlock some = stratified_choice(rays, kRays, seed);
+  const RayBlock some = stratified_choice(rays, kPenaltyRays, seed);
   RayBlock train, held;
   for (std::size_t i = 0; i < some.size(); ++i) (i % 5 == 4 ? held : train).append(some, i);
   Projection p = project(train, train.weight, on, tolerance_mm);

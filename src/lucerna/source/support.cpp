@@ -15,8 +15,8 @@ namespace {
 using namespace detail;
 
 constexpr double kUnbounded = 1e30;
-constexpr std::array<std::string_view, kSupportKinds> kNames{"plane", "sphere", "cylinder", "box",
-                                                             "focal", "axis",   "disk"};
+constexpr std::array<std::string_view, kSupportKinds> kSupportNames{"plane", "sphere", "cylinder", "box",
+                                                                    "focal", "axis",   "disk"};
 
 using Pair = std::array<double, 2>;
 
@@ -156,7 +156,7 @@ std::array<double, 2> position_range(const Support& s, std::uint32_t chart, std:
 
 }  // namespace
 
-std::string_view to_string(SupportKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
+std::string_view to_string(SupportKind kind) { return kSupportNames[static_cast<std::size_t>(kind)]; }
 
 std::uint32_t Support::charts() const {
   constexpr std::array<std::uint32_t, kSupportKinds> kCharts{2, 1, 3, 6, 1, 1, 2};

@@ -12,9 +12,9 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kBlock = 1 << 14, kBoundingRays = 8192;
+constexpr std::size_t kFitBlock = 1 << 14, kBoundingRays = 8192;
 constexpr double kOpen = 1e29, kTail = 0.002, kDirectionTolerance = 1e-6;
-constexpr std::uint8_t kMissed = 255, kWithoutFlux = 254;
+constexpr std::uint8_t kMissedChart = 255, kWithoutFlux = 254;
 
 bool inside(const TreeBox& box, const std::array<double, 4>& c) {
   bool in = true;
@@ -25,7 +25,7 @@ bool inside(const TreeBox& box, const std::array<double, 4>& c) {
 /// The item and chart of every ray.
 void project_all(const RayBlock& rays, std::span<const float> weight, const BoundedSupport& on,
                  std::vector<TreeItem>& items, std::vector<std::uint8_t>& chart) {
-  parallel_blocks(rays.size(), kBlock, [&](std::size_t first, std::size_t last) {
+  parallel_blocks(rays.size(), kFitBlock, [&](std::size_t first, std::size_t last) {
     RayBatch batch;
     ChartBatch lines;
     for (std::size_t at = first; at < last; at += kSupportBatch) {
@@ -34,9 +34,9 @@ void project_all(const RayBlock& rays, std::span<const float> weight, const Boun
       charts_of(on.support, batch, lines);
       for (std::size_t k = 0; k < n; ++k) {
         const std::size_t i = at + k;
-        chart[i] = weight[i] > 0.0f ? kMissed : kWithoutFlux;
+        chart[i] = weight[i] > 0.0f ? kMissedChart : kWithoutFlux;
         const std::uint8_t its = lines.chart[k];
-        if (chart[i] != kMissed || its == kNoChart || !inside(on.limits[its], lines.point(k))) continue;
+        if (chart[i] != kMissedChart || its == kNoChart || !inside(on.limits[its], lines.point(k))) continue;
         chart[i] = its;
         for (std::size_t d = 0; d < 4; ++d) items[i].c[d] = static_cast<float>(lines.c[d][k]);
         items[i].weight = weight[i];
@@ -135,7 +135,7 @@ Projection project(const RayBlock& rays, std::span<const float> weight, const Bo
       items[kept++] = items[i];
     else if (chart[i] < charts.size())
       charts[chart[i]].items.push_back(items[i]);
-    else if (chart[i] == kMissed) {
+    else if (chart[i] == kMissedChart) {
       result.missed.push_back(static_cast<std::uint32_t>(i));
       result.missed_weight += static_cast<double>(weight[i]);
     }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPlainShare = 0.02;
 /// Shares of rays that a tight support may miss: stray ones, and those of its blurred edge.
-constexpr std::array<double, 4> kMissed{0.0, 1e-4, 1e-3, 5e-3};
+constexpr std::array<double, 4> kMissedShares{0.0, 1e-4, 1e-3, 5e-3};
 
 }  // namespace
 
@@ -66,7 +66,7 @@ bool SupportJudge::clearly_better(const SupportScore& a, const SupportScore& b) 
 
 SupportScore SupportJudge::tightened(SupportScore start) const {
   std::vector<Support> tries;
-  for (const double missed : kMissed) {
+  for (const double missed : kMissedShares) {
     if (const auto t = lucerna::tightened(start.on.support, train_, missed)) tries.push_back(*t);
   }
   for (SupportScore& score : scores(tries)) {

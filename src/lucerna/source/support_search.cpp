@@ -28,7 +28,7 @@ constexpr std::array<std::size_t, 6> kRacers{4, 3, 2, 2, 1, 1};
 constexpr int kFineRounds = 3;
 
 /// What the candidates are made from.
-struct Shape {
+struct RayShape {
   Vec3 focus_mm, mean_direction;
   /// The centre of the bounding surface if it is round, and the focus.
   std::vector<Vec3> centres_mm;
@@ -52,8 +52,8 @@ void add_axis(std::vector<Direction>& axes, const Vec3& v) {
   axes.push_back(d);
 }
 
-Shape shape_of(const RayBlock& rays, const RaySummary& summary, const BoundingSurface& surface) {
-  Shape shape;
+RayShape shape_of(const RayBlock& rays, const RaySummary& summary, const BoundingSurface& surface) {
+  RayShape shape;
   shape.focus_mm = summary.virtual_focus ? summary.virtual_focus->point_mm : Vec3{};
   if (surface.kind == SurfaceKind::sphere || surface.kind == SurfaceKind::cylinder) {
     shape.centres_mm.push_back(surface.world_from_surface.origin_mm());
@@ -137,7 +137,7 @@ void add_round(std::vector<Support>& all, const RayBlock& rays, const Direction&
 }
 
 /// Flat sources seen through balls of glass of several sizes: LEDs under a dome.
-void add_domes(std::vector<Support>& all, const RayBlock& rays, const Shape& shape) {
+void add_domes(std::vector<Support>& all, const RayBlock& rays, const RayShape& shape) {
   constexpr double kIndex = 1.5, kNearlyAll = 0.998;
   for (const Vec3& centre : shape.centres_mm) {
     std::vector<double> offset;
@@ -162,7 +162,7 @@ void add_domes(std::vector<Support>& all, const RayBlock& rays, const Shape& sha
   }
 }
 
-std::vector<Support> candidates(const RayBlock& rays, const Shape& shape, const BoundingSurface& surface) {
+std::vector<Support> candidates(const RayBlock& rays, const RayShape& shape, const BoundingSurface& surface) {
   std::vector<Support> all;
   for (const PolarMap map : {PolarMap::polar, PolarMap::concentric}) {
     if (const auto given = support_on(surface, map)) all.push_back(*given);
@@ -221,8 +221,8 @@ std::vector<SupportScore> best_first(std::vector<SupportScore> scores) {
 
 /// Rays through a point, parallel to one another, or through a line: the support in which most numbers are
 /// the same for all, turned to where the rest is simplest. Nothing if no number is.
-std::optional<SupportScore> degenerate_support(const RayBlock& rays, const Shape& shape, double tolerance_mm,
-                                               Progress& progress) {
+std::optional<SupportScore> degenerate_support(const RayBlock& rays, const RayShape& shape,
+                                               double tolerance_mm, Progress& progress) {
   std::vector<Support> best;
   int fewest = 4;
   // Where rays start on a line they say so exactly; the virtual focus is only near it.
@@ -289,7 +289,7 @@ SearchResult search_support(const RayBlock& rays, const BoundingSurface& surface
                             Progress& progress) {
   const RayBlock fine = stratified_choice(rays, kFineRays, seed);
   const RayBlock coarse = stratified_choice(fine, kCoarseRays, seed + 1);
-  const Shape shape = shape_of(coarse, summarize(rays), surface);
+  const RayShape shape = shape_of(coarse, summarize(rays), surface);
   const double tolerance_mm = rounding_mm(fine, shape.focus_mm);
   SearchResult result;
   if (const auto flat = degenerate_support(coarse, shape, tolerance_mm, progress)) {

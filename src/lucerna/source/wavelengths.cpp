@@ -13,7 +13,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kMostBands = 6, kMostLines = 64, kParts = 64, kRays = 60'000;
+constexpr std::size_t kMostBands = 6, kMostLines = 64, kParts = 64, kBandRays = 60'000;
 
 /// Numbers of the values with weight, in ascending order of the values.
 std::vector<std::size_t> ascending(std::span<const float> nm, std::span<const float> weight) {
@@ -42,7 +42,7 @@ std::vector<float> band_ends(const WavelengthTable& all) {
 /// Do the lines of rays foretell their bands? Bands `band` of `rays`; every third ray is held out.
 bool foretold(const RayBlock& rays, const std::vector<std::size_t>& band, std::size_t bands,
               const BoundedSupport& on, double tolerance_mm) {
-  constexpr double kClear = 4.0, kLeastGain = 0.002, kFloor = 0.05;
+  constexpr double kClearGain = 4.0, kLeastGain = 0.002, kRatioFloor = 0.05;
   std::vector<std::vector<double>> density;
   std::vector<double> share(bands, 0.0);
   double total = 0.0;
@@ -62,12 +62,12 @@ bool foretold(const RayBlock& rays, const std::vector<std::size_t>& band, std::s
     const double before = share[band[i]] / total;
     if (!(before > 0.0)) continue;
     const double ratio = all > 0.0 ? p[band[i]] / all / before : 1.0;
-    const double gain = std::log((1.0 - kFloor) * ratio + kFloor);
+    const double gain = std::log((1.0 - kRatioFloor) * ratio + kRatioFloor);
     sum += w * gain, squares += w * gain * gain, weight += w, weight2 += w * w;
   }
   if (!(weight > 0.0)) return false;
   const double mean = sum / weight, variance = std::max(0.0, squares / weight - mean * mean);
-  return mean > kLeastGain && mean > kClear * std::sqrt(variance * weight2) / weight;
+  return mean > kLeastGain && mean > kClearGain * std::sqrt(variance * weight2) / weight;
 }
 
 }  // namespace
@@ -123,7 +123,7 @@ ColourBands colour_bands(const RayBlock& rays, std::span<const float> nm, const 
   bands.cuts_nm = band_ends(all);
   const std::size_t n = bands.cuts_nm.size() + 1;
   if (n > 1) {
-    const std::size_t some = std::min(rays.size(), kRays);
+    const std::size_t some = std::min(rays.size(), kBandRays);
     const double stretch = static_cast<double>(rays.size()) / static_cast<double>(some);
     RayBlock chosen;
     std::vector<std::size_t> band;

@@ -39,8 +39,8 @@ struct Counts {
 
 /// Hits of random rays against a formula for the distance; `normal` gives the inward normal at a point.
 template <class Formula, class Normal>
-Counts compare(const Reflector& mirror, const Vec3& centre, double half, const Formula& formula,
-               const Normal& normal, double tolerance) {
+Counts compare_to_formula(const Reflector& mirror, const Vec3& centre, double half, const Formula& formula,
+                          const Normal& normal, double tolerance) {
   const ReferenceTracer tracer(mirror);
   Rng rng(1, 0);
   Counts c;
@@ -66,7 +66,7 @@ Counts compare(const Reflector& mirror, const Vec3& centre, double half, const F
 TEST(CurveKernel, SphereWithHoleAndMouth) {
   const double radius = 20.0, hole = 3.0, mouth = 8.0;
   const Reflector mirror = deep_ellipse_reflector(radius, radius, 2.0 * mouth, 2.0 * hole);
-  const Counts c = compare(
+  const Counts c = compare_to_formula(
       mirror, {0, 0, radius}, 30.0,
       [&](const Ray& ray) {
         const Vec3 o = ray.origin_mm - Vec3{0, 0, radius};
@@ -91,7 +91,7 @@ TEST(CurveKernel, TubeAndCone) {
         profile_reflector({{10.0, 0.0}, {top, 50.0}}, Aperture::circle(2.0 * top, top == 60.0 ? 20.0 : 0.0));
     ASSERT_EQ(mirror.curve == nullptr, top == 60.0);
     const double k = (top - 10.0) / 50.0;
-    const Counts c = compare(
+    const Counts c = compare_to_formula(
         mirror, {0, 0, 25.0}, 40.0,
         [&](const Ray& ray) {
           const Vec3 o = ray.origin_mm, d = ray.direction.vec();
@@ -119,7 +119,7 @@ TEST(CurveKernel, RoundTroughPastItsEquator) {
     knots.push_back({radius * std::sin(a), radius * (1.0 - std::cos(a))});
   }
   const Reflector mirror = profile_trough(knots, Aperture::rectangle(2.0 * knots.back().r_mm, 60.0, 4.0));
-  const Counts c = compare(
+  const Counts c = compare_to_formula(
       mirror, {0, 0, radius}, 40.0,
       [&](const Ray& ray) {
         const Vec3 o = ray.origin_mm, d = ray.direction.vec();

@@ -12,16 +12,16 @@ namespace lucerna {
 namespace {
 
 void check_grid(const std::string& name, const PlaneGrid& grid) {
-  constexpr std::size_t kMostCells = std::size_t{1} << 24;
+  constexpr std::size_t kMostPlaneCells = std::size_t{1} << 24;
   for (const double size : {grid.size_x_mm, grid.size_y_mm}) {
     if (!(size > 0.0 && std::isfinite(size))) {
       throw InputError(
           fmt::format("detector '{}': a size of {} mm, expected a finite number above 0", name, size));
     }
   }
-  if (grid.nx == 0 || grid.ny == 0 || grid.nx > kMostCells / grid.ny) {
-    throw InputError(
-        fmt::format("detector '{}': {} x {} cells, expected 1 to {}", name, grid.nx, grid.ny, kMostCells));
+  if (grid.nx == 0 || grid.ny == 0 || grid.nx > kMostPlaneCells / grid.ny) {
+    throw InputError(fmt::format("detector '{}': {} x {} cells, expected 1 to {}", name, grid.nx, grid.ny,
+                                 kMostPlaneCells));
   }
 }
 

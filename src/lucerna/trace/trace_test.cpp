@@ -15,7 +15,7 @@
 namespace lucerna {
 namespace {
 
-PlacedSource emitter(const EmitterOptions& options, const Vec3& position_mm = {}) {
+PlacedSource emitter_at(const EmitterOptions& options, const Vec3& position_mm = {}) {
   return {make_emitter(options), Frame::from_axis(Direction{}, 0.0, position_mm), std::nullopt};
 }
 
@@ -29,7 +29,7 @@ Scene downlight(PlacedSource source, double reflectance = 0.9) {
 double sum_of(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
 
 TEST(Trace, ParaboloidCollimatesAPointAtItsFocus) {
-  Scene scene = downlight(emitter({.kind = EmitterKind::point, .flux = 500.0}));
+  Scene scene = downlight(emitter_at({.kind = EmitterKind::point, .flux = 500.0}));
   scene.far_fields = {{"fine", 360.0, 1e-3}};
   const TraceResult result = trace(scene, {.last_ray = 100000});
   const FarField far = far_field(result, 0);
@@ -43,7 +43,7 @@ TEST(Trace, ParaboloidCollimatesAPointAtItsFocus) {
 // Solid angles in closed form: the rim of the paraboloid is seen from its focus at angle theta with
 // tan(theta / 2) = r / (2 f); what passes rim and hole leaves directly.
 TEST(TraceStatistical, SharesOfAPointSourceAreSolidAngles) {
-  const TraceResult result = trace(downlight(emitter({.kind = EmitterKind::point, .flux = 1.0})),
+  const TraceResult result = trace(downlight(emitter_at({.kind = EmitterKind::point, .flux = 1.0})),
                                    {.last_ray = 400000, .sequence = SequenceKind::random});
   const Ledger l = ledger(result);
   const double rim = 2.0 * std::atan(50.0 / 30.0), hole = 2.0 * std::atan(2.0 / 30.0);
@@ -56,7 +56,7 @@ TEST(TraceStatistical, SharesOfAPointSourceAreSolidAngles) {
 
 TEST(Trace, LedgerClosesToTheUnit) {
   const TraceResult result =
-      trace(downlight(emitter({.kind = EmitterKind::sphere, .radius_mm = 6.0}, {15, 0, 0})),
+      trace(downlight(emitter_at({.kind = EmitterKind::sphere, .radius_mm = 6.0}, {15, 0, 0})),
             {.last_ray = 50000, .max_bounces = 1});
   std::int64_t lost = 0, binned = 0, out = 0;
   for (const Tally& t : result.replicates) {
@@ -95,7 +95,7 @@ TEST(Trace, EllipseSendsFocusToFocus) {
 }
 
 TEST(Trace, SameBitsForAnyNumberOfThreads) {
-  const Scene scene = downlight(emitter({.kind = EmitterKind::cylinder}));
+  const Scene scene = downlight(emitter_at({.kind = EmitterKind::cylinder}));
   const auto run = [&](int threads) {
     const ThreadLimit limit(threads);
     return trace(scene, {.last_ray = 70001, .seed = 9}).replicates;
@@ -105,8 +105,8 @@ TEST(Trace, SameBitsForAnyNumberOfThreads) {
 }
 
 TEST(Trace, RangesAddToTheSameBits) {
-  Scene scene = downlight(emitter({.kind = EmitterKind::led}));
-  scene.sources.push_back(emitter({.kind = EmitterKind::disk, .flux = 300.0}, {1, 2, 0}));
+  Scene scene = downlight(emitter_at({.kind = EmitterKind::led}));
+  scene.sources.push_back(emitter_at({.kind = EmitterKind::disk, .flux = 300.0}, {1, 2, 0}));
   const TraceResult whole = trace(scene, {.last_ray = 60000});
   const TraceResult a = trace(scene, {.last_ray = 12345});
   const TraceResult b = trace(scene, {.first_ray = 12345, .last_ray = 60000});
@@ -119,8 +119,8 @@ TEST(Trace, RangesAddToTheSameBits) {
 }
 
 TEST(TraceStatistical, TwoSourcesAdd) {
-  const PlacedSource one = emitter({.kind = EmitterKind::cylinder, .flux = 700.0});
-  const PlacedSource two = emitter({.kind = EmitterKind::disk, .flux = 300.0}, {0, 0, 2});
+  const PlacedSource one = emitter_at({.kind = EmitterKind::cylinder, .flux = 700.0});
+  const PlacedSource two = emitter_at({.kind = EmitterKind::disk, .flux = 300.0}, {0, 0, 2});
   Scene both = downlight(one);
   both.sources.push_back(two);
   both.far_fields = {{"far", 30.0, 10.0}};
@@ -164,7 +164,7 @@ TEST(Trace, ARayFileGivesEveryRayOnceWithItsWeight) {
 }
 
 TEST(Trace, LightFromBehindIsAbsorbedByTheBack) {
-  Scene scene = downlight(emitter({.kind = EmitterKind::point}, {0, 0, 40}));
+  Scene scene = downlight(emitter_at({.kind = EmitterKind::point}, {0, 0, 40}));
   scene.reflectors[0].reflector.aperture = Aperture::circle(100.0);
   const Ledger l = ledger(trace(scene, {.last_ray = 100000}));
   EXPECT_EQ(l.absorbed[1].first, "mirror_back");
@@ -176,23 +176,23 @@ TEST(Trace, LightFromBehindIsAbsorbedByTheBack) {
 }
 
 TEST(Trace, ErrorsAreUnknownForOneReplicate) {
-  const Ledger l = ledger(trace(downlight(emitter({})), {.last_ray = 100}));
+  const Ledger l = ledger(trace(downlight(emitter_at({})), {.last_ray = 100}));
   EXPECT_TRUE(std::isnan(l.out_direct.standard_error));
   EXPECT_EQ(l.rays, 100u);
 }
 
 TEST(Trace, RefusesScenesThatCannotBeTraced) {
   EXPECT_THROW(trace({}, {}), InputError);
-  Scene units = downlight(emitter({}));
-  units.sources.push_back(emitter({.flux_unit = FluxUnit::watt}));
+  Scene units = downlight(emitter_at({}));
+  units.sources.push_back(emitter_at({.flux_unit = FluxUnit::watt}));
   EXPECT_THROW(trace(units, {}), InputError);
-  Scene steps = downlight(emitter({}));
+  Scene steps = downlight(emitter_at({}));
   steps.far_fields[0].gamma_step_deg = 7.0;
   EXPECT_THROW(trace(steps, {}), InputError);
-  Scene twins = downlight(emitter({}));
+  Scene twins = downlight(emitter_at({}));
   twins.far_fields.push_back(twins.far_fields[0]);
   EXPECT_THROW(trace(twins, {}), InputError);
-  const Scene good = downlight(emitter({}));
+  const Scene good = downlight(emitter_at({}));
   EXPECT_THROW(trace(good, {.first_ray = 5, .last_ray = 5}), UsageError);
   EXPECT_THROW(trace(good, {.last_ray = 10, .max_bounces = 0}), UsageError);
 }
@@ -206,12 +206,12 @@ TEST(Trace, StopsWhenAsked) {
    private:
     std::uint64_t seen_ = 0;
   } stop;
-  EXPECT_THROW(trace(downlight(emitter({})), {}, stop), Interrupted);
+  EXPECT_THROW(trace(downlight(emitter_at({})), {}, stop), Interrupted);
 }
 
 // The fast engine sees the same rays as the reference: bins differ only by rays within rounding of a border.
 TEST(Trace, FastAndReferenceEnginesAgree) {
-  Scene scene = downlight(emitter({.kind = EmitterKind::cylinder}, {0, 0, 1}));
+  Scene scene = downlight(emitter_at({.kind = EmitterKind::cylinder}, {0, 0, 1}));
   scene.reflectors[0].slope_error_mrad = 2.0;
   scene.reflectors[0].reflectance = Reflectance({{0.0, 0.95}, {80.0, 0.7}});
   const Reflector shield = profile_reflector({{0.0, 0.0}, {8.0, 2.0}, {12.0, 6.0}}, Aperture::circle(24.0));
@@ -245,7 +245,7 @@ TEST(Trace, FastAndReferenceEnginesAgree) {
 // a paraboloid cos^2 i = (1 + cos theta) / 2 for light that leaves its focus at theta from the vertex, evenly
 // in cos theta.
 TEST(TraceStatistical, SlopeErrorDoublesInTheBeam) {
-  Scene scene = downlight(emitter({.kind = EmitterKind::point}), 1.0);
+  Scene scene = downlight(emitter_at({.kind = EmitterKind::point}), 1.0);
   scene.reflectors[0].slope_error_mrad = 20.0;
   scene.far_fields = {{"far", 360.0, 0.05}};
   const TraceResult result = trace(scene, {.last_ray = 200000});
@@ -264,7 +264,7 @@ TEST(TraceStatistical, SlopeErrorDoublesInTheBeam) {
 
 // A Lambertian disk of radius a lights a point on its axis at distance d with pi L a^2 / (a^2 + d^2).
 TEST(TraceStatistical, IlluminanceAndLuminanceOfADisk) {
-  Scene scene = downlight(emitter({.kind = EmitterKind::disk, .radius_mm = 5.0, .flux = 1000.0}));
+  Scene scene = downlight(emitter_at({.kind = EmitterKind::disk, .radius_mm = 5.0, .flux = 1000.0}));
   scene.reflectors.clear();
   const Frame facing_down = Frame::from_axis(Direction::from({0, 0, -1}), 0.0, {0, 0, 50});
   scene.planes = {{"plane", {facing_down, 10.0, 10.0, 1, 1}}};
@@ -284,7 +284,7 @@ TEST(TraceStatistical, IlluminanceAndLuminanceOfADisk) {
 }
 
 TEST(Trace, KeptRaysCarryWhatLeft) {
-  Scene scene = downlight(emitter({.kind = EmitterKind::cylinder}));
+  Scene scene = downlight(emitter_at({.kind = EmitterKind::cylinder}));
   scene.ray_detectors = {{}};
   const auto run = [&](int threads) {
     const ThreadLimit limit(threads);

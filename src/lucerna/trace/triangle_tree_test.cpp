@@ -124,7 +124,7 @@ TEST(TriangleTree, NoRayLeavesAClosedMesh) {
 }
 
 /// Compares with Embree, which works in float32: a ray 200 mm long is off by some of these.
-constexpr double kRounding = 5e-5;
+constexpr double kTreeRounding = 5e-5;
 
 class Comparison {
  public:
@@ -147,9 +147,10 @@ class Comparison {
     const double across = std::fabs(dot(nearer.face, ray.direction));
     const double off_plane = theirs && ours ? std::fabs(ours->t_mm - theirs->t_mm) * across : 1.0;
     const auto at_edge = [&] {
-      return to_an_edge(*shape_.mesh, ray.at(nearer.t_mm)) < kRounding * (2.0 + 1.0 / std::max(across, 1e-6));
+      return to_an_edge(*shape_.mesh, ray.at(nearer.t_mm)) <
+             kTreeRounding * (2.0 + 1.0 / std::max(across, 1e-6));
     };
-    if (!(off_plane < kRounding)) {
+    if (!(off_plane < kTreeRounding)) {
       ++differ_;
       at_edge_ += at_edge() ? 1 : 0;
       return;
