@@ -109,7 +109,7 @@ TEST(Design, ReachesTheLightOfAHiddenProfile) {
   const DesignResult result = design(p, small());
   EXPECT_EQ(result.end, DesignEnd::converged);
   EXPECT_GT(result.start_error.c12.excess, 0.12);
-  EXPECT_LT(result.error.c12.excess, 0.05);
+  EXPECT_LT(result.error.c12.excess, 0.03);  // 0.010 with a standard error of 0.008
   EXPECT_NEAR(result.efficiency.mean + result.absorbed.mean + result.back.mean + result.lost.mean, 1.0, 1e-9);
 
   // The tracer, on the project that the design leaves, sees the same light.
@@ -209,7 +209,7 @@ TEST(Design, EveryOptimizerIsSensible) {
     DesignOptions options = tiny();
     const DesignResult result = design(p, options);
     EXPECT_EQ(result.end, DesignEnd::converged) << name;
-    EXPECT_LT(result.error.c12.excess, 0.7 * result.start_error.c12.excess) << name;
+    EXPECT_LT(result.error.c12.excess, 0.36 * result.start_error.c12.excess) << name;  // 0.20 to 0.24
     EXPECT_NEAR(result.efficiency.mean + result.absorbed.mean + result.back.mean + result.lost.mean, 1.0,
                 1e-9)
         << name;
@@ -274,7 +274,7 @@ TEST(Design, ShapesAFreeFormMirrorAndKeepsItsSymmetry) {
   options.max_rays = 1 << 16;
   options.judge_rays = 1 << 18;
   const DesignResult result = design(p, options);
-  EXPECT_LT(result.error.c12.excess, 0.5 * result.start_error.c12.excess);
+  EXPECT_LT(result.error.c12.excess, 0.3 * result.start_error.c12.excess);  // 0.19
   EXPECT_NEAR(result.shape.at(9, 4).z_mm, result.shape.at(-9, -4).z_mm, 1e-12);
   write_file(folder.path() / "result.toml", project_text(with_shape(p, result.shape)));
   const Project again = read_project(folder.path() / "result.toml");
