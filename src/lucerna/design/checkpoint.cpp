@@ -16,6 +16,10 @@ constexpr const char* kMagic = "lucerna-design-checkpoint-8";
 constexpr const char* kSearchMagic = "lucerna-search-checkpoint-2";
 /// More numbers than any design has; keeps a damaged count from asking for memory.
 constexpr std::size_t kMostNumbers = 1 << 20;
+/// A square of so many intervals has about as many coefficients.
+constexpr int kMostIntervals = 1020;
+/// More steps, rounds or evaluations than any design makes; one more is still an int.
+constexpr int kMostCount = 1 << 30;
 
 [[noreturn]] void damaged(const char* what) {
   throw InputError(fmt::format("checkpoint: {}; expected a whole one written by this version", what));
@@ -38,6 +42,10 @@ class Reader {
     expect(name);
     return value<T>();
   }
+  int count(const char* name, int least = 0, int most = kMostCount) {
+    expect(name);
+    return whole(least, most);
+  }
   std::vector<double> numbers(const char* name) {
     expect(name);
     const auto n = value<std::size_t>();
@@ -52,22 +60,22 @@ class Reader {
     m.cost = value<double>();
     m.merit = value<double>();
     m.over_noise = value<double>();
-    m.intervals_x = value<int>();
-    m.intervals_y = value<int>();
+    m.intervals_x = whole(1, kMostIntervals);
+    m.intervals_y = whole(1, kMostIntervals);
     m.parameters = numbers("of");
     return m;
   }
   FreeFormMark search_mark(const char* name) {
     expect(name);
     FreeFormMark m;
-    m.candidate = value<int>();
-    m.level = value<int>();
+    m.candidate = whole(-1, kMostCount);
+    m.level = whole(m.exists() ? 0 : -1, kFreeFormLevels - 1);
     m.transport.sign = value<double>();
     m.transport.vertex_distance_mm = value<double>();
     m.cost = value<double>();
     m.over_noise = value<double>();
-    m.intervals_x = value<int>();
-    m.intervals_y = value<int>();
+    m.intervals_x = whole(1, kMostIntervals);
+    m.intervals_y = whole(1, kMostIntervals);
     m.parameters = numbers("of");
     return m;
   }
@@ -92,6 +100,11 @@ class Reader {
       if (!std::isfinite(t)) damaged("a number is not finite");
     }
     return t;
+  }
+  int whole(int least, int most) {
+    const auto n = value<int>();
+    if (n < least || n > most) damaged("a number is out of range");
+    return n;
   }
   std::istringstream in_;
 };
@@ -132,12 +145,12 @@ FreeFormState parse_search_checkpoint(const std::string& text, const std::string
   Reader in(text);
   in.header(kSearchMagic, key);
   FreeFormState s;
-  s.step = in.number<int>("step");
-  s.refused = in.number<int>("refused");
+  s.step = in.count("step");
+  s.refused = in.count("refused");
   s.lambda = in.number<double>("lambda");
-  s.begun = in.number<int>("begun");
-  s.failed = in.number<int>("failed");
-  s.evaluations = in.number<int>("evaluations");
+  s.begun = in.count("begun");
+  s.failed = in.count("failed");
+  s.evaluations = in.count("evaluations");
   s.total_rays = in.number<std::uint64_t>("total_rays");
   s.costs = in.numbers("costs");
   s.now = in.search_mark("now");
@@ -168,20 +181,20 @@ FitState parse_checkpoint(const std::string& text, const std::string& key) {
   Reader in(text);
   in.header(kMagic, key);
   FitState s;
-  s.intervals_x = in.number<int>("intervals_x");
-  s.intervals_y = in.number<int>("intervals_y");
-  s.stage = in.number<int>("stage");
-  s.step = in.number<int>("step");
+  s.intervals_x = in.count("intervals_x", 1, kMostIntervals);
+  s.intervals_y = in.count("intervals_y", 1, kMostIntervals);
+  s.stage = in.count("stage");
+  s.step = in.count("step");
   s.lambda = in.number<double>("lambda");
-  s.evaluations = in.number<int>("evaluations");
+  s.evaluations = in.count("evaluations");
   s.total_rays = in.number<std::uint64_t>("total_rays");
   s.over_noise = in.number<double>("over_noise");
-  s.starts = in.number<int>("starts");
-  s.fruitless = in.number<int>("fruitless");
-  s.refused = in.number<int>("refused");
-  s.tries = in.number<int>("tries");
-  s.tries_left = in.number<int>("tries_left");
-  s.twin = in.number<int>("twin") != 0;
+  s.starts = in.count("starts");
+  s.fruitless = in.count("fruitless");
+  s.refused = in.count("refused");
+  s.tries = in.count("tries");
+  s.tries_left = in.count("tries_left");
+  s.twin = in.count("twin", 0, 1) != 0;
   s.to_beat = in.number<double>("to_beat");
   s.parameters = in.numbers("parameters");
   s.costs = in.numbers("costs");
