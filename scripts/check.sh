@@ -36,8 +36,8 @@ changed_sources() {
 
 # clang-tidy reads how clang would compile each file; nothing is built. Prints each finding once, though a header is read often.
 tidy() {
-  cmake --preset clang >/dev/null || return 1
-  xargs -r -n 1 -P "$jobs" clang-tidy -p build/clang --quiet 2>/dev/null >build/check/findings
+  cmake --preset tidy >/dev/null || return 1
+  xargs -r -n 1 -P "$jobs" clang-tidy -p build/tidy --quiet 2>/dev/null >build/check/findings
   grep -E '(warning|error): ' build/check/findings | sort -u >build/check/findings.once
   cat build/check/findings.once
   [ ! -s build/check/findings.once ]
