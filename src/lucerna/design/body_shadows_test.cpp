@@ -79,7 +79,7 @@ Scene scene(const DesignShape& shape) {
   return s;
 }
 
-DesignShape wavy() {
+DesignShape wavy_mirror() {
   const DesignShape plain = DesignShape::bspline(10, Aperture::circle(60, 6), 8, 8);
   Eigen::VectorXd p = plain.parameters();
   for (Eigen::Index i = 0; i < p.size(); ++i) p[i] += 0.3 * std::sin(1.7 * static_cast<double>(i));
@@ -89,7 +89,7 @@ DesignShape wavy() {
 /// Evaluation (own tree, exact mirror, double) and validation (Embree, triangles, other rays) see the same
 /// light. Shares of 2^18 rays each agree to some 1e-4; a body that is not there changes them by a tenth.
 TEST(BodyShadowsStatistical, EvaluationAndValidationAgree) {
-  const DesignShape shape = wavy();
+  const DesignShape shape = wavy_mirror();
   const Scene s = scene(shape);
   DesignRays rays(s.sources, Frame(), 5);
   rays.grow(std::uint64_t{1} << 18);
@@ -117,7 +117,7 @@ TEST(BodyShadowsStatistical, EvaluationAndValidationAgree) {
 }
 
 TEST(BodyShadows, DerivativesAreThoseOfTheLightThatPasses) {
-  const DesignShape shape = wavy();
+  const DesignShape shape = wavy_mirror();
   Scene s = scene(shape);
   s.bodies.resize(1);
   DesignRays rays(s.sources, Frame(), 5);

@@ -56,8 +56,6 @@ constexpr std::uint64_t kSourceRays = 1 << 13;
 /// Longest change of a height in one step, over the mirror's radius: the model of a step is not good for
 /// more.
 constexpr double kLongestStep = 0.05;
-/// Damping beyond which there is no step to be had.
-constexpr double kMaxLambda = 1e12;
 
 /// FitProblem::flux_weight, where ends are compared: on the way light must not get lost for a little less
 /// error, but of two mirrors at the end the one whose light is right is wanted. A tenth of the light counts

@@ -21,8 +21,6 @@ constexpr double kSmoothingStep = 1.0 / 24.0;
 constexpr double kFewKnots = 1.0 / 300.0;
 /// Longest change of a height in one step, over the mirror's radius: the linear model is not good for more.
 constexpr double kMaxMove = 0.05;
-/// Damping beyond which there is no step to be had.
-constexpr double kMaxLambda = 1e12;
 /// Bins on each side of the widened rectangle out to the horizon; where zones may lie there.
 constexpr int kOuterBins = 8, kZoneBins = 24;
 

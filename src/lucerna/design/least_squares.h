@@ -65,6 +65,8 @@ Eigen::VectorXd bin_weights(const TentBins& bins);
 double best_scale(const Eigen::VectorXd& flux, const Eigen::VectorXd& target, const Eigen::VectorXd& weights,
                   TargetMode mode);
 
+/// Damping beyond which there is no step to be had.
+inline constexpr double kMaxLambda = 1e12;
 /// The damping after a step from which the equations predicted one gain and which brought another.
 double next_lambda(double lambda, double predicted, double gained);
 /// The damping after a step that made the cost `cost`: Nielsen's rule, by how much of the gain that the

@@ -44,8 +44,6 @@ constexpr std::size_t kBatch = 4;
 constexpr double kTrust = 0.02;
 /// Longest change of a height in one step, over the radius.
 constexpr double kLongestMove = 0.05;
-/// Damping beyond which there is no step to be had.
-constexpr double kMaxLambda = 1e12;
 
 struct Candidate {
   DesignShape shape;
