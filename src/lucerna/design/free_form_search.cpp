@@ -47,7 +47,7 @@ constexpr double kNoiseShare = 0.1;
 /// What of the squared error counts where candidates are compared at a level: mirrors that are fitted roughly
 /// come nearer to the target later, but the light that they lose stays lost.
 constexpr std::array<double, kLevels> kErrorShare{0.3, 1.0, 1.0, 1.0};
-/// The given mirror keeps its own knots as long as a level ends below so many times the noise.
+/// The given mirror keeps its own knots as long as a level ends below so many times the noise, or near.
 constexpr double kEnoughKnots = 2.0;
 /// A mirror that fits its own rays below their noise still costs so much of what it did.
 constexpr double kMinCostShare = 0.02;
@@ -202,10 +202,15 @@ DesignShape FreeFormSearch::shape_of(const FreeFormMark& mark) const {
       .with(Eigen::VectorXd::Map(mark.parameters.data(), static_cast<Eigen::Index>(mark.parameters.size())));
 }
 
+bool FreeFormSearch::knots_suffice(const FreeFormMark& mark) const {
+  const double share = kErrorShare[static_cast<std::size_t>(mark.level - 1)];
+  return mark.over_noise < kEnoughKnots || mark.cost < share * kNear * kNear;
+}
+
 void FreeFormSearch::begin(const DesignShape& shape, const FreeFormMark& mark, Progress& progress) {
   const FreeFormLevel l = level(mark.level);
   // Knots are refined, never coarsened, and only where something is left to gain.
-  const bool enough = !mark.transport.exists() && (mark.level == 0 || mark.over_noise < kEnoughKnots);
+  const bool enough = !mark.transport.exists() && (mark.level == 0 || knots_suffice(mark));
   const bool has = shape.intervals_x() >= l.intervals_x && shape.intervals_y() >= l.intervals_y;
   const DesignShape fine = enough || has ? shape
                                          : shape.refined(std::max(shape.intervals_x(), l.intervals_x),

@@ -79,6 +79,8 @@ class FreeFormSearch {
   FreeFormLevel plain_level(int number) const;
   TransportChoice first_choice(int number) const;
   bool few_knots_given() const;
+  /// Whether a given mirror's knots are enough for the next level; `mark` has that level already.
+  bool knots_suffice(const FreeFormMark& mark) const;
   /// What a candidate that is not the given mirror begins with.
   TransportChoice choice(int number) const;
   /// The given mirror, or what an approach makes of it, whichever is nearer to the target.
