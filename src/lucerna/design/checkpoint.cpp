@@ -21,7 +21,7 @@ constexpr int kMostIntervals = 1020;
 /// More steps, rounds or evaluations than any design makes; one more is still an int.
 constexpr int kMostCount = 1 << 30;
 
-[[noreturn]] void damaged(const char* what) {
+[[noreturn]] void damaged(std::string_view what) {
   throw InputError(fmt::format("checkpoint: {}; expected a whole one written by this version", what));
 }
 
@@ -61,7 +61,7 @@ class Reader {
     m.merit = value<double>();
     m.over_noise = value<double>();
     m.intervals_x = whole(1, kMostIntervals);
-    m.intervals_y = whole(1, kMostIntervals);
+    m.intervals_y = whole(0, kMostIntervals);  // 0: of revolution
     m.parameters = numbers("of");
     return m;
   }
@@ -103,7 +103,7 @@ class Reader {
   }
   int whole(int least, int most) {
     const auto n = value<int>();
-    if (n < least || n > most) damaged("a number is out of range");
+    if (n < least || n > most) damaged(fmt::format("found {}, expected {} to {}", n, least, most));
     return n;
   }
   std::istringstream in_;
@@ -182,7 +182,7 @@ FitState parse_checkpoint(const std::string& text, const std::string& key) {
   in.header(kMagic, key);
   FitState s;
   s.intervals_x = in.count("intervals_x", 1, kMostIntervals);
-  s.intervals_y = in.count("intervals_y", 1, kMostIntervals);
+  s.intervals_y = in.count("intervals_y", 0, kMostIntervals);
   s.stage = in.count("stage");
   s.step = in.count("step");
   s.lambda = in.number<double>("lambda");
