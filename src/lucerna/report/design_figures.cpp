@@ -141,9 +141,9 @@ void tolerance_rows(const ToleranceSweep& sweep, std::vector<std::string>& lines
                   "{} combined cases",
                   r.source_shift_mm, r.source_tilt_deg, r.slope_error_mrad, r.reflectance, r.samples));
   lines.push_back(
-      fmt::format("  {:<16}{:>20}{:>20}{:>20}{:>12}", "", "nominal", "least", "greatest", "std. dev."));
+      fmt::format("  {:<16}{:>24}{:>24}{:>24}{:>12}", "", "nominal", "least", "greatest", "std. dev."));
   for (const ToleranceSpread& s : sweep.spread) {
-    lines.push_back(fmt::format("  {:<16}{:>20}{:>20}{:>20}{:>12.3g}", s.figure, estimate_text(s.nominal),
+    lines.push_back(fmt::format("  {:<16}{:>24}{:>24}{:>24}{:>12.3g}", s.figure, estimate_text(s.nominal),
                                 estimate_text(s.least), estimate_text(s.greatest), s.standard_deviation));
   }
 }
