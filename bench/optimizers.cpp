@@ -134,7 +134,7 @@ void run(const Case& c, const std::string& source, double seconds, const std::fi
     DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
     const FitProblem fit = fit_problem(problem, options, rays);
     const std::vector<FitStage> stages =
-        ladder(problem.start, fit.bins, {options.most_rays, true, problem.growth});
+        ladder(problem.start, fit.bins, {options.max_rays, true, problem.growth});
     const double from = cpu_seconds();
     const DesignShape shape = way(fit, problem.start, stages, seconds);
     const double took = cpu_seconds() - from;

@@ -11,7 +11,11 @@
 
 namespace lucerna {
 
+namespace {
+
 using Json = nlohmann::ordered_json;
+
+}  // namespace
 
 bool ResultFigures::has(const std::string& key) const { return json_.contains(Json::json_pointer(key)); }
 
