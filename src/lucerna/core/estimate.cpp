@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lucerna {
 
@@ -20,6 +21,15 @@ int last_place(double error) {
 }
 
 }  // namespace
+
+Estimate mean_estimate(std::span<const double> values) {
+  const auto n = static_cast<double>(values.size());
+  double mean = 0.0, squares = 0.0;
+  for (const double v : values) mean += v / n;
+  if (values.size() < 2) return {mean, std::numeric_limits<double>::quiet_NaN()};
+  for (const double v : values) squares += (v - mean) * (v - mean);
+  return {mean, std::sqrt(squares / (n * (n - 1.0)))};
+}
 
 std::string estimate_text(const Estimate& e, std::string_view unit) {
   const std::string tail = unit.empty() ? std::string() : fmt::format(" {}", unit);

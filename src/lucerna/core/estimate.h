@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -12,6 +13,10 @@ struct Estimate {
   /// Standard error of `mean`, same unit; NaN where it is not known.
   double standard_error = 0.0;
 };
+
+/// The mean of independent values of one distribution, with its standard error: NaN for fewer than two.
+/// `values` is not empty.
+Estimate mean_estimate(std::span<const double> values);
 
 /// Standard errors to either side that make the 95 % interval of an estimate: Student's t for the 15 degrees
 /// of freedom that 16 replicates leave.

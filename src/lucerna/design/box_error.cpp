@@ -76,20 +76,11 @@ Cells outside(const ErrorBoxes& boxes, std::span<const double> target, std::span
   return cells;
 }
 
-Estimate mean_of(const std::vector<double>& values) {
-  const auto n = static_cast<double>(values.size());
-  double mean = 0.0, square = 0.0;
-  for (const double v : values) mean += v / n;
-  for (const double v : values) square += (v - mean) * (v - mean);
-  if (values.size() < 2) return {mean, std::numeric_limits<double>::quiet_NaN()};
-  return {mean, std::sqrt(square / (n * (n - 1.0)))};
-}
-
 /// The shares of a cell over the replicates.
 Estimate share_of(const Cells& cells, std::size_t b) {
   std::vector<double> shares;
   for (const auto& share : cells.share) shares.push_back(share[b]);
-  return mean_of(shares);
+  return mean_estimate(shares);
 }
 
 /// The scale that makes the excess smallest: that of the least squares, less what noise adds to |f|^2.
@@ -140,7 +131,7 @@ double trace_of_square(const Residuals& x) {
   for (std::size_t r = 0; r < x.off.size(); ++r) {
     for (std::size_t s = 0; s < r; ++s) products.push_back(product(x.off[r], x.off[s]));
   }
-  const double mean = mean_of(products).mean;
+  const double mean = mean_estimate(products).mean;
   double square = 0.0;
   for (const double p : products) square += (p - mean) * (p - mean);
   return square / static_cast<double>(products.size());
@@ -183,13 +174,6 @@ Estimate worst_cell(const Cells& cells, double scale) {
     if (off >= worst.mean) worst = {off, scale * f.standard_error / cells.measure[b]};
   }
   return {worst.mean / peak, worst.standard_error / peak};
-}
-
-template <class Share>
-Estimate replicate_mean(std::span<const BoxSums> replicates, const Share& share) {
-  std::vector<double> values;
-  for (const BoxSums& r : replicates) values.push_back(share(r) / r.emitted);
-  return mean_of(values);
 }
 
 double flux_inside(const BoxSums& sums) {
@@ -297,10 +281,10 @@ DesignError box_error(const ErrorBoxes& boxes, std::span<const double> target,
     if (n == kErrorBoxes) out.worst_cell = worst_cell(cells, out.scale);
   }
   out.outside = estimate(residuals(outside(boxes, target, replicates), out.scale, norm2));
-  out.in_rectangle = replicate_mean(replicates, flux_inside);
-  out.outside_share = replicate_mean(
+  out.in_rectangle = replicate_share(replicates, flux_inside);
+  out.outside_share = replicate_share(
       replicates, [](const BoxSums& r) { return r.out_direct + r.out_reflected - flux_inside(r); });
-  out.outside_direct = replicate_mean(replicates, [](const BoxSums& r) { return r.direct_outside; });
+  out.outside_direct = replicate_share(replicates, [](const BoxSums& r) { return r.direct_outside; });
   return out;
 }
 

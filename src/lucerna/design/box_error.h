@@ -27,6 +27,14 @@ struct BoxSums {
   BoxSums& operator+=(const BoxSums& other);
 };
 
+/// What `flux` gives, as a share of the emitted flux: its mean over at least two replicates.
+template <class Flux>
+Estimate replicate_share(std::span<const BoxSums> replicates, const Flux& flux) {
+  std::vector<double> shares;
+  for (const BoxSums& r : replicates) shares.push_back(flux(r) / r.emitted);
+  return mean_estimate(shares);
+}
+
 /// A relative l2 error with the noise taken out.
 struct BoxErrorEstimate {
   /// |s f - t| / |t|, weighted by solid angle (or area).

@@ -34,7 +34,7 @@ DesignRays::DesignRays(std::vector<PlacedSource> sources, const Frame& mirror_fr
       mirror_from_world_(mirror_from_world),
       word_(shares(sources_)),
       seed_(seed) {
-  for (const PlacedSource& s : sources_) flux_ += s.total_flux();
+  flux_ = total_flux(sources_);
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const double share = static_cast<double>(word_.share(i)) / static_cast<double>(word_.total());
     ray_flux_.push_back(sources_[i].total_flux() / flux_ / share);

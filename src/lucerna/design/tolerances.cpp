@@ -74,12 +74,8 @@ ToleranceSpread spread_of(const std::string& name, const ToleranceSweep& sweep, 
 
 Vec3 middle(const Scene& scene) {
   Vec3 sum;
-  double flux = 0.0;
-  for (const PlacedSource& s : scene.sources) {
-    sum += s.total_flux() * s.world_from_source.origin_mm();
-    flux += s.total_flux();
-  }
-  return sum / flux;
+  for (const PlacedSource& s : scene.sources) sum += s.total_flux() * s.world_from_source.origin_mm();
+  return sum / total_flux(scene.sources);
 }
 
 }  // namespace

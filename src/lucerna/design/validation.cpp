@@ -123,12 +123,6 @@ class Meshes {
   std::shared_ptr<const MeshHitFinder> direct_, returning_;
 };
 
-double total_flux(const Scene& scene) {
-  double flux = 0.0;
-  for (const PlacedSource& source : scene.sources) flux += source.total_flux();
-  return flux;
-}
-
 bool has_slope_errors(const Scene& scene) {
   const auto has = [](const auto& thing) { return thing.slope_error_mrad > 0.0; };
   return std::any_of(scene.reflectors.begin(), scene.reflectors.end(), has) ||
@@ -353,23 +347,13 @@ std::uint64_t next_rays(const ValidationOptions& options, std::uint64_t rays, do
   return next > rays ? next : 0;
 }
 
-template <class Share>
-Estimate share_of(const std::vector<BoxSums>& replicates, const Share& share) {
-  const auto n = static_cast<double>(replicates.size());
-  Estimate out;
-  for (const BoxSums& r : replicates) out.mean += share(r) / r.emitted / n;
-  double square = 0.0;
-  for (const BoxSums& r : replicates) square += std::pow(share(r) / r.emitted - out.mean, 2);
-  out.standard_error = std::sqrt(square / (n * (n - 1.0)));
-  return out;
-}
-
 void set_shares(const std::vector<BoxSums>& replicates, Validation& out) {
-  out.efficiency = share_of(replicates, [](const BoxSums& r) { return r.out_direct + r.out_reflected; });
-  out.absorbed = share_of(replicates, [](const BoxSums& r) { return r.absorbed; });
-  out.back = share_of(replicates, [](const BoxSums& r) { return r.back; });
-  out.bodies = share_of(replicates, [](const BoxSums& r) { return r.bodies; });
-  out.lost = share_of(replicates, [](const BoxSums& r) { return r.lost; });
+  out.efficiency =
+      replicate_share(replicates, [](const BoxSums& r) { return r.out_direct + r.out_reflected; });
+  out.absorbed = replicate_share(replicates, [](const BoxSums& r) { return r.absorbed; });
+  out.back = replicate_share(replicates, [](const BoxSums& r) { return r.back; });
+  out.bodies = replicate_share(replicates, [](const BoxSums& r) { return r.bodies; });
+  out.lost = replicate_share(replicates, [](const BoxSums& r) { return r.lost; });
 }
 
 /// Rays after which files would begin to repeat themselves; the options' own without files.
@@ -409,7 +393,8 @@ Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const
     blocks = next;
     out.rays = blocks * kRoundUnit;
     out.error = box_error(boxes, target, replicates, mode);
-    if (options.zones != nullptr) out.zones = check_zones(*options.zones, replicates, total_flux(scene));
+    if (options.zones != nullptr)
+      out.zones = check_zones(*options.zones, replicates, total_flux(scene.sources));
     const bool clear = out.error.c48.floor <= 0.5 * out.error.c48.excess && !any_undetermined(out.zones);
     if (progress.stop_requested()) break;
     next = next_rays(options, out.rays, seconds_since(traced), before_s, clear) / kRoundUnit;

@@ -11,17 +11,6 @@ namespace lucerna {
 
 namespace {
 
-Estimate estimate_of(const std::vector<double>& values) {
-  const auto n = static_cast<double>(values.size());
-  Estimate out{0.0, std::numeric_limits<double>::quiet_NaN()};
-  for (const double v : values) out.mean += v / n;
-  if (values.size() < 2) return out;
-  double square = 0.0;
-  for (const double v : values) square += (v - out.mean) * (v - out.mean);
-  out.standard_error = std::sqrt(square / (n * (n - 1.0)));
-  return out;
-}
-
 /// Cells by replicates: intensity or illuminance.
 class ZoneLight {
  public:
@@ -32,7 +21,7 @@ class ZoneLight {
       for (std::size_t r = 0; r < replicates.size(); ++r) {
         value_[c][r] = per * replicates[r].zones[c] / replicates[r].emitted;
       }
-      mean_.push_back(estimate_of(value_[c]));
+      mean_.push_back(mean_estimate(value_[c]));
     }
   }
 
@@ -83,7 +72,7 @@ ZoneVerdict worse(ZoneVerdict a, ZoneVerdict b) {
 ZoneBoundCheck check_bound(const ZoneCells& cells, const ZoneLight& light, std::size_t zone,
                            const ZoneBound& bound) {
   const std::vector<double> reference = reference_of(light, zone, bound);
-  const double unit = estimate_of(reference).mean;
+  const double unit = mean_estimate(reference).mean;
   ZoneBoundCheck out{bound.key, bound.is_min, bound.value, unit};
   out.missing = -std::numeric_limits<double>::infinity();
   std::vector<double> short_by(reference.size()), ratio(reference.size());
@@ -92,7 +81,7 @@ ZoneBoundCheck check_bound(const ZoneCells& cells, const ZoneLight& light, std::
       const double slack = bound.value * reference[r] - light.of(c)[r];
       short_by[r] = bound.is_min ? slack : -slack;
     }
-    const Estimate e = estimate_of(short_by);
+    const Estimate e = mean_estimate(short_by);
     const bool kept = e.mean < 0.0 && -e.mean >= kZoneErrors * e.standard_error;
     const bool broken = e.mean > 0.0 && e.mean >= kZoneErrors * e.standard_error;
     out.verdict = worse(out.verdict,
@@ -136,7 +125,7 @@ std::vector<ZoneCheck> check_zones(const ZoneCells& cells, std::span<const BoxSu
     ZoneCheck check{zone.name, cells.first(z + 1) - cells.first(z), zone.cell, cells.on_plane()};
     check.min = light.mean(light.darkest(z));
     check.max = light.mean(light.brightest(z));
-    check.mean = estimate_of(light.over(z));
+    check.mean = mean_estimate(light.over(z));
     for (const ZoneBound& bound : zone.bounds) check.bounds.push_back(check_bound(cells, light, z, bound));
     out.push_back(std::move(check));
   }

@@ -17,12 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double source_flux(const DesignProblem& problem) {
-  double flux = 0.0;
-  for (const PlacedSource& s : problem.project.scene.sources) flux += s.total_flux();
-  return flux;
-}
-
 /// Of a target.
 PlaneSummary summary_of(const std::vector<double>& values, double factor) {
   double mean = 0.0, least = std::numeric_limits<double>::infinity(), greatest = 0.0;
@@ -255,7 +249,7 @@ DesignFigures design_figures(const DesignProblem& problem, const DesignResult& r
   const DesignTarget& target = problem.target;
   if (target.zones_only) return f;  // a guide is nothing to compare with
   if (target.mode == TargetMode::shape && result.error.scale > 0.0) {
-    f.target_factor = source_flux(problem) / result.error.scale;
+    f.target_factor = total_flux(problem.project.scene.sources) / result.error.scale;
   }
   if (target.plane) {
     f.target_plane = summary_of(target.plane->map.value, f.target_factor);

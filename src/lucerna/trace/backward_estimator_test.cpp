@@ -71,14 +71,6 @@ DirectionCell grid_cell(std::size_t c, std::size_t gamma) {
           radians(at_gamma + 0.5 * kGamma_deg)};
 }
 
-Estimate mean_of(std::span<const double> x) {
-  const auto n = static_cast<double>(x.size());
-  const double mean = std::accumulate(x.begin(), x.end(), 0.0) / n;
-  double squares = 0.0;
-  for (const double v : x) squares += (v - mean) * (v - mean);
-  return {mean, std::sqrt(squares / (n * (n - 1.0)))};
-}
-
 /// Both estimates of cells that 400 rays or more reach and that have 2 % of the largest intensity or more
 /// (every `stride`-th of them) below kMostGamma: in darker ones the errors of so few backward rays are not
 /// known well, and neither are those of light that leaves upward through the hole after many reflections.
@@ -116,7 +108,7 @@ std::vector<Pair> both(const Scene& scene, const Sampling& sampling, const Scene
     const DirectionCell cell = grid_cell(i / forward.gamma_count, i % forward.gamma_count);
     pairs[k] = {radians(kGamma_deg * static_cast<double>(i % forward.gamma_count)),
                 {forward.flux[i], forward.standard_error[i]},
-                mean_of(estimator.cell_flux(cell, 1, 1, sampling.samples, seeds))};
+                mean_estimate(estimator.cell_flux(cell, 1, 1, sampling.samples, seeds))};
   });
   return pairs;
 }

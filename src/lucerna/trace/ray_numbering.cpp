@@ -67,8 +67,7 @@ std::uint64_t SourceWord::count(std::size_t source, std::uint64_t n) const {
 
 RayNumbering::RayNumbering(const std::vector<PlacedSource>& sources, std::uint64_t seed)
     : word_(source_shares(sources)), seed_(seed) {
-  double flux = 0.0;
-  for (const PlacedSource& s : sources) flux += s.total_flux();
+  const double flux = total_flux(sources);
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const double per_block = static_cast<double>(kBlockRays) * static_cast<double>(word_.share(s)) /
                              static_cast<double>(word_.total());

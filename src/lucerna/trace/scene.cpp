@@ -22,6 +22,12 @@ bool is_behind(const Reflector& mirror, const Vec3& p) {
 
 }  // namespace
 
+double total_flux(std::span<const PlacedSource> sources) {
+  double flux = 0.0;
+  for (const PlacedSource& s : sources) flux += s.total_flux();
+  return flux;
+}
+
 double share_behind(const PlacedSource& source, const PlacedReflector& mirror) {
   RayBlock rays;
   rays.resize(

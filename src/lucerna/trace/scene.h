@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ struct PlacedSource {
 
   double total_flux() const { return flux ? *flux : rays->flux(); }
 };
+
+/// The flux of all sources together, in their common unit.
+double total_flux(std::span<const PlacedSource> sources);
 
 /// A mirror in the luminaire frame. The side towards its +z reflects, the other absorbs.
 struct PlacedReflector {

@@ -80,7 +80,7 @@ TraceResult empty_result(const Scene& scene, const RayNumbering& numbering, cons
   result.sequence = options.sequence;
   result.max_bounces = options.max_bounces;
   result.unit = scene.sources.front().rays->flux_unit();
-  for (const PlacedSource& s : scene.sources) result.flux += s.total_flux();
+  result.flux = total_flux(scene.sources);
   result.far_fields = scene.far_fields;
   for (const Body& b : scene.bodies) result.body_names.push_back(b.name);
   for (const CoverGlass& g : scene.glasses) result.body_names.push_back(g.name);
