@@ -19,8 +19,6 @@
 
 namespace lucerna {
 
-inline constexpr double kMm2PerM2 = 1e6;
-
 /// Illuminance that is wanted on a rectangle of a plane.
 struct PlaneTarget {
   /// Of the rectangle's centre; the light is to fall on the side of its +z.

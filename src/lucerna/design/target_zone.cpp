@@ -139,13 +139,6 @@ void read_relative(TomlReader& zone, std::size_t number, TargetZone& out) {
   }
 }
 
-const ZoneBound* bound_of(const TargetZone& zone, bool is_min, ZoneReference reference) {
-  for (const ZoneBound& b : zone.bounds) {
-    if (b.is_min == is_min && b.reference == reference) return &b;
-  }
-  return nullptr;
-}
-
 void check_band(const TomlReader& reader, const TargetZone& zone) {
   if (zone.bounds.empty()) {
     reader.fail("name", fmt::format("zone '{}' asks for nothing: expected min_{}, max_{} or another bound",
@@ -153,7 +146,7 @@ void check_band(const TomlReader& reader, const TargetZone& zone) {
                                     zone.coordinates == ZoneCoordinates::plane ? "lx" : "cd"));
   }
   for (const ZoneReference reference : {ZoneReference::absolute, ZoneReference::mean}) {
-    const ZoneBound *least = bound_of(zone, true, reference), *most = bound_of(zone, false, reference);
+    const ZoneBound *least = zone.bound(true, reference), *most = zone.bound(false, reference);
     if (least != nullptr && most != nullptr && !(least->value < most->value)) {
       reader.fail(least->key, fmt::format("{} is not below {}: found {:g} and {:g}", least->key, most->key,
                                           least->value, most->value));
@@ -183,6 +176,13 @@ void join_means(std::vector<TomlReader>& readers, std::vector<TargetZone>& zones
 }
 
 }  // namespace
+
+const ZoneBound* TargetZone::bound(bool is_min, ZoneReference reference) const {
+  for (const ZoneBound& b : bounds) {
+    if (b.is_min == is_min && b.reference == reference) return &b;
+  }
+  return nullptr;
+}
 
 bool TargetZone::asks_for_light() const {
   return std::any_of(bounds.begin(), bounds.end(), [](const ZoneBound& b) { return b.is_min; });

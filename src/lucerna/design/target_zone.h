@@ -17,6 +17,8 @@ enum class ZoneCoordinates {
   plane     ///< mm on the target's plane: row y, column x
 };
 
+inline constexpr double kMm2PerM2 = 1e6;
+
 /// An interval in degrees or mm; a point where both ends are the same.
 struct ZoneRange {
   double low = 0.0, high = 0.0;
@@ -53,6 +55,8 @@ struct TargetZone {
   std::vector<ZoneBound> bounds;
 
   bool asks_for_light() const;
+  /// The first bound of that kind, or null.
+  const ZoneBound* bound(bool is_min, ZoneReference reference) const;
 };
 
 /// Reads [[target.zone]]: `name`; the region as `gamma_deg` and `c_deg`, as `h_deg` and `v_deg`, or on a

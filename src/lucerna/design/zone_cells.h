@@ -36,8 +36,8 @@ class ZoneCells {
   /// Cells [first(zone), first(zone + 1)).
   std::size_t first(std::size_t zone) const { return first_[zone]; }
   bool on_plane() const { return plane_from_world_.has_value(); }
-  /// What flux over a cell's measure is multiplied by: 1, or 1e6 for lx from lm/mm2.
-  double unit() const { return on_plane() ? 1e6 : 1.0; }
+  /// What flux over a cell's measure is multiplied by: 1, or mm2 in a m2 for lx from lm/mm2.
+  double unit() const { return on_plane() ? kMm2PerM2 : 1.0; }
 
   /// Adds `flux` to the sums of all cells that a ray of the luminaire frame falls into by its last leg.
   void add(const Vec3& origin_mm, const Vec3& direction, double flux, std::span<double> sums) const;

@@ -20,16 +20,9 @@ constexpr double kFlat = 0.75, kFadeCells = 1.5, kFadeShare = 0.6;
 constexpr double kMaxGap_deg = 15.0, kMaxGapShare = 0.25;
 constexpr int kMapCells = 96;
 
-const ZoneBound* bound(const TargetZone& zone, bool is_min, ZoneReference reference) {
-  for (const ZoneBound& b : zone.bounds) {
-    if (b.is_min == is_min && b.reference == reference) return &b;
-  }
-  return nullptr;
-}
-
 double absolute_level(const TargetZone& zone) {
-  const ZoneBound* least = bound(zone, true, ZoneReference::absolute);
-  const ZoneBound* most = bound(zone, false, ZoneReference::absolute);
+  const ZoneBound* least = zone.bound(true, ZoneReference::absolute);
+  const ZoneBound* most = zone.bound(false, ZoneReference::absolute);
   if (least == nullptr) return 0.0;
   const double level = kAbove * least->value;
   return most == nullptr ? level : std::min(level, 0.5 * (least->value + most->value));
@@ -47,7 +40,7 @@ std::vector<double> levels_of(const std::vector<TargetZone>& zones) {
   const double typical = count > 0.0 ? sum / count : 1.0;
   for (std::size_t z = 0; z < zones.size(); ++z) {
     if (level[z] > 0.0 || !zones[z].asks_for_light()) continue;
-    const ZoneBound* share = bound(zones[z], true, ZoneReference::mean);
+    const ZoneBound* share = zones[z].bound(true, ZoneReference::mean);
     const bool other = share != nullptr && share->mean_of != z;
     level[z] = other ? kAbove * share->value * std::max(level[share->mean_of], typical) : typical;
   }
@@ -85,7 +78,7 @@ class Guide {
     for (std::size_t c = 0; c < hit_.size(); ++c) {
       if (hit_[c] == 0.0) continue;
       const TargetZone& zone = zones_.zones()[zones_.cells()[c].zone];
-      if (const ZoneBound* most = bound(zone, false, ZoneReference::absolute)) {
+      if (const ZoneBound* most = zone.bound(false, ZoneReference::absolute)) {
         value = std::min(value, kBelow * most->value);
       }
     }
