@@ -157,7 +157,7 @@ bool solve(const Suite& s, std::uint64_t seed, const Run& run, bool only_look, O
   DesignRays rays({cylinder()}, Frame(), 5);
   rays.evaluate_on(run.device);
   problem.rays = &rays;
-  problem.fruitless = s.restarts;
+  problem.max_failed_restarts = s.restarts;
   problem.seed = run.seed;
   const DesignShape begin = plain(s);
   const bool far = out.start > 0.2 || s.revolution;

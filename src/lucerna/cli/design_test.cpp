@@ -57,7 +57,7 @@ void write_project(const TempDir& dir, const std::string& design = "",
   }
   write_photometric_file(dir / "spot.ldt", spot, PhotometricFormat::ldt);
   write_file(dir / "p.toml", kScene + ("[target]\n" + target) +
-                                 "[design]\nintervals = 3\nattempts = 1\ntime_s = 1e6\n" + design);
+                                 "[design]\nintervals = 3\nrestarts = 1\ntime_s = 1e6\n" + design);
 }
 
 constexpr const char* kFast = "design p.toml --rays 8192 -o ";

@@ -2,8 +2,9 @@
 #include "lucerna/design/approach.h"
 
 #include <algorithm>
+#include <utility>
 
-#include "lucerna/core/random.h"
+#include "lucerna/design/perturbed.h"
 
 namespace lucerna {
 
@@ -22,29 +23,29 @@ std::vector<FitStage> stages_to_gate(const DesignShape& shape, const TentBins& b
   return stages;
 }
 
-DesignShape perturbed(const DesignShape& shape, double size_mm, std::uint64_t seed, std::uint64_t stream) {
-  Rng rng(seed, stream);
-  Eigen::VectorXd parameters = shape.parameters();
-  for (double& p : parameters) p += size_mm * (2.0 * rng.uniform() - 1.0);
-  return shape.with(parameters);
-}
-
 }  // namespace
 
-DesignShape approach(const FitProblem& problem, const DesignShape& given, int attempt,
-                     std::uint64_t max_rays) {
-  const double size_mm = problem.shake * given.aperture().outer_radius_mm();
-  const DesignShape start =
-      attempt == 0 ? given
-                   : perturbed(given, size_mm, problem.seed, kStream + static_cast<std::uint64_t>(attempt));
-  if (std::max(given.intervals_x(), given.intervals_y()) > kApproachIntervals) return start;
+bool has_few_knots(const DesignShape& shape) {
+  return std::max(shape.intervals_x(), shape.intervals_y()) <= kApproachIntervals;
+}
+
+Approached approach(const FitProblem& problem, const DesignShape& given, int restart,
+                    std::uint64_t max_rays) {
+  DesignShape start = given;
+  if (restart != 0) {
+    start = perturbed(given, problem.perturbation * given.aperture().outer_radius_mm(),
+                      Rng(problem.seed, kStream + static_cast<std::uint64_t>(restart)));
+  }
+  if (!has_few_knots(given)) return {std::move(start)};
   FitProblem coarse = problem;
   coarse.starts.clear();
   if (coarse.flux_weight > 0.0) coarse.flux_weight = kLadderFluxWeight;
   Fit fit(coarse, stages_to_gate(start, problem.bins, max_rays), start);
   const std::uint64_t enough = std::min(kMaxRays, kMaxEvaluations * max_rays);
   while (!fit.done() && fit.state().total_rays < enough) fit.step();
-  return fit.best();
+  // The cap on rays may end the ladder before it has come to the mirror's own knots.
+  return {fit.best().refined(given.intervals_x(), given.intervals_y()), fit.state().evaluations,
+          fit.state().total_rays};
 }
 
 }  // namespace lucerna

@@ -167,7 +167,7 @@ reflectance = 0.9
 [target]
 file = "spot.ldt"
 [design]
-attempts = 0
+restarts = 0
 intervals = 8
 )" + std::string(shield ? "[[body]]\nfile = \"shield.stl\"\nname = \"shield\"\n" : "");
   write_file(folder / "p.toml", project);

@@ -12,7 +12,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr const char* kMagic = "lucerna-design-checkpoint-8";
+constexpr const char* kMagic = "lucerna-design-checkpoint-9";
 constexpr const char* kSearchMagic = "lucerna-search-checkpoint-2";
 /// More numbers than any design has; keeps a damaged count from asking for memory.
 constexpr std::size_t kMostNumbers = 1 << 20;
@@ -164,10 +164,11 @@ FreeFormState parse_search_checkpoint(const std::string& text, const std::string
 std::string checkpoint_text(const FitState& s, const std::string& key) {
   std::string text = fmt::format(
       "{}\nkey {}\nintervals_x {}\nintervals_y {}\nstage {}\nstep {}\nlambda {}\nevaluations {}\n"
-      "total_rays {}\nover_noise {}\nstarts {}\nfruitless {}\nrefused {}\ntries {}\ntries_left {}\ntwin "
-      "{}\nto_beat {}\n",
+      "total_rays {}\nover_noise {}\nstarts {}\nfailed_restarts {}\nrefused {}\nsearch_restarts {}\n"
+      "search_restarts_left {}\ntwin {}\nincumbent_cost {}\n",
       kMagic, key, s.intervals_x, s.intervals_y, s.stage, s.step, s.lambda, s.evaluations, s.total_rays,
-      s.over_noise, s.starts, s.fruitless, s.refused, s.tries, s.tries_left, s.twin ? 1 : 0, s.to_beat);
+      s.over_noise, s.starts, s.failed_restarts, s.refused, s.search_restarts, s.search_restarts_left,
+      s.twin ? 1 : 0, s.incumbent_cost);
   put(text, "parameters", s.parameters);
   put(text, "costs", s.costs);
   put(text, "gate", s.gate);
@@ -190,12 +191,12 @@ FitState parse_checkpoint(const std::string& text, const std::string& key) {
   s.total_rays = in.number<std::uint64_t>("total_rays");
   s.over_noise = in.number<double>("over_noise");
   s.starts = in.count("starts");
-  s.fruitless = in.count("fruitless");
+  s.failed_restarts = in.count("failed_restarts");
   s.refused = in.count("refused");
-  s.tries = in.count("tries");
-  s.tries_left = in.count("tries_left");
+  s.search_restarts = in.count("search_restarts");
+  s.search_restarts_left = in.count("search_restarts_left");
   s.twin = in.count("twin", 0, 1) != 0;
-  s.to_beat = in.number<double>("to_beat");
+  s.incumbent_cost = in.number<double>("incumbent_cost");
   s.parameters = in.numbers("parameters");
   s.costs = in.numbers("costs");
   s.gate = in.mark("gate");

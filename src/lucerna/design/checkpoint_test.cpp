@@ -20,17 +20,17 @@ TEST(Checkpoint, FitStateOutOfRangeIsInputError) {
   state.parameters = {1.0, 2.0};
   const std::string text = checkpoint_text(state, "key");
   EXPECT_EQ(checkpoint_text(parse_checkpoint(text, "key"), "key"), text);
-  for (const auto& [from, to] :
-       std::vector<std::pair<std::string, std::string>>{{"intervals_x 1", "intervals_x 0"},
-                                                        {"intervals_x 1", "intervals_x 2000000000"},
-                                                        {"intervals_y 1", "intervals_y -3"},
-                                                        {"stage 0", "stage -1"},
-                                                        {"step 0", "step -1"},
-                                                        {"starts 1", "starts 2147483647"},
-                                                        {"tries 0", "tries -2"},
-                                                        {"tries_left 0", "tries_left 2147483647"},
-                                                        {"twin 0", "twin 2"},
-                                                        {"gate 0 0 0 1 1", "gate 0 0 0 1 2000000000"}}) {
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"intervals_x 1", "intervals_x 0"},
+           {"intervals_x 1", "intervals_x 2000000000"},
+           {"intervals_y 1", "intervals_y -3"},
+           {"stage 0", "stage -1"},
+           {"step 0", "step -1"},
+           {"starts 1", "starts 2147483647"},
+           {"search_restarts 0", "search_restarts -2"},
+           {"search_restarts_left 0", "search_restarts_left 2147483647"},
+           {"twin 0", "twin 2"},
+           {"gate 0 0 0 1 1", "gate 0 0 0 1 2000000000"}}) {
     EXPECT_THROW(parse_checkpoint(replaced(text, from, to), "key"), InputError) << to;
   }
 }

@@ -63,7 +63,7 @@ std::string problem_key(const DesignProblem& problem, const DesignOptions& optio
 FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& options, DesignRays& rays) {
   FitProblem fit{&rays, problem.reflectance, {}, target_window(problem), problem.target.mode};
   fit.seed = options.seed;
-  fit.fruitless = problem.attempts;
+  fit.max_failed_restarts = problem.max_failed_restarts;
   rays.grow(kFluxRays);
   if (problem.target.mode == TargetMode::shape) {
     EvaluationOptions plain;

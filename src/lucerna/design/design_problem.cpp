@@ -72,14 +72,14 @@ std::vector<int> read_intervals(TomlReader& reader) {
   return out;
 }
 
-/// Attempts in turn that may bring nothing: without a word of the project, as many as there is time for.
-constexpr int kAttempts = 1'000'000;
+/// Restarts in a row that may gain nothing where the project does not say: as many as there is time for.
+constexpr int kMaxFailedRestarts = 1'000'000;
 
-std::optional<int> read_attempts(TomlReader& reader) {
-  const std::optional<double> n = reader.number("attempts");
+std::optional<int> read_restarts(TomlReader& reader) {
+  const std::optional<double> n = reader.number("restarts");
   if (!n) return std::nullopt;
   if (!(*n >= 0.0 && *n <= 1000.0 && *n == std::floor(*n))) {
-    reader.fail("attempts", fmt::format("found {}, expected a whole number from 0 to 1000", *n));
+    reader.fail("restarts", fmt::format("found {}, expected a whole number from 0 to 1000", *n));
   }
   return static_cast<int>(*n);
 }
@@ -230,13 +230,12 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   const Optimizer how = read_optimizer(design);
   const double time_s = design.positive("time_s").value_or(60.0);
   const std::vector<int> intervals = read_intervals(design);
-  const std::optional<int> told = read_attempts(design);
+  const std::optional<int> told = read_restarts(design);
   const double light_weight = read_light_weight(design);
   const PlacedReflector placed = project.scene.reflectors[0];
   const bool revolution = dynamic_cast<const RevolutionSurface*>(placed.reflector.surface.get()) != nullptr;
-  const int attempts = told.value_or(kAttempts);
-  double source_flux = 0.0;
-  for (const PlacedSource& source : project.scene.sources) source_flux += source.total_flux();
+  const int max_failed_restarts = told.value_or(kMaxFailedRestarts);
+  const double source_flux = total_flux(project.scene.sources);
   DesignLimits limits;
   if (auto table = design.table("limits")) {
     limits = read_limits(std::move(*table), placed.reflector.aperture, revolution,
@@ -264,7 +263,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
                         placed.world_from_reflector,
                         time_s,
                         how,
-                        attempts,
+                        max_failed_restarts,
                         growth,
                         !intervals.empty(),
                         light_weight,

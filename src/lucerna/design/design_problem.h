@@ -25,12 +25,13 @@ struct DesignProblem {
   Frame world_from_mirror;
   double time_s = 60.0;
   Optimizer optimizer;
-  /// After how many attempts in turn that bring nothing better (of a search among candidates: after how many
-  /// neighbours of the best) a design ends above the noise before its time.
-  int attempts = 1'000'000;
-  /// How often the knots may be doubled beyond `start`'s: 0 where the project says how many there are to be.
+  /// After how many restarts in a row that gain nothing (of a search among candidates: after how many
+  /// neighbours of the best) a design ends above the noise before its time: `restarts` of [design].
+  int max_failed_restarts = 1'000'000;
+  /// On the ladder (fit.h): how often the knots may be doubled beyond those of `start`.
   int growth = 0;
-  /// The project says how many knots there are to be.
+  /// The project says how many knots there are to be. A search among candidates keeps to them while they
+  /// bring the mirror near the target.
   bool fixed_knots = false;
   /// What light beside the target's rectangle costs a free form in shape mode: so many times the square of
   /// the missing share, beside the squared error. At 0.03 a tenth of the light counts as an error of 1.7 %.

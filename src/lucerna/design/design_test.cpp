@@ -83,7 +83,7 @@ DesignProblem problem(
     const std::string& shape = "family = \"revolution\"\npreset = \"parabola\"\nfocal_mm = 8\n") {
   write_file(folder / "project.toml",
              kSource + mirror(shape) + "[target]\nfile = \"target.ies\"\n[design]\n" +
-                 (design.find("attempts") == std::string::npos ? "attempts = 0\n" : "") + design);
+                 (design.find("restarts") == std::string::npos ? "restarts = 0\n" : "") + design);
   return design_problem(read_project(folder / "project.toml"), folder / "project.toml");
 }
 
@@ -123,13 +123,13 @@ TEST(Design, ReachesTheLightOfAHiddenProfile) {
 TEST(Design, ResumesToTheSameBits) {
   const TempDir folder;
   write_target(folder.path());
-  const DesignProblem p = problem(folder.path(), "intervals = 2\nattempts = 1\n");
+  const DesignProblem p = problem(folder.path(), "intervals = 2\nrestarts = 1\n");
   std::vector<std::string> states;
   const DesignResult whole = design(
       p, tiny(), no_progress(),
       [&](const FitRecord&, const DesignShape&, const std::string& state) { states.push_back(state); });
   ASSERT_GT(states.size(), 8u);
-  EXPECT_LE(parse_checkpoint(whole.checkpoint, whole.checkpoint.substr(32, 16)).fruitless, 1);
+  EXPECT_LE(parse_checkpoint(whole.checkpoint, whole.checkpoint.substr(32, 16)).failed_restarts, 1);
   for (const std::size_t at : {states.size() / 4, states.size() - 4}) {
     DesignOptions options = tiny();
     options.checkpoint = states[at];
@@ -181,9 +181,9 @@ TEST(Design, ResumesInTheMiddleOfATryToTheSameBits) {
   const TempDir folder;
   write_target(folder.path());
   const DesignProblem p =
-      problem(folder.path(), "intervals = [1, 1]\nattempts = 2\noptimizer = \"least-squares\"\n", kFreeForm);
+      problem(folder.path(), "intervals = [1, 1]\nrestarts = 2\noptimizer = \"least-squares\"\n", kFreeForm);
   const auto within = [](const FitState& s) {
-    if (s.tries < 2 || s.step < 1) return -1;
+    if (s.search_restarts < 2 || s.step < 1) return -1;
     return s.twin ? 1 : 0;
   };
   expect_same_end(p, within, 2);

@@ -121,7 +121,7 @@ Eigen::VectorXd fitted(std::shared_ptr<Accelerator> accelerator, double& error) 
                        return evaluate(rough(start), Reflectance(0.9), truth, b, plain).flux;
                      },
                      bins, TargetMode::absolute};
-  problem.fruitless = 0;
+  problem.max_failed_restarts = 0;
   Fit fit(problem, ladder(start, bins, {1 << 14, true, {}}), start);
   FitRecord last;
   while (!fit.done()) last = fit.step();

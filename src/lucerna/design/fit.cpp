@@ -7,6 +7,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/design/limits.h"
+#include "lucerna/design/perturbed.h"
 #include "lucerna/design/roughness.h"
 #include "lucerna/design/twin.h"
 #include "lucerna/design/window.h"
@@ -23,32 +24,33 @@ constexpr double kGateFloors = 1.5;
 /// scatter of the noise's own estimate if that is more (48 rings tell it to 20 % only).
 constexpr double kEndShare = 0.1;
 
-/// Steps in turn, each five times as damped as the one before, after which a stage is at its end.
+/// Steps in a row, each five times as damped as the one before, after which a stage is at its end.
 constexpr int kMostRefused = 5;
 
-/// What an attempt has to make of the best error not to have been fruitless.
+/// A restart has failed unless it brings the error down to this share of the incumbent's.
 constexpr double kGain = 0.97;
 
 /// Knots (per direction) that a zero-etendue solution begins with: more only follow its facets.
 constexpr int kKnotsOfStarts = 4;
 
 /// A shape above so many times the noise at the gate, but with less than this error, is near the target in
-/// what seems another basin: the search looks for the right one, with so many tries before the fit goes on
-/// and so many in an attempt.
+/// what seems another basin: the search looks for the right one, with so many restarts before the fit goes on
+/// and so many in a restart of the fit.
 constexpr double kSettledFloors = 1.15, kNearError = 0.06;
-constexpr int kTriesAtGate = 24, kTriesOfAttempt = 3;
+constexpr int kSearchRestartsAtGate = 24, kSearchRestartsLater = 3;
 
-/// What a try has to make of the best cost before it to be looked at more closely.
-constexpr double kTryGain = 0.95;
+/// A restart of the search goes on to the gate where its error is at most this share of the incumbent's.
+constexpr double kSearchGain = 0.95;
 
-/// A try that ends with more than so many times the error to beat is so far off that its twin is too.
+/// A restart of the search that ends above so many times the incumbent's error is so far off that its twin is
+/// too.
 constexpr double kTwinShare = 1.4;
 
-/// Size of a try's shake, in shakes of attempts.
-constexpr double kTryShakes = 2.0;
+/// Size of the search's perturbations, in those of the fit's restarts.
+constexpr double kSearchPerturbation = 2.0;
 
-/// Random streams of tries begin here, beyond those of attempts.
-constexpr std::uint64_t kTryStream = std::uint64_t{1} << 33;
+/// Random streams of the search begin here, beyond those of the fit's restarts.
+constexpr std::uint64_t kSearchStream = std::uint64_t{1} << 33;
 
 /// Rays that tell where the source is.
 constexpr std::uint64_t kSourceRays = 1 << 13;
@@ -210,7 +212,7 @@ bool Fit::pass_gate() {
   const auto begun = static_cast<std::size_t>(state_.starts);
   if (state_.best.exists()) {
     if (better) return true;
-    next_try();
+    next_search_restart();
     return false;
   }
   if (state_.gate.over_noise > kGateFloors && begun < std::min(problem_.compared, problem_.starts.size())) {
@@ -219,9 +221,9 @@ bool Fit::pass_gate() {
     return false;
   }
   if (worth_searching()) {
-    if (state_.tries == 0) state_.tries_left = kTriesAtGate;
-    if (state_.tries_left > 0) {
-      next_try();
+    if (state_.search_restarts == 0) state_.search_restarts_left = kSearchRestartsAtGate;
+    if (state_.search_restarts_left > 0) {
+      next_search_restart();
       return false;
     }
   }
@@ -230,7 +232,7 @@ bool Fit::pass_gate() {
 }
 
 bool Fit::worth_searching() const {
-  return search_stages_ > 0 && problem_.fruitless > 0 && state_.gate.over_noise > kSettledFloors &&
+  return search_stages_ > 0 && problem_.max_failed_restarts > 0 && state_.gate.over_noise > kSettledFloors &&
          state_.gate.cost < kNearError * kNearError;
 }
 
@@ -242,86 +244,85 @@ void Fit::leave_gate() {
   if (done()) pass_end(state_.gate);
 }
 
-void Fit::next_try() {
-  if (state_.tries_left > 0) {
-    --state_.tries_left;
-    begin_try();
+void Fit::next_search_restart() {
+  if (state_.search_restarts_left > 0) {
+    --state_.search_restarts_left;
+    begin_search_restart();
   } else if (state_.best.exists()) {
-    ++state_.fruitless;
-    begin_again();
+    ++state_.failed_restarts;
+    restart();
   } else {
     leave_gate();
   }
 }
 
-/// First the best so far, whose cost the others have to beat, and whose twin may be the right one.
-void Fit::begin_try() {
-  const int number = state_.tries++;
+/// First the incumbent, whose cost the others have to beat, and whose twin may be the right one.
+void Fit::begin_search_restart() {
+  const int number = state_.search_restarts++;
   if (number == 0) {
     begin_with(shape_of(state_.best.exists() ? state_.best : state_.gate), search_stages_ - 1);
     return;
   }
   const auto n = problem_.starts.size();
   begin_with(problem_.starts[static_cast<std::size_t>(number) % n].shape, 0);
-  shake(kTryShakes * problem_.shake * shape_.aperture().outer_radius_mm(),
-        kTryStream + static_cast<std::uint64_t>(number));
+  perturb(kSearchPerturbation * problem_.perturbation * shape_.aperture().outer_radius_mm(),
+          kSearchStream + static_cast<std::uint64_t>(number));
 }
 
 void Fit::pass_search() {
-  const bool reference = state_.tries == 1 && !state_.twin;
-  if (reference) state_.to_beat = equations_.cost;
+  const bool reference = state_.search_restarts == 1 && !state_.twin;
+  if (reference) state_.incumbent_cost = equations_.cost;
   if (!state_.found.exists() || equations_.cost < state_.found.cost) state_.found = mark();
-  state_.twin = !state_.twin && equations_.cost < kTwinShare * kTwinShare * state_.to_beat;
+  state_.twin = !state_.twin && equations_.cost < kTwinShare * kTwinShare * state_.incumbent_cost;
   if (state_.twin) {
     begin_with(twin(shape_, point_source(*problem_.rays, kSourceRays).at_mm.z), search_stages_ - 1);
-  } else if (state_.found.cost < kTryGain * kTryGain * state_.to_beat) {
-    state_.to_beat = state_.found.cost;
+  } else if (state_.found.cost < kSearchGain * kSearchGain * state_.incumbent_cost) {
+    state_.incumbent_cost = state_.found.cost;
     begin_with(shape_of(state_.found), gate_stage());
   } else {
-    next_try();
+    next_search_restart();
   }
 }
 
 void Fit::pass_end(const FitMark& now) {
   const bool first = !state_.best.exists();
   const bool gained = first || now.merit < kGain * kGain * state_.best.merit;
-  state_.fruitless = gained ? 0 : state_.fruitless + 1;
+  state_.failed_restarts = gained ? 0 : state_.failed_restarts + 1;
   if (first || now.merit < state_.best.merit) state_.best = now;
-  begin_again();
+  restart();
 }
 
-/// Another attempt, or the end: by turns from the starts and from the best so far, whose basin may have a
+/// Another restart, or the end: alternately from the starts and from the incumbent, whose basin may have a
 /// better neighbour.
-void Fit::begin_again() {
-  if (at_noise() || state_.fruitless >= problem_.fruitless) {
+void Fit::restart() {
+  if (at_noise() || state_.failed_restarts >= problem_.max_failed_restarts) {
     take(state_.best);
     state_.stage = static_cast<int>(stages_.size());
     return;
   }
-  const int attempt = state_.starts++;
+  const int number = state_.starts++;
   const std::size_t n = problem_.starts.size();
-  if (static_cast<std::size_t>(attempt) < n) {
-    const FitStart& next = problem_.starts[static_cast<std::size_t>(attempt)];
+  if (static_cast<std::size_t>(number) < n) {
+    const FitStart& next = problem_.starts[static_cast<std::size_t>(number)];
     begin_with(next.shape, stage_of(next));
     return;
   }
-  state_.tries_left = 0;
-  if (attempt % 3 == 2) {
+  state_.search_restarts_left = 0;
+  if (number % 3 == 2) {
     begin_with(shape_of(state_.best), first_stage(stages_.back().intervals_x));
   } else if (search_stages_ > 0) {
-    state_.tries_left = kTriesOfAttempt;
-    next_try();
+    state_.search_restarts_left = kSearchRestartsLater;
+    next_search_restart();
     return;
   } else {
-    begin_with(problem_.starts[static_cast<std::size_t>(attempt) % n].shape, 0);
+    begin_with(problem_.starts[static_cast<std::size_t>(number) % n].shape, 0);
   }
-  shake(problem_.shake * shape_.aperture().outer_radius_mm(), static_cast<std::uint64_t>(attempt));
+  perturb(problem_.perturbation * shape_.aperture().outer_radius_mm(), static_cast<std::uint64_t>(number));
 }
 
-void Fit::shake(double size_mm, std::uint64_t stream) {
-  Rng rng(problem_.seed, stream);
-  for (double& p : state_.parameters) p += size_mm * (2.0 * rng.uniform() - 1.0);
-  shape_ = shape_.with(to_eigen(state_.parameters));
+void Fit::perturb(double size_mm, std::uint64_t stream) {
+  shape_ = perturbed(shape_, size_mm, Rng(problem_.seed, stream));
+  state_.parameters.assign(shape_.parameters().begin(), shape_.parameters().end());
 }
 
 bool Fit::at_noise() const {

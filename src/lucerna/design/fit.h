@@ -44,16 +44,16 @@ struct FitProblem {
   std::function<double(const DesignShape&, std::uint64_t rays, ResidualRows* rows)> limits;
   /// Shapes to begin with, the most promising first; empty: the shape that the fit is made with.
   std::vector<FitStart> starts;
-  /// So many of them are compared at the gate before the best goes on; further ones are the first attempts.
+  /// So many of them are compared at the gate before the best goes on; further ones are the first restarts.
   std::size_t compared = 5;
   /// Rays that were traced to find them.
   std::uint64_t search_rays = 0;
-  /// While the result is above the noise the fit begins again, with `starts` and the best so far by turns,
-  /// shaken (free forms: with tries of the search for basins and the best); so many attempts in turn that
-  /// bring nothing end it. 0: neither attempts nor a search.
-  int fruitless = 6;
-  /// Size of the shakes, over the mirror's outer radius; those of the search are twice as wide.
-  double shake = 0.02;
+  /// While the result is above the noise the fit restarts, alternately from `starts` and from the incumbent,
+  /// perturbed (free forms: from the search for basins and from the incumbent). So many restarts in a row
+  /// that gain nothing end it. 0: neither restarts nor a search.
+  int max_failed_restarts = 6;
+  /// Size of a perturbation, over the mirror's outer radius; those of the search are twice as large.
+  double perturbation = 0.02;
   std::uint64_t seed = 1;
   /// Of the target, and where it is seen from.
   TargetRectangle rectangle;
@@ -74,13 +74,13 @@ struct FitStage {
   double least_gain = 0.03;
   /// Weight of `roughness` in the cost.
   double smoothing = 0.0;
-  /// Starts are compared here: only the best goes on, later attempts only where they beat it.
+  /// Starts are compared here: only the best goes on, later restarts only where they beat it.
   bool gate = false;
   /// The knots are taken only where the stage before ended above the noise; else those of before stay.
   bool grow = false;
   /// Large scales of the light weigh more (large_scale.h), by so many half waves; 0: all alike.
   double waves = 0.0;
-  /// Of the search for other basins, which only its tries pass. Such stages come first.
+  /// Of the search for other basins, which only its own restarts pass. Such stages come first.
   bool search = false;
 };
 
@@ -121,19 +121,18 @@ struct FitState {
   std::uint64_t total_rays = 0;
   /// Error over noise where the last stage ended.
   double over_noise = 0.0;
-  /// Starts and attempts that were begun so far; of those that came to their end in turn, how many brought
-  /// nothing.
-  int starts = 1, fruitless = 0;
-  /// Steps in turn that were refused.
+  /// Starts and restarts that were begun so far; and how many restarts in a row have gained nothing.
+  int starts = 1, failed_restarts = 0;
+  /// Steps in a row that were refused.
   int refused = 0;
   /// The best at the gate, and at the end of the ladder.
   FitMark gate, best;
-  /// Tries of the search so far, and how many more there may be now; whether the present one is the twin of
-  /// the one before; the best that any came to; and the cost that the next has to beat.
-  int tries = 0, tries_left = 0;
+  /// Restarts of the search so far, and how many more there may be now; whether the present one is the twin
+  /// of the one before; the best that any came to; and the cost that the next has to beat.
+  int search_restarts = 0, search_restarts_left = 0;
   bool twin = false;
   FitMark found;
-  double to_beat = 0.0;
+  double incumbent_cost = 0.0;
   /// What a global search before the fit has paid for so far (optimizer.h).
   std::vector<double> search_costs;
 };
@@ -170,16 +169,16 @@ class Fit {
   bool pass_gate();
   /// Whether the gate's best seems near the target, yet not in the right basin.
   bool worth_searching() const;
-  /// The next try of the search, or its end.
-  void next_try();
-  void begin_try();
+  /// The next restart of the search, or its end.
+  void next_search_restart();
+  void begin_search_restart();
   /// What comes after the last of the search's stages.
   void pass_search();
   /// Goes on with the best at the gate.
   void leave_gate();
-  void shake(double size_mm, std::uint64_t stream);
+  void perturb(double size_mm, std::uint64_t stream);
   void pass_end(const FitMark& now);
-  void begin_again();
+  void restart();
   FitMark mark() const;
   DesignShape shape_of(const FitMark& mark) const;
   /// Goes back to a shape that was kept.

@@ -28,8 +28,8 @@ double smoothing_for(const DesignShape& shape, double level_smoothing) {
   const Aperture& a = shape.aperture();
   const double step =
       2.0 * std::max(a.half_x_mm() / shape.intervals_x(), a.half_y_mm() / shape.intervals_y());
-  const bool few = std::max(shape.intervals_x(), shape.intervals_y()) <= kApproachIntervals;
-  return level_smoothing * (few ? kFewKnots : 1.0) * std::pow(kSmoothingStep * a.outer_radius_mm() / step, 4);
+  return level_smoothing * (has_few_knots(shape) ? kFewKnots : 1.0) *
+         std::pow(kSmoothingStep * a.outer_radius_mm() / step, 4);
 }
 
 }  // namespace

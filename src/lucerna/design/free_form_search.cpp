@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "lucerna/core/error.h"
@@ -27,6 +28,8 @@ constexpr std::array<TransportChoice, 9> kFirst{{{-1.0, 0.33},
                                                  {1.0, 0.33},
                                                  {1.0, 0.27},
                                                  {1.0, 0.45}}};
+/// The given mirror and these.
+constexpr int kFirstCandidates = static_cast<int>(kFirst.size()) + 1;
 /// How many of them are fitted finely.
 constexpr int kFine = 3;
 /// A neighbour of the best goes on where its cost is at most so many times the best's at that level.
@@ -38,9 +41,9 @@ constexpr int kNeighboursBefore = 4;
 constexpr double kFarthest = 1.3;
 /// A candidate that after two rough steps costs so many times the best of the rough level goes no further.
 constexpr double kHopeless = 4.0;
-/// Candidates in turn that have no start, after which there are no others.
+/// Candidates in a row that have no start, after which there are no others.
 constexpr int kMaxFailed = 8;
-/// Steps in turn, each five times as damped as the one before, after which a level is at its end.
+/// Steps in a row, each five times as damped as the one before, after which a level is at its end.
 constexpr int kMaxRefused = 5;
 /// The squared error at the end is the noise's and this share more.
 constexpr double kNoiseShare = 0.1;
@@ -56,16 +59,24 @@ constexpr double kNear = 0.01;
 /// Least damping: with less, knots that little light tells of fit its noise.
 constexpr double kMinLambda = 1e-5;
 /// Weight of roughness where slopes are measured in half widths of the target's rectangle: where the light is
-/// blurred by the source's size a rough surface costs no light. A three-hundredth leaves slopes that
-/// jump by a degree from knot to knot, at the same error.
+/// blurred by the source's size a rough surface costs no light. At a three-hundredth of it slopes jump by a
+/// degree from knot to knot, at the same error.
 constexpr double kSmoothing = 0.03;
 /// Light that a start is made for, in rays.
 constexpr std::uint64_t kStartRays = std::uint64_t{1} << 19;
 constexpr int kStartBins = 36;
 constexpr double kStartWiden = 1.1;
 
+/// How finely each level fits; knots, smoothing and zones are the search's.
+const std::array<FreeFormLevel, kLevels> kLevel{{
+    {.bins = 64, .rays = 1 << 18, .max_steps = 8, .min_gain = 0.1},
+    {.bins = 84, .rays = 1 << 20, .max_steps = 25, .min_gain = 0.05},
+    {.bins = 108, .rays = 1 << 22, .max_steps = 25, .min_gain = 0.015},
+    {.bins = 120, .rays = 1 << 23, .max_steps = 40, .min_gain = 0.005},
+}};
+
 /// Intervals along both sides where the longer has `most`.
-std::array<int, 2> intervals_of(const Aperture& a, int most) {
+std::pair<int, int> intervals_of(const Aperture& a, int most) {
   const double x = a.half_x_mm(), y = a.half_y_mm(), longer = std::max(x, y);
   return {std::max(4, static_cast<int>(std::lround(most * x / longer))),
           std::max(4, static_cast<int>(std::lround(most * y / longer)))};
@@ -91,27 +102,14 @@ FreeFormSearch::FreeFormSearch(const FitProblem& problem, const DesignShape& giv
       state_(std::move(state)) {}
 
 FreeFormLevel FreeFormSearch::level(int number) const {
-  FreeFormLevel out = plain_level(number);
+  FreeFormLevel out = kLevel[static_cast<std::size_t>(number)];
+  const double half = 0.5 * std::max(problem_.rectangle.width(), problem_.rectangle.height());
+  const int most = number == 0 ? std::min(kRoughIntervals, max_intervals_) : max_intervals_;
+  std::tie(out.intervals_x, out.intervals_y) = intervals_of(given_.aperture(), most);
+  out.rays = std::min(out.rays, max_rays_);
+  out.smoothing = problem_.rectangle.is_plane ? kSmoothing : kSmoothing / (half * half);
   out.zones = zone_stage(number);
   return out;
-}
-
-FreeFormLevel FreeFormSearch::plain_level(int number) const {
-  const auto rays = [&](int doublings) { return std::min(max_rays_, std::uint64_t{1} << doublings); };
-  const double half = 0.5 * std::max(problem_.rectangle.width(), problem_.rectangle.height());
-  const double smoothing = problem_.rectangle.is_plane ? kSmoothing : kSmoothing / (half * half);
-  const int most = number == 0 ? std::min(kRoughIntervals, max_intervals_) : max_intervals_;
-  const auto [x, y] = intervals_of(given_.aperture(), most);
-  switch (number) {
-    case 0:
-      return {x, y, 64, 1.25, rays(18), 8, 0.1, smoothing};
-    case 1:
-      return {x, y, 84, 1.25, rays(20), 25, 0.05, smoothing};
-    case kEnd:
-      return {x, y, 108, 1.25, rays(22), 25, 0.015, smoothing};
-    default:
-      return {x, y, 120, 1.25, rays(23), 40, 0.005, smoothing};
-  }
 }
 
 TransportChoice FreeFormSearch::first_choice(int number) const {
@@ -119,36 +117,41 @@ TransportChoice FreeFormSearch::first_choice(int number) const {
   return {c.sign, c.vertex_distance_mm * given_.aperture().outer_radius_mm()};
 }
 
-bool FreeFormSearch::few_knots_given() const {
-  return std::max(given_.intervals_x(), given_.intervals_y()) <= kApproachIntervals;
-}
-
 TransportChoice FreeFormSearch::choice(int number) const {
-  if (static_cast<std::size_t>(number) <= kFirst.size()) return first_choice(number);
+  if (number < kFirstCandidates) return first_choice(number);
   // A neighbour of the best; of the first choice where the given mirror is the best.
   Rng rng(problem_.seed, static_cast<std::uint64_t>(number), 77);
   const FreeFormMark* best = best_of(kEnd);
   const bool of_given = best != nullptr && !best->transport.exists();
-  if (of_given && few_knots_given()) return {};
+  if (of_given && has_few_knots(given_)) return {};
   const TransportChoice about = best != nullptr && !of_given ? best->transport : first_choice(1);
   const double factor = std::pow(kFarthest, 2.0 * rng.uniform() - 1.0);
   return {about.sign, factor * about.vertex_distance_mm};
 }
 
-std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormMark& mark) const {
+std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormMark& mark) {
   if (mark.candidate == 0) return nearer_of_given();
-  if (!mark.transport.exists()) return approach(problem_, given_, mark.candidate, max_rays_);
+  if (!mark.transport.exists()) return approached(mark.candidate);
   const FreeFormLevel rough = level(0);
   const DesignShape family = DesignShape::bspline(given_.focal_mm(), given_.aperture(), rough.intervals_x,
                                                   rough.intervals_y, given_.symmetry());
   return free_form_start(problem_, family, mark.transport);
 }
 
-DesignShape FreeFormSearch::nearer_of_given() const {
-  if (!few_knots_given()) return given_;
-  DesignShape coarse = approach(problem_, given_, 0, max_rays_);
+DesignShape FreeFormSearch::approached(int restart) {
+  Approached result = approach(problem_, given_, restart, max_rays_);
+  state_.evaluations += result.evaluations;
+  state_.total_rays += result.rays;
+  return std::move(result.shape);
+}
+
+DesignShape FreeFormSearch::nearer_of_given() {
+  if (!has_few_knots(given_)) return given_;
+  DesignShape near = approached(0);
   const FreeFormFit fit(problem_, level(0));
-  return fit.at(coarse).equations.cost < fit.at(given_).equations.cost ? coarse : given_;
+  state_.evaluations += 2;
+  state_.total_rays += 2 * level(0).rays;
+  return fit.at(near).equations.cost < fit.at(given_).equations.cost ? near : given_;
 }
 
 const FreeFormMark* FreeFormSearch::best_of(int level) const {
@@ -165,7 +168,6 @@ bool FreeFormSearch::was_at(int candidate, int level) const {
 }
 
 const FreeFormMark* FreeFormSearch::next_promotion() const {
-  const int first = static_cast<int>(kFirst.size()) + 1;
   const auto best_waiting = [&](int level) {
     const FreeFormMark* best = nullptr;
     for (const FreeFormMark& m : state_.done) {
@@ -180,7 +182,7 @@ const FreeFormMark* FreeFormSearch::next_promotion() const {
   };
   const FreeFormMark* given = best_of(0);
   const bool near = state_.begun == 1 && given != nullptr && given->cost < kErrorShare[0] * kNear * kNear;
-  if (state_.begun < first && !near && best_of(kEnd) == nullptr) return nullptr;
+  if (state_.begun < kFirstCandidates && !near && best_of(kEnd) == nullptr) return nullptr;
   const FreeFormMark* rough = best_waiting(0);
   const bool hopeful = rough != nullptr && rough->cost < kHopeless * best_of(0)->cost;
   if (hopeful && count(1) < (near ? 1 : kFine)) return rough;
@@ -189,9 +191,10 @@ const FreeFormMark* FreeFormSearch::next_promotion() const {
   if (end == nullptr) return fine;
   // The best goes on with more rays where noise is a good part of its error, else after some neighbours; then
   // the others, while they may win, and neighbours.
-  const bool noisy = end->over_noise < kNoisy || state_.begun >= first + kNeighboursBefore;
-  if (noisy && !was_at(end->candidate, kMoreRays)) return end;
-  if (state_.begun < first) return nullptr;
+  const int neighbours_before = std::min(kNeighboursBefore, problem_.max_failed_restarts);
+  const bool ready = end->over_noise < kNoisy || state_.begun >= kFirstCandidates + neighbours_before;
+  if (ready && !was_at(end->candidate, kMoreRays)) return end;
+  if (state_.begun < kFirstCandidates) return nullptr;
   if (fine != nullptr && fine->cost < kWorthOn * best_of(1)->cost) return fine;
   if (rough != nullptr && rough->cost < kWorthOn * best_of(0)->cost) return rough;
   return nullptr;
@@ -328,8 +331,9 @@ FitRecord FreeFormSearch::step(Progress& progress) {
 }
 
 bool FreeFormSearch::done() const {
-  const int neighbours = state_.begun - static_cast<int>(kFirst.size()) - 1;
-  if (!state_.now.exists() && neighbours >= problem_.fruitless && next_promotion() == nullptr) return true;
+  const int neighbours = state_.begun - kFirstCandidates;
+  if (!state_.now.exists() && neighbours >= problem_.max_failed_restarts && next_promotion() == nullptr)
+    return true;
   if (state_.failed >= kMaxFailed) return true;
   const FreeFormMark* best = best_of(kMoreRays);
   return best != nullptr && best->over_noise * best->over_noise <= 1.0 + kNoiseShare;

@@ -52,9 +52,11 @@ struct FreeFormState {
 
 /// Finds a free form by successive halving: candidates (the given mirror; a point source's mirrors of both
 /// signs at several vertex distances) are fitted roughly, the best of them finely, the best of these to the
-/// end; then, as long as there is time, neighbours of the best have their turn, and the best is fitted on
-/// with more rays. Knots are only ever refined. Every decision depends on the state alone: a search that is
-/// stopped after any step and taken up from its state goes on to the same bits.
+/// end. Then, as long as there is time, the best is fitted on with more rays, before neighbours of it where
+/// noise is a good part of its error and after some of them elsewhere. A given mirror of few knots is first
+/// brought near the target (approach.h); it keeps its knots as long as they bring it near the noise or the
+/// target. Knots are only ever refined. Every decision depends on the state alone: a search that is stopped
+/// after any step and taken up from its state goes on to the same bits.
 class FreeFormSearch {
  public:
   /// `given` with its own knots; `max_intervals`: knots along the longer side that the search may refine to
@@ -64,8 +66,8 @@ class FreeFormSearch {
 
   /// One trial step, or the beginning of a candidate.
   FitRecord step(Progress& progress = no_progress());
-  /// Nothing is left to gain: the best is at the noise of the most rays, or FitProblem::fruitless neighbours
-  /// have had their turn.
+  /// Nothing is left to gain: the best is at the noise of the most rays, no candidate has a start, or
+  /// FitProblem::max_failed_restarts neighbours have had their turn and none of them is worth going on with.
   bool done() const;
   /// Rays that the next step will trace, at most.
   std::uint64_t next_rays() const;
@@ -76,15 +78,15 @@ class FreeFormSearch {
 
  private:
   FreeFormLevel level(int number) const;
-  FreeFormLevel plain_level(int number) const;
   TransportChoice first_choice(int number) const;
-  bool few_knots_given() const;
   /// Whether a given mirror's knots are enough for the next level; `mark` has that level already.
   bool knots_suffice(const FreeFormMark& mark) const;
   /// What a candidate that is not the given mirror begins with.
   TransportChoice choice(int number) const;
+  /// What an approach from the given mirror leads to. Counts its rays.
+  DesignShape approached(int restart);
   /// The given mirror, or what an approach makes of it, whichever is nearer to the target.
-  DesignShape nearer_of_given() const;
+  DesignShape nearer_of_given();
   const FreeFormMark* best_of(int level) const;
   bool was_at(int candidate, int level) const;
   /// The next mark to be taken up a level; null where a new candidate is to begin.
@@ -94,7 +96,7 @@ class FreeFormSearch {
   void begin(const DesignShape& shape, const FreeFormMark& mark, Progress& progress);
   void finish();
   bool level_ended() const;
-  std::optional<DesignShape> start_of(const FreeFormMark& mark) const;
+  std::optional<DesignShape> start_of(const FreeFormMark& mark);
   DesignShape shape_of(const FreeFormMark& mark) const;
   void forget_what_cannot_win();
 

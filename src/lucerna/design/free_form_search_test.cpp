@@ -8,6 +8,7 @@
 
 #include "lucerna/core/random.h"
 #include "lucerna/design/checkpoint.h"
+#include "lucerna/design/perturbed.h"
 #include "lucerna/source/emitter.h"
 
 namespace lucerna {
@@ -124,7 +125,7 @@ TEST(FreeFormSearch, EndsAtTheSameBitsHoweverOftenItWasStopped) {
 TEST(FreeFormSearch, ANeighbourThatIsTheBestHasNeighbours) {
   DesignRays rays = disk_rays();
   FitProblem problem = oval_problem(rays);
-  problem.fruitless = 1000;
+  problem.max_failed_restarts = 1000;
   FreeFormState state = run(problem, plain(), 45).state();
   state.now = {};
   state.step = 0;
@@ -177,13 +178,10 @@ TEST(FreeFormSearch, NeverEndsWorseThanItsStartAndNeverCoarsensIt) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     DesignRays rays = disk_rays();
     const FitProblem problem = oval_problem(rays);
-    // A found mirror, shaken: from nearly right to far off.
+    // A found mirror, perturbed: from nearly right to far off.
     const DesignShape found = run(problem, plain(), 45).best();
     ASSERT_GE(found.intervals_x(), 16);
-    Rng rng(seed, 0);
-    Eigen::VectorXd p = found.parameters();
-    for (double& x : p) x += 0.01 * static_cast<double>(seed * seed) * (2.0 * rng.uniform() - 1.0);
-    const DesignShape given = found.with(p);
+    const DesignShape given = perturbed(found, 0.01 * static_cast<double>(seed * seed), Rng(seed, 0));
     const double before = error_of(problem, given);
     for (const int steps : {1, 4, 30}) {
       const DesignShape best = run(problem, given, steps).best();

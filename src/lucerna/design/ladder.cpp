@@ -111,7 +111,7 @@ std::vector<FitStage> ladder(const DesignShape& shape, const TentBins& bins, con
     if (most <= 6) stages.add({x, y, k / 3, 1.0, two_to(15), 30, 0.02, own ? 0.0 : 0.1 * smoothing});
     if (most <= 10) stages.add({x, y, k / 2, 1.0, two_to(17), 30, 0.03});
   }
-  // The gate, where attempts are compared.
+  // The gate, where restarts are compared.
   const bool many = std::max(nx, ny) > 10;
   stages.add({nx, ny, many ? k : k / 2, 1.0, two_to(17), 30, 0.03, 0.0, true});
   if (!many) stages.add({nx, ny, k / 2, 1.0, two_to(20), 30, 0.02});

@@ -24,7 +24,7 @@ struct Optimizer {
 /// | name | where least squares begins |
 /// |---|---|
 /// | auto | zero-étendue solutions and the given mirror, the cheapest first; restarts near the best |
-/// | least-squares | the given mirror and shaken copies of it |
+/// | least-squares | the given mirror and perturbed copies of it |
 /// | tree, annealing, cma-es, direct | the best of that search over few knots, about the cheapest of auto's |
 ///
 /// Throws InputError that lists the names.

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "lucerna/core/parallel.h"
-#include "lucerna/core/random.h"
 #include "lucerna/design/limits.h"
+#include "lucerna/design/perturbed.h"
 #include "lucerna/design/starts.h"
 #include "lucerna/design/zone_table.h"
 
@@ -20,7 +20,7 @@ constexpr std::size_t kMostParameters = 40;
 /// Heights that the table knows, and sizes of random shapes, of hops, and of what counts as another shape,
 /// over the mirror's radius.
 constexpr double kHalfHeight = 0.08;
-constexpr std::array<double, 3> kShakes{0.01, 0.02, 0.04};
+constexpr std::array<double, 3> kPerturbations{0.01, 0.02, 0.04};
 constexpr std::array<double, 2> kHops{0.004, 0.01};
 constexpr double kApart = 0.003;
 constexpr int kFirstPerParameter = 300, kMostFirst = 3000, kFirstSteps = 12, kSecondPerParameter = 30,
@@ -77,10 +77,10 @@ class Search {
     const int parameters =
         std::min(static_cast<int>(shape_.parameter_count()), kMostFirst / kFirstPerParameter);
     for (int i = 0; i < kFirstPerParameter * parameters; ++i) {
-      const double size = kShakes[static_cast<std::size_t>(i) % kShakes.size()];
+      const double size = kPerturbations[static_cast<std::size_t>(i) % kPerturbations.size()];
       // Every other shape is smooth: many knots by chance alone are only waves.
-      const DesignShape shaken = shake(i % 2 == 0 ? shape_ : few, size);
-      all.push_back({shaken.refined(shape_.intervals_x(), shape_.intervals_y())});
+      const DesignShape other = perturb(i % 2 == 0 ? shape_ : few, size);
+      all.push_back({other.refined(shape_.intervals_x(), shape_.intervals_y())});
     }
     all.push_back({shape_});
     descend(all, kFirstSteps);
@@ -97,7 +97,7 @@ class Search {
       const std::size_t n = from.size();
       for (std::size_t i = 0; i < n; ++i) {
         for (int k = 0; k < kHopsEach; ++k) {
-          from.push_back({shake(from[i].shape, kHops[static_cast<std::size_t>(k) % kHops.size()])});
+          from.push_back({perturb(from[i].shape, kHops[static_cast<std::size_t>(k) % kHops.size()])});
         }
       }
       descend(from, kHopSteps);
@@ -153,11 +153,9 @@ class Search {
     return all.flux - evaluate(shape_, problem_.reflectance, *problem_.rays, problem_.bins, options).flux;
   }
 
-  DesignShape shake(const DesignShape& shape, double size) {
-    Rng rng(problem_.seed, (std::uint64_t{1} << 32) + shaken_++);
-    Eigen::VectorXd p = shape.parameters();
-    for (double& x : p) x += size * radius_mm_ * (2.0 * rng.uniform() - 1.0);
-    return shape.with(p);
+  DesignShape perturb(const DesignShape& shape, double size) {
+    return perturbed(shape, size * radius_mm_,
+                     Rng(problem_.seed, (std::uint64_t{1} << 32) + perturbations_++));
   }
 
   /// The nearest shape that was traced.
@@ -242,7 +240,7 @@ class Search {
   Eigen::VectorXd target_;
   ZoneTable table_;
   std::vector<Traced> traced_;
-  std::uint64_t shaken_ = 0;
+  std::uint64_t perturbations_ = 0;
   int evaluations_ = 0;
   std::uint64_t total_rays_ = 0;
 };

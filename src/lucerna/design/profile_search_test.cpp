@@ -7,6 +7,7 @@
 
 #include "lucerna/core/parallel.h"
 #include "lucerna/core/random.h"
+#include "lucerna/design/perturbed.h"
 #include "lucerna/design/zone_table.h"
 #include "lucerna/source/emitter.h"
 
@@ -27,12 +28,8 @@ struct Lamp {
     options.kind = EmitterKind::cylinder;
     return options;
   }
-  static DesignShape shaken(double size_mm, std::uint64_t seed) {
-    const DesignShape plain = DesignShape::revolution(15, Aperture::circle(100), 6);
-    Eigen::VectorXd p = plain.parameters();
-    Rng rng(seed, 0);
-    for (double& x : p) x = size_mm * (2.0 * rng.uniform() - 1.0);
-    return plain.with(p);
+  static DesignShape perturbed_by(double size_mm, std::uint64_t seed) {
+    return perturbed(DesignShape::revolution(15, Aperture::circle(100), 6), size_mm, Rng(seed, 0));
   }
   Evaluation traced(const DesignShape& shape, std::uint64_t count = kProfileRays) const {
     EvaluationOptions options;
@@ -48,7 +45,8 @@ struct Lamp {
 };
 
 ZoneTable table_of(const Lamp& lamp, std::uint64_t count = kProfileRays) {
-  return {Lamp::shaken(0.0, 1), lamp.mirror, lamp.rays, count, lamp.bins, 4.0, Eigen::VectorXd::Zero(48)};
+  return {Lamp::perturbed_by(0.0, 1), lamp.mirror, lamp.rays, count, lamp.bins, 4.0,
+          Eigen::VectorXd::Zero(48)};
 }
 
 // What is left is the noise of 2^18 rays, 0.5-0.8 % for table and trace each: the table meets them elsewhere.
@@ -60,9 +58,9 @@ TEST(ZoneTable, ThrowsTheLightOfTheTrace) {
       lamp.bins = TentBins::rings(Frame({1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {}), std::numbers::pi, 48);
     }
     const ZoneTable table = table_of(lamp, kMany);
-    const Evaluation plain = lamp.traced(Lamp::shaken(0.0, 1), kMany);
+    const Evaluation plain = lamp.traced(Lamp::perturbed_by(0.0, 1), kMany);
     for (const std::uint64_t seed : {1, 2, 3}) {
-      const DesignShape shape = Lamp::shaken(1.0, seed);
+      const DesignShape shape = Lamp::perturbed_by(1.0, seed);
       const Evaluation truth = lamp.traced(shape, kMany);
       const auto off = [&](const Evaluation& e) {
         return bin_error(e, truth.flux, lamp.bins, TargetMode::absolute).relative_rms;
@@ -77,7 +75,7 @@ TEST(ZoneTable, DerivativesAreThoseOfItsOwnLight) {
   Lamp lamp;
   lamp.rays.grow(kMany);
   const ZoneTable table = table_of(lamp, kMany);
-  const DesignShape shape = Lamp::shaken(0.3, 5);
+  const DesignShape shape = Lamp::perturbed_by(0.3, 5);
   const Evaluation e = table.evaluate(shape);
   constexpr double kStep_mm = 1e-4;
   for (Eigen::Index i = 0; i < shape.parameters().size(); ++i) {
@@ -92,8 +90,8 @@ TEST(ZoneTable, DerivativesAreThoseOfItsOwnLight) {
 
 TEST(ProfileSearch, FindsAHiddenMirrorsLightForAnyNumberOfThreads) {
   Lamp lamp;
-  const DesignShape plain = Lamp::shaken(0.0, 1);
-  const Evaluation truth = lamp.traced(Lamp::shaken(1.0, 11));
+  const DesignShape plain = Lamp::perturbed_by(0.0, 1);
+  const Evaluation truth = lamp.traced(Lamp::perturbed_by(1.0, 11));
   FitProblem problem{&lamp.rays, lamp.mirror, {}, lamp.bins, TargetMode::absolute, false};
   problem.target = [&](const TentBins&) { return truth.flux; };
   ASSERT_TRUE(can_search_profiles(problem, plain));
@@ -126,11 +124,11 @@ TEST(ProfileSearch, IsForMirrorsAndTargetsOfRevolution) {
   FitProblem problem{&lamp.rays, lamp.mirror, {}, lamp.bins, TargetMode::absolute, false};
   EXPECT_FALSE(can_search_profiles(problem, DesignShape::bspline(15, Aperture::circle(100), 4, 4)));
   problem.limits = [](const DesignShape&, std::uint64_t, ResidualRows*) { return 0.0; };
-  EXPECT_FALSE(can_search_profiles(problem, Lamp::shaken(0.0, 1)));
+  EXPECT_FALSE(can_search_profiles(problem, Lamp::perturbed_by(0.0, 1)));
   problem.limits = {};
-  EXPECT_TRUE(can_search_profiles(problem, Lamp::shaken(0.0, 1)));
+  EXPECT_TRUE(can_search_profiles(problem, Lamp::perturbed_by(0.0, 1)));
   problem.bins = TentBins::square(Frame(), 0.3, 12);
-  EXPECT_FALSE(can_search_profiles(problem, Lamp::shaken(0.0, 1)));
+  EXPECT_FALSE(can_search_profiles(problem, Lamp::perturbed_by(0.0, 1)));
 }
 
 }  // namespace

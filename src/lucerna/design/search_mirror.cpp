@@ -35,12 +35,9 @@ class Stop {
   DesignResult& result_;
 };
 
-void search_free_form(const SearchRun& run, const FitProblem& fit, DesignResult& result) {
-  FreeFormState state;
-  if (!run.options.checkpoint.empty()) state = parse_search_checkpoint(run.options.checkpoint, run.key);
-  Stop stop(run, state.total_rays, result);
-  const int intervals = run.problem.fixed_knots ? 0 : kMaxIntervals;
-  FreeFormSearch search(fit, run.problem.start, intervals, run.options.max_rays, std::move(state));
+/// Steps a search until it is done or has to stop; the result gets what it came to.
+template <class Search>
+void step_until_done(const SearchRun& run, Search& search, Stop& stop, DesignResult& result) {
   while (!search.done() && !stop(search.state().total_rays, search.next_rays())) {
     const FitRecord record = search.step(run.progress);
     result.history.push_back(record);
@@ -51,6 +48,15 @@ void search_free_form(const SearchRun& run, const FitProblem& fit, DesignResult&
   result.checkpoint = checkpoint_text(search.state(), run.key);
   result.evaluations = search.state().evaluations;
   result.rays = search.state().total_rays;
+}
+
+void search_free_form(const SearchRun& run, const FitProblem& fit, DesignResult& result) {
+  FreeFormState state;
+  if (!run.options.checkpoint.empty()) state = parse_search_checkpoint(run.options.checkpoint, run.key);
+  Stop stop(run, state.total_rays, result);
+  const int intervals = run.problem.fixed_knots ? 0 : kMaxIntervals;
+  FreeFormSearch search(fit, run.problem.start, intervals, run.options.max_rays, std::move(state));
+  step_until_done(run, search, stop, result);
 }
 
 void search_on_ladder(const SearchRun& run, FitProblem& fit_data, DesignResult& result) {
@@ -75,19 +81,11 @@ void search_on_ladder(const SearchRun& run, FitProblem& fit_data, DesignResult& 
   }
   Fit fit = begun ? Fit(fit_data, stages, problem.start, state)
                   : Fit(fit_data, stages, problem.start, state.search_costs);
-  while (!fit.done() && !stop(fit.state().total_rays, fit.next_rays())) {
-    const FitRecord record = fit.step(run.progress);
-    result.history.push_back(record);
-    run.progress.update("design", static_cast<std::uint64_t>(record.evaluations), 0);
-    if (run.observer) run.observer(record, fit.best(), checkpoint_text(fit.state(), run.key));
-  }
-  result.shape = fit.best();
-  result.checkpoint = checkpoint_text(fit.state(), run.key);
-  result.evaluations = fit.state().evaluations;
-  result.rays = fit.state().total_rays;
+  step_until_done(run, fit, stop, result);
   if (result.end == DesignEnd::converged && !fit.at_noise()) {
-    result.remarks.push_back(fmt::format(
-        "ended before its time: {} further attempts in turn brought nothing better", fit.state().fruitless));
+    result.remarks.push_back(
+        fmt::format("ended before its time: {} further restarts in a row brought nothing better",
+                    fit.state().failed_restarts));
   }
 }
 

@@ -75,7 +75,7 @@ TEST(PlaneTarget, AMirrorIsShapedForARectangleOnTheFloor) {
   options.max_rays = 1 << 14;
   options.judge_rays = 1 << 17;
   const DesignProblem p =
-      target_problem(folder.path(), kFloor, "intervals = 2\nattempts = 1\ntime_s = 1e6\n");
+      target_problem(folder.path(), kFloor, "intervals = 2\nrestarts = 1\ntime_s = 1e6\n");
   const DesignResult result = design(p, options);
   EXPECT_LT(result.error.c12.excess, 0.25 * result.start_error.c12.excess);  // 0.12
   EXPECT_GT(result.error.in_rectangle.mean, 0.3);

@@ -9,6 +9,7 @@
 #include "lucerna/design/evaluation.h"
 #include "lucerna/design/fit.h"
 #include "lucerna/design/least_squares.h"
+#include "lucerna/design/perturbed.h"
 #include "lucerna/design/window.h"
 #include "lucerna/source/emitter.h"
 
@@ -23,13 +24,6 @@ PlacedSource cylinder() {
   return {make_emitter(options), Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, kSourceZ}), {}};
 }
 
-DesignShape shaken_by(const DesignShape& shape, double size_mm, std::uint64_t seed) {
-  Eigen::VectorXd p = shape.parameters();
-  Rng rng(seed, 0);
-  for (double& x : p) x += size_mm * (2.0 * rng.uniform() - 1.0);
-  return shape.with(p);
-}
-
 DesignShape square(ShapeSymmetry symmetry = ShapeSymmetry::none) {
   return DesignShape::bspline(15, Aperture::rectangle(100, 100), 4, 4, symmetry);
 }
@@ -39,7 +33,7 @@ TEST(Twin, IsItsOwnInverseInEveryFamily) {
                                     DesignShape::trough(15, Aperture::rectangle(100, 100), 6),
                                     DesignShape::trough(15, Aperture::rectangle(100, 100), 6, true),
                                     DesignShape::revolution(15, Aperture::circle(100), 8)}) {
-    const DesignShape shape = shaken_by(family, 1.0, 3), other = twin(shape, kSourceZ);
+    const DesignShape shape = perturbed(family, 1.0, Rng(3, 0)), other = twin(shape, kSourceZ);
     EXPECT_GT((other.parameters() - shape.parameters()).norm(), 0.5);
     EXPECT_LT((twin(other, kSourceZ).parameters() - shape.parameters()).norm(), 1e-6);
   }
@@ -65,7 +59,7 @@ TEST(Twin, ThrowsNearlyTheSameLight) {
   rays.grow(1 << 15);
   const TentBins bins = TentBins::square(Frame(), 0.15, 24);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const DesignShape shape = shaken_by(square(), 2.0, seed);
+    const DesignShape shape = perturbed(square(), 2.0, Rng(seed, 0));
     const Eigen::VectorXd own = light(shape, rays, bins).flux;
     const auto off = [&](const DesignShape& s) {
       return bin_error(light(s, rays, bins), own, bins, TargetMode::absolute).relative_rms;
@@ -79,17 +73,17 @@ TEST(Twin, ThrowsNearlyTheSameLight) {
 
 /// A fit that begins in the basin of the hidden mirror's twin finds out.
 TEST(TwinSlow, IsWhereAFitLooksForABetterBasin) {
-  const DesignShape truth = shaken_by(square(), 2.0, 9);
+  const DesignShape truth = perturbed(square(), 2.0, Rng(9, 0));
   const TentBins bins = TentBins::square(Frame(), 0.143, 48), coarse = rebinned(bins, 1.0, 24);
   DesignRays known({cylinder()}, Frame(), 1000), rays({cylinder()}, Frame(), 5);
   known.grow(1 << 19);
   FitProblem problem{&rays, Reflectance(1.0), {}, bins, TargetMode::absolute, false};
   problem.target = [&](const TentBins& b) { return light(truth, known, b).flux; };
   problem.starts = {{twin(truth, kSourceZ), FitEntry::own_knots}};
-  const auto end = [&](int attempts) {
-    problem.fruitless = attempts;
+  const auto end = [&](int restarts) {
+    problem.max_failed_restarts = restarts;
     Fit fit(problem, ladder(square(), bins, {1 << 17, true, 0}), square());
-    while (!fit.done() && fit.state().tries < 2) fit.step();
+    while (!fit.done() && fit.state().search_restarts < 2) fit.step();
     const Evaluation e = light(fit.best(), known, coarse);
     return bin_error(e, problem.target(coarse), coarse, TargetMode::absolute).relative_rms;
   };
