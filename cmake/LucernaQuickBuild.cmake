@@ -37,6 +37,4 @@ function(lucerna_unity target)
     endforeach()
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  # A local name may be one that another source has for itself: builds of each source alone have this warning.
-  target_compile_options(${target} PRIVATE -Wno-shadow)
 endfunction()

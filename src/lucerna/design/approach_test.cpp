@@ -11,7 +11,7 @@
 namespace lucerna {
 namespace {
 
-constexpr std::uint64_t kRays = std::uint64_t{1} << 16;
+constexpr std::uint64_t kFitRays = std::uint64_t{1} << 16;
 
 DesignShape square(int intervals) {
   return DesignShape::bspline(15, Aperture::rectangle(100, 100), intervals, intervals);
@@ -62,21 +62,21 @@ TEST(Approach, BringsAFewKnotMirrorNearAHiddenOneAtItsOwnKnots) {
   Hidden hidden(perturbed(square(3), 4.0, Rng(4, 0)));
   const DesignShape given = square(3);
   ASSERT_GT(hidden.error_of(given), 0.3) << "the start is far off, or the test says nothing";
-  const Approached result = approach(hidden.problem(), given, 0, kRays);
+  const Approached result = approach(hidden.problem(), given, 0, kFitRays);
   EXPECT_LT(hidden.error_of(result.shape), 0.06);
   EXPECT_EQ(result.shape.intervals_x(), 3);
   EXPECT_EQ(result.shape.intervals_y(), 3);
   EXPECT_GT(result.evaluations, 5);
-  EXPECT_GT(result.rays, kRays);
+  EXPECT_GT(result.rays, kFitRays);
 }
 
 TEST(Approach, DependsOnItsArgumentsAlone) {
   const DesignShape truth = perturbed(square(2), 1.5, Rng(4, 0));
   Hidden one(truth), other(truth);
-  other.problem().rays->grow(4 * kRays);  // rays beyond those that are asked for change nothing
+  other.problem().rays->grow(4 * kFitRays);  // rays beyond those that are asked for change nothing
   for (const int restart : {0, 3}) {
-    const Approached a = approach(one.problem(), square(2), restart, kRays / 4);
-    const Approached b = approach(other.problem(), square(2), restart, kRays / 4);
+    const Approached a = approach(one.problem(), square(2), restart, kFitRays / 4);
+    const Approached b = approach(other.problem(), square(2), restart, kFitRays / 4);
     EXPECT_EQ(a.shape.parameters(), b.shape.parameters()) << restart;
     EXPECT_EQ(a.rays, b.rays) << restart;
   }
@@ -95,10 +95,10 @@ TEST(Approach, LeavesMirrorsOfManyKnotsAsTheyAre) {
   Hidden hidden(perturbed(square(2), 1.5, Rng(4, 0)));
   const DesignShape given = square(kApproachIntervals + 1);
   ASSERT_FALSE(has_few_knots(given));
-  const Approached same = approach(hidden.problem(), given, 0, kRays);
+  const Approached same = approach(hidden.problem(), given, 0, kFitRays);
   EXPECT_EQ(same.shape.parameters(), given.parameters());
   EXPECT_EQ(same.rays, 0u);
-  const Approached restart = approach(hidden.problem(), given, 2, kRays);
+  const Approached restart = approach(hidden.problem(), given, 2, kFitRays);
   const double moved = (restart.shape.parameters() - given.parameters()).cwiseAbs().maxCoeff();
   EXPECT_GT(moved, 0.1);
   EXPECT_LE(moved, hidden.problem().perturbation * given.aperture().outer_radius_mm());
