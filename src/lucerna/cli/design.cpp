@@ -28,7 +28,7 @@ constexpr std::uint64_t kFinalTraceRays = 4;
 
 struct DesignArguments {
   std::string project, output, time, seed = "1", rays, device = "auto", report;
-  bool resume = false, tolerances = false, pareto = false;
+  bool resume = false, tolerances = false, pareto = false, advise = false;
 };
 
 /// Where evaluations are traced: the first CUDA device, or null for the CPU.
@@ -45,6 +45,7 @@ DesignOptions design_options(const DesignArguments& a, const DesignProblem& prob
   DesignOptions options;
   options.seed = parse_count(a.seed);
   options.pareto = a.pareto;
+  options.advise = a.advise;
   if (!a.time.empty()) options.time_s = parse_number(a.time);
   if (!a.rays.empty()) {
     options.max_rays = parse_count(a.rays);
@@ -173,7 +174,9 @@ void add_design(CLI::App& app, Session& session, int& exit_code) {
   command.option("--report", a.report, "Also write the report as one HTML file");
   command.flag("--tolerances", a.tolerances, "Try what a misplaced source and an inexact mirror change");
   command.flag("--pareto", a.pareto,
-               "Also the trade between error and light, of five weights (after the time)");
+               "Also the trade between error and light (after the time)");
+  command.flag("--advise", a.advise,
+               "Also design it wider, with half the hole, as another family, ..., each for the same time");
   command.flag("--resume", a.resume, "Go on from the folder's checkpoint");
   command.flag("--force", session.force, "Write into a folder that is not empty");
   session.add_json(command);

@@ -105,6 +105,9 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
   if (options.pareto && result.end != DesignEnd::interrupted) {
     result.pareto = pareto_front(problem, result.shape, options, progress);
   }
+  if (options.advise && result.end != DesignEnd::interrupted) {
+    result.advice = advise(problem, result.error, options, progress);
+  }
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lucerna/design/advice.h"
 #include "lucerna/design/bounds.h"
 #include "lucerna/design/box_error.h"
 #include "lucerna/design/design_problem.h"
@@ -34,6 +35,8 @@ struct DesignOptions {
   std::shared_ptr<Accelerator> accelerator;
   /// Also the trade between error and light (pareto.h), after the time that was given.
   bool pareto = false;
+  /// Also what other outlines and families would bring (advice.h), each designed for the same time.
+  bool advise = false;
   /// State to go on from (`checkpoint_text`); empty: from the start.
   std::string checkpoint;
 };
@@ -63,8 +66,9 @@ struct DesignResult {
   std::uint64_t rays = 0;
   /// Every limit that was set, as found in the exported mesh and the judging light.
   std::vector<LimitCheck> limits;
-  /// What was asked for by DesignOptions::pareto.
+  /// What was asked for by DesignOptions::pareto and DesignOptions::advise.
   std::vector<ParetoPoint> pareto;
+  std::vector<AdviceTrial> advice;
   /// What is known of why the error is not smaller, in one sentence each, with the figure that shows it.
   std::vector<std::string> remarks;
 };

@@ -194,6 +194,32 @@ void pareto_lines(const DesignResult& result, std::vector<std::string>& lines) {
   }
 }
 
+/// What was tried, beside what it has to beat.
+void advice_lines(const DesignResult& result, std::vector<std::string>& lines) {
+  if (result.advice.empty()) return;
+  const auto line = [](const std::string& what, const DesignError& e, const char* verdict) {
+    return fmt::format("         {:<34} {:5.2f} +- {:.2f} %          {:.1f} +- {:.1f} %  {}", what,
+                       100.0 * e.c48.excess, 100.0 * e.c48.standard_error, 100.0 * e.in_rectangle.mean,
+                       100.0 * e.in_rectangle.standard_error, verdict);
+  };
+  lines.push_back("  tried: change                      error in 48 x 48 boxes   light in the rectangle");
+  lines.push_back(line("none", result.error, ""));
+  for (const AdviceTrial& t : result.advice) {
+    lines.push_back(line(t.change, t.error, t.helps ? "helps" : "does not help"));
+  }
+}
+
+nlohmann::ordered_json advice_json(const std::vector<AdviceTrial>& trials) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  for (const AdviceTrial& t : trials) {
+    out.push_back({{"change", t.change},
+                   {"error", error_json(t.error)},
+                   {"in_rectangle", estimate_json(t.error.in_rectangle)},
+                   {"helps", t.helps}});
+  }
+  return out;
+}
+
 nlohmann::ordered_json pareto_json(const std::vector<ParetoPoint>& points) {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
   for (const ParetoPoint& p : points) {
@@ -277,6 +303,7 @@ Json design_json(const DesignProblem& problem, const DesignResult& result, const
   Json json = error_figures(problem, result);
   if (problem.target.zones != nullptr) json["zones"] = zones_json(result.zones);
   if (!result.pareto.empty()) json["pareto"] = pareto_json(result.pareto);
+  if (!result.advice.empty()) json["advice"] = advice_json(result.advice);
   json["in_rectangle"] = estimate_json(result.error.in_rectangle);
   json["validation"] = {{"rays", result.error.rays}, {"seconds", result.validation_s}};
   json["bergen_fit"] = f.comparison ? estimate_json(f.comparison->bergen()) : Json();
@@ -326,6 +353,7 @@ std::vector<std::string> design_summary(const DesignProblem& problem, const Desi
   light_line(result, !zones_only, lines);
   for (std::string& line : zones_summary(result.zones, f.trace.ledger.unit)) lines.push_back(std::move(line));
   pareto_lines(result, lines);
+  advice_lines(result, lines);
   if (f.comparison) {
     lines.push_back(fmt::format("  all directions: Bergen fit {} of 100, Wasserstein {}",
                                 estimate_text(f.comparison->bergen()),

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lucerna/core/progress.h"
+#include "lucerna/design/box_error.h"
+#include "lucerna/design/design_problem.h"
+
+namespace lucerna {
+
+struct DesignOptions;
+
+/// The problem with one thing changed.
+struct AdviceChange {
+  /// As a user would say it: "a tenth wider, 132 mm".
+  std::string text;
+  DesignProblem problem;
+};
+
+/// What is worth a trial: a tenth wider (where the limits allow it), half the hole (likewise), a tenth higher
+/// (where the limits say how high), twice the knots (where the project says how many), a free form instead of
+/// a mirror of revolution or a trough. Each begins at its family's paraboloid but for height and knots, which
+/// begin at the given mirror.
+std::vector<AdviceChange> advice_changes(const DesignProblem& problem);
+
+/// What a design with a change came to.
+struct AdviceTrial {
+  std::string change;
+  DesignShape shape;
+  /// Validated like a result.
+  DesignError error;
+  /// Whether the error is less than the result's by more than three standard errors of the difference, with
+  /// no less light in the target's rectangle (but for half a per cent of the source's).
+  bool helps = false;
+};
+
+/// Designs the problem again with each of the changes. Each takes as long as the design itself, and `found`
+/// is the error of that. Empty for targets of zones alone, which have no error. Ends with what it has when
+/// asked to stop. Throws what `design` throws.
+std::vector<AdviceTrial> advise(const DesignProblem& problem, const DesignError& found,
+                                const DesignOptions& options, Progress& progress = no_progress());
+
+}  // namespace lucerna
