@@ -117,13 +117,17 @@ TransportChoice FreeFormSearch::first_choice(int number) const {
   return {c.sign, c.vertex_distance_mm * given_.aperture().outer_radius_mm()};
 }
 
+bool FreeFormSearch::keeps_few_knots() const {
+  return has_few_knots(given_) && max_intervals_ == std::max(given_.intervals_x(), given_.intervals_y());
+}
+
 TransportChoice FreeFormSearch::choice(int number) const {
   if (number < kFirstCandidates) return first_choice(number);
   // A neighbour of the best; of the first choice where the given mirror is the best.
   Rng rng(problem_.seed, static_cast<std::uint64_t>(number), 77);
   const FreeFormMark* best = best_of(kEnd);
   const bool of_given = best != nullptr && !best->transport.exists();
-  if (of_given && has_few_knots(given_)) return {};
+  if (of_given && keeps_few_knots()) return {};
   const TransportChoice about = best != nullptr && !of_given ? best->transport : first_choice(1);
   const double factor = std::pow(kFarthest, 2.0 * rng.uniform() - 1.0);
   return {about.sign, factor * about.vertex_distance_mm};
@@ -146,7 +150,7 @@ DesignShape FreeFormSearch::approached(int restart) {
 }
 
 DesignShape FreeFormSearch::nearer_of_given() {
-  if (!has_few_knots(given_)) return given_;
+  if (!keeps_few_knots()) return given_;
   DesignShape near = approached(0);
   const FreeFormFit fit(problem_, level(0));
   state_.evaluations += 2;

@@ -53,10 +53,10 @@ struct FreeFormState {
 /// Finds a free form by successive halving: candidates (the given mirror; a point source's mirrors of both
 /// signs at several vertex distances) are fitted roughly, the best of them finely, the best of these to the
 /// end. Then, as long as there is time, the best is fitted on with more rays, before neighbours of it where
-/// noise is a good part of its error and after some of them elsewhere. A given mirror of few knots is first
-/// brought near the target (approach.h); it keeps its knots as long as they bring it near the noise or the
-/// target. Knots are only ever refined. Every decision depends on the state alone: a search that is stopped
-/// after any step and taken up from its state goes on to the same bits.
+/// noise is a good part of its error and after some of them elsewhere. A given mirror of few knots that is to
+/// have no more is first brought near the target (approach.h). A given mirror keeps its knots as long as they
+/// bring it near the noise or the target. Knots are only ever refined. Every decision depends on the state
+/// alone: a search that is stopped after any step and taken up from its state goes on to the same bits.
 class FreeFormSearch {
  public:
   /// `given` with its own knots; `max_intervals`: knots along the longer side that the search may refine to
@@ -79,6 +79,9 @@ class FreeFormSearch {
  private:
   FreeFormLevel level(int number) const;
   TransportChoice first_choice(int number) const;
+  /// Whether the given mirror is a matter for `approach`: of few knots, and there are to be no more. Where
+  /// there may be more, mirrors of point sources are as near from the start.
+  bool keeps_few_knots() const;
   /// Whether a given mirror's knots are enough for the next level; `mark` has that level already.
   bool knots_suffice(const FreeFormMark& mark) const;
   /// What a candidate that is not the given mirror begins with.

@@ -126,7 +126,7 @@ TEST(FreeFormSearch, ANeighbourThatIsTheBestHasNeighbours) {
   DesignRays rays = disk_rays();
   FitProblem problem = oval_problem(rays);
   problem.max_failed_restarts = 1000;
-  FreeFormState state = run(problem, plain(), 45).state();
+  FreeFormState state = run(problem, plain(), 20).state();
   state.now = {};
   state.step = 0;
   FreeFormMark best = state.done.back();
@@ -175,15 +175,15 @@ TEST(FreeFormSearch, RefusesCheckpointsThatAreCutOrOfAnotherProblem) {
 }
 
 TEST(FreeFormSearch, NeverEndsWorseThanItsStartAndNeverCoarsensIt) {
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    DesignRays rays = disk_rays();
-    const FitProblem problem = oval_problem(rays);
-    // A found mirror, perturbed: from nearly right to far off.
-    const DesignShape found = run(problem, plain(), 45).best();
-    ASSERT_GE(found.intervals_x(), 16);
+  DesignRays rays = disk_rays();
+  const FitProblem problem = oval_problem(rays);
+  const DesignShape found = run(problem, plain(), 30).best();
+  ASSERT_GE(found.intervals_x(), 16);
+  for (const std::uint64_t seed : {1, 2, 4}) {
+    // Perturbed: from nearly right to far off.
     const DesignShape given = perturbed(found, 0.01 * static_cast<double>(seed * seed), Rng(seed, 0));
     const double before = error_of(problem, given);
-    for (const int steps : {1, 4, 30}) {
+    for (const int steps : {1, 12}) {
       const DesignShape best = run(problem, given, steps).best();
       EXPECT_GE(best.intervals_x(), given.intervals_x());
       EXPECT_LT(error_of(problem, best), 1.02 * before + 0.005) << seed << ' ' << steps;
