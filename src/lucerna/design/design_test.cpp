@@ -177,7 +177,7 @@ void expect_same_end(const DesignProblem& p, const std::function<int(const FitSt
   }
 }
 
-TEST(Design, ResumesInTheMiddleOfATryToTheSameBits) {
+TEST(Design, ResumesInTheMiddleOfASearchRestartToTheSameBits) {
   const TempDir folder;
   write_target(folder.path());
   const DesignProblem p =
