@@ -173,8 +173,7 @@ void add_design(CLI::App& app, Session& session, int& exit_code) {
   command.option("--device", a.device, "cpu, cuda or auto");
   command.option("--report", a.report, "Also write the report as one HTML file");
   command.flag("--tolerances", a.tolerances, "Try what a misplaced source and an inexact mirror change");
-  command.flag("--pareto", a.pareto,
-               "Also the trade between error and light (after the time)");
+  command.flag("--pareto", a.pareto, "Also the trade between error and light (after the time)");
   command.flag("--advise", a.advise,
                "Also design it wider, with half the hole, as another family, ..., each for the same time");
   command.flag("--resume", a.resume, "Go on from the folder's checkpoint");

@@ -17,7 +17,7 @@ constexpr double kWider = 1.1, kHigher = 1.1, kNarrowerHole = 0.5;
 /// Knots along a side that are not doubled any more.
 constexpr int kManyIntervals = 30;
 /// Knots along a side of a free form that takes the place of another family.
-constexpr int kIntervals = 8;
+constexpr int kFreeFormIntervals = 8;
 /// Standard errors that an error has to be less by, and light that may be lost for it.
 constexpr double kClearErrors = 3.0, kEqualLight = 0.005;
 
@@ -89,8 +89,9 @@ std::vector<AdviceChange> advice_changes(const DesignProblem& problem) {
         changed(problem, fmt::format("twice the knots, {} x {} intervals", x, y), start.refined(x, y)));
   }
   if (!free_form) {
-    out.push_back(changed(problem, "a free form",
-                          DesignShape::bspline(start.focal_mm(), aperture, kIntervals, kIntervals)));
+    out.push_back(
+        changed(problem, "a free form",
+                DesignShape::bspline(start.focal_mm(), aperture, kFreeFormIntervals, kFreeFormIntervals)));
     out.back().problem.fixed_knots = false;
   }
   return out;

@@ -33,7 +33,7 @@ void write_oval(const std::filesystem::path& path) {
   write_photometric_file(path, file, PhotometricFormat::ies_2019);
 }
 
-DesignProblem problem(const TempDir& folder, const std::string& shape, const std::string& design) {
+DesignProblem lamp_problem(const TempDir& folder, const std::string& shape, const std::string& design) {
   write_oval(folder / "target.ies");
   write_file(folder / "project.toml",
              "[[source]]\nkind = \"disk\"\nradius_mm = 1.0\n[[reflector]]\n" + shape +
@@ -43,7 +43,7 @@ DesignProblem problem(const TempDir& folder, const std::string& shape, const std
   return design_problem(read_project(folder / "project.toml"), folder / "project.toml");
 }
 
-DesignOptions small() {
+DesignOptions few_rays() {
   DesignOptions options;
   options.time_s = 1e6;
   options.max_rays = 1 << 13;
@@ -62,7 +62,7 @@ std::vector<std::string> texts(const std::vector<AdviceChange>& changes) {
 
 TEST(Advice, ChangesOutlineAndFamily) {
   const TempDir folder;
-  const auto changes = advice_changes(problem(folder, kRevolution, "intervals = 3\n"));
+  const auto changes = advice_changes(lamp_problem(folder, kRevolution, "intervals = 3\n"));
   ASSERT_THAT(texts(changes), ElementsAre("a tenth wider, 66 mm", "half the hole, 3 mm", "a free form"));
   EXPECT_DOUBLE_EQ(changes[0].problem.start.aperture().half_x_mm(), 33.0);
   EXPECT_DOUBLE_EQ(changes[0].problem.project.scene.reflectors[0].reflector.aperture.half_x_mm(), 33.0);
@@ -74,18 +74,18 @@ TEST(Advice, ChangesOutlineAndFamily) {
 TEST(Advice, DoublesTheKnotsThatTheProjectSays) {
   const TempDir folder;
   const std::string free_form = "family = \"bspline\"\nfocal_mm = 8\n";
-  const auto fixed = advice_changes(problem(folder, free_form, "intervals = [4, 6]\n"));
+  const auto fixed = advice_changes(lamp_problem(folder, free_form, "intervals = [4, 6]\n"));
   ASSERT_EQ(fixed.size(), 3u);
   EXPECT_EQ(fixed[2].text, "twice the knots, 8 x 12 intervals");
   EXPECT_EQ(fixed[2].problem.start.intervals_y(), 12);
-  EXPECT_EQ(advice_changes(problem(folder, free_form, "")).size(), 2u);
+  EXPECT_EQ(advice_changes(lamp_problem(folder, free_form, "")).size(), 2u);
 }
 
 TEST(Advice, HoldsTheLimits) {
   const TempDir folder;
-  const auto changes = advice_changes(problem(folder, kRevolution,
-                                              "intervals = 3\n[design.limits]\nmax_diameter_mm = 62.0\n"
-                                              "min_hole_diameter_mm = 5.0\nmax_height_mm = 40.0\n"));
+  const auto changes = advice_changes(lamp_problem(folder, kRevolution,
+                                                   "intervals = 3\n[design.limits]\nmax_diameter_mm = 62.0\n"
+                                                   "min_hole_diameter_mm = 5.0\nmax_height_mm = 40.0\n"));
   EXPECT_THAT(texts(changes), ElementsAre("a tenth higher, 44 mm", "a free form"));
   EXPECT_DOUBLE_EQ(*changes[0].problem.limits.max_height_mm, 44.0);
 }
@@ -93,7 +93,7 @@ TEST(Advice, HoldsTheLimits) {
 TEST(Advice, SaysWhatHelps) {
   const TempDir folder;
   const DesignResult result =
-      design(problem(folder, kRevolution, "intervals = 3\noptimizer = \"least-squares\"\n"), small());
+      design(lamp_problem(folder, kRevolution, "intervals = 3\noptimizer = \"least-squares\"\n"), few_rays());
   ASSERT_EQ(result.advice.size(), 3u);
   const AdviceTrial &hole = result.advice[1], &free_form = result.advice[2];
   EXPECT_GT(result.error.c48.excess, 0.2);
@@ -119,9 +119,9 @@ class StopsAfter : public Progress {
 TEST(Advice, EndsWithWhatItHasWhenAskedToStop) {
   const TempDir folder;
   StopsAfter stop(0);
-  EXPECT_TRUE(
-      advise(problem(folder, kRevolution, "optimizer = \"least-squares\"\n"), DesignError{}, small(), stop)
-          .empty());
+  EXPECT_TRUE(advise(lamp_problem(folder, kRevolution, "optimizer = \"least-squares\"\n"), DesignError{},
+                     few_rays(), stop)
+                  .empty());
 }
 
 }  // namespace

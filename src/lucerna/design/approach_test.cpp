@@ -17,7 +17,7 @@ DesignShape square(int intervals) {
   return DesignShape::bspline(15, Aperture::rectangle(100, 100), intervals, intervals);
 }
 
-Eigen::VectorXd light(const DesignShape& shape, const DesignRays& rays, const TentBins& bins) {
+Eigen::VectorXd light_of(const DesignShape& shape, const DesignRays& rays, const TentBins& bins) {
   EvaluationOptions options;
   options.rays = rays.size();
   options.derivatives = false;
@@ -33,15 +33,15 @@ class Hidden {
         rays_(rays(5)),
         problem_{&rays_, Reflectance(1.0), {}, bins(), TargetMode::absolute} {
     known_.grow(std::uint64_t{1} << 18);
-    problem_.target = [this](const TentBins& b) { return light(truth_, known_, b); };
+    problem_.target = [this](const TentBins& b) { return light_of(truth_, known_, b); };
   }
   Hidden(const Hidden&) = delete;
   Hidden& operator=(const Hidden&) = delete;
   FitProblem& problem() { return problem_; }
   double error_of(const DesignShape& shape) const {
     const TentBins b = rebinned(bins(), 1.0, 20);
-    const Eigen::VectorXd target = light(truth_, known_, b);
-    return (light(shape, known_, b) - target).norm() / target.norm();
+    const Eigen::VectorXd target = light_of(truth_, known_, b);
+    return (light_of(shape, known_, b) - target).norm() / target.norm();
   }
 
  private:
