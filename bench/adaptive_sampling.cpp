@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 
@@ -68,7 +69,7 @@ double rate(const AdaptiveModel& model, SequenceKind kind, std::size_t rays) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   const double millions = argc > 1 ? std::atof(argv[1]) : 2.0;
   const auto rays = static_cast<std::size_t>(1e6 * millions);
   if (argc > 2) fmt::print("| model | leaves | random | Sobol |\n|---|---|---|---|\n");
@@ -106,4 +107,8 @@ int main(int argc, char** argv) {
     fmt::print("| plane | {} | concentric | {:.1f} | {:.1f} |\n", to_string(surface.kind),
                rate(model, SequenceKind::random, rays), rate(model, SequenceKind::sobol, rays));
   }
+} catch (const std::exception& e) {
+  std::fputs(e.what(), stderr);
+  std::fputc('\n', stderr);
+  return 1;
 }

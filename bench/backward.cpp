@@ -55,8 +55,8 @@ std::uint64_t samples_of(const DirectionCell& cell, std::uint64_t most) {
 
 DirectionCell cell_of(const FarField& f, std::size_t i) {
   const double c = radians(f.c_step_deg), g = radians(f.gamma_step_deg);
-  const double at_c = c * static_cast<double>(i / f.gamma_count),
-               at_g = g * static_cast<double>(i % f.gamma_count);
+  const std::size_t plane = i / f.gamma_count;
+  const double at_c = c * static_cast<double>(plane), at_g = g * static_cast<double>(i % f.gamma_count);
   return {at_c - 0.5 * c, at_c + 0.5 * c, std::max(0.0, at_g - 0.5 * g),
           std::min(radians(180.0), at_g + 0.5 * g)};
 }
@@ -88,6 +88,7 @@ FarField traced_backward(const Scene& scene, const FarField& forward, const std:
 std::vector<double> errors_at(const BinnedIntensity& nodes, const std::vector<std::size_t>& cells,
                               double peak) {
   std::vector<double> out;
+  out.reserve(cells.size());
   for (const std::size_t i : cells) out.push_back(nodes.standard_error_cd[i] / peak);
   return out;
 }
@@ -96,8 +97,8 @@ std::vector<double> errors_at(const BinnedIntensity& nodes, const std::vector<st
 double combined_seconds(const Measured& forward, const Measured& backward) {
   const double per_angle = backward.seconds / static_cast<double>(backward.error.size());
   double best = std::min(forward.seconds_to_goal(), backward.seconds_to_goal());
-  for (double share = 0.0; share <= 1.0; share += 0.01) {
-    const double f = share * std::pow(forward.worst() / kGoal, 2.0);
+  for (int percent = 0; percent <= 100; ++percent) {
+    const double f = 0.01 * percent * std::pow(forward.worst() / kGoal, 2.0);
     double seconds = f * forward.seconds;
     for (std::size_t i = 0; i < forward.error.size(); ++i) {
       const double lacking = 1.0 / (kGoal * kGoal) - f / std::pow(forward.error[i], 2.0);

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -124,6 +125,61 @@ TentBins window(const Suite& s, const DesignShape& truth, const DesignRays& rays
   return s.revolution ? ring_window(light, Direction()) : square_window(light, Direction());
 }
 
+/// Light of a hidden mirror by bins, made when first asked for; what that took is no part of a design.
+class HiddenLight {
+ public:
+  HiddenLight(const DesignShape& truth, const DesignRays& rays) : truth_(truth), rays_(rays) {}
+
+  const Eigen::VectorXd& operator()(const TentBins& b) {
+    Eigen::VectorXd& flux = known_[{b.count(), b.extent()}];
+    if (flux.size() > 0) return flux;
+    const auto from = std::chrono::steady_clock::now();
+    const double from_cpu = cpu_seconds();
+    flux = evaluate(truth_, Reflectance(1.0), rays_, b, reflected_only(kTruthRays)).flux;
+    wall_s_ += seconds_since(from);
+    cpu_s_ += cpu_seconds() - from_cpu;
+    return flux;
+  }
+  double wall_s() const { return wall_s_; }
+  double cpu_s() const { return cpu_s_; }
+
+ private:
+  const DesignShape& truth_;
+  const DesignRays& rays_;
+  std::map<std::pair<int, double>, Eigen::VectorXd> known_;
+  double wall_s_ = 0.0, cpu_s_ = 0.0;
+};
+
+void print_starts(const std::vector<FitStart>& starts) {
+  for (const FitStart& f : starts) {
+    fmt::print("  start{} {:.4f}\n",
+               f.entry == FitEntry::few_knots ? " (plain)"
+               : f.entry == FitEntry::end     ? " (profile)"
+                                              : "",
+               std::sqrt(f.cost));
+  }
+}
+
+void print_step(const FitRecord& r, double seconds) {
+  fmt::print("  stage {} step {:2} rays {:8} error {:.5f} floor {:.5f} lambda {:.1e} {} {:.2f} s\n", r.stage,
+             r.step, r.rays, r.error, r.floor, r.lambda, r.accepted ? "" : "refused", seconds);
+  std::fflush(stdout);
+}
+
+/// By rays that no fit has seen.
+void judge(const DesignShape& found, const DesignShape& truth, const TentBins& bins, std::uint64_t seed,
+           Outcome& out) {
+  DesignRays rays({cylinder()}, Frame(), 777 + seed);
+  rays.grow(kTruthRays);
+  const Evaluation target = well_known(truth, bins, seed);
+  const Evaluation result = evaluate(found, Reflectance(1.0), rays, bins, reflected_only(kTruthRays));
+  const BinError error = bin_error(result, target.flux, bins, TargetMode::absolute);
+  const BinError noise = bin_error(target, target.flux, bins, TargetMode::absolute);
+  out.error = error.relative_rms;
+  out.floor = std::hypot(error.floor, noise.floor);
+  out.excess = std::sqrt(std::max(0.0, out.error * out.error - out.floor * out.floor));
+}
+
 /// Whether the start is as far from the hidden mirror of this seed as the suite asks for.
 bool solve(const Suite& s, std::uint64_t seed, const Run& run, bool only_look, Outcome& out) {
   const DesignShape truth = hidden(s, seed);
@@ -133,18 +189,8 @@ bool solve(const Suite& s, std::uint64_t seed, const Run& run, bool only_look, O
   const Reflectance mirror(1.0);
   FitProblem problem{nullptr, mirror, {}, bins, TargetMode::absolute, false};
 
-  double target_wall = 0.0, target_cpu = 0.0;  // making the hidden mirror's light is not part of the design
-  std::map<std::pair<int, double>, Eigen::VectorXd> known;
-  problem.target = [&](const TentBins& b) {
-    Eigen::VectorXd& flux = known[{b.count(), b.extent()}];
-    if (flux.size() > 0) return flux;
-    const auto from = std::chrono::steady_clock::now();
-    const double from_cpu = cpu_seconds();
-    flux = evaluate(truth, mirror, truth_rays, b, reflected_only(kTruthRays)).flux;
-    target_wall += seconds_since(from);
-    target_cpu += cpu_seconds() - from_cpu;
-    return flux;
-  };
+  HiddenLight light(truth, truth_rays);
+  problem.target = std::ref(light);
   const Evaluation rough = evaluate(truth, mirror, truth_rays, bins, reflected_only(kTruthRays));
   const BinError start = bin_error(evaluate(plain(s), mirror, truth_rays, bins, reflected_only(1 << 18)),
                                    rough.flux, bins, TargetMode::absolute);
@@ -167,20 +213,12 @@ bool solve(const Suite& s, std::uint64_t seed, const Run& run, bool only_look, O
     prepare_starts(problem, begin, stages, optimizer("auto"), search_costs,
                    [](const FitRecord&, const DesignShape&) { return true; });
   }
-  if (run.verbose) {
-    for (const FitStart& f : problem.starts) {
-      fmt::print("  start{} {:.4f}\n",
-                 f.entry == FitEntry::few_knots ? " (plain)"
-                 : f.entry == FitEntry::end     ? " (profile)"
-                                                : "",
-                 std::sqrt(f.cost));
-    }
-  }
+  if (run.verbose) print_starts(problem.starts);
   Fit fit(problem, stages, begin, search_costs);
   // Seconds of two idle cores: what the clock says, or what processors were given on a shared machine.
   constexpr double kTwoCores = 1.8;
   const auto spent = [&] {
-    return std::min(seconds_since(clock) - target_wall, (cpu_seconds() - cpu - target_cpu) / kTwoCores);
+    return std::min(seconds_since(clock) - light.wall_s(), (cpu_seconds() - cpu - light.cpu_s()) / kTwoCores);
   };
   double per_ray = 0.0;  // of the last step; one more has to fit
   while (!fit.done() && spent() + per_ray * static_cast<double>(fit.next_rays()) < run.slower * s.seconds) {
@@ -189,27 +227,13 @@ bool solve(const Suite& s, std::uint64_t seed, const Run& run, bool only_look, O
     const FitRecord r = fit.step();
     per_ray =
         (spent() - before) / static_cast<double>(std::max<std::uint64_t>(r.total_rays - rays_before, 1));
-    if (run.verbose) {
-      fmt::print("  stage {} step {:2} rays {:8} error {:.5f} floor {:.5f} lambda {:.1e} {} {:.2f} s\n",
-                 r.stage, r.step, r.rays, r.error, r.floor, r.lambda, r.accepted ? "" : "refused",
-                 seconds_since(clock) - target_wall);
-      std::fflush(stdout);
-    }
+    if (run.verbose) print_step(r, seconds_since(clock) - light.wall_s());
   }
   out.wall = spent();
-  out.cpu = cpu_seconds() - cpu - target_cpu;
+  out.cpu = cpu_seconds() - cpu - light.cpu_s();
   out.rays = static_cast<double>(fit.state().total_rays);
   out.evaluations = fit.state().evaluations;
-
-  DesignRays judge({cylinder()}, Frame(), 777 + seed);
-  judge.grow(kTruthRays);
-  const Evaluation target = well_known(truth, bins, seed);
-  const Evaluation result = evaluate(fit.best(), mirror, judge, bins, reflected_only(kTruthRays));
-  const BinError error = bin_error(result, target.flux, bins, TargetMode::absolute);
-  const BinError noise = bin_error(target, target.flux, bins, TargetMode::absolute);
-  out.error = error.relative_rms;
-  out.floor = std::hypot(error.floor, noise.floor);
-  out.excess = std::sqrt(std::max(0.0, out.error * out.error - out.floor * out.floor));
+  judge(fit.best(), truth, bins, seed, out);
   return true;
 }
 
@@ -235,6 +259,7 @@ void run(const Suite& s, const Run& run) {
   }
   const auto of = [&](auto member) {
     std::vector<double> v;
+    v.reserve(outcomes.size());
     for (const Outcome& o : outcomes) v.push_back(o.*member);
     return v;
   };

@@ -77,10 +77,11 @@ Body mesh_of(const PlacedReflector& placed, std::uint32_t n) {
   auto mesh = std::make_shared<Mesh>();
   const Aperture& aperture = placed.reflector.aperture;
   for (std::uint32_t i = 0; i < (n + 1) * (n + 1); ++i) {
-    const double x = (2.0 * (i % (n + 1)) / n - 1.0) * aperture.half_x_mm();
-    const double y = (2.0 * (i / (n + 1)) / n - 1.0) * aperture.half_y_mm();
+    const std::uint32_t column = i % (n + 1), row = i / (n + 1);
+    const double x = (2.0 * column / n - 1.0) * aperture.half_x_mm();
+    const double y = (2.0 * row / n - 1.0) * aperture.half_y_mm();
     mesh->vertices_mm.push_back({x, y, placed.reflector.surface->at(x, y).z_mm});
-    if (i % (n + 1) == n || i / (n + 1) == n) continue;
+    if (column == n || row == n) continue;
     mesh->triangles.push_back({i, i + 1, i + n + 2});
     mesh->triangles.push_back({i, i + n + 2, i + n + 1});
   }

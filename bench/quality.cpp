@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -222,7 +223,7 @@ void run_all(const Case& c, const Options& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   Options options;
   CLI::App app("Quality of source models in the five views of docs/algorithms/views.md");
   app.add_option("sources", options.sources, "emitters (phong500, led, filament, ...) and ray files")
@@ -253,4 +254,8 @@ int main(int argc, char** argv) {
   print_header();
   for (const std::string& source : options.sources) run_all(load(source, options), options);
   return 0;
+} catch (const std::exception& e) {
+  std::fputs(e.what(), stderr);
+  std::fputc('\n', stderr);
+  return 1;
 }

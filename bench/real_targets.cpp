@@ -62,7 +62,7 @@ bool wanted(const Run& run, const std::string& name) {
 /// A model of an emitter, as `make-source -n 1e6` and `compress` make it.
 fs::path model_of(const Run& run, const std::string& source) {
   if (fs::exists(source)) return fs::absolute(source);
-  const fs::path file = run.folder / (source + ".nfl");
+  fs::path file = run.folder / (source + ".nfl");
   if (fs::exists(file)) return file;
   EmitterOptions options;
   options.kind = emitter_kind(source);
@@ -173,7 +173,7 @@ IntensityDistribution traced_table(Scene scene, double c_step_deg, double gamma_
 fs::path written(const Run& run, const std::string& name, const IntensityDistribution& table) {
   PhotometricFile file;
   file.distribution = table;
-  const fs::path path = run.folder / (name + ".ldt");
+  fs::path path = run.folder / (name + ".ldt");
   write_photometric_file(path, file, PhotometricFormat::ldt);
   return path;
 }
@@ -266,7 +266,8 @@ bool far_enough(const Suite& s, const DesignShape& truth, const DesignRays& rays
   const Evaluation e = reflected(truth, rays, TentBins::square(Frame(), 1.0, kCells), kRays);
   std::vector<DirectedFlux> light;
   for (int k = 0; k < kCells * kCells; ++k) {
-    const double u = 2.0 * (k % kCells + 0.5) / kCells - 1.0, v = 2.0 * (k / kCells + 0.5) / kCells - 1.0;
+    const int column = k % kCells, row = k / kCells;
+    const double u = 2.0 * (column + 0.5) / kCells - 1.0, v = 2.0 * (row + 0.5) / kCells - 1.0;
     if (u * u + v * v < 1.0 && e.flux[k] > 0.0) {
       light.push_back({Direction::from_unit({u, v, std::sqrt(1.0 - u * u - v * v)}), e.flux[k]});
     }

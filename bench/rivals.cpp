@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -143,7 +144,7 @@ void run(const Options& o) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   Options o;
   CLI::App app("Source models side by side (docs/algorithms/rivals.md)");
   app.add_option("source", o.source, "emitter, dome, tilted, strip, arc, or ray file")->required();
@@ -154,4 +155,8 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   run(o);
   return 0;
+} catch (const std::exception& e) {
+  std::fputs(e.what(), stderr);
+  std::fputc('\n', stderr);
+  return 1;
 }

@@ -79,7 +79,7 @@ void run(const BenchmarkScene& c, int cells, const std::shared_ptr<const RaySet>
   fmt::print("            all threads / one: {:.2f}\n", two / fast);
   if (!EmbreeYardstick::available()) return;
   const EmbreeYardstick embree(*field);
-  std::vector<double> bins(360 * 181);
+  std::vector<double> bins(std::size_t{360} * 181);
   const double t =
       best_of(2, cpu_seconds, [&] { embree.trace(rays->rays, c.focal_mm, kBenchmarkBounces, bins); });
   fmt::print("            embree     1 thread(s) {:7.2f} M rays/s  build {:.0f} ms; ours / Embree {:.1f}\n",

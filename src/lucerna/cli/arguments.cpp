@@ -104,7 +104,7 @@ std::vector<double> parse_numbers(std::string_view word) {
 }
 
 std::vector<double> parse_numbers(std::string_view word, std::size_t n) {
-  const std::vector<double> values = parse_numbers(word);
+  std::vector<double> values = parse_numbers(word);
   if (values.size() != n) refuse(word, fmt::format("{} number{} separated by commas", n, n == 1 ? "" : "s"));
   return values;
 }

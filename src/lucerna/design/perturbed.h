@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <utility>
-
 #include "lucerna/core/random.h"
 #include "lucerna/design/design_shape.h"
 
@@ -12,7 +10,7 @@ namespace lucerna {
 inline DesignShape perturbed(const DesignShape& shape, double size_mm, Rng rng) {
   Eigen::VectorXd parameters = shape.parameters();
   for (double& p : parameters) p += size_mm * (2.0 * rng.uniform() - 1.0);
-  return shape.with(std::move(parameters));
+  return shape.with(parameters);
 }
 
 }  // namespace lucerna

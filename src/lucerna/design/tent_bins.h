@@ -76,8 +76,9 @@ class TentBins {
  private:
   TentBins(TentKind kind, const Frame& axes, double extent, int count);
   static bool inside(const TentAxis& axis, std::size_t i) {
-    return axis.outer == 0 || (i >= static_cast<std::size_t>(axis.outer) &&
-                               i < static_cast<std::size_t>(axis.outer + axis.inner));
+    return axis.outer == 0 ||
+           (i >= static_cast<std::size_t>(axis.outer) &&
+            i < static_cast<std::size_t>(axis.outer) + static_cast<std::size_t>(axis.inner));
   }
   /// Points of a grid with `fine` to a cell along each axis, half a cell beyond the outermost, with their
   /// areas.

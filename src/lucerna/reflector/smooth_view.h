@@ -47,7 +47,7 @@ struct BsplineView {
   const double* near_bends = nullptr;
 
   LUCERNA_HD const double* near_bends_at(double x, double y) const {
-    const int cell = row_y.place(y).first * row_x.intervals + row_x.place(x).first;
+    const std::ptrdiff_t cell = row_y.place(y).first * std::ptrdiff_t{row_x.intervals} + row_x.place(x).first;
     return near_bends + kNearSizes * cell;
   }
   /// Least width of a cell.
@@ -58,7 +58,7 @@ struct BsplineView {
     const CubicBasis bx = cubic_basis(px.t), dx = cubic_basis_slope(px.t);
     const CubicBasis by = cubic_basis(py.t), dy = cubic_basis_slope(py.t);
     const int nx = row_x.coefficients();
-    const double* c = coefficients + py.first * nx + px.first;
+    const double* c = coefficients + std::ptrdiff_t{py.first} * nx + px.first;
     ShapeOffset o;
     for (std::size_t j = 0; j < 4; ++j, c += nx) {
       const double value = bx[0] * c[0] + bx[1] * c[1] + bx[2] * c[2] + bx[3] * c[3];
@@ -77,7 +77,7 @@ struct BsplineView {
     const CubicBasis bx = cubic_basis(px.t), dx = cubic_basis_slope(px.t), ex = cubic_basis_bend(px.t);
     const CubicBasis by = cubic_basis(py.t), dy = cubic_basis_slope(py.t), ey = cubic_basis_bend(py.t);
     const int nx = row_x.coefficients();
-    const double* c = coefficients + py.first * nx + px.first;
+    const double* c = coefficients + std::ptrdiff_t{py.first} * nx + px.first;
     double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0, syy = 0.0;
     for (std::size_t j = 0; j < 4; ++j, c += nx) {
       const double value = bx[0] * c[0] + bx[1] * c[1] + bx[2] * c[2] + bx[3] * c[3];
@@ -146,7 +146,7 @@ struct RevolutionView {
   const double* near_bends = nullptr;
 
   LUCERNA_HD const double* near_bends_at(double x, double y) const {
-    return near_bends + kNearSizes * row.place(std::sqrt(x * x + y * y)).first;
+    return near_bends + std::ptrdiff_t{kNearSizes} * row.place(std::sqrt(x * x + y * y)).first;
   }
   LUCERNA_HD double cell_mm() const { return row.step_mm; }
 

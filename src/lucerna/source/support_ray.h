@@ -29,7 +29,7 @@ struct Triad {
 };
 
 LUCERNA_HD inline Direction direction_from(double a, double b, const Triad& t, PolarMap map) {
-  double x, y;
+  double x = 0.0, y = 0.0;
   if (map == PolarMap::polar) {
     const double r = std::sqrt(std::clamp(2.0 * a, 0.0, 1.0));
     x = r * std::cos(b), y = r * std::sin(b);

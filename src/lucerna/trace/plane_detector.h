@@ -21,7 +21,8 @@ struct PlaneGrid {
     return (static_cast<double>(cell % nx) + 0.5) * size_x_mm / static_cast<double>(nx) - 0.5 * size_x_mm;
   }
   double cell_y_mm(std::size_t cell) const {
-    return (static_cast<double>(cell / nx) + 0.5) * size_y_mm / static_cast<double>(ny) - 0.5 * size_y_mm;
+    const std::size_t row = cell / nx;
+    return (static_cast<double>(row) + 0.5) * size_y_mm / static_cast<double>(ny) - 0.5 * size_y_mm;
   }
   double cell_mm2() const {
     return size_x_mm / static_cast<double>(nx) * size_y_mm / static_cast<double>(ny);
