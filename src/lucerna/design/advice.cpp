@@ -16,18 +16,15 @@ namespace {
 constexpr double kWider = 1.1, kHigher = 1.1, kNarrowerHole = 0.5;
 /// Knots along a side that are not doubled any more.
 constexpr int kManyIntervals = 30;
-/// Knots along a side of a free form that takes the place of another family.
-constexpr int kFreeFormIntervals = 8;
 /// Standard errors that an error has to be less by, and light that may be lost for it.
 constexpr double kClearErrors = 3.0, kEqualLight = 0.005;
 
-/// The problem with another mirror to begin with: the paraboloid, which is all that is known beyond the given
-/// one's rim.
-AdviceChange changed(const DesignProblem& problem, std::string text, DesignShape start) {
-  DesignProblem other = problem;
-  other.project.scene.reflectors.front().reflector = start.reflector();
-  other.start = std::move(start);
-  return {std::move(text), std::move(other)};
+/// The problem with another mirror to begin with.
+AdviceChange changed(DesignProblem problem, std::string text, const DesignShape& start) {
+  Scene& scene = problem.project.scene;
+  problem.start = start_within(problem.limits, start, scene.sources, problem.world_from_mirror);
+  scene.reflectors.front().reflector = problem.start.reflector();
+  return {std::move(text), std::move(problem)};
 }
 
 Aperture scaled(const Aperture& a, double outline, double hole) {
@@ -37,7 +34,7 @@ Aperture scaled(const Aperture& a, double outline, double hole) {
              : Aperture::rectangle(2.0 * outline * a.half_x_mm(), 2.0 * outline * a.half_y_mm(), hole_mm);
 }
 
-/// The family's paraboloid on another aperture.
+/// The family's paraboloid on another aperture: beyond the given rim nothing else is known.
 DesignShape on(const DesignShape& family, const Aperture& aperture) {
   if (family.is_revolution()) {
     return DesignShape::revolution(family.focal_mm(), aperture, family.intervals_x());
@@ -55,7 +52,11 @@ std::string size_text(const Aperture& a) {
   return fmt::format("{:.4g} x {:.4g} mm", 2.0 * a.half_x_mm(), 2.0 * a.half_y_mm());
 }
 
-bool helps(const DesignError& with, const DesignError& without) {
+bool helps(const DesignResult& result, const DesignError& without) {
+  const DesignError& with = result.error;
+  if (!std::all_of(result.limits.begin(), result.limits.end(), [](const LimitCheck& c) { return c.held; })) {
+    return false;
+  }
   const double less = without.c48.excess - with.c48.excess;
   return less > kClearErrors * std::hypot(with.c48.standard_error, without.c48.standard_error) &&
          with.in_rectangle.mean > without.in_rectangle.mean - kEqualLight;
@@ -78,8 +79,9 @@ std::vector<AdviceChange> advice_changes(const DesignProblem& problem) {
   }
   if (limits.max_height_mm) {
     const double height_mm = kHigher * *limits.max_height_mm;
-    out.push_back(changed(problem, fmt::format("a tenth higher, {:.4g} mm", height_mm), start));
-    out.back().problem.limits.max_height_mm = height_mm;
+    DesignProblem higher = problem;
+    higher.limits.max_height_mm = height_mm;
+    out.push_back(changed(std::move(higher), fmt::format("a tenth higher, {:.4g} mm", height_mm), start));
   }
   const bool free_form = !start.is_revolution() && !start.is_trough();
   if (problem.fixed_knots && free_form &&
@@ -89,9 +91,9 @@ std::vector<AdviceChange> advice_changes(const DesignProblem& problem) {
         changed(problem, fmt::format("twice the knots, {} x {} intervals", x, y), start.refined(x, y)));
   }
   if (!free_form) {
-    out.push_back(
-        changed(problem, "a free form",
-                DesignShape::bspline(start.focal_mm(), aperture, kFreeFormIntervals, kFreeFormIntervals)));
+    out.push_back(changed(problem, "a free form",
+                          DesignShape::bspline(start.focal_mm(), aperture, kFreeFormIntervals,
+                                               kFreeFormIntervals, limits.symmetry)));
     out.back().problem.fixed_knots = false;
   }
   return out;
@@ -107,7 +109,7 @@ std::vector<AdviceTrial> advise(const DesignProblem& problem, const DesignError&
   for (const AdviceChange& change : advice_changes(problem)) {
     const DesignResult result = design(change.problem, again, progress);
     if (result.end == DesignEnd::interrupted) break;
-    trials.push_back({change.text, result.shape, result.error, helps(result.error, found)});
+    trials.push_back({change.text, result.error, helps(result, found)});
   }
   return trials;
 }

@@ -22,17 +22,16 @@ struct AdviceChange {
 /// What is worth a trial: a tenth wider (where the limits allow it), half the hole (likewise), a tenth higher
 /// (where the limits say how high), twice the knots (where the project says how many), a free form instead of
 /// a mirror of revolution or a trough. Each begins at its family's paraboloid but for height and knots, which
-/// begin at the given mirror.
+/// begin at the given mirror; within the limits on its form, like every start.
 std::vector<AdviceChange> advice_changes(const DesignProblem& problem);
 
 /// What a design with a change came to.
 struct AdviceTrial {
   std::string change;
-  DesignShape shape;
   /// Validated like a result.
   DesignError error;
   /// Whether the error is less than the result's by more than three standard errors of the difference, with
-  /// no less light in the target's rectangle (but for half a per cent of the source's).
+  /// no less light in the target's rectangle (but for half a per cent of the source's) and all limits held.
   bool helps = false;
 };
 

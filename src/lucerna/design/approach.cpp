@@ -2,8 +2,8 @@
 #include "lucerna/design/approach.h"
 
 #include <algorithm>
-#include <utility>
 
+#include "lucerna/core/error.h"
 #include "lucerna/design/perturbed.h"
 
 namespace lucerna {
@@ -31,12 +31,12 @@ bool has_few_knots(const DesignShape& shape) {
 
 Approached approach(const FitProblem& problem, const DesignShape& given, int restart,
                     std::uint64_t max_rays) {
+  LUCERNA_CHECK(has_few_knots(given), "{} x {} intervals", given.intervals_x(), given.intervals_y());
   DesignShape start = given;
   if (restart != 0) {
     start = perturbed(given, problem.perturbation * given.aperture().outer_radius_mm(),
                       Rng(problem.seed, kStream + static_cast<std::uint64_t>(restart)));
   }
-  if (!has_few_knots(given)) return {std::move(start)};
   FitProblem coarse = problem;
   coarse.starts.clear();
   if (coarse.flux_weight > 0.0) coarse.flux_weight = kLadderFluxWeight;

@@ -91,18 +91,5 @@ TEST(Approach, HasTheGivenKnots) {
   EXPECT_EQ(result.shape.intervals_y(), given.intervals_y());
 }
 
-TEST(Approach, LeavesMirrorsOfManyKnotsAsTheyAre) {
-  Hidden hidden(perturbed(square(2), 1.5, Rng(4, 0)));
-  const DesignShape given = square(kApproachIntervals + 1);
-  ASSERT_FALSE(has_few_knots(given));
-  const Approached same = approach(hidden.problem(), given, 0, kFitRays);
-  EXPECT_EQ(same.shape.parameters(), given.parameters());
-  EXPECT_EQ(same.rays, 0u);
-  const Approached restart = approach(hidden.problem(), given, 2, kFitRays);
-  const double moved = (restart.shape.parameters() - given.parameters()).cwiseAbs().maxCoeff();
-  EXPECT_GT(moved, 0.1);
-  EXPECT_LE(moved, hidden.problem().perturbation * given.aperture().outer_radius_mm());
-}
-
 }  // namespace
 }  // namespace lucerna

@@ -54,9 +54,9 @@ DesignShape start_shape(const Reflector& reflector, const std::vector<int>& inte
   if (s == nullptr) reader.fail("intervals", "this reflector family cannot be designed");
   const BsplineShape& shape = s->shape();
   // A mirror that comes with knots of its own keeps them: coarser ones would not be what was given.
-  const int nx = intervals.empty() ? std::max(8, shape.row_x().intervals) : intervals[0];
-  const int ny =
-      intervals.empty() ? std::max(8, shape.row_y().intervals) : (intervals.size() > 1 ? intervals[1] : nx);
+  const int nx = intervals.empty() ? std::max(kFreeFormIntervals, shape.row_x().intervals) : intervals[0];
+  const int ny = intervals.empty() ? std::max(kFreeFormIntervals, shape.row_y().intervals)
+                                   : (intervals.size() > 1 ? intervals[1] : nx);
   const DesignShape plain = DesignShape::bspline(shape.focal_mm(), reflector.aperture, nx, ny, symmetry);
   return plain.through([&](double x, double y) { return smooth_point(shape.view(), x, y).z_mm; });
 }
@@ -216,6 +216,15 @@ void check_zones_family(const TomlReader& root, const DesignProblem& problem) {
 
 }  // namespace
 
+DesignShape start_within(const DesignLimits& limits, const DesignShape& start,
+                         const std::vector<PlacedSource>& sources, const Frame& world_from_mirror) {
+  const DesignShape held = ShapeLimits(limits, start).nearest(start);
+  if (held.parameters() == start.parameters()) return start;
+  const DesignShape moved =
+      in_front_of_source(start, held, DesignRays(sources, world_from_mirror.inverse(), 1));
+  return ShapeLimits(limits, moved).nearest(moved);
+}
+
 DesignProblem design_problem(Project project, const std::filesystem::path& path) {
   const toml::table tables = project.table;  // the readers below point into it
   TomlReader root(tables, path.string(), "");
@@ -247,12 +256,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   std::optional<ToleranceRanges> tolerances;
   if (auto table = design.table("tolerances")) tolerances = read_tolerances(std::move(*table));
   design.finish();
-  const DesignShape held = ShapeLimits(limits, start).nearest(start);
-  if (held.parameters() != start.parameters()) {
-    const DesignRays rays(project.scene.sources, placed.world_from_reflector.inverse(), 1);
-    start = in_front_of_source(start, held, rays);
-    start = ShapeLimits(limits, start).nearest(start);
-  }
+  start = start_within(limits, start, project.scene.sources, placed.world_from_reflector);
   const int growth = doublings(start, WindowOptions().count, !intervals.empty());
   add_detectors(project, target);
   DesignProblem problem{std::move(project),

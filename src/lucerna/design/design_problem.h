@@ -52,6 +52,14 @@ inline constexpr const char* kTargetPlane = "target";
 /// far field "far" if it has none, and a plane detector on a plane target.
 DesignProblem design_problem(Project project, const std::filesystem::path& path);
 
+/// The nearest shape to `start` that holds the limits on its form, as far in front of the sources as `start`
+/// is; `start` itself where it holds them.
+DesignShape start_within(const DesignLimits& limits, const DesignShape& start,
+                         const std::vector<PlacedSource>& sources, const Frame& world_from_mirror);
+
+/// Knots along a side of a free form where neither project nor mirror say how many, at least.
+inline constexpr int kFreeFormIntervals = 8;
+
 /// The bins in which the problem's result is judged.
 TentBins target_window(const DesignProblem& problem);
 

@@ -8,7 +8,7 @@
 namespace lucerna {
 
 /// When a design has to stop so that what follows the fit still fits into its time. How long that takes is
-/// reckoned by rays: those still to come, at the rate of those traced so far. It only stops: no decision of
+/// estimated by rays: those still to come, at the rate of those traced so far. It only stops: no decision of
 /// the fit depends on it.
 class TimeBudget {
  public:

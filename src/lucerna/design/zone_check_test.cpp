@@ -28,7 +28,7 @@ std::vector<BoxSums> light(const ZoneCells& cells, const std::vector<double>& lx
   for (std::size_t r = 0; r < out.size(); ++r) {
     out[r].emitted = 1.0;
     for (std::size_t c = 0; c < cells.size(); ++c) {
-      // +-d by turns has the standard error d / sqrt(15).
+      // +-d alternately has the standard error d / sqrt(15).
       const double off = (r % 2 == 0 ? 1.0 : -1.0) * relative * std::sqrt(15.0);
       out[r].zones.push_back(lx[c] * (1.0 + off) * cells.cells()[c].measure * 1e-6 / kFlux);
     }

@@ -83,7 +83,7 @@ void count_items(std::span<const TreeItem> items, const TreeBinning& binning, Tr
   std::size_t i = 0;
   std::array<double, 2> squares{};
   if (items.size() >= kWorthTwo) {
-    // Neighbours in the file are often in the same part: two counts by turns, so that none waits for the
+    // Neighbours in the file are often in the same part: two counts alternately, so that none waits for the
     // other.
     TreeCounts others;
     for (; i + 2 <= items.size(); i += 2) {
