@@ -156,7 +156,7 @@ std::string parameter_types(const std::string& text) {
 /// function with its parameters (which may go on in the lines after).
 std::vector<std::string> names_of(const std::vector<std::string>& lines, std::size_t at) {
   const std::string& line = lines[at];
-  if (const auto types = types_of({line}); !types.empty()) return types;
+  if (auto types = types_of({line}); !types.empty()) return types;
   if (line.empty() || std::string("} #/)").find(line[0]) != std::string::npos) return {};
   if (line.starts_with("constexpr ")) {
     std::vector<std::string> names;
@@ -267,7 +267,7 @@ TEST(Tree, CheckSeesALongFunction) {
 std::vector<std::string> links_of(const std::string& page) {
   std::vector<std::string> links;
   for (const std::string& target : lucerna::test::between(page, "](", ")")) {
-    if (target.find("://") == std::string::npos && target.rfind("#", 0) != 0)
+    if (target.find("://") == std::string::npos && !target.starts_with('#'))
       links.push_back(target.substr(0, target.find('#')));
   }
   return links;

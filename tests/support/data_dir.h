@@ -11,4 +11,4 @@
 /// `file` is relative to LUCERNA_DATA_DIR ("rayfiles/farfield.TM25ray").
 #define LUCERNA_DATA_FILE(variable, file)                                    \
   const std::filesystem::path variable = lucerna::test::data_dir() / (file); \
-  if (!std::filesystem::exists(variable)) GTEST_SKIP() << "no " << variable << " (set LUCERNA_DATA_DIR)"
+  if (!std::filesystem::exists(variable)) GTEST_SKIP() << "no " << (variable) << " (set LUCERNA_DATA_DIR)"

@@ -33,7 +33,7 @@ class Pillows final : public HeightSurface {
 /// A free-form mirror on a paraboloid.
 inline std::shared_ptr<const HeightSurface> free_form() {
   Rng rng(4, 0);
-  std::vector<double> c(14 * 12);
+  std::vector<double> c(std::size_t{14} * 12);
   for (double& x : c) x = 2.0 * rng.uniform();
   const Reflector base = conic_reflector(ConicPreset::parabola, 15.0, 0.0, Aperture::rectangle(90.0, 70.0));
   return std::make_shared<SplineSurface>(Rectangle{-45.0, 45.0, -35.0, 35.0}, 14, 12, c, base.surface);

@@ -14,10 +14,9 @@ void advise_huge_pages([[maybe_unused]] void* data, [[maybe_unused]] std::size_t
   constexpr std::uintptr_t kPage = 4096;
   constexpr std::size_t kWorthIt = std::size_t{4} << 20;
   if (bytes < kWorthIt) return;
-  const auto first = (reinterpret_cast<std::uintptr_t>(data) + kPage - 1) / kPage * kPage;
-  const auto last = reinterpret_cast<std::uintptr_t>(data) + bytes;
+  const std::size_t before_page = -reinterpret_cast<std::uintptr_t>(data) % kPage;
   // Small pages serve where there are no huge ones.
-  static_cast<void>(madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE));
+  static_cast<void>(madvise(static_cast<char*>(data) + before_page, bytes - before_page, MADV_HUGEPAGE));
 #endif
 }
 

@@ -30,7 +30,7 @@ TEST(Rng, SameKeySameNumbersOtherKeyOthers) {
 }
 
 std::vector<double> pair_counts(double power) {
-  std::vector<double> counts(32 * 32, 0.0);
+  std::vector<double> counts(std::size_t{32} * 32, 0.0);
   for (std::uint64_t i = 0; i < 400'000; ++i) {
     Rng rng(11, i);
     const int x = static_cast<int>(32 * std::pow(rng.uniform(), power)),

@@ -32,7 +32,7 @@ double cost(const TentBins& bins, const Eigen::VectorXd& flux) {
 
 /// Light of one bin moved by `cells` to the right.
 Eigen::VectorXd moved(int cells) {
-  Eigen::VectorXd flux = Eigen::VectorXd::Zero(kCount * kCount);
+  Eigen::VectorXd flux = Eigen::VectorXd::Zero(Eigen::Index{kCount} * kCount);
   flux[8 * kCount + 2] = 1.0;
   flux[8 * kCount + 2 + cells] = -1.0;
   return flux;
@@ -77,7 +77,7 @@ TEST(LargeScale, DerivativesAreThoseOfTheFlux) {
   const LargeScale scale(bins, 3.0);
   Evaluation e;
   e.flux = random_flux(1);
-  e.jacobian.resize(kCount * kCount, 5);
+  e.jacobian.resize(Eigen::Index{kCount} * kCount, 5);
   for (int k = 0; k < 5; ++k) e.jacobian.col(k) = random_flux(2 + static_cast<std::uint64_t>(k));
   const Evaluation out = scale(e);
   const Eigen::VectorXd step = Eigen::VectorXd::LinSpaced(5, -1.0, 2.0);

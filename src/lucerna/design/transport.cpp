@@ -133,8 +133,8 @@ class Sinkhorn {
 
 }  // namespace
 
-PointTransport::PointTransport(std::vector<DirectedFlux> from, std::vector<DirectedFlux> to, double sign,
-                               double entropy)
+PointTransport::PointTransport(const std::vector<DirectedFlux>& from, std::vector<DirectedFlux> to,
+                               double sign, double entropy)
     : to_(std::move(to)), sign_(sign), entropy_(entropy), wanted_(vectors(to_)) {
   Matrix cost = vectors(from) * wanted_.transpose();
   cost = (-static_cast<float>(sign)) * (1.0f - cost.array()).max(kMinOpening).log();

@@ -17,7 +17,8 @@ class PointTransport {
  public:
   /// Both lists need light; `entropy` is where the iteration ends (the cost's blur: about the product of the
   /// two lists' cell widths, in rad^2). 1300 x 1300 directions take 0.6 processor seconds.
-  PointTransport(std::vector<DirectedFlux> from, std::vector<DirectedFlux> to, double sign, double entropy);
+  PointTransport(const std::vector<DirectedFlux>& from, std::vector<DirectedFlux> to, double sign,
+                 double entropy);
 
   /// Polar radius towards a direction from the source, up to a common factor.
   double radius(const Direction& towards) const;

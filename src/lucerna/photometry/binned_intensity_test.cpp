@@ -231,7 +231,7 @@ TEST(BinnedIntensity, NothingIsNothing) {
 /// Flux by tents on a grid of 60 x 10 degrees, from 4 M points of a distribution I(gamma).
 template <class Intensity>
 std::vector<double> tents(const Intensity& intensity) {
-  std::vector<double> flux(6 * 19, 0.0);
+  std::vector<double> flux(std::size_t{6} * 19, 0.0);
   constexpr int kC = 60, kU = 20'000;
   for (int j = 0; j < kU; ++j) {
     const double u = 1.0 - 2.0 * (j + 0.5) / kU, gamma = degrees(std::acos(u));

@@ -144,7 +144,7 @@ void write_photometric_file(const std::filesystem::path& path, const Photometric
 
 std::vector<Fault> check_photometric_file(const std::filesystem::path& path,
                                           const PhotometricReadOptions& options) {
-  InputFile{path};  // throws if it cannot be opened
+  [[maybe_unused]] const InputFile opened(path);  // throws if it cannot be opened
   std::vector<Fault> faults;
   try {
     PhotometricReadOptions tolerant = options;

@@ -50,7 +50,7 @@ std::vector<std::string> split(const std::string& text) {
 /// Columns and units from the field label, "XYZABCF MM LM".
 RecordLayout layout_from(const std::string& label, std::size_t words, const InputFile& file,
                          RayFileFacts& facts) {
-  const std::size_t place = 2 * 4 * words + kNameSize + 4;
+  const std::size_t place = 8 * words + kNameSize + 4;
   const auto parts = split(label);
   const std::string letters = parts.empty() ? "" : parts[0];
   RecordLayout layout;
@@ -130,7 +130,7 @@ class AsapWriter final : public RayWriter {
   }
 
  private:
-  static constexpr std::size_t kCountRecord = 3 * 4 * kFewestWords;
+  static constexpr std::size_t kCountRecord = 12 * kFewestWords;
 
   static RecordLayout layout_for(const RaySetHeader& header, const WriteOptions& options) {
     if (std::ranges::find(kAsapUnits, options.length_unit, &AsapUnit::name) == kAsapUnits.end()) {
@@ -146,9 +146,9 @@ class AsapWriter final : public RayWriter {
 
 bool looks_like_asap(const InputFile& file) {
   const std::size_t words = words_of(file);
-  if (words == 0 || file.size() < 2 * 4 * words + kNameSize) return false;
+  if (words == 0 || file.size() < 8 * words + kNameSize) return false;
   std::string name(kNameSize, '\0');
-  file.read_at(2 * 4 * words, std::as_writable_bytes(std::span(name)));
+  file.read_at(8 * words, std::as_writable_bytes(std::span(name)));
   return name == kFluxName;
 }
 

@@ -17,7 +17,7 @@ inline constexpr std::size_t kVersion = 4, kCreationMethod = 8, kFluxLm = 12, kF
                              kItemCount = 80, kTextSize = 84;
 // Block B, flags, and block C, nine texts of 1000 UTF-32 code points.
 inline constexpr std::size_t kFlags = 256, kTexts = 288, kTextCodes = 1000,
-                             kHeaderSize = kTexts + 9 * 4 * kTextCodes;
+                             kHeaderSize = kTexts + 36 * kTextCodes;
 // Block D is padded to this; block E has labels of so many code points.
 inline constexpr std::size_t kPad = 32, kLabelCodes = 128;
 

@@ -162,7 +162,7 @@ TEST(Tm25, EveryTruncationIsAnErrorAndSalvageTakesWholeRays) {
   const TempDir dir;
   write_ray_set(dir / "a", set, "tm25");
   const std::string good = bytes_of(dir / "a");
-  const std::size_t rays = good.size() - 4 * 28;
+  const std::size_t rays = good.size() - std::size_t{4} * 28;
   for (std::size_t size = 0; size < good.size(); size += size + 1 < tm25::kTexts || size >= 36000 ? 1 : 97) {
     put_bytes(dir / "a", std::string_view(good).substr(0, size));
     const std::string message = message_of<InputError>([&] { read_ray_set(dir / "a"); });
@@ -220,7 +220,7 @@ TEST(Tm25, FaultyRaysAreNamedAndSalvageLeavesThemOut) {
   const RaySet set = random_ray_set(20000, 1);
   write_ray_set(dir / "a", set, "tm25");
   const std::string good = bytes_of(dir / "a");
-  const std::size_t ray = tm25::kHeaderSize + 28 * 10007;
+  const std::size_t ray = tm25::kHeaderSize + std::size_t{28} * 10007;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const auto message = [&](std::size_t column, float value) {
     put_bytes(dir / "a", patched(good, ray + 4 * column, value));
@@ -239,7 +239,7 @@ TEST(Tm25, FaultyRaysAreNamedAndSalvageLeavesThemOut) {
   EXPECT_EQ(whole.rays.x_mm[10007], set.rays.x_mm[10008]);
   EXPECT_THAT(warnings, ::testing::ElementsAre(HasSubstr("ray 10007")));
 
-  put_bytes(dir / "a", good.substr(0, tm25::kHeaderSize) + std::string(28 * 20000, '\xFF'));
+  put_bytes(dir / "a", good.substr(0, tm25::kHeaderSize) + std::string(std::size_t{28} * 20000, '\xFF'));
   EXPECT_THAT(message_of<InputError>([&] { read_ray_set(dir / "a"); }), HasSubstr("ray 0 (byte 36288)"));
   EXPECT_EQ(read_ray_set(dir / "a", {.salvage = true}).rays.size(), 0u);
 }

@@ -36,7 +36,7 @@ struct Grid {
   Sample sample(std::size_t i, std::size_t j) const {
     const Aperture& a = reflector.aperture;
     const double share = static_cast<double>(i) / static_cast<double>(nu);
-    double x, y;
+    double x = 0.0, y = 0.0;
     if (spokes) {
       const auto [out_x, out_y] = outline(static_cast<double>(j % nv) / static_cast<double>(nv));
       const double in = a.hole_radius_mm() / std::hypot(out_x, out_y);

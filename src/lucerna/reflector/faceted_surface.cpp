@@ -58,7 +58,7 @@ HeightRange FacetedSurface::range(const Rectangle& region) const {
         }
       };
       const double h = 0.5 * pitch_mm_;
-      double lx, hx, ly, hy;
+      double lx = 0.0, hx = 0.0, ly = 0.0, hy = 0.0;
       along(c.dzdx, std::max(region.x0_mm - cx, -h), std::min(region.x1_mm - cx, h), lx, hx);
       along(c.dzdy, std::max(region.y0_mm - cy, -h), std::min(region.y1_mm - cy, h), ly, hy);
       all.low_mm = std::min(all.low_mm, c.z_mm + lx + ly);

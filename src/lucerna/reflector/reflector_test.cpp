@@ -16,7 +16,7 @@ namespace {
 
 SplineSurface bumps(std::shared_ptr<const HeightSurface> base) {
   Rng rng(1, 0);
-  std::vector<double> c(9 * 7);
+  std::vector<double> c(std::size_t{9} * 7);
   for (double& x : c) x = 3.0 * rng.uniform();
   return {{-25.0, 25.0, -25.0, 25.0}, 9, 7, c, std::move(base)};
 }

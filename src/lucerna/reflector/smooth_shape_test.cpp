@@ -48,7 +48,7 @@ void expect_bounded(const View& view, double half_mm) {
 
 TEST(SmoothShape, NearBendsHoldAndForgetAFarSpike) {
   const KnotRow row{-50.0, 100.0 / 12, 12};
-  const BsplineShape shape(15.0, row, row, with_a_spike(15 * 15, 15 * 12 + 12));
+  const BsplineShape shape(15.0, row, row, with_a_spike(std::size_t{15} * 15, std::size_t{15} * 12 + 12));
   const BsplineView view = shape.view();
   expect_bounded(view, 50.0);
   EXPECT_LT(view.near_bends_at(-30.0, -30.0)[0], 0.1 * view.bend_bound);

@@ -205,7 +205,7 @@ std::string direction_map(const std::string& name, const FarFieldFigure& f) { re
 
 std::string first_far_field_key(const ResultFigures& result) {
   for (std::size_t i = 0; i < result.at("/detectors").size(); ++i) {
-    const std::string key = fmt::format("/detectors/{}", i);
+    std::string key = fmt::format("/detectors/{}", i);
     if (result.text(key + "/kind") == "far-field") return key;
   }
   return "";

@@ -132,7 +132,8 @@ TEST(Scene3d, BodiesAreTheirTrianglesAndFineOnesAreJoined) {
   double area = 0.0;
   for (std::size_t i = 0; i < index.size(); i += 3) {
     const auto at = [&](std::size_t k) {
-      return Vec3{p[3 * index[i + k]], p[3 * index[i + k] + 1], p[3 * index[i + k] + 2]};
+      const std::size_t v = std::size_t{3} * index[i + k];
+      return Vec3{p[v], p[v + 1], p[v + 2]};
     };
     area += 0.5 * length(cross(at(1) - at(0), at(2) - at(0)));
   }
@@ -162,7 +163,8 @@ TEST(Scene3d, GlassesAreClosedPlatesAndRaysPassThem) {
     Vec3 area{};
     for (std::size_t i = 0; i < index.size(); i += 3) {
       const auto at = [&](std::size_t k) {
-        return Vec3{p[3 * index[i + k]], p[3 * index[i + k] + 1], p[3 * index[i + k] + 2]};
+        const std::size_t v = std::size_t{3} * index[i + k];
+        return Vec3{p[v], p[v + 1], p[v + 2]};
       };
       volume += dot(at(0), cross(at(1), at(2))) / 6.0;
       area = area + cross(at(1) - at(0), at(2) - at(0));

@@ -26,7 +26,7 @@ std::vector<std::string> files_of(const std::string& flux_line) {
   const TraceFigures figures = trace_figures(trace(project.scene, options));
   const std::string csv = far_field_csv(figures.far_fields[0]);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 72 * 181);
-  const auto names = write_trace_files(dir.path(), trace_origin(project), figures, {}, trace_json(figures));
+  auto names = write_trace_files(dir.path(), trace_origin(project), figures, {}, trace_json(figures));
   for (const std::string& name : names) EXPECT_GT(std::filesystem::file_size(dir / name), 50u) << name;
   return names;
 }

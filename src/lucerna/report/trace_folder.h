@@ -37,6 +37,7 @@ struct PlaneTable {
 };
 
 /// What `trace` left in a folder, read back: all that a report needs.
+// A JSON value checks itself when moved. NOLINTNEXTLINE(bugprone-exception-escape)
 struct TraceFolder {
   std::filesystem::path path;
   /// result.json, whole.

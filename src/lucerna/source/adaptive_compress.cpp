@@ -211,11 +211,12 @@ struct LayerGrower {
   std::string light = "";
 
   /// Adds a layer of `weight`; rays that it cannot carry go to `missed`.
-  void add(const BoundedSupport& on, std::span<const float> weight, bool has_etendue, std::string why) {
+  void add(const BoundedSupport& on, std::span<const float> weight, bool has_etendue,
+           const std::string& why) {
     Projection p = project(rays, weight, on, tolerance_mm);
     append_chosen(missed, rays, weight, p.missed);
     p.missed = {};
-    add(p, on.support, has_etendue, std::move(why));
+    add(p, on.support, has_etendue, why);
   }
 
   void add_background(const BoundedSupport& best) {
@@ -226,7 +227,7 @@ struct LayerGrower {
     missed = {};
   }
 
-  void add(Projection& p, const Support& support, bool has_etendue, std::string why) {
+  void add(Projection& p, const Support& support, bool has_etendue, const std::string& why) {
     if (has_etendue) widen(p, support, tolerance_mm);
     GrownLayer g =
         grown_layer(p, support, total_weight, setting.trees, kGrowShare * setting.penalty_nats, progress);

@@ -95,6 +95,7 @@ struct SurfaceCase {
   RaySet rays(std::size_t n, std::uint64_t seed) const {
     return kind ? seeded_rays(*kind, n, seed, surface) : octahedron_rays(n, seed);
   }
+  // GoogleTest looks for this name. NOLINTNEXTLINE(readability-identifier-naming)
   friend void PrintTo(const SurfaceCase& c, std::ostream* out) { *out << c.name; }
 };
 

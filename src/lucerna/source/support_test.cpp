@@ -78,7 +78,7 @@ TEST(Support, ALineComesBackFromItsNumbers) {
 /// p-value for lines uniform in étendue being uniform in the numbers of chart `chart`, within the box.
 double uniformity(const Support& s, std::uint32_t chart, const std::array<std::array<double, 2>, 4>& box,
                   double bend) {
-  std::vector<double> counts(3 * 3 * 3 * 3, 0.0);
+  std::vector<double> counts(81, 0.0);
   Rng rng(7, chart);
   for (int i = 0; i < 400000; ++i) {
     const auto p = s.to_chart(uniform_line(s, rng));

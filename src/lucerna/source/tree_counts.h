@@ -37,7 +37,7 @@ TreeSums sums_below(const TreeCounts& counts);
 
 /// Cuts of which the gain is wanted, for count_gains: lanes that are not used gain nothing.
 struct CutList {
-  static constexpr std::size_t kMost = 4 * kTreeCuts;
+  static constexpr std::size_t kMost = std::size_t{4} * kTreeCuts;
   std::size_t size = 0;
   alignas(64) std::array<double, kMost> below, log_below, log_above, gain;
 

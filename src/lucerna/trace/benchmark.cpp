@@ -139,7 +139,7 @@ BenchmarkFigures run_benchmark(const BenchmarkScene& s, int cells, const std::sh
   go_on();
   if (!EmbreeYardstick::available()) return f;
   const EmbreeYardstick embree(*field);
-  std::vector<double> bins(360 * 181);
+  std::vector<double> bins(std::size_t{360} * 181);
   const double t =
       best_of(2, cpu_seconds, [&] { embree.trace(rays->rays, s.focal_mm, kBenchmarkBounces, bins); });
   f.embree_rays_per_cpu_s = static_cast<double>(f.rays) / t;

@@ -43,7 +43,7 @@ class DeviceTraceGpu : public testing::Test {
 TEST_F(DeviceTraceGpu, AgreesRayByRayWithTheCpuOnTenMillionRaysOfEveryFamily) {
   std::vector<Reflector> families = test::families();
   Rng rng(4, 0);
-  std::vector<double> c(14 * 12);
+  std::vector<double> c(std::size_t{14} * 12);
   for (double& x : c) x = 2.0 * rng.uniform();
   const Reflector base = conic_reflector(ConicPreset::parabola, 15.0, 0.0, Aperture::rectangle(90.0, 70.0));
   families.push_back(

@@ -152,7 +152,7 @@ EmbreeYardstick::EmbreeYardstick(const HeightField& field)
     : device_(std::make_unique<Device>(field)), build_s_(device_->build_s) {}
 
 void EmbreeYardstick::trace(const RayBlock& rays, double lift_mm, int bounces, std::span<double> bins) const {
-  LUCERNA_CHECK(bins.size() == 360 * 181, "{} bins", bins.size());
+  LUCERNA_CHECK(bins.size() == std::size_t{360} * 181, "{} bins", bins.size());
   device_->trace(rays, lift_mm, bounces, bins);
 }
 

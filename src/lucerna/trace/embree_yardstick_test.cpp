@@ -16,7 +16,7 @@ TEST(EmbreeYardstick, SendsLightWhereTheTracerDoes) {
   for (const BenchmarkScene& s : benchmark_scenes()) {
     const Scene scene = benchmark_scene(s, rays);
     const HeightField field(scene.reflectors[0].reflector, 256);
-    std::vector<double> bins(360 * 181);
+    std::vector<double> bins(std::size_t{360} * 181);
     EmbreeYardstick(field).trace(rays->rays, s.focal_mm, kBenchmarkBounces, bins);
     TraceOptions options;
     options.last_ray = rays->rays.size();

@@ -97,7 +97,7 @@ LUCERNA_HD inline Int float_bits(Float a) {
 #if defined(__CUDA_ARCH__)
   return Int(__float_as_int(a.v));
 #else
-  int32_t b;
+  int32_t b = 0;
   __builtin_memcpy(&b, &a.v, sizeof b);
   return Int(b);
 #endif

@@ -2,9 +2,10 @@
 #include "lucerna/trace/project.h"
 
 namespace lucerna {
+namespace {
 
-std::string project_template() {
-  return R"(# A Lucerna project: which light falls on which mirror, and what is looked at.
+constexpr const char* kTemplate =
+    R"(# A Lucerna project: which light falls on which mirror, and what is looked at.
 # lucerna trace PROJECT.toml -o DIR, or lucerna design PROJECT.toml -o DIR
 # Lengths in mm, angles in degrees, fluxes in lm (or W). Luminaire frame: z up, nadir (gamma 0) = -z, C0 = +x, C90 = +y.
 # File names are relative to this file. Take away the # of a block to use it.
@@ -231,6 +232,9 @@ bins = "hard"                 # tent: a ray counts for its four neighbours; smoo
 #   [[target.zone]] name, gamma_deg and c_deg (or h_deg and v_deg about the target's axis; x_mm and y_mm on a plane),
 #   each a number or [low, high], and min_cd, max_cd, min_lx, max_lx, min_uo, min_ul: docs/algorithms/zones.md
 )";
-}
+
+}  // namespace
+
+std::string project_template() { return kTemplate; }
 
 }  // namespace lucerna

@@ -22,7 +22,7 @@ namespace {
 std::vector<Reflector> families() {
   const Aperture round = Aperture::circle(64.0, 8.0), box = Aperture::rectangle(64.0, 48.0);
   Rng rng(4, 0);
-  std::vector<double> c(10 * 10);
+  std::vector<double> c(std::size_t{10} * 10);
   for (double& x : c) x = rng.uniform();
   const Reflector base = conic_reflector(ConicPreset::parabola, 12.0, 0.0, round);
   return {

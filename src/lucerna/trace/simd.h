@@ -378,7 +378,7 @@ inline V compress(Mask m, V a) {
 }
 inline Int float_bits(Float a) {
   return lanes<Int>([&](int i) {
-    int32_t b;
+    int32_t b = 0;
     __builtin_memcpy(&b, &a.v[i], sizeof b);
     return b;
   });
