@@ -16,11 +16,11 @@
 #include <filesystem>
 #include <string>
 
-#include "lucerna/rayset/compare.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_comparison.h"
+#include "lucerna/ray_file.h"
+#include "lucerna/source.h"
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
 #include "own_sources.h"
 
 using namespace lucerna;

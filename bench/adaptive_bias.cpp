@@ -9,10 +9,10 @@
 #include <cstdlib>
 #include <string>
 
-#include "lucerna/rayset/compare.h"
+#include "lucerna/bounding_surface.h"
+#include "lucerna/ray_comparison.h"
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
 #include "own_sources.h"
 
 using namespace lucerna;

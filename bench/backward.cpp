@@ -16,11 +16,12 @@
 #include <vector>
 
 #include "lucerna/core/parallel.h"
-#include "lucerna/core/sobol.h"
+#include "lucerna/project.h"
+#include "lucerna/random.h"
+#include "lucerna/trace.h"
 #include "lucerna/trace/backward_estimator.h"
+#include "lucerna/trace/far_field_counts.h"
 #include "lucerna/trace/node_noise.h"
-#include "lucerna/trace/project.h"
-#include "lucerna/trace/trace.h"
 
 namespace {
 
@@ -62,10 +63,10 @@ DirectionCell cell_of(const FarField& f, std::size_t i) {
 }
 
 /// The far field with the flux of `cells` by backward rays.
-FarField traced_backward(const Scene& scene, const FarField& forward, const std::vector<std::size_t>& cells,
-                         std::uint64_t samples) {
+CountedFarField traced_backward(const Scene& scene, const CountedFarField& forward,
+                                const std::vector<std::size_t>& cells, std::uint64_t samples) {
   const BackwardEstimator estimator(scene);
-  FarField out = forward;
+  CountedFarField out = forward;
   out.replicated = JackknifedFlux(out.flux.size(), 16);
   for (std::size_t i = 0; i < out.flux.size(); ++i) {
     for (double& v : out.replicated.row(i)) v = out.flux[i];
@@ -113,7 +114,7 @@ void run(const std::string& file, std::uint64_t samples) {
   const Project project = read_project(file);
   Measured forward, backward;
   forward.seconds = -processor_seconds();
-  const FarField field = far_field(trace(project.scene, {.last_ray = kForwardRays}), 0);
+  const CountedFarField field = far_field(trace(project.scene, {.last_ray = kForwardRays}), 0);
   forward.seconds += processor_seconds();
   const BinnedIntensity nodes = node_intensity(field);
   const auto& cd = nodes.distribution.cd;
@@ -124,7 +125,7 @@ void run(const std::string& file, std::uint64_t samples) {
   }
   forward.error = errors_at(nodes, cells, peak);
   backward.seconds = -processor_seconds();
-  const FarField seen = traced_backward(project.scene, field, cells, samples);
+  const CountedFarField seen = traced_backward(project.scene, field, cells, samples);
   backward.seconds += processor_seconds();
   backward.error = errors_at(node_intensity(seen), cells, peak);
   fmt::print("{}: {} angles; processor seconds to 1 %: forward {:.3g}, backward {:.3g}, combined {:.3g}\n",

@@ -18,11 +18,11 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/random.h"
 #include "lucerna/design/fit.h"
 #include "lucerna/design/optimizer.h"
 #include "lucerna/design/window.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/random.h"
+#include "lucerna/source.h"
 #include "lucerna/trace/accelerator.h"
 
 using namespace lucerna;

@@ -13,9 +13,10 @@
 
 #include "lucerna/core/parallel.h"
 #include "lucerna/photometry/far_field_metrics.h"
+#include "lucerna/project.h"
+#include "lucerna/trace.h"
+#include "lucerna/trace/far_field_counts.h"
 #include "lucerna/trace/node_noise.h"
-#include "lucerna/trace/project.h"
-#include "lucerna/trace/trace_until.h"
 
 namespace {
 

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "lucerna/core/error.h"
+#include "lucerna/source.h"
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/alias_table.h"
 #include "lucerna/source/nfl.h"
-#include "lucerna/source/ray_source.h"
 #include "lucerna/source/support.h"
 
 namespace lucerna::bench {

@@ -8,11 +8,9 @@
 #include <string>
 #include <string_view>
 
-#include "lucerna/core/frame.h"
-#include "lucerna/rayset/bounding_surface.h"
-#include "lucerna/rayset/compare.h"
-#include "lucerna/source/emitter.h"
-#include "lucerna/source/ray_source.h"
+#include "lucerna/geometry.h"
+#include "lucerna/ray_comparison.h"
+#include "lucerna/source.h"
 #include "lucerna/source/warp.h"
 
 namespace lucerna::bench {

@@ -9,8 +9,8 @@
 #include <cstdlib>
 #include <vector>
 
-#include "lucerna/core/random.h"
-#include "lucerna/photometry/photometric_io.h"
+#include "lucerna/photometric_file.h"
+#include "lucerna/random.h"
 
 namespace {
 

@@ -17,12 +17,12 @@
 #include "lucerna/core/file.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/core/png.h"
-#include "lucerna/rayset/compare.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_comparison.h"
+#include "lucerna/ray_file.h"
 #include "lucerna/rayset/view_picture.h"
+#include "lucerna/source.h"
 #include "lucerna/source/cluster_compress.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
 
 namespace {
 

@@ -11,8 +11,8 @@
 #include <numbers>
 
 #include "lucerna/core/parallel.h"
-#include "lucerna/core/random.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/random.h"
+#include "lucerna/ray_file.h"
 
 namespace {
 

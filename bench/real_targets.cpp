@@ -23,17 +23,17 @@
 #include <vector>
 
 #include "lucerna/core/file.h"
-#include "lucerna/core/random.h"
 #include "lucerna/design/bounds.h"
 #include "lucerna/design/design.h"
 #include "lucerna/design/validation.h"
 #include "lucerna/design/window.h"
-#include "lucerna/photometry/photometric_io.h"
+#include "lucerna/photometric_file.h"
+#include "lucerna/random.h"
 #include "lucerna/report/design_figures.h"
+#include "lucerna/source.h"
 #include "lucerna/source/adaptive_compress.h"
-#include "lucerna/source/emitter.h"
-#include "lucerna/source/source_model.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/source_model.h"
+#include "lucerna/trace.h"
 #include "synthetic_targets.h"
 
 using namespace lucerna;

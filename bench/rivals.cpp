@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "light_field.h"
-#include "lucerna/rayset/compare.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_comparison.h"
+#include "lucerna/ray_file.h"
 #include "lucerna/rayset/subset.h"
+#include "lucerna/source.h"
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/cluster_compress.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
 #include "own_sources.h"
 
 namespace {

@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "lucerna/core/parallel.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/source.h"
+#include "lucerna/trace/far_field_grid.h"
 #include "lucerna/trace/trace_engine.h"
 
 namespace {

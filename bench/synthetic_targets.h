@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/direction.h"
-#include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/geometry.h"
+#include "lucerna/intensity.h"
 
 namespace lucerna::bench {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays per second through a mirror of 100 x 100 mm, the scenes of design.md section 6: para (f 15), wavy
+// Rays per second through a mirror of 100 x 100 mm, three scenes: para (f 15), wavy
 // (with pillows of 0.4 mm and 8 mm pitch), deep (f 5 with pillows). Cylinder source r 1, length 6, isotropic
 // from its mantle; reflectance 0.9, at most 4 reflections; Type C bins of one degree. Rays are in memory, in
 // random order. Beside it Embree on the same grid as triangles, in packets of 16 rays; all but its search are

@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "lucerna/source/ray_set_source.h"
+#include "lucerna/bounding_surface.h"
 #include "lucerna/trace/benchmark.h"
 
 namespace bench {

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "lucerna/core/error.h"
-#include "lucerna/photometry/photometric_io.h"
+#include "lucerna/photometric_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

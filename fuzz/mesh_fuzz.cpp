@@ -4,7 +4,7 @@
 
 #include "fuzz/memory_file.h"
 #include "lucerna/core/error.h"
-#include "lucerna/reflector/mesh.h"
+#include "lucerna/mesh.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include "fuzz/memory_file.h"
 #include "lucerna/core/error.h"
 #include "lucerna/design/design_problem.h"
-#include "lucerna/trace/project.h"
+#include "lucerna/project.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const MemoryFile file(data, size, ".toml");

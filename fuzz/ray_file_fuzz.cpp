@@ -6,7 +6,7 @@
 
 #include "fuzz/memory_file.h"
 #include "lucerna/core/error.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
 
 #if !defined(LUCERNA_FUZZ_FORMAT)
 #define LUCERNA_FUZZ_FORMAT ""

@@ -8,11 +8,12 @@
 #   tree          layers, lengths, licences, one type a name
 #   docs          every link and path of the docs leads somewhere
 #   release       g++, everything with the benchmarks, all tests but the slow ones
-#   install       the program runs from where it was installed
+#   install       the program runs from where it was installed; so does a program of another project that finds the library there
+#   consumers     the same program with the sources of Lucerna within its project
 #   clang asan tsan   the same tests under those presets
 set -u
 cd "$(dirname "$0")/.."
-stages="${*:-format tidy tree docs release install clang asan tsan}"
+stages="${*:-format tidy tree docs release install consumers clang asan tsan}"
 # `make` waits for two compilers at once on two cores; the presets' tests run two at a time too.
 jobs=${JOBS:-$(nproc)}
 base=${BASE:-origin/main}
@@ -58,12 +59,33 @@ tree_tests() {  # FILTER
     build/release/tests/tree_tests --gtest_filter="$1"
 }
 
+# The first rays of a file become a model, a beam and an LDT file, which the installed program reads.
+consume() {  # PROGRAM FOLDER
+  "$1" "$2/disk.tm25ray" "$2/beam.ldt" && build/release/lucerna check "$2/beam.ldt"
+}
+
 installs() {
-  place=build/check/installed
-  rm -rf "$place"
+  place=$PWD/build/check/installed
+  rm -rf "$place" build/check/find_package
   cmake --preset release >/dev/null && cmake --build --preset release -j "$jobs" --target lucerna_cli &&
     cmake --install build/release --prefix "$place" && "$place/bin/lucerna" --version &&
-    "$place/bin/lucerna" make-source disk -n 1000 -o "$place/disk.tm25ray" && "$place/bin/lucerna" check "$place/disk.tm25ray"
+    "$place/bin/lucerna" make-source disk -n 20000 -o "$place/disk.tm25ray" && "$place/bin/lucerna" check "$place/disk.tm25ray" &&
+    cmake -S tests/consumers/find_package -B build/check/find_package -DCMAKE_PREFIX_PATH="$place" &&
+    cmake --build build/check/find_package && consume build/check/find_package/ray_file_to_ldt "$place"
+}
+
+# Which headers the compiler opens for the umbrella: ours and the standard library's.
+foreign_headers() {
+  echo '#include <lucerna/lucerna.h>' | "${CXX:-c++}" -std=c++20 -Iinclude -xc++ -M - | tr ' ' '\n' |
+    grep -E '/(Eigen|fmt|nlohmann|toml\+\+|tbb|oneapi|CLI|embree3|zstd|openssl|libqhull)'
+}
+
+within_sources() {
+  place=build/check/add_subdirectory
+  ! foreign_headers || return 1
+  cmake -S tests/consumers/add_subdirectory -B "$place" -DCMAKE_BUILD_TYPE=Release -DLUCERNA_CUDA=OFF &&
+    cmake --build "$place" -j "$jobs" --target ray_file_to_ldt && build/release/lucerna make-source disk -n 20000 -o "$place/disk.tm25ray" &&
+    consume "$place/ray_file_to_ldt" "$place"
 }
 
 stage() {
@@ -75,6 +97,7 @@ stage() {
     docs) tree_tests 'Docs.*' ;;
     release) build_and_test release all benchmarks ;;
     install) installs ;;
+    consumers) within_sources ;;
     clang) build_and_test clang all benchmarks ;;
     asan | tsan) build_and_test "$1" all ;;
     *)

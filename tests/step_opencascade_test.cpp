@@ -14,10 +14,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "lucerna/cad.h"
 #include "lucerna/core/file.h"
-#include "lucerna/reflector/cad_export.h"
 #include "lucerna/reflector/smooth_shape.h"
-#include "lucerna/reflector/step_export.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "lucerna/reflector/faceted_surface.h"
+#include "lucerna/source.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/trace.h"
 #include "tests/support/meshes.h"
 
 /// What both the CPU's stand-in for a GPU and real GPUs are tested with.

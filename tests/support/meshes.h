@@ -6,8 +6,8 @@
 #include <memory>
 #include <numbers>
 
-#include "lucerna/core/random.h"
-#include "lucerna/reflector/mesh.h"
+#include "lucerna/mesh.h"
+#include "lucerna/random.h"
 
 namespace lucerna::test {
 

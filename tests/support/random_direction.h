@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "lucerna/core/frame.h"
-#include "lucerna/core/random.h"
+#include "lucerna/geometry.h"
+#include "lucerna/random.h"
 
 namespace lucerna::test {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/random.h"
-#include "lucerna/rayset/ray_set.h"
+#include "lucerna/random.h"
+#include "lucerna/rays.h"
 #include "tests/support/random_direction.h"
 
 namespace lucerna::test {

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "lucerna/core/random.h"
-#include "lucerna/reflector/reflector.h"
+#include "lucerna/random.h"
+#include "lucerna/reflector.h"
 #include "lucerna/reflector/spline_surface.h"
 
 namespace lucerna {

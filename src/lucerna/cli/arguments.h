@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lucerna/core/frame.h"
+#include "lucerna/geometry.h"
 
 /// What words on the command line mean. Every function throws UsageError with the word and what was expected.
 namespace lucerna::cli {

@@ -9,7 +9,7 @@
 #include "lucerna/cli/photometric_arguments.h"
 #include "lucerna/core/error.h"
 #include "lucerna/rayset/ray_check.h"
-#include "lucerna/source/source_model.h"
+#include "lucerna/source_model.h"
 
 namespace lucerna::cli {
 

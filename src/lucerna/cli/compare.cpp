@@ -10,11 +10,11 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/design/box_error.h"
-#include "lucerna/photometry/compare_distributions.h"
+#include "lucerna/intensity_comparison.h"
 #include "lucerna/report/error_json.h"
 #include "lucerna/report/svg_polar.h"
-#include "lucerna/report/trace_figures.h"
 #include "lucerna/report/trace_folder.h"
+#include "lucerna/report/trace_json.h"
 
 namespace lucerna::cli {
 

@@ -8,12 +8,12 @@
 #include "lucerna/cli/compare_parts.h"
 #include "lucerna/cli/describe.h"
 #include "lucerna/core/png.h"
+#include "lucerna/ray_file.h"
 #include "lucerna/rayset/field_comparison.h"
-#include "lucerna/rayset/ray_file.h"
 #include "lucerna/rayset/view_picture.h"
 #include "lucerna/source/draw_rays.h"
 #include "lucerna/source/model_etendue.h"
-#include "lucerna/source/source_model.h"
+#include "lucerna/source_model.h"
 
 namespace lucerna::cli {
 

@@ -7,10 +7,7 @@
 #include "lucerna/cli/commands.h"
 #include "lucerna/cli/model_report.h"
 #include "lucerna/core/error.h"
-#include "lucerna/rayset/ray_file.h"
-#include "lucerna/rayset/superpose.h"
-#include "lucerna/source/adaptive_compress.h"
-#include "lucerna/source/cluster_compress.h"
+#include "lucerna/source_model.h"
 
 namespace lucerna::cli {
 
@@ -28,70 +25,26 @@ std::optional<double> given_flux(const CompressArguments& a) {
   return flux;
 }
 
-/// All inputs as one set; a given flux replaces what one file states, or scales the sum of several.
-RaySet read_inputs(const CompressArguments& a, Session& session) {
-  RaySet all;
-  std::vector<std::string> warnings;
-  for (const std::string& path : a.inputs) {
-    RaySet set = read_ray_set(path, {}, session.progress(), &warnings);
-    session.add_input(path);
-    if (a.inputs.size() == 1) {
-      all = std::move(set);
-    } else {
-      superpose(all, std::move(set), path);
-    }
-  }
-  for (const std::string& warning : warnings) {
-    if (session.strict) throw InputError(warning);
-    session.note(warning);
-  }
-  if (const auto flux = given_flux(a)) all.header.set_flux(*flux);
-  require_flux(all.header, a.inputs.front());
-  return all;
+CompressOptions compress_options(const CompressArguments& a) {
+  CompressOptions options{.method = compress_method(a.method), .flux = given_flux(a)};
+  if (!a.max_bytes.empty()) options.max_bytes = parse_size(a.max_bytes);
+  options.seed = parse_count(a.seed);
+  return options;
 }
 
-/// A model and the rays it was made from.
-struct Compressed {
-  std::unique_ptr<SourceModel> model;
-  std::uint64_t rays = 0;
-};
-
-/// One file, adaptively: block by block, so that it may be larger than memory.
-Compressed compress_stream(const CompressArguments& a, const AdaptiveOptions& options, Session& session) {
-  const auto reader = open_ray_file(a.inputs.front());
-  session.add_input(a.inputs.front());
-  if (reader->ray_count() > options.most_rays) {
-    session.note(fmt::format("{}: of its {} rays {} are used, one of each stretch of equal length",
-                             a.inputs.front(), reader->ray_count(), options.most_rays));
-  }
-  Compressed made{compress_adaptive(*reader, options, session.progress()), reader->ray_count()};
-  for (const std::string& warning : reader->warnings()) {
+CompressedFiles make_model(const CompressArguments& a, Session& session) {
+  const CompressOptions options = compress_options(a);
+  CompressedFiles made = compress({a.inputs.begin(), a.inputs.end()}, options, session.progress());
+  for (const std::string& input : a.inputs) session.add_input(input);
+  for (const std::string& note : made.notes) session.note(note);
+  for (const std::string& warning : made.warnings) {
     if (session.strict) throw InputError(warning);
     session.note(warning);
   }
   return made;
 }
 
-Compressed make_model(const CompressArguments& a, Session& session) {
-  if (a.method != "adaptive" && a.method != "clusters") {
-    throw UsageError(fmt::format("unknown method '{}'; expected adaptive or clusters", a.method));
-  }
-  std::optional<std::uint64_t> max_bytes;
-  if (!a.max_bytes.empty()) max_bytes = parse_size(a.max_bytes);
-  const std::uint64_t seed = parse_count(a.seed);
-  if (a.method == "adaptive" && a.inputs.size() == 1) {
-    return compress_stream(a, {.max_bytes = max_bytes, .seed = seed, .flux = given_flux(a)}, session);
-  }
-  const RaySet rays = session.timed("read", [&] { return read_inputs(a, session); });
-  if (a.method == "adaptive") {
-    return {compress_adaptive(rays, {.max_bytes = max_bytes, .seed = seed}, session.progress()),
-            rays.rays.size()};
-  }
-  return {compress_clusters(rays, {.max_bytes = max_bytes, .seed = seed}, session.progress()),
-          rays.rays.size()};
-}
-
-void compress(const CompressArguments& a, Session& session) {
+void run_compress(const CompressArguments& a, Session& session) {
   session.start();
   const auto made = session.timed("compress", [&] { return make_model(a, session); });
   const SourceModel* model = made.model.get();
@@ -121,7 +74,7 @@ void add_compress(CLI::App& app, Session& session, int&) {
   CompressArguments& a = *arguments;
   command.required("IN", a.inputs, "Ray files; several are superposed, their fluxes add");
   command.required("-o,--output", a.output, "The model file to write (.nfl)");
-  command.option("--method", a.method, "adaptive, or clusters: the seed's anisotropic point lights");
+  command.option("--method", a.method, "adaptive, or clusters: Mas-Martin-Patow clusters");
   command.option("--max-bytes", a.max_bytes, "Largest size of the file (64k, 1MB, 64KiB)");
   command.option("--flux", a.flux, "Total flux, in the rays' unit, instead of what the files state");
   command.option("--seed", a.seed, "Seed of the random choices");
@@ -129,7 +82,7 @@ void add_compress(CLI::App& app, Session& session, int&) {
   session.add_json(command);
   session.add_strict(command);
   session.add_common(command);
-  command.on_run([arguments, &session] { compress(*arguments, session); });
+  command.on_run([arguments, &session] { run_compress(*arguments, session); });
 }
 
 }  // namespace lucerna::cli

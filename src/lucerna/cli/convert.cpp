@@ -7,7 +7,7 @@
 #include "lucerna/cli/commands.h"
 #include "lucerna/cli/photometric_arguments.h"
 #include "lucerna/core/error.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
 
 namespace lucerna::cli {
 

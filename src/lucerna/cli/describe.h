@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lucerna/cli/session.h"
-#include "lucerna/photometry/photometric_io.h"
+#include "lucerna/photometric_file.h"
 
 namespace lucerna::cli {
 

@@ -7,7 +7,7 @@
 #include "lucerna/source/adaptive_model.h"
 #include "lucerna/source/cluster_model.h"
 #include "lucerna/source/model_etendue.h"
-#include "lucerna/source/source_model.h"
+#include "lucerna/source_model.h"
 
 namespace lucerna::cli {
 

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include "lucerna/cli/describe.h"
-#include "lucerna/photometry/figures.h"
+#include "lucerna/photometric_figures.h"
 #include "lucerna/photometry/street.h"
-#include "lucerna/report/trace_figures.h"
+#include "lucerna/report/trace_json.h"
 
 namespace lucerna::cli {
 

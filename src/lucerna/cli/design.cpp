@@ -12,8 +12,8 @@
 #include "lucerna/core/file.h"
 #include "lucerna/report/design_files.h"
 #include "lucerna/report/report_design.h"
+#include "lucerna/trace.h"
 #include "lucerna/trace/accelerator.h"
-#include "lucerna/trace/trace_until.h"
 
 namespace lucerna::cli {
 

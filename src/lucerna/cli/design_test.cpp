@@ -13,11 +13,11 @@
 #include <sstream>
 
 #include "lucerna/core/file.h"
-#include "lucerna/core/random.h"
 #include "lucerna/design/checkpoint.h"
 #include "lucerna/design/limit_check.h"
-#include "lucerna/photometry/photometric_io.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/photometric_file.h"
+#include "lucerna/random.h"
+#include "lucerna/trace.h"
 #include "tests/support/run_program.h"
 
 namespace lucerna {

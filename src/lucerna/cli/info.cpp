@@ -5,7 +5,7 @@
 #include "lucerna/cli/describe.h"
 #include "lucerna/cli/photometric_arguments.h"
 #include "lucerna/core/error.h"
-#include "lucerna/source/source_model.h"
+#include "lucerna/source_model.h"
 
 namespace lucerna::cli {
 

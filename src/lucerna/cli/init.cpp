@@ -4,7 +4,7 @@
 #include "lucerna/cli/commands.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
-#include "lucerna/trace/project.h"
+#include "lucerna/project.h"
 
 namespace lucerna::cli {
 

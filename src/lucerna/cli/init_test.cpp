@@ -4,12 +4,12 @@
 
 #include <sstream>
 
+#include "lucerna/cad.h"
 #include "lucerna/core/file.h"
 #include "lucerna/core/png.h"
 #include "lucerna/design/design_problem.h"
-#include "lucerna/photometry/photometric_file.h"
-#include "lucerna/rayset/ray_file.h"
-#include "lucerna/reflector/cad_export.h"
+#include "lucerna/photometric_file.h"
+#include "lucerna/ray_file.h"
 #include "tests/support/random_rays.h"
 #include "tests/support/run_program.h"
 

@@ -4,10 +4,10 @@
 #include "lucerna/cli/arguments.h"
 #include "lucerna/cli/commands.h"
 #include "lucerna/core/error.h"
-#include "lucerna/core/version.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
+#include "lucerna/source.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/version.h"
 
 namespace lucerna::cli {
 
@@ -78,7 +78,7 @@ void add_make_source(CLI::App& app, Session& session, int&) {
   command.option("--sequence", a.sequence, "random or sobol");
   command.option("--flux-lm", a.flux_lm, "Luminous flux (default 1000)");
   command.option("--flux-w", a.flux_w, "Radiant flux, instead of a luminous one");
-  command.option("--radius-mm", a.radius, "disk, cylinder, sphere, filament, seed's sets");
+  command.option("--radius-mm", a.radius, "disk, cylinder, sphere, filament, synthetic sets");
   command.option("--length-mm", a.length, "cylinder, filament");
   command.option("--size-mm", a.size, "rectangle: X,Y");
   command.option("--ghost-share", a.ghost_share, "filament: share of the flux in the bulb's mirror image");

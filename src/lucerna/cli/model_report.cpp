@@ -9,7 +9,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
 #include "lucerna/rayset/subset.h"
 #include "lucerna/report/report_model.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lucerna/cli/session.h"
-#include "lucerna/source/source_model.h"
+#include "lucerna/source_model.h"
 
 namespace lucerna::cli {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "lucerna/cli/command.h"
-#include "lucerna/photometry/photometric_io.h"
+#include "lucerna/photometric_file.h"
 
 namespace lucerna::cli {
 

@@ -9,7 +9,7 @@
 
 #include "lucerna/cli/commands.h"
 #include "lucerna/core/error.h"
-#include "lucerna/core/version.h"
+#include "lucerna/version.h"
 
 namespace lucerna::cli {
 

@@ -4,10 +4,10 @@
 #include "lucerna/cli/arguments.h"
 #include "lucerna/cli/commands.h"
 #include "lucerna/core/error.h"
-#include "lucerna/core/version.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/source_model.h"
+#include "lucerna/source_model.h"
+#include "lucerna/version.h"
 
 namespace lucerna::cli {
 

@@ -13,7 +13,7 @@
 #include "lucerna/cli/arguments.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
-#include "lucerna/core/version.h"
+#include "lucerna/version.h"
 
 namespace lucerna::cli {
 

@@ -14,7 +14,7 @@
 
 #include "lucerna/cli/command.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/core/progress.h"
+#include "lucerna/progress.h"
 
 namespace lucerna::cli {
 

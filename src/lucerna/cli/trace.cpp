@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/trace/trace.h"
+#include "lucerna/trace.h"
 
 #include <fmt/format.h>
 
@@ -8,12 +8,11 @@
 #include "lucerna/cli/trace_output.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
+#include "lucerna/project.h"
 #include "lucerna/report/report_trace.h"
 #include "lucerna/report/trace_folder.h"
 #include "lucerna/trace/accelerator.h"
-#include "lucerna/trace/project.h"
 #include "lucerna/trace/trace_file.h"
-#include "lucerna/trace/trace_until.h"
 
 namespace lucerna::cli {
 

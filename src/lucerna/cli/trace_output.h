@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lucerna/cli/session.h"
-#include "lucerna/report/trace_figures.h"
+#include "lucerna/report/trace_json.h"
 #include "lucerna/trace/trace_origin.h"
 
 namespace lucerna::cli {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "lucerna/core/file.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
 #include "lucerna/report/trace_folder.h"
 #include "tests/support/run_program.h"
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "lucerna/core/host_device.h"
+#include "lucerna/host_device.h"
 
 namespace lucerna {
 

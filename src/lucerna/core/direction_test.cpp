@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/core/direction.h"
-
 #include <gtest/gtest.h>
 
-#include "lucerna/core/random.h"
+#include "lucerna/geometry.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 namespace {

@@ -3,36 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
-#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
+#include "lucerna/error.h"
+
 namespace lucerna {
-
-/// Everything that Lucerna throws. The text says what is wrong, where, what was found and what was expected.
-class Error : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// The input is bad: a file, a project, a set of rays. The program ends with exit code 1.
-class InputError : public Error {
- public:
-  using Error::Error;
-};
-
-/// The call itself is bad: an unknown option, a format that cannot be chosen. Exit code 2.
-class UsageError : public Error {
- public:
-  using Error::Error;
-};
-
-/// The caller's Progress asked to stop. Exit code 3; what was whole has been written.
-class Interrupted : public Error {
- public:
-  Interrupted() : Error("interrupted") {}
-};
 
 /// An error in a file: "FILE: byte 20: ray count 5000000 needs 140000000 bytes, the file has 2816".
 template <class... Args>

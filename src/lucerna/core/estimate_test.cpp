@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/core/estimate.h"
+#include "lucerna/estimate.h"
 
 #include <gtest/gtest.h>
 

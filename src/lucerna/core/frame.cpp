@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/core/frame.h"
+#include "lucerna/geometry.h"
 
 namespace lucerna {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/core/sequence.h"
-
 #include "lucerna/core/error.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 

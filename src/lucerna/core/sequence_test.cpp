@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/core/sequence.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "lucerna/core/error.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 namespace {

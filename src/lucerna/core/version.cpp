@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/core/version.h"
+#include "lucerna/version.h"
 
 namespace lucerna {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/progress.h"
 #include "lucerna/design/box_error.h"
 #include "lucerna/design/design_problem.h"
+#include "lucerna/progress.h"
 
 namespace lucerna {
 

@@ -9,7 +9,7 @@
 
 #include "lucerna/core/file.h"
 #include "lucerna/design/design.h"
-#include "lucerna/photometry/photometric_io.h"
+#include "lucerna/photometric_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {

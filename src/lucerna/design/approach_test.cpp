@@ -3,10 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "lucerna/core/random.h"
 #include "lucerna/design/perturbed.h"
 #include "lucerna/design/window.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/random.h"
+#include "lucerna/source.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "lucerna/reflector/cad_export.h"
+#include "lucerna/cad.h"
 #include "lucerna/trace/body_kernel.h"
 
 namespace lucerna {

@@ -6,8 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "lucerna/trace/body.h"
-#include "lucerna/trace/scene.h"
+#include "lucerna/scene.h"
 #include "lucerna/trace/triangle_tree.h"
 
 namespace lucerna {

@@ -5,13 +5,13 @@
 
 #include <cmath>
 
+#include "lucerna/cad.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/design/design.h"
 #include "lucerna/design/validation.h"
-#include "lucerna/photometry/photometric_io.h"
-#include "lucerna/reflector/cad_export.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/photometric_file.h"
+#include "lucerna/source.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "lucerna/core/estimate.h"
 #include "lucerna/design/error_boxes.h"
 #include "lucerna/design/target.h"
+#include "lucerna/estimate.h"
 
 namespace lucerna {
 

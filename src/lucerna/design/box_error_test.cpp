@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 namespace {

@@ -16,6 +16,7 @@
 #include "lucerna/design/time_budget.h"
 #include "lucerna/design/window.h"
 #include "lucerna/trace/accelerator.h"
+#include "lucerna/trace/project_tables.h"
 
 namespace lucerna {
 
@@ -44,7 +45,7 @@ std::function<double(const DesignShape&, std::uint64_t, ResidualRows*)> limits_c
 
 /// FNV-1a: tells checkpoints of different problems apart.
 std::string problem_key(const DesignProblem& problem, const DesignOptions& options) {
-  toml::table table = problem.project.table;
+  toml::table table = toml_tables(problem.project);
   if (auto* design = table["design"].as_table()) {
     design->erase("time_s");
     design->erase("tolerances");  // a sweep after the fit

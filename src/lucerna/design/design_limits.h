@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "lucerna/design/design_shape.h"
-#include "lucerna/reflector/mesh.h"
-#include "lucerna/trace/body.h"
+#include "lucerna/mesh.h"
+#include "lucerna/scene.h"
 #include "lucerna/trace/toml_reader.h"
 
 namespace lucerna {

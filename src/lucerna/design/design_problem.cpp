@@ -12,8 +12,11 @@
 #include "lucerna/design/limits.h"
 #include "lucerna/design/search_mirror.h"
 #include "lucerna/design/window.h"
+#include "lucerna/reflector/profile.h"
 #include "lucerna/reflector/trough_surface.h"
+#include "lucerna/trace/project_tables.h"
 #include "lucerna/trace/toml_reader.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 
@@ -128,9 +131,9 @@ void add_detectors(Project& project, const DesignTarget& target) {
     scene.far_fields.emplace_back();
     scene.far_fields.back().name = "far";
   }
-  if (project.table["detector"].as_array() == nullptr)
-    project.table.insert_or_assign("detector", toml::array{});
-  toml::array& tables = *project.table["detector"].as_array();
+  if (toml_tables(project)["detector"].as_array() == nullptr)
+    toml_tables(project).insert_or_assign("detector", toml::array{});
+  toml::array& tables = *toml_tables(project)["detector"].as_array();
   const auto is_far = [](const toml::node& n) {
     const auto* t = n.as_table();
     return t != nullptr && (*t)["kind"].value_or(std::string()) == "far-field";
@@ -193,13 +196,13 @@ void put_shaped_first(Project& project, const TomlReader& root, TomlReader& desi
   }
   const auto shaped = static_cast<std::ptrdiff_t>(*number);
   std::rotate(all.begin(), all.begin() + shaped, all.begin() + shaped + 1);
-  const toml::array given = *project.table["reflector"].as_array();
+  const toml::array given = *toml_tables(project)["reflector"].as_array();
   toml::array ordered{*given.get(static_cast<std::size_t>(shaped))->as_table()};
   for (std::size_t i = 0; i < given.size(); ++i) {
     if (i != static_cast<std::size_t>(shaped)) ordered.push_back(*given.get(i)->as_table());
   }
-  project.table.insert_or_assign("reflector", std::move(ordered));
-  project.table["design"].as_table()->insert_or_assign("reflector", 0);
+  toml_tables(project).insert_or_assign("reflector", std::move(ordered));
+  toml_tables(project)["design"].as_table()->insert_or_assign("reflector", 0);
 }
 
 /// Zones are fitted by the search of free forms alone.
@@ -226,7 +229,7 @@ DesignShape start_within(const DesignLimits& limits, const DesignShape& start,
 }
 
 DesignProblem design_problem(Project project, const std::filesystem::path& path) {
-  const toml::table tables = project.table;  // the readers below point into it
+  const toml::table tables = toml_tables(project);  // the readers below point into it
   TomlReader root(tables, path.string(), "");
   for (const char* known : {"source", "reflector", "detector", "body"}) root.has(known);
   auto target_reader = root.table("target");
@@ -283,7 +286,7 @@ TentBins target_window(const DesignProblem& problem) {
 namespace {
 
 std::string placement(const DesignProblem& problem, const char* key) {
-  const auto* reflectors = problem.project.table["reflector"].as_array();
+  const auto* reflectors = toml_tables(problem.project)["reflector"].as_array();
   const auto* table = reflectors != nullptr ? reflectors->get(0)->as_table() : nullptr;
   const auto* node = table != nullptr ? table->get(key) : nullptr;
   if (node == nullptr) return "";
@@ -335,9 +338,9 @@ Project with_shape(const DesignProblem& problem, const DesignShape& shape) {
   project.scene.reflectors[0].reflector = shape.reflector();
   const toml::table tables = toml::parse(reflector_toml(problem, shape));
   toml::array reflectors = *tables["reflector"].as_array();
-  const toml::array& given = *problem.project.table["reflector"].as_array();
+  const toml::array& given = *toml_tables(problem.project)["reflector"].as_array();
   for (std::size_t i = 1; i < given.size(); ++i) reflectors.push_back(*given.get(i)->as_table());
-  project.table.insert_or_assign("reflector", std::move(reflectors));
+  toml_tables(project).insert_or_assign("reflector", std::move(reflectors));
   return project;
 }
 

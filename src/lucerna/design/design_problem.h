@@ -10,7 +10,7 @@
 #include "lucerna/design/optimizer.h"
 #include "lucerna/design/target.h"
 #include "lucerna/design/tolerances.h"
-#include "lucerna/trace/project.h"
+#include "lucerna/project.h"
 
 namespace lucerna {
 

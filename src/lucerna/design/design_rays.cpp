@@ -5,8 +5,10 @@
 #include <atomic>
 #include <utility>
 
+#include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/design/device_evaluator.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

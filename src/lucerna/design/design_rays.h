@@ -6,10 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "lucerna/core/progress.h"
 #include "lucerna/design/design_ray_block.h"
-#include "lucerna/rayset/ray_block.h"
+#include "lucerna/progress.h"
+#include "lucerna/rays.h"
 #include "lucerna/trace/ray_numbering.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

@@ -7,8 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "lucerna/reflector/aperture.h"
-#include "lucerna/reflector/reflector.h"
+#include "lucerna/reflector.h"
 #include "lucerna/reflector/smooth_shape.h"
 
 namespace lucerna {

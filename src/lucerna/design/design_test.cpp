@@ -9,10 +9,11 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/design/checkpoint.h"
+#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_file.h"
 #include "lucerna/photometry/binned_intensity.h"
-#include "lucerna/photometry/flux.h"
-#include "lucerna/photometry/photometric_io.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/trace.h"
+#include "lucerna/trace/far_field_counts.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {

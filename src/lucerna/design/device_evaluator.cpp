@@ -5,6 +5,7 @@
 
 #include "lucerna/design/evaluation_launch.h"
 #include "lucerna/design/evaluation_sums.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

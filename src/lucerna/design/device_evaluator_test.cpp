@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "lucerna/design/fit.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 namespace {

@@ -15,6 +15,7 @@
 #include "lucerna/design/device_evaluator.h"
 #include "lucerna/design/evaluation_sums.h"
 #include "lucerna/design/hit_kernels.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

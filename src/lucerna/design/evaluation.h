@@ -9,7 +9,7 @@
 #include "lucerna/design/design_shape.h"
 #include "lucerna/design/sparse_jacobian.h"
 #include "lucerna/design/tent_bins.h"
-#include "lucerna/trace/reflectance.h"
+#include "lucerna/scene.h"
 
 namespace lucerna {
 

@@ -6,6 +6,7 @@
 #include "lucerna/design/evaluation_launch.h"
 #include "lucerna/trace/accelerator_error.h"
 #include "lucerna/trace/block_sums.cuh"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lucerna/core/host_device.h"
 #include "lucerna/design/smooth_path.h"
 #include "lucerna/design/tent_view.h"
-#include "lucerna/trace/reflectance.h"
+#include "lucerna/host_device.h"
+#include "lucerna/scene.h"
 
 namespace lucerna {
 

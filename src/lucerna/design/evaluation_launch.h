@@ -8,6 +8,7 @@
 #include "lucerna/design/design_ray_block.h"
 #include "lucerna/design/evaluation_kernel.h"
 #include "lucerna/trace/accelerator.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

@@ -7,10 +7,11 @@
 #include <numbers>
 
 #include "lucerna/core/parallel.h"
-#include "lucerna/core/random.h"
 #include "lucerna/design/smooth_path.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/random.h"
+#include "lucerna/source.h"
 #include "lucerna/trace/reference_tracer.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 namespace {

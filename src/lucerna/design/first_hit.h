@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "lucerna/core/host_device.h"
+#include "lucerna/host_device.h"
 #include "lucerna/reflector/near_cells.h"
 
 namespace lucerna {

@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "lucerna/core/progress.h"
 #include "lucerna/design/large_scale.h"
 #include "lucerna/design/residual_rows.h"
 #include "lucerna/design/target_rectangle.h"
 #include "lucerna/design/zone_cost.h"
+#include "lucerna/progress.h"
 
 namespace lucerna {
 

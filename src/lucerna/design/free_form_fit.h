@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "lucerna/core/progress.h"
 #include "lucerna/design/fit.h"
 #include "lucerna/design/graded_bins.h"
 #include "lucerna/design/sparse_equations.h"
+#include "lucerna/progress.h"
 
 namespace lucerna {
 

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
 #include "lucerna/design/approach.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "lucerna/core/random.h"
 #include "lucerna/design/checkpoint.h"
 #include "lucerna/design/perturbed.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/random.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 

@@ -7,9 +7,9 @@
 #include <variant>
 #include <vector>
 
-#include "lucerna/core/random.h"
 #include "lucerna/design/design_shape.h"
 #include "lucerna/design/smooth_path.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 namespace {

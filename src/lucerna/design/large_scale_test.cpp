@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 namespace {

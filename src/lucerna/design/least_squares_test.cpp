@@ -5,7 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 namespace {

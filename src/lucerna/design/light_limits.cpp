@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "lucerna/core/error.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

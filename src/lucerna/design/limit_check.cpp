@@ -9,9 +9,9 @@
 #include <unordered_map>
 #include <utility>
 
-#include "lucerna/core/direction.h"
 #include "lucerna/core/error.h"
 #include "lucerna/design/keep_out.h"
+#include "lucerna/geometry.h"
 
 namespace lucerna {
 

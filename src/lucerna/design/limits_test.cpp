@@ -6,13 +6,13 @@
 
 #include <cmath>
 
+#include "lucerna/cad.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/design/keep_out.h"
 #include "lucerna/design/light_limits.h"
 #include "lucerna/design/limit_check.h"
-#include "lucerna/reflector/cad_export.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/source.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {

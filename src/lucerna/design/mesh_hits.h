@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "lucerna/trace/body.h"
+#include "lucerna/scene.h"
 
 namespace lucerna {
 

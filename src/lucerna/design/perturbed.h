@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "lucerna/core/random.h"
 #include "lucerna/design/design_shape.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 

@@ -6,10 +6,10 @@
 #include <numbers>
 
 #include "lucerna/core/parallel.h"
-#include "lucerna/core/random.h"
 #include "lucerna/design/perturbed.h"
 #include "lucerna/design/zone_table.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/random.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lucerna/source/emitter.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 namespace {

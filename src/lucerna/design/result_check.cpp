@@ -7,12 +7,13 @@
 #include <cmath>
 #include <utility>
 
+#include "lucerna/cad.h"
 #include "lucerna/design/body_shadows.h"
 #include "lucerna/design/bounds.h"
 #include "lucerna/design/light_limits.h"
 #include "lucerna/design/reach.h"
 #include "lucerna/design/validation.h"
-#include "lucerna/reflector/cad_export.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 namespace {

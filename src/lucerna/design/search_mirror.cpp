@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/design/search_mirror.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "lucerna/design/checkpoint.h"

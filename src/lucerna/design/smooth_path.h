@@ -5,11 +5,11 @@
 #include <array>
 #include <cmath>
 
-#include "lucerna/core/direction.h"
-#include "lucerna/core/host_device.h"
 #include "lucerna/design/first_hit.h"
 #include "lucerna/design/one_lane.h"
-#include "lucerna/reflector/aperture.h"
+#include "lucerna/geometry.h"
+#include "lucerna/host_device.h"
+#include "lucerna/reflector.h"
 #include "lucerna/reflector/smooth_view.h"
 
 namespace lucerna {

@@ -5,7 +5,7 @@
 
 #include "lucerna/design/design_rays.h"
 #include "lucerna/rayset/etendue_curve.h"
-#include "lucerna/source/source_model.h"
+#include "lucerna/source_model.h"
 
 namespace lucerna {
 

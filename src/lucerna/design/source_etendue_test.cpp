@@ -6,9 +6,9 @@
 #include <memory>
 #include <numbers>
 
+#include "lucerna/source.h"
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
 #include "lucerna/source/model_etendue.h"
 
 namespace lucerna {

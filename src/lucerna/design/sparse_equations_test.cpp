@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "lucerna/core/parallel.h"
-#include "lucerna/core/random.h"
 #include "lucerna/design/graded_bins.h"
 #include "lucerna/design/residual_rows.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/random.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 namespace {

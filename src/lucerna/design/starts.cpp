@@ -6,6 +6,7 @@
 
 #include "lucerna/design/limits.h"
 #include "lucerna/design/zero_etendue.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

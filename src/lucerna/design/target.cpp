@@ -7,7 +7,7 @@
 #include "lucerna/core/error.h"
 #include "lucerna/design/window.h"
 #include "lucerna/design/zone_guide.h"
-#include "lucerna/photometry/photometric_io.h"
+#include "lucerna/photometric_file.h"
 
 namespace lucerna {
 

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/flux_unit.h"
-#include "lucerna/core/frame.h"
 #include "lucerna/design/least_squares.h"
 #include "lucerna/design/zone_cells.h"
+#include "lucerna/flux_unit.h"
+#include "lucerna/geometry.h"
+#include "lucerna/intensity.h"
 #include "lucerna/photometry/illuminance_map.h"
-#include "lucerna/photometry/intensity_distribution.h"
 #include "lucerna/trace/toml_reader.h"
 
 namespace lucerna {

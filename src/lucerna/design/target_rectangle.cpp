@@ -7,7 +7,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/design/target.h"
-#include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/intensity.h"
 
 namespace lucerna {
 

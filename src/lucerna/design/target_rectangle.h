@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "lucerna/core/frame.h"
-#include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/geometry.h"
+#include "lucerna/intensity.h"
 
 namespace lucerna {
 

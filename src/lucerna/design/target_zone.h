@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/flux_unit.h"
+#include "lucerna/flux_unit.h"
 #include "lucerna/trace/toml_reader.h"
 
 namespace lucerna {

@@ -7,7 +7,7 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/design/design_problem.h"
-#include "lucerna/photometry/photometric_io.h"
+#include "lucerna/photometric_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {

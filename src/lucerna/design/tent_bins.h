@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "lucerna/core/direction.h"
 #include "lucerna/design/tent_view.h"
+#include "lucerna/geometry.h"
 
 namespace lucerna {
 

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lucerna/core/frame.h"
-#include "lucerna/core/host_device.h"
 #include "lucerna/design/tent_axis.h"
+#include "lucerna/geometry.h"
+#include "lucerna/host_device.h"
 
 namespace lucerna {
 

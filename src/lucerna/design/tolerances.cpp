@@ -10,9 +10,10 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
 #include "lucerna/photometry/far_field_metrics.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/random.h"
+#include "lucerna/trace.h"
+#include "lucerna/trace/far_field_counts.h"
 
 namespace lucerna {
 

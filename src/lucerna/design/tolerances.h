@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/estimate.h"
-#include "lucerna/core/progress.h"
-#include "lucerna/trace/scene.h"
+#include "lucerna/estimate.h"
+#include "lucerna/progress.h"
+#include "lucerna/scene.h"
 #include "lucerna/trace/toml_reader.h"
 
 namespace lucerna {

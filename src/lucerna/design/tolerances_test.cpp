@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lucerna/source/emitter.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 namespace {

@@ -11,6 +11,7 @@
 #include "lucerna/design/starts.h"
 #include "lucerna/design/transport.h"
 #include "lucerna/design/zero_etendue.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

@@ -5,13 +5,13 @@
 
 #include <cmath>
 
-#include "lucerna/core/random.h"
 #include "lucerna/design/evaluation.h"
 #include "lucerna/design/fit.h"
 #include "lucerna/design/least_squares.h"
 #include "lucerna/design/perturbed.h"
 #include "lucerna/design/window.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/random.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 namespace {

@@ -11,7 +11,9 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/design/mesh_hits.h"
+#include "lucerna/trace/body_tracer.h"
 #include "lucerna/trace/ray_numbering.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "lucerna/core/progress.h"
+#include "lucerna/cad.h"
 #include "lucerna/design/zone_check.h"
-#include "lucerna/reflector/cad_export.h"
-#include "lucerna/trace/scene.h"
+#include "lucerna/progress.h"
+#include "lucerna/scene.h"
 
 namespace lucerna {
 

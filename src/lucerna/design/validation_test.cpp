@@ -10,8 +10,9 @@
 #include "lucerna/core/parallel.h"
 #include "lucerna/design/design_shape.h"
 #include "lucerna/design/mesh_hits.h"
-#include "lucerna/source/emitter.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/source.h"
+#include "lucerna/trace.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 namespace {

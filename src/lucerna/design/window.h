@@ -4,7 +4,7 @@
 #include <span>
 
 #include "lucerna/design/tent_bins.h"
-#include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/intensity.h"
 
 namespace lucerna {
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "lucerna/design/supporting_paraboloids.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

@@ -8,7 +8,8 @@
 #include "lucerna/design/evaluation.h"
 #include "lucerna/design/least_squares.h"
 #include "lucerna/design/smooth_path.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/source.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 namespace {

@@ -6,9 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "lucerna/core/direction.h"
-#include "lucerna/core/frame.h"
 #include "lucerna/design/target_zone.h"
+#include "lucerna/geometry.h"
 
 namespace lucerna {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/estimate.h"
 #include "lucerna/design/box_error.h"
 #include "lucerna/design/zone_cells.h"
+#include "lucerna/estimate.h"
 
 namespace lucerna {
 

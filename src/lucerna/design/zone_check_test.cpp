@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "lucerna/design/validation.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 namespace {

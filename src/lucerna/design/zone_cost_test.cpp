@@ -9,7 +9,7 @@
 #include "lucerna/design/free_form_search.h"
 #include "lucerna/design/graded_bins.h"
 #include "lucerna/design/zone_guide.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 namespace {

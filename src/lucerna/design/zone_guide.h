@@ -2,8 +2,8 @@
 #pragma once
 
 #include "lucerna/design/zone_cells.h"
+#include "lucerna/intensity.h"
 #include "lucerna/photometry/illuminance_map.h"
-#include "lucerna/photometry/intensity_distribution.h"
 
 namespace lucerna {
 

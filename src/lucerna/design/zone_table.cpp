@@ -10,6 +10,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/photometry/beam.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "lucerna/core/error.h"
-#include "lucerna/photometry/flux.h"
+#include "lucerna/photometric_figures.h"
 
 namespace lucerna {
 

@@ -4,7 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/far_field_metrics.h"
+#include "lucerna/intensity.h"
 #include "lucerna/photometry/jackknife.h"
 
 namespace lucerna {
@@ -29,17 +30,6 @@ IntensityBins intensity_bins(std::span<const double> c_deg, std::span<const doub
 /// The integral over each tent in gamma of sin gamma: from the neighbour before to the neighbour after. The
 /// gammas must reach from 0 to 180.
 std::vector<double> tent_integrals(std::span<const double> gamma_deg);
-
-/// What `intensity_from_bins` returns.
-struct BinnedIntensity {
-  IntensityDistribution distribution;
-  /// Standard error of each value of `distribution.cd`; empty if it is not known.
-  std::vector<double> standard_error_cd;
-  /// The last factor on all values that made the flux exact. 1 within a percent on a grid that resolves the
-  /// beam; further away means that the gamma step is too wide for what was traced, and the values are
-  /// uncertain by as much.
-  double closure = 1.0;
-};
 
 /// Intensities from flux per bin ([c][gamma], as `intensity_bins` cuts the sphere), such that `total_flux` of
 /// the result is the sum of the bins to rounding.

@@ -9,8 +9,8 @@
 #include <numeric>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
-#include "lucerna/photometry/flux.h"
+#include "lucerna/photometric_figures.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/photometry/compare_distributions.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,12 +6,12 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/core/random.h"
-#include "lucerna/photometry/beam.h"
+#include "lucerna/intensity_comparison.h"
+#include "lucerna/photometric_figures.h"
 #include "lucerna/photometry/binned_intensity.h"
-#include "lucerna/photometry/flux.h"
 #include "lucerna/photometry/resample.h"
 #include "lucerna/photometry/transport.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/photometry/compare_distributions.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
-#include "lucerna/photometry/flux.h"
+#include "lucerna/intensity_comparison.h"
+#include "lucerna/photometric_figures.h"
 #include "lucerna/photometry/resample.h"
 #include "lucerna/photometry/transport.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 namespace {

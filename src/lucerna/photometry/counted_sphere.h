@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "lucerna/core/direction.h"
-#include "lucerna/core/flux_unit.h"
+#include "lucerna/flux_unit.h"
+#include "lucerna/geometry.h"
 #include "lucerna/photometry/jackknife.h"
 
 namespace lucerna {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/intensity.h"
 #include "lucerna/photometry/photometric_text.h"
 
 namespace lucerna {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lucerna/core/parallel.h"
+#include "lucerna/photometry/peak_estimate.h"
 #include "lucerna/photometry/section_estimate.h"
 
 namespace lucerna {
@@ -98,7 +99,8 @@ FarFieldMetrics far_field_metrics(const CountedSphere& sphere, std::span<const d
   FarFieldMetrics m;
   measure_zones(sphere, m);
   measure_glare(sphere, m);
-  m.peak = peak_estimate(sphere);
+  const std::optional<FoundPeak> peak = peak_estimate(sphere);
+  m.peak = peak;
   m.axis_gamma_deg = m.flux_90_180.mean > m.flux_0_90.mean ? 180.0 : 0.0;
   const Direction axis = Direction::from_unit({0.0, 0.0, m.axis_gamma_deg == 0.0 ? -1.0 : 1.0});
   const double finest = sphere.resolution_deg();
@@ -115,7 +117,7 @@ FarFieldMetrics far_field_metrics(const CountedSphere& sphere, std::span<const d
   std::sort(planes.begin(), planes.end());
   planes.erase(std::unique(planes.begin(), planes.end()), planes.end());
   const double widest = m.peak ? kSmoothing * m.peak->half_width_deg : kAxisRadius_deg;
-  const Jackknife maximum = m.peak ? m.peak->values : Jackknife(sphere.replicates());
+  const Jackknife maximum = peak ? peak->values : Jackknife(sphere.replicates());
   std::vector<PlaneResult> results(planes.size());
   parallel_blocks(planes.size(), 1, [&](std::size_t i, std::size_t) {
     results[i] = measure_plane(sphere, planes[i], widest, m.axis_gamma_deg == 180.0, maximum, centre);

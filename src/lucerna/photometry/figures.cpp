@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/photometry/figures.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "lucerna/core/error.h"
-#include "lucerna/photometry/flux.h"
+#include "lucerna/photometric_figures.h"
 
 namespace lucerna {
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/photometry/figures.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
 #include "lucerna/core/error.h"
+#include "lucerna/photometric_figures.h"
 
 namespace lucerna {
 namespace {

@@ -3,10 +3,10 @@
 #include <cctype>
 #include <cmath>
 
+#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_file.h"
 #include "lucerna/photometry/expand_grid.h"
-#include "lucerna/photometry/flux.h"
 #include "lucerna/photometry/ies_body.h"
-#include "lucerna/photometry/photometric_io.h"
 #include "lucerna/photometry/symmetry.h"
 #include "lucerna/photometry/type_ab.h"
 

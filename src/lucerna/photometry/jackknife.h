@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "lucerna/core/estimate.h"
+#include "lucerna/estimate.h"
 
 namespace lucerna {
 

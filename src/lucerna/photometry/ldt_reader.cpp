@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lucerna/photometric_file.h"
 #include "lucerna/photometry/expand_grid.h"
-#include "lucerna/photometry/photometric_io.h"
 #include "lucerna/photometry/symmetry.h"
 
 namespace lucerna {

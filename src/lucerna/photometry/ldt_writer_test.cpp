@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "lucerna/core/error.h"
-#include "lucerna/photometry/photometric_file.h"
+#include "lucerna/photometric_file.h"
 
 namespace lucerna {
 namespace {

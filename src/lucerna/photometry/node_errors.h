@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/intensity.h"
 
 namespace lucerna {
 

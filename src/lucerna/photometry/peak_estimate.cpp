@@ -283,8 +283,8 @@ void place_peak(const Candidates& c, const LargestFigure& most, PeakEstimate& p)
 
 }  // namespace
 
-std::optional<PeakEstimate> peak_estimate(const CountedSphere& sphere) {
-  PeakEstimate p;
+std::optional<FoundPeak> peak_estimate(const CountedSphere& sphere) {
+  FoundPeak p;
   double radius = kWidestRadius_deg;
   const double finest = sphere.resolution_deg();
   std::optional<Scan> s;

@@ -9,9 +9,8 @@
 #include <sstream>
 
 #include "lucerna/core/file.h"
-#include "lucerna/photometry/beam.h"
-#include "lucerna/photometry/flux.h"
-#include "lucerna/photometry/photometric_io.h"
+#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_file.h"
 #include "tests/support/data_dir.h"
 
 namespace lucerna {

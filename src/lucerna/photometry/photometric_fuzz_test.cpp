@@ -5,8 +5,8 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
-#include "lucerna/core/random.h"
-#include "lucerna/photometry/photometric_io.h"
+#include "lucerna/photometric_file.h"
+#include "lucerna/random.h"
 #include "tests/support/paths.h"
 
 namespace lucerna {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/photometry/photometric_io.h"
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 
 #include "lucerna/core/file.h"
-#include "lucerna/photometry/flux.h"
+#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_file.h"
 #include "lucerna/photometry/photometric_text.h"
 
 namespace lucerna {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The odd and broken files of tests/data/photometry: each gives the value or the message that its name calls
 // for.
-#include "lucerna/photometry/photometric_io.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,8 +8,8 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
-#include "lucerna/photometry/beam.h"
-#include "lucerna/photometry/flux.h"
+#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_file.h"
 #include "lucerna/photometry/symmetry.h"
 #include "tests/support/paths.h"
 #include "tests/support/temp_dir.h"

@@ -10,11 +10,11 @@
 #include <map>
 #include <set>
 
-#include "lucerna/core/random.h"
-#include "lucerna/photometry/flux.h"
-#include "lucerna/photometry/photometric_io.h"
+#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_file.h"
 #include "lucerna/photometry/symmetry.h"
 #include "lucerna/photometry/type_ab.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "lucerna/core/error.h"
-#include "lucerna/photometry/photometric_file.h"
+#include "lucerna/photometric_file.h"
 
 namespace lucerna {
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "lucerna/core/frame.h"
-#include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/geometry.h"
+#include "lucerna/intensity.h"
 
 namespace lucerna {
 

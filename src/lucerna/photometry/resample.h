@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "lucerna/core/vec.h"
-#include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/geometry.h"
+#include "lucerna/intensity.h"
 
 namespace lucerna {
 

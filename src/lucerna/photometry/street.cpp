@@ -8,7 +8,7 @@
 #include <span>
 
 #include "lucerna/core/error.h"
-#include "lucerna/photometry/flux.h"
+#include "lucerna/photometric_figures.h"
 
 namespace lucerna {
 

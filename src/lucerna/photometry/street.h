@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "lucerna/photometry/intensity_distribution.h"
-#include "lucerna/photometry/photometric_file.h"
+#include "lucerna/intensity.h"
+#include "lucerna/photometric_file.h"
 
 namespace lucerna {
 

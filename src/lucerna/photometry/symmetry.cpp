@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "lucerna/core/error.h"
-#include "lucerna/photometry/flux.h"
+#include "lucerna/photometric_figures.h"
 
 namespace lucerna {
 

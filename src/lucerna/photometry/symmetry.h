@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/intensity.h"
 
 namespace lucerna {
 

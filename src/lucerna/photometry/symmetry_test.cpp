@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "lucerna/core/error.h"
-#include "lucerna/photometry/flux.h"
+#include "lucerna/photometric_figures.h"
 
 namespace lucerna {
 namespace {

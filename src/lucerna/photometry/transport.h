@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "lucerna/core/direction.h"
+#include "lucerna/geometry.h"
 
 namespace lucerna {
 

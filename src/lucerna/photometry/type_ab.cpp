@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lucerna/photometry/flux.h"
+#include "lucerna/photometric_figures.h"
 
 namespace lucerna {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/intensity.h"
 
 namespace lucerna {
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "lucerna/core/file.h"
-#include "lucerna/rayset/ray_stream.h"
+#include "lucerna/ray_file.h"
 
 /// ASAP distribution files with rays (.dis): Fortran direct-access records of LENR 4-byte words, five of them
 /// header. Known from two descriptions, not from files of ASAP's own.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/rayset/bounding_surface.h"
+#include "lucerna/bounding_surface.h"
 
 #include <algorithm>
 #include <array>

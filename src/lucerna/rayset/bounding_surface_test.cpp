@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/rayset/bounding_surface.h"
+#include "lucerna/bounding_surface.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 namespace {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/rayset/compare.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
+#include "lucerna/ray_comparison.h"
 
 namespace lucerna {
 

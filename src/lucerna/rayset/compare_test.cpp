@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/rayset/compare.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "lucerna/core/parallel.h"
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
+#include "lucerna/ray_comparison.h"
 #include "tests/support/statistics.h"
 
 namespace lucerna {

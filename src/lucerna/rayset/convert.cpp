@@ -2,8 +2,8 @@
 #include "lucerna/rayset/convert.h"
 
 #include "lucerna/core/error.h"
-#include "lucerna/rayset/ray_file.h"
-#include "lucerna/rayset/ray_statistics.h"
+#include "lucerna/ray_file.h"
+#include "lucerna/ray_statistics.h"
 #include "lucerna/rayset/subset.h"
 
 namespace lucerna {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/frame.h"
-#include "lucerna/core/progress.h"
-#include "lucerna/rayset/ray_stream.h"
+#include "lucerna/geometry.h"
+#include "lucerna/progress.h"
+#include "lucerna/ray_file.h"
 
 namespace lucerna {
 

@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/random.h"
+#include "lucerna/ray_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {

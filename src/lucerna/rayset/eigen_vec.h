@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "lucerna/core/vec.h"
+#include "lucerna/geometry.h"
 
 namespace lucerna {
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <span>
 
-#include "lucerna/core/frame.h"
-#include "lucerna/rayset/ray_statistics.h"
+#include "lucerna/geometry.h"
+#include "lucerna/ray_statistics.h"
 
 namespace lucerna {
 

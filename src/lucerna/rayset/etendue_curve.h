@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "lucerna/rayset/ray_block.h"
+#include "lucerna/rays.h"
 
 namespace lucerna {
 

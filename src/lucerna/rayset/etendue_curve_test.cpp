@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "lucerna/core/frame.h"
+#include "lucerna/geometry.h"
 #include "tests/support/random_rays.h"
 
 namespace lucerna {

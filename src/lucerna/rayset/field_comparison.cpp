@@ -9,8 +9,8 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/core/parallel_sort.h"
-#include "lucerna/core/random.h"
-#include "lucerna/rayset/ray_statistics.h"
+#include "lucerna/random.h"
+#include "lucerna/ray_statistics.h"
 #include "lucerna/rayset/view_window.h"
 
 namespace lucerna {

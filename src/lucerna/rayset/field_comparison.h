@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lucerna/rayset/compare.h"
+#include "lucerna/ray_comparison.h"
 
 namespace lucerna {
 

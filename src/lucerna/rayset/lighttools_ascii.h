@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "lucerna/core/file.h"
-#include "lucerna/rayset/ray_stream.h"
+#include "lucerna/ray_file.h"
 
 /// LightTools text ray data (.ray, .txt): "key: value" lines in any order, lt_startofdata, a line per ray,
 /// lt_endofdata.

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "lucerna/core/file.h"
-#include "lucerna/rayset/ray_stream.h"
+#include "lucerna/ray_file.h"
 
 /// LightTools binary ray data (.ray): "LTRF", a header of 44 bytes, 7 or 8 float32 per ray, "LTRFEND".
 namespace lucerna {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/rayset/ray_block.h"
-
 #include "lucerna/core/error.h"
 #include "lucerna/core/huge_pages.h"
+#include "lucerna/rays.h"
 
 namespace lucerna {
 

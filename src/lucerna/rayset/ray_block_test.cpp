@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/rayset/ray_block.h"
-
 #include <gtest/gtest.h>
 
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
+#include "lucerna/rays.h"
 
 namespace lucerna {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "lucerna/core/error.h"
-#include "lucerna/rayset/ray_file.h"
-#include "lucerna/rayset/ray_statistics.h"
+#include "lucerna/ray_file.h"
+#include "lucerna/ray_statistics.h"
 
 namespace lucerna {
 

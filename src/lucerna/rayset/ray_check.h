@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/progress.h"
-#include "lucerna/rayset/ray_stream.h"
+#include "lucerna/progress.h"
+#include "lucerna/ray_file.h"
 
 namespace lucerna {
 

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
 #include "tests/support/random_rays.h"
 #include "tests/support/temp_dir.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/rayset/ray_set.h"
+#include "lucerna/rays.h"
 
 namespace lucerna {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
 
 #include <algorithm>
 #include <array>

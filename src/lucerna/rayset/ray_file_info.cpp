@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
 
 namespace lucerna {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/progress.h"
-#include "lucerna/rayset/ray_statistics.h"
-#include "lucerna/rayset/ray_stream.h"
+#include "lucerna/progress.h"
+#include "lucerna/ray_file.h"
+#include "lucerna/ray_statistics.h"
 #include "lucerna/rayset/surface_guess.h"
 
 namespace lucerna {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
 #include "tests/support/data_dir.h"
 #include "tests/support/random_rays.h"
 #include "tests/support/temp_dir.h"

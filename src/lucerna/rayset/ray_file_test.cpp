@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every format through the registry: what one writes any other can carry on, and no bytes break a reader.
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

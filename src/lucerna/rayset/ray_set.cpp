@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/rayset/ray_set.h"
-
 #include <algorithm>
 #include <array>
+
+#include "lucerna/rays.h"
 
 namespace lucerna {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/rayset/ray_statistics.h"
+#include "lucerna/ray_statistics.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/rayset/ray_statistics.h"
+#include "lucerna/ray_statistics.h"
 
 #include <gtest/gtest.h>
 
-#include "lucerna/core/frame.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/geometry.h"
+#include "lucerna/ray_file.h"
 #include "tests/support/data_dir.h"
 #include "tests/support/random_rays.h"
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "lucerna/core/file.h"
+#include "lucerna/ray_file.h"
 #include "lucerna/rayset/ray_fault.h"
-#include "lucerna/rayset/ray_stream.h"
 
 /// What the binary formats share: after a header come records of little-endian float32, one per ray. A
 /// format's own file only turns its header into a RecordLayout, and back.

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lucerna/rayset/ray_set.h"
+#include "lucerna/rays.h"
 
 namespace lucerna {
 

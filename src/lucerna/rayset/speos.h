@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "lucerna/core/file.h"
-#include "lucerna/rayset/ray_stream.h"
+#include "lucerna/ray_file.h"
 
 /// Ansys SPEOS ray files (.ray): 7 float32 (watts, five times the version, lumens), then 8 float32 per ray:
 /// start in mm, direction, wavelength in nm, relative energy. No magic number and no count.

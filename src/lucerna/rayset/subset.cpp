@@ -2,7 +2,7 @@
 #include "lucerna/rayset/subset.h"
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "lucerna/rayset/ray_block.h"
+#include "lucerna/rays.h"
 
 namespace lucerna {
 

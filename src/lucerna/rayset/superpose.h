@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "lucerna/rayset/ray_set.h"
+#include "lucerna/rays.h"
 
 namespace lucerna {
 

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 #include "lucerna/rayset/eigen_vec.h"
 
 namespace lucerna {

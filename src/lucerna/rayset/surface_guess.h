@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "lucerna/rayset/bounding_surface.h"
-#include "lucerna/rayset/ray_block.h"
+#include "lucerna/bounding_surface.h"
+#include "lucerna/rays.h"
 
 namespace lucerna {
 

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
 #include "tests/support/data_dir.h"
 #include "tests/support/random_rays.h"
 

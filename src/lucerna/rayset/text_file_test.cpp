@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "lucerna/core/error.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
 #include "tests/support/random_rays.h"
 #include "tests/support/temp_dir.h"
 

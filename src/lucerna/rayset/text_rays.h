@@ -5,22 +5,20 @@
 #include <memory>
 
 #include "lucerna/core/file.h"
-#include "lucerna/rayset/ray_stream.h"
+#include "lucerna/ray_file.h"
 
 /// Any text with one ray per line: what TracePro, FRED, spreadsheets and scripts write.
 namespace lucerna {
 
 /// True if among the first lines there is one of 7 or more numbers, of which the 4th to 6th are a unit
-/// direction, or a comment
-/// "# columns:"; and it is no other text format.
+/// direction, or a comment "# columns:"; and it is no other text format.
 bool looks_like_text_rays(const InputFile& file);
 
 /// Lines before the first that is all numbers are skipped. Columns are what ReadOptions::text_columns says,
-/// else what
-/// "# columns: ..." says, else x y z kx ky kz flux and further ones unnamed. Names: x, y, z (with _mm, _cm,
-/// _m, _inch, ...), kx, ky, kz, flux (flux_lm, flux_w), wavelength_nm, wavelength_um; "-" leaves a column
-/// out, any other name makes an additional column. The total is "# flux_lm: 337" or "# flux_w: ..."; without
-/// a unit lumen is assumed with a warning.
+/// else what "# columns: ..." says, else x y z kx ky kz flux and further ones unnamed. Names: x, y, z (with
+/// _mm, _cm, _m, _inch, ...), kx, ky, kz, flux (flux_lm, flux_w), wavelength_nm, wavelength_um; "-" leaves a
+/// column out, any other name makes an additional column. The total is "# flux_lm: 337" or "# flux_w: ...";
+/// without a unit lumen is assumed with a warning.
 std::unique_ptr<RayReader> open_text_rays(InputFile file, const ReadOptions& options = {});
 
 /// Writes "# columns:" and "# flux_lm:" comments that the reader understands, and all columns.

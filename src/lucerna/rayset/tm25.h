@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "lucerna/core/file.h"
-#include "lucerna/rayset/ray_stream.h"
+#include "lucerna/ray_file.h"
 
 /// IES TM-25-13 ray files (.tm25ray): header, flags, texts, spectral tables, column labels, text, then
 /// float32 records.

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lucerna/rayset/ray_set.h"
+#include "lucerna/rays.h"
 
 /// Where TM-25-13 puts things; shared by reader and writer (tm25.h).
 namespace lucerna::tm25 {

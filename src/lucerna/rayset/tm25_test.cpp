@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "lucerna/core/error.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
 #include "lucerna/rayset/tm25_layout.h"
 #include "tests/support/data_dir.h"
 #include "tests/support/random_rays.h"

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/rayset/view.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/rayset/ray_statistics.h"
+#include "lucerna/ray_comparison.h"
+#include "lucerna/ray_statistics.h"
 #include "lucerna/rayset/view_window.h"
 
 namespace lucerna {
@@ -16,7 +15,7 @@ namespace {
 
 constexpr std::size_t kViewBlock = std::size_t{1} << 16;
 constexpr std::array<std::string_view, 5> kViewNames{"far", "near", "focus", "beam", "four_d"};
-/// Shares that design.md section 5 fixes.
+/// Shares that docs/algorithms/views.md fixes.
 constexpr double kRadiusShare = 0.98, kLeastMeanLength = 0.2, kNearPlaneGap_mm = 1.0;
 /// A window is never narrower than this share of the size that rounding of float32 rays is proportional to:
 /// rays through one point then share a cell instead of showing their rounding (6e-8) as structure.

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/rayset/view.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
-#include "lucerna/rayset/compare.h"
+#include "lucerna/random.h"
+#include "lucerna/ray_comparison.h"
 #include "tests/support/statistics.h"
 
 namespace lucerna {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "lucerna/rayset/view.h"
+#include "lucerna/ray_comparison.h"
 
 namespace lucerna {
 

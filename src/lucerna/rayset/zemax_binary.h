@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "lucerna/core/file.h"
-#include "lucerna/rayset/ray_stream.h"
+#include "lucerna/ray_file.h"
 
 /// Zemax OpticStudio binary source files (.dat, .sdf), and those that ProSource, TracePro and OPTICAD write
 /// alike: a header of 208 bytes, then 7 (flux only) or 8 (spectral) float32 per ray.

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "lucerna/core/file.h"
-#include "lucerna/rayset/ray_stream.h"
+#include "lucerna/ray_file.h"
 
 /// Zemax OpticStudio text source files: "NbrRays DimensionUnits [format flux_type]", then 7 or 8 numbers per
 /// line. The format states no total flux.

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "lucerna/core/error.h"
-#include "lucerna/rayset/ray_set.h"
+#include "lucerna/rays.h"
 
 /// What Zemax's binary and text files have in common: the code for lengths, and wavelengths in micrometres.
 namespace lucerna::zemax {

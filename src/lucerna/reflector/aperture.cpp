@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/reflector/aperture.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "lucerna/core/error.h"
+#include "lucerna/reflector.h"
 
 namespace lucerna {
 

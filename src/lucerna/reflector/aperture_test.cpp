@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/reflector/aperture.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
+#include "lucerna/reflector.h"
 
 namespace lucerna {
 namespace {

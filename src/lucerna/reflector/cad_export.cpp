@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/reflector/cad_export.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,9 +7,10 @@
 #include <numbers>
 #include <optional>
 
-#include "lucerna/core/direction.h"
+#include "lucerna/cad.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
+#include "lucerna/geometry.h"
 
 namespace lucerna {
 

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/reflector/cad_export.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 #include <sstream>
 
-#include "lucerna/core/direction.h"
+#include "lucerna/cad.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
+#include "lucerna/geometry.h"
 #include "lucerna/reflector/smooth_shape.h"
 #include "tests/support/temp_dir.h"
 

@@ -6,7 +6,8 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
-#include "lucerna/reflector/reflector.h"
+#include "lucerna/reflector.h"
+#include "lucerna/reflector/curve_sheet.h"
 
 namespace lucerna {
 

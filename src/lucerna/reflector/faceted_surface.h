@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "lucerna/reflector/height_surface.h"
+#include "lucerna/reflector.h"
 
 namespace lucerna {
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lucerna/core/host_device.h"
+#include "lucerna/host_device.h"
 
 namespace lucerna {
 

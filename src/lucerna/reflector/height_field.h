@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "lucerna/reflector.h"
 #include "lucerna/reflector/field_hierarchy.h"
-#include "lucerna/reflector/reflector.h"
 
 namespace lucerna {
 

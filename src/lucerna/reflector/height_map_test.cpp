@@ -8,7 +8,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 #include "tests/support/random_rays.h"
 #include "tests/support/temp_dir.h"
 

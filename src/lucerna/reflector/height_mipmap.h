@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "lucerna/reflector/reflector.h"
+#include "lucerna/reflector.h"
 
 namespace lucerna {
 

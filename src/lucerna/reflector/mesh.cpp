@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/reflector/mesh.h"
+#include "lucerna/mesh.h"
 
 #include <algorithm>
 #include <charconv>
@@ -10,9 +10,9 @@
 #include <string_view>
 #include <utility>
 
-#include "lucerna/core/direction.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
+#include "lucerna/geometry.h"
 
 namespace lucerna {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/reflector/mesh.h"
+#include "lucerna/mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "lucerna/core/host_device.h"
+#include "lucerna/host_device.h"
 
 namespace lucerna {
 

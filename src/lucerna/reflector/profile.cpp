@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
-#include "lucerna/reflector/aperture.h"
+#include "lucerna/reflector.h"
 #include "lucerna/reflector/cubic_spline.h"
 
 namespace lucerna {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "lucerna/reflector/height_surface.h"
+#include "lucerna/reflector.h"
 
 namespace lucerna {
 
@@ -52,11 +52,6 @@ class ConicProfile final : public Profile {
   ConicProfile(double curvature, double conic, double r_max_mm);
   double curvature_, conic_;
   double tangent_from_mm_;
-};
-
-/// One given point of a spline profile.
-struct ProfileKnot {
-  double r_mm = 0.0, z_mm = 0.0;
 };
 
 /// The cubic spline with continuous curvature (C2) through given points. A profile that starts on the axis (r

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/reflector/reflector.h"
+#include "lucerna/reflector.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,9 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/reflector/curve_sheet.h"
+#include "lucerna/reflector/profile.h"
+#include "lucerna/reflector/swept_curve.h"
 #include "lucerna/reflector/trough_surface.h"
 
 namespace lucerna {

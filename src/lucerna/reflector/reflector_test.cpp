@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/reflector/reflector.h"
+#include "lucerna/reflector.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 #include "lucerna/reflector/faceted_surface.h"
 #include "lucerna/reflector/height_mipmap.h"
 #include "lucerna/reflector/spline_surface.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 namespace {

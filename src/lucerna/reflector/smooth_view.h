@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "lucerna/core/host_device.h"
+#include "lucerna/host_device.h"
+#include "lucerna/reflector.h"
 #include "lucerna/reflector/cubic_basis.h"
-#include "lucerna/reflector/height_surface.h"
 #include "lucerna/reflector/near_cells.h"
 
 namespace lucerna {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "lucerna/reflector/height_surface.h"
+#include "lucerna/reflector.h"
 
 namespace lucerna {
 

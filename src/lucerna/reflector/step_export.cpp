@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/reflector/step_export.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "lucerna/cad.h"
 #include "lucerna/core/error.h"
-#include "lucerna/core/vec.h"
+#include "lucerna/geometry.h"
+#include "lucerna/reflector/profile.h"
 #include "lucerna/reflector/smooth_shape.h"
 #include "lucerna/reflector/step_writer.h"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/reflector/step_export.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,8 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "lucerna/cad.h"
 #include "lucerna/core/error.h"
-#include "lucerna/core/vec.h"
+#include "lucerna/geometry.h"
 #include "lucerna/reflector/smooth_shape.h"
 #include "lucerna/reflector/trough_surface.h"
 #include "tests/support/text_scan.h"

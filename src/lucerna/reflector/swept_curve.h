@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lucerna/core/vec.h"
+#include "lucerna/geometry.h"
 #include "lucerna/reflector/profile.h"
 
 namespace lucerna {

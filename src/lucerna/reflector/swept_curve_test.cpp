@@ -8,8 +8,8 @@
 #include <string>
 
 #include "lucerna/core/error.h"
+#include "lucerna/reflector.h"
 #include "lucerna/reflector/faceted_surface.h"
-#include "lucerna/reflector/reflector.h"
 
 namespace lucerna {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "lucerna/design/design.h"
 #include "lucerna/design/tolerances.h"
-#include "lucerna/photometry/compare_distributions.h"
-#include "lucerna/report/trace_figures.h"
+#include "lucerna/intensity_comparison.h"
+#include "lucerna/report/trace_json.h"
 
 namespace lucerna {
 
@@ -39,7 +39,7 @@ struct DesignFigures {
 DesignFigures design_figures(const DesignProblem& problem, const DesignResult& result,
                              const TraceResult& traced);
 
-/// What design adds to result.json (design.md section 3). What is not known is null.
+/// What design adds to result.json. What is not known is null.
 nlohmann::ordered_json design_json(const DesignProblem& problem, const DesignResult& result,
                                    const DesignFigures& figures);
 

@@ -4,11 +4,11 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
+#include "lucerna/cad.h"
 #include "lucerna/core/file.h"
 #include "lucerna/design/checkpoint.h"
-#include "lucerna/reflector/cad_export.h"
-#include "lucerna/reflector/step_export.h"
 #include "lucerna/report/trace_files.h"
+#include "lucerna/trace/project_tables.h"
 
 namespace lucerna {
 
@@ -20,8 +20,8 @@ constexpr std::uint64_t kMostBytes = std::uint64_t{64} << 20;
 /// The designed project without [target] and [design]: what the mirror does with the light, to be traced.
 std::string traceable(const DesignProblem& problem, const DesignShape& shape) {
   Project project = with_shape(problem, shape);
-  project.table.erase("target");
-  project.table.erase("design");
+  toml_tables(project).erase("target");
+  toml_tables(project).erase("design");
   return project_text(project);
 }
 

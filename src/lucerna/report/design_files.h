@@ -27,7 +27,7 @@ DesignStart read_design_progress(const std::filesystem::path& folder);
 std::vector<std::string> write_reflector_files(const std::filesystem::path& folder,
                                                const Reflector& reflector);
 
-/// Writes all that `design` leaves in a folder (design.md section 3): the above, `tolerances.csv` where there
+/// Writes all that `design` leaves in a folder: the above, `tolerances.csv` where there
 /// was a sweep, and what `trace` leaves, `result.json` last. `traced` is the trace that `figures` are of.
 std::vector<std::string> write_design_files(const std::filesystem::path& folder, const DesignProblem& problem,
                                             const DesignResult& result, const DesignFigures& figures,

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "lucerna/core/version.h"
 #include "lucerna/report/html_assets.h"
+#include "lucerna/version.h"
 
 namespace lucerna {
 

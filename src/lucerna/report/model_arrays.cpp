@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lucerna/core/error.h"
-#include "lucerna/rayset/ray_statistics.h"
+#include "lucerna/ray_statistics.h"
 #include "lucerna/report/html_text.h"
 #include "lucerna/source/adaptive_model.h"
 #include "lucerna/source/cluster_model.h"

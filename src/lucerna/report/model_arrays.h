@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 
-#include "lucerna/source/source_model.h"
+#include "lucerna/source_model.h"
 
 namespace lucerna {
 

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "lucerna/report/report_model.h"
+#include "lucerna/source.h"
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/cluster_compress.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
 #include "tests/support/html_check.h"
 
 namespace lucerna {

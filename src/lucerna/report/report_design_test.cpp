@@ -9,10 +9,11 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
-#include "lucerna/core/version.h"
 #include "lucerna/report/grid_map.h"
 #include "lucerna/report/trace_files.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/report/trace_json.h"
+#include "lucerna/trace.h"
+#include "lucerna/version.h"
 #include "tests/support/html_check.h"
 #include "tests/support/random_rays.h"
 #include "tests/support/temp_dir.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "lucerna/photometry/beam.h"
+#include "lucerna/photometric_figures.h"
 #include "lucerna/report/html_assets.h"
 #include "lucerna/report/report_zones.h"
 #include "lucerna/report/svg_cartesian.h"
@@ -16,7 +16,7 @@
 #include "lucerna/report/svg_isolux.h"
 #include "lucerna/report/svg_polar.h"
 #include "lucerna/report/svg_zonal.h"
-#include "lucerna/report/trace_figures.h"
+#include "lucerna/report/trace_json.h"
 
 namespace lucerna {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "lucerna/rayset/ray_statistics.h"
+#include "lucerna/ray_statistics.h"
 #include "lucerna/report/html_assets.h"
 #include "lucerna/report/html_page.h"
 #include "lucerna/report/model_arrays.h"

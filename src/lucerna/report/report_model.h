@@ -5,9 +5,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "lucerna/core/progress.h"
-#include "lucerna/rayset/ray_block.h"
-#include "lucerna/source/source_model.h"
+#include "lucerna/progress.h"
+#include "lucerna/rays.h"
+#include "lucerna/source_model.h"
 
 namespace lucerna {
 
@@ -25,11 +25,10 @@ struct ModelReportOptions {
 
 /// The report of a source model as one self-contained HTML file (html_page.h): figures, luminance from any
 /// direction drawn in the page, the five views of rays and model with error, floor, excess and raw, the
-/// étendue curve, layers, provenance. `result` is what compress or info say of it (design.md section 3:
-/// method rays bytes layers leaves flux_lm|flux_w and the keys that every result has); the page embeds it
-/// with `views` and `etendue_mm2sr` added. Cost: about a second per million rays, and some for
-/// the étendue (model_etendue.h). Throws InputError where
-/// `result` lacks a figure.
+/// étendue curve, layers, provenance. `result` is what compress or info say of it (method rays bytes
+/// layers leaves flux_lm|flux_w and the keys that every result has); the page embeds it with `views` and
+/// `etendue_mm2sr` added. Cost: about a second per million rays, and some for the étendue (model_etendue.h).
+/// Throws InputError where `result` lacks a figure.
 std::string model_report_html(const SourceModel& model, nlohmann::ordered_json result,
                               const ModelReportOptions& options, Progress& progress = no_progress());
 

@@ -47,7 +47,7 @@ std::string card(const std::string& name, const std::string& value, const std::s
 /// A definition list's entry; both HTML.
 std::string fact(const std::string& name, const std::string& value);
 
-/// Program, command, seed, wall times, inputs with hashes: what every result has (design.md section 3).
+/// Program, command, seed, wall times, inputs with hashes: what every result has.
 /// `more` are facts of its own (`fact`), `project` the project file if there is one.
 std::string provenance_html(const ResultFigures& result, const std::string& more, const std::string& project);
 

@@ -6,16 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lucerna/photometry/beam.h"
-#include "lucerna/photometry/compare_distributions.h"
-#include "lucerna/photometry/flux.h"
+#include "lucerna/intensity_comparison.h"
+#include "lucerna/photometric_figures.h"
 #include "lucerna/report/grid_map.h"
 #include "lucerna/report/html_text.h"
 #include "lucerna/report/report_far_field.h"
 #include "lucerna/report/report_parts.h"
 #include "lucerna/report/svg_curves.h"
 #include "lucerna/report/svg_polar.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/trace.h"
 
 namespace lucerna {
 

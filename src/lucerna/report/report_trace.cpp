@@ -7,10 +7,10 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
+#include "lucerna/project.h"
 #include "lucerna/report/report_far_field.h"
 #include "lucerna/report/report_planes.h"
 #include "lucerna/report/report_sections.h"
-#include "lucerna/trace/project.h"
 
 namespace lucerna {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "lucerna/report/trace_folder.h"
-#include "lucerna/trace/scene.h"
+#include "lucerna/scene.h"
 
 namespace lucerna {
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "lucerna/photometry/flux.h"
+#include "lucerna/photometric_figures.h"
 
 namespace lucerna {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/estimate.h"
+#include "lucerna/estimate.h"
 #include "lucerna/report/trace_folder.h"
 
 namespace lucerna {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lucerna/photometry/flux.h"
+#include "lucerna/photometric_figures.h"
 
 namespace lucerna {
 namespace {

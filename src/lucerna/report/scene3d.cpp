@@ -11,6 +11,7 @@
 #include <numbers>
 #include <vector>
 
+#include "lucerna/reflector/swept_curve.h"
 #include "lucerna/report/html_text.h"
 #include "lucerna/trace/ray_paths.h"
 

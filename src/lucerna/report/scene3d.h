@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 
-#include "lucerna/core/sequence.h"
-#include "lucerna/trace/scene.h"
+#include "lucerna/random.h"
+#include "lucerna/scene.h"
 
 namespace lucerna {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/source/emitter.h"
+#include "lucerna/source.h"
 #include "tests/support/html_check.h"
 
 namespace lucerna {

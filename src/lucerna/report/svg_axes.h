@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/intensity.h"
 #include "lucerna/report/svg_canvas.h"
 
 namespace lucerna {

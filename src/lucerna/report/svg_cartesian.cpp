@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lucerna/core/estimate.h"
-#include "lucerna/photometry/beam.h"
+#include "lucerna/estimate.h"
+#include "lucerna/photometric_figures.h"
 
 namespace lucerna {
 

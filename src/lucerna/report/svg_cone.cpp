@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "lucerna/core/error.h"
-#include "lucerna/photometry/beam.h"
+#include "lucerna/photometric_figures.h"
 
 namespace lucerna {
 

@@ -8,8 +8,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "lucerna/photometry/beam.h"
-#include "lucerna/photometry/flux.h"
+#include "lucerna/photometric_figures.h"
 #include "lucerna/report/svg_contour.h"
 
 namespace lucerna {

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/estimate.h"
-#include "lucerna/photometry/beam.h"
+#include "lucerna/estimate.h"
+#include "lucerna/photometric_figures.h"
 #include "lucerna/report/svg_axes.h"
 #include "lucerna/report/svg_canvas.h"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/intensity.h"
 #include "lucerna/report/svg_axes.h"
 
 namespace lucerna {

@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "lucerna/photometry/flux.h"
+#include "lucerna/photometric_figures.h"
 
 namespace lucerna {
 

@@ -10,11 +10,12 @@
 
 #include "lucerna/core/file.h"
 #include "lucerna/core/png.h"
-#include "lucerna/core/version.h"
-#include "lucerna/photometry/photometric_file.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/photometric_file.h"
+#include "lucerna/ray_file.h"
 #include "lucerna/report/svg_axes.h"
 #include "lucerna/report/svg_polar.h"
+#include "lucerna/report/trace_json.h"
+#include "lucerna/version.h"
 
 namespace lucerna {
 

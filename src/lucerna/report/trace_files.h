@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/report/trace_figures.h"
 #include "lucerna/trace/trace_origin.h"
+#include "lucerna/trace_figures.h"
 
 namespace lucerna {
 
-/// Writes what `trace` leaves in a folder (design.md section 3): `result.json`, `project.toml`, and for each
+/// Writes what `trace` leaves in a folder: `result.json`, `project.toml`, and for each
 /// detector NAME: far field `NAME.ldt NAME.ies NAME.csv NAME.svg`, plane and luminance `NAME.csv NAME.png`,
 /// rays `ray_file_name`, which is NAME.tm25ray unless the project says another format. A radiometric far
 /// field has no .ldt: the format has no unit for it. Each file appears whole or not at all; returns their

@@ -7,10 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "lucerna/core/file.h"
-#include "lucerna/core/version.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
 #include "lucerna/report/trace_folder.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/report/trace_json.h"
+#include "lucerna/trace.h"
+#include "lucerna/version.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {

@@ -10,7 +10,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
-#include "lucerna/core/version.h"
+#include "lucerna/version.h"
 
 namespace lucerna {
 

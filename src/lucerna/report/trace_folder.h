@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lucerna/photometry/intensity_distribution.h"
+#include "lucerna/intensity.h"
 
 namespace lucerna {
 

@@ -4,6 +4,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/source/adaptive_model.h"
+#include "lucerna/source/nfl.h"
 #include "lucerna/source/tree_codec.h"
 
 namespace lucerna {

@@ -7,10 +7,11 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/core/random.h"
-#include "lucerna/rayset/ray_statistics.h"
+#include "lucerna/random.h"
+#include "lucerna/ray_statistics.h"
 #include "lucerna/rayset/surface_guess.h"
 #include "lucerna/source/layer_split.h"
+#include "lucerna/source/nfl.h"
 #include "lucerna/source/penalty_choice.h"
 #include "lucerna/source/support_search.h"
 

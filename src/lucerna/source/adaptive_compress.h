@@ -5,8 +5,8 @@
 #include <memory>
 #include <optional>
 
-#include "lucerna/core/progress.h"
-#include "lucerna/rayset/ray_stream.h"
+#include "lucerna/progress.h"
+#include "lucerna/ray_file.h"
 #include "lucerna/source/adaptive_model.h"
 
 namespace lucerna {

@@ -8,11 +8,11 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/rayset/compare.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_comparison.h"
+#include "lucerna/ray_file.h"
 #include "lucerna/rayset/surface_guess.h"
+#include "lucerna/source.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lucerna/rayset/compare.h"
-#include "lucerna/rayset/ray_file.h"
-#include "lucerna/rayset/ray_statistics.h"
+#include "lucerna/ray_comparison.h"
+#include "lucerna/ray_file.h"
+#include "lucerna/ray_statistics.h"
+#include "lucerna/source.h"
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
 #include "tests/support/data_dir.h"
 #include "tests/support/statistics.h"
 

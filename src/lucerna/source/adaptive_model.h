@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/rayset/ray_set.h"
+#include "lucerna/rays.h"
 #include "lucerna/source/adaptive_tree.h"
 #include "lucerna/source/adaptive_view.h"
 #include "lucerna/source/luminance_source.h"
-#include "lucerna/source/source_model.h"
+#include "lucerna/source/nfl.h"
 #include "lucerna/source/support_batch.h"
 #include "lucerna/source/wavelengths.h"
+#include "lucerna/source_model.h"
 
 namespace lucerna {
 

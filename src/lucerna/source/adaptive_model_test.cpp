@@ -7,9 +7,10 @@
 #include <numbers>
 
 #include "lucerna/core/error.h"
+#include "lucerna/source.h"
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/source/nfl.h"
 #include "tests/support/paths.h"
 #include "tests/support/statistics.h"
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "lucerna/core/host_device.h"
+#include "lucerna/host_device.h"
 
 namespace lucerna {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 #include "tests/support/statistics.h"
 
 namespace lucerna {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "lucerna/rayset/ray_block.h"
+#include "lucerna/rays.h"
 #include "lucerna/source/support_batch.h"
 
 namespace lucerna {

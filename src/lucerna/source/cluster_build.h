@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lucerna/rayset/ray_block.h"
+#include "lucerna/rays.h"
 #include "lucerna/source/cluster_directions.h"
 #include "lucerna/source/cluster_model.h"
 #include "lucerna/source/cluster_octree.h"

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sections of a model of the seed's method: docs/nfl-format.md, "Method CLUS".
+// The sections of a model of clusters: docs/nfl-format.md, "Method CLUS".
 #include <algorithm>
 #include <cmath>
 
 #include "lucerna/core/error.h"
 #include "lucerna/source/cluster_model.h"
+#include "lucerna/source/nfl.h"
 
 namespace lucerna {
 

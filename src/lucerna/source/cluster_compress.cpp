@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 #include "lucerna/source/cluster_build.h"
 #include "lucerna/source/cluster_removal.h"
 

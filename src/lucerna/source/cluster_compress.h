@@ -5,9 +5,9 @@
 #include <memory>
 #include <optional>
 
-#include "lucerna/core/progress.h"
-#include "lucerna/rayset/ray_set.h"
-#include "lucerna/rayset/ray_stream.h"
+#include "lucerna/progress.h"
+#include "lucerna/ray_file.h"
+#include "lucerna/rays.h"
 #include "lucerna/source/cluster_model.h"
 
 namespace lucerna {
@@ -54,9 +54,9 @@ struct ClusterStatistics {
   double seconds_octree = 0.0, seconds_removal = 0.0, seconds_final = 0.0;
 };
 
-/// Compresses a ray set by the seed's method (docs/algorithms/clusters.md): octree, removal of clusters,
-/// directional distributions, mesh. Throws InputError without rays or flux, or if the size cannot be met.
-/// Same seed, same bits, for any number of threads. About 70 bytes a ray beside the ray set.
+/// Compresses a ray set to Mas-Martin-Patow clusters (docs/algorithms/clusters.md): octree, removal of
+/// clusters, directional distributions, mesh. Throws InputError without rays or flux, or if the size cannot
+/// be met. Same seed, same bits, for any number of threads. About 70 bytes a ray beside the ray set.
 std::unique_ptr<ClusterModel> compress_clusters(const RaySet& rays, const ClusterOptions& options = {},
                                                 Progress& progress = no_progress(),
                                                 ClusterStatistics* statistics = nullptr);

@@ -9,9 +9,9 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/rayset/compare.h"
+#include "lucerna/ray_comparison.h"
+#include "lucerna/source.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
 #include "lucerna/source/warp.h"
 #include "tests/support/random_direction.h"
 

@@ -7,8 +7,9 @@
 #include "lucerna/source/cluster_view.h"
 #include "lucerna/source/mesh_surface.h"
 #include "lucerna/source/mesh_triangulation.h"
-#include "lucerna/source/source_model.h"
+#include "lucerna/source/nfl.h"
 #include "lucerna/source/spherical_triangle.h"
+#include "lucerna/source_model.h"
 
 namespace lucerna {
 
@@ -22,7 +23,7 @@ struct ClusterLeaf {
   friend bool operator==(const ClusterLeaf&, const ClusterLeaf&) = default;
 };
 
-/// All that a model of the seed's method stores.
+/// All that a model of clusters stores.
 struct ClusterData {
   double flux = 0.0;
   FluxUnit flux_unit = FluxUnit::lumen;
@@ -63,9 +64,9 @@ ClusterData decode_clusters(const NflFile& file, std::string_view name);
 inline constexpr int kMeshSplits = 4;
 std::vector<MeshPiece> mesh_pieces(const ClusterData& data);
 
-/// The seed's method as a source: anisotropic point lights on a mesh over the bounding surface. A ray is a
-/// triangle (alias table), a point in it (density interpolated linearly between the corners, point put back
-/// on the surface), and a direction from the distribution of the triangle's nearest corner (alias table,
+/// Mas-Martin-Patow clusters as a source: anisotropic point lights on a mesh over the bounding surface. A ray
+/// is a triangle (alias table), a point in it (density interpolated linearly between the corners, point put
+/// back on the surface), and a direction from the distribution of the triangle's nearest corner (alias table,
 /// uniform in a spherical triangle). Takes six numbers of the sequence: 0 piece and corner, 1-2 point, 3
 /// leaf, 4-5 direction.
 class ClusterModel final : public SourceModel {

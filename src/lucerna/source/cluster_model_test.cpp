@@ -10,9 +10,10 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
+#include "lucerna/source.h"
 #include "lucerna/source/cluster_compress.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/source/nfl.h"
 #include "tests/support/statistics.h"
 #include "tests/support/temp_dir.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lucerna/rayset/ray_block.h"
+#include "lucerna/rays.h"
 
 namespace lucerna {
 

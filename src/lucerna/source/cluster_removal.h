@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lucerna/core/progress.h"
+#include "lucerna/progress.h"
 #include "lucerna/source/mesh_surface.h"
 #include "lucerna/source/mesh_triangulation.h"
 
@@ -39,9 +39,9 @@ struct RemovalResult {
   std::size_t rounds = 0;
 };
 
-/// The seed's iteration on a surface with an area: triangulate the representatives, give every ray to the
-/// nearest corner of its triangle, mark the clusters that add no detail, remove them, and begin again, until
-/// none is marked.
+/// The iteration of Mas, Martin and Patow on a surface with an area: triangulate the representatives, give
+/// every ray to the nearest corner of its triangle, mark the clusters that add no detail, remove them, and
+/// begin again, until none is marked.
 ///
 /// A cluster adds no detail when the log-likelihood that its removal costs is below its price: the loss of
 /// its directional distribution and its nearest neighbour's against one common distribution (each the best

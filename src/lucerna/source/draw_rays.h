@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/progress.h"
-#include "lucerna/rayset/ray_stream.h"
-#include "lucerna/source/ray_source.h"
+#include "lucerna/progress.h"
+#include "lucerna/ray_file.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 

@@ -5,7 +5,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 namespace {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/source/emitter.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "lucerna/core/error.h"
+#include "lucerna/source.h"
 #include "lucerna/source/emitter_luminance.h"
 #include "lucerna/source/led_emitter.h"
 #include "lucerna/source/warp.h"

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "lucerna/source/emitter.h"
+#include "lucerna/source.h"
 #include "lucerna/source/luminance_source.h"
 
 namespace lucerna {

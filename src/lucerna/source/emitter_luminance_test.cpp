@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "lucerna/core/sequence.h"
+#include "lucerna/random.h"
 #include "lucerna/source/warp.h"
 
 namespace lucerna {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/source/emitter.h"
-
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "lucerna/core/error.h"
+#include "lucerna/source.h"
 #include "tests/support/statistics.h"
 
 namespace lucerna {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "lucerna/core/parallel.h"
-#include "lucerna/rayset/ray_statistics.h"
+#include "lucerna/ray_statistics.h"
 
 namespace lucerna {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "lucerna/core/progress.h"
+#include "lucerna/progress.h"
 #include "lucerna/source/fitted_support.h"
 #include "lucerna/source/support_search.h"
 

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
+#include "lucerna/source.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
 
 namespace lucerna {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "lucerna/core/direction.h"
+#include "lucerna/geometry.h"
 
 namespace lucerna {
 

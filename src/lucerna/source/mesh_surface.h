@@ -4,9 +4,9 @@
 #include <span>
 #include <string_view>
 
-#include "lucerna/core/frame.h"
-#include "lucerna/rayset/bounding_surface.h"
-#include "lucerna/rayset/ray_block.h"
+#include "lucerna/bounding_surface.h"
+#include "lucerna/geometry.h"
+#include "lucerna/rays.h"
 
 namespace lucerna {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "lucerna/core/vec.h"
+#include "lucerna/geometry.h"
 
 namespace lucerna {
 

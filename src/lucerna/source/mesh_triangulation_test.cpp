@@ -8,7 +8,7 @@
 #include <set>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 #include "lucerna/source/mesh_surface.h"
 
 namespace lucerna {

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "lucerna/rayset/etendue_curve.h"
-#include "lucerna/source/source_model.h"
+#include "lucerna/source_model.h"
 
 namespace lucerna {
 

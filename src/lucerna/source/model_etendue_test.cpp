@@ -5,10 +5,10 @@
 
 #include <numbers>
 
+#include "lucerna/source.h"
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/cluster_compress.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
 
 namespace lucerna {
 namespace {
@@ -32,7 +32,7 @@ TEST(ModelEtendueStatistical, OfADiskIsTheKnownOne) {
   EXPECT_NEAR(adaptive.at(0.5) / (0.5 * kWhole), 1.0, 0.05);
   EXPECT_NEAR(adaptive.at(0.99) / (0.99 * kWhole), 1.0, 0.05);
   EXPECT_NEAR(searched_etendue_curve(rays.rays).at(0.5) / (0.5 * kWhole), 1.0, 0.06);
-  // The seed's clusters leave steps of luminance, and some light beyond the rim.
+  // Clusters leave steps of luminance, and some light beyond the rim.
   const EtendueCurve clusters = etendue_curve(*compress_clusters(rays), 1024);
   EXPECT_NEAR(clusters.at(0.5) / (0.5 * kWhole), 1.0, 0.3);
   EXPECT_FALSE(clusters.degenerate());

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lucerna/core/flux_unit.h"
+#include "lucerna/flux_unit.h"
 
 namespace lucerna {
 

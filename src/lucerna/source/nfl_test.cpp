@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 namespace {

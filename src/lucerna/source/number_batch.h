@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "lucerna/core/sequence.h"
+#include "lucerna/random.h"
 #include "lucerna/source/support_batch.h"
 
 namespace lucerna {

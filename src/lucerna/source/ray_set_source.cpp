@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/source/ray_set_source.h"
-
 #include <algorithm>
 #include <limits>
 #include <numeric>
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/source/ray_set_source.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <set>
 
 #include "lucerna/core/error.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
-#include "lucerna/core/frame.h"
-#include "lucerna/core/host_device.h"
+#include "lucerna/geometry.h"
+#include "lucerna/host_device.h"
 
 namespace lucerna {
 

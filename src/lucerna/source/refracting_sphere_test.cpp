@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 #include "lucerna/source/warp.h"
 
 namespace lucerna {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/source/source_model.h"
+#include "lucerna/source_model.h"
 
 #include <array>
 #include <cstring>
@@ -8,6 +8,7 @@
 #include "lucerna/core/file.h"
 #include "lucerna/source/adaptive_model.h"
 #include "lucerna/source/cluster_model.h"
+#include "lucerna/source/nfl.h"
 
 namespace lucerna {
 

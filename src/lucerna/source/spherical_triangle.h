@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "lucerna/core/direction.h"
+#include "lucerna/geometry.h"
 
 namespace lucerna {
 

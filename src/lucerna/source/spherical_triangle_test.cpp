@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 #include "tests/support/random_direction.h"
 #include "tests/support/statistics.h"
 

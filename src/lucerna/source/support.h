@@ -6,8 +6,8 @@
 #include <optional>
 #include <string_view>
 
-#include "lucerna/core/frame.h"
-#include "lucerna/rayset/bounding_surface.h"
+#include "lucerna/bounding_surface.h"
+#include "lucerna/geometry.h"
 #include "lucerna/source/refracting_sphere.h"
 
 namespace lucerna {

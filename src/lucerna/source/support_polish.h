@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "lucerna/core/progress.h"
+#include "lucerna/progress.h"
 #include "lucerna/source/support_score.h"
 
 namespace lucerna {

@@ -8,8 +8,8 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/core/random.h"
-#include "lucerna/rayset/ray_statistics.h"
+#include "lucerna/random.h"
+#include "lucerna/ray_statistics.h"
 #include "lucerna/rayset/surface_guess.h"
 #include "lucerna/source/chart_batch.h"
 #include "lucerna/source/support_moves.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/progress.h"
+#include "lucerna/progress.h"
 #include "lucerna/source/support_fit.h"
 
 namespace lucerna {

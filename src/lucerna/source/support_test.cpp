@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 #include "lucerna/source/warp.h"
 #include "tests/support/statistics.h"
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "lucerna/rayset/ray_block.h"
+#include "lucerna/rays.h"
 #include "lucerna/source/support.h"
 
 namespace lucerna {

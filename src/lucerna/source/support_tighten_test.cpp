@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "lucerna/source.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
 
 namespace lucerna {
 namespace {

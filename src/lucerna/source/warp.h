@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lucerna/core/frame.h"
+#include "lucerna/geometry.h"
 
 /// Maps of the unit square onto the shapes that emitters need; each keeps areas (up to the density it names),
 /// so that evenly spread points stay evenly spread. u, v in [0, 1).

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 #include "lucerna/source/fitted_support.h"
 
 namespace lucerna {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "lucerna/rayset/ray_block.h"
+#include "lucerna/rays.h"
 #include "lucerna/source/support_fit.h"
 
 namespace lucerna {

@@ -5,11 +5,11 @@
 
 #include <cmath>
 
-#include "lucerna/core/random.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/random.h"
+#include "lucerna/ray_file.h"
+#include "lucerna/source.h"
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/draw_rays.h"
-#include "lucerna/source/emitter.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {

@@ -9,6 +9,7 @@
 #include "lucerna/trace/accelerator_error.h"
 #include "lucerna/trace/block_sums.cuh"
 #include "lucerna/trace/trace_kernel.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

@@ -7,6 +7,7 @@
 
 #include "lucerna/trace/accelerator.h"
 #include "lucerna/trace/trace_kernel.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <memory>
 
-#include "lucerna/core/random.h"
-#include "lucerna/source/emitter.h"
-#include "lucerna/source/ray_set_source.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/random.h"
+#include "lucerna/reflector/swept_curve.h"
+#include "lucerna/source.h"
+#include "lucerna/trace.h"
 
 namespace lucerna {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "lucerna/core/error.h"
-#include "lucerna/rayset/ray_statistics.h"
+#include "lucerna/ray_statistics.h"
 
 namespace lucerna {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "lucerna/core/estimate.h"
-#include "lucerna/core/sequence.h"
+#include "lucerna/estimate.h"
+#include "lucerna/random.h"
 #include "lucerna/trace/backward_scene.h"
 #include "lucerna/trace/direction_cell.h"
 #include "lucerna/trace/mirror_guide.h"

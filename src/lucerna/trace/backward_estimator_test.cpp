@@ -13,9 +13,10 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/source/emitter.h"
-#include "lucerna/trace/project.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/project.h"
+#include "lucerna/source.h"
+#include "lucerna/trace.h"
+#include "lucerna/trace/far_field_counts.h"
 #include "tests/support/paths.h"
 
 namespace lucerna {

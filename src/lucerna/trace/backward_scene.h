@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "lucerna/scene.h"
 #include "lucerna/source/luminance_source.h"
-#include "lucerna/trace/body.h"
+#include "lucerna/trace/body_tracer.h"
 #include "lucerna/trace/reference_tracer.h"
-#include "lucerna/trace/scene.h"
 #include "lucerna/trace/slope_error.h"
 
 namespace lucerna {

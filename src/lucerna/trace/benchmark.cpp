@@ -12,8 +12,8 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/core/random.h"
-#include "lucerna/source/ray_set_source.h"
+#include "lucerna/random.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 

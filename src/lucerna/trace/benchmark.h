@@ -7,12 +7,12 @@
 #include <span>
 #include <string>
 
-#include "lucerna/core/progress.h"
-#include "lucerna/rayset/ray_set.h"
+#include "lucerna/progress.h"
+#include "lucerna/rays.h"
 #include "lucerna/reflector/height_field.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/trace.h"
 
-/// The scenes on which light tracing is measured (design.md section 6), for `lucerna bench` and bench/trace.
+/// The scenes on which light tracing is measured, for `lucerna bench` and bench/trace.
 namespace lucerna {
 
 /// A square mirror of 100 mm: z = r^2 / (4 f) + p cos(k x) cos(k y) with a pitch of 8 mm.

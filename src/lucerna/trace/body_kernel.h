@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <optional>
 
-#include "lucerna/core/direction.h"
-#include "lucerna/core/host_device.h"
-#include "lucerna/trace/reflectance.h"
+#include "lucerna/geometry.h"
+#include "lucerna/host_device.h"
+#include "lucerna/scene.h"
 #include "lucerna/trace/slope_error.h"
 #include "lucerna/trace/triangle_kernel.h"
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "lucerna/core/host_device.h"
-#include "lucerna/core/vec.h"
+#include "lucerna/geometry.h"
+#include "lucerna/host_device.h"
 #include "lucerna/reflector/swept_curve.h"
 
 namespace lucerna {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
-#include "lucerna/core/frame.h"
-#include "lucerna/core/random.h"
+#include "lucerna/geometry.h"
+#include "lucerna/random.h"
 #include "lucerna/trace/reference_tracer.h"
 #include "tests/support/random_direction.h"
 

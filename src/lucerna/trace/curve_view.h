@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "lucerna/reflector/aperture.h"
+#include "lucerna/reflector.h"
+#include "lucerna/reflector/swept_curve.h"
 #include "lucerna/trace/curve_kernel.h"
 
 namespace lucerna {

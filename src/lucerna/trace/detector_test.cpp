@@ -6,10 +6,11 @@
 #include <numeric>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
-#include "lucerna/source/emitter.h"
-#include "lucerna/source/ray_set_source.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/random.h"
+#include "lucerna/source.h"
+#include "lucerna/trace.h"
+#include "lucerna/trace/far_field_counts.h"
+#include "lucerna/trace/far_field_grid.h"
 
 namespace lucerna {
 namespace {

@@ -7,10 +7,15 @@
 #include "lucerna/core/error.h"
 #include "lucerna/source/adaptive_model.h"
 #include "lucerna/source/cluster_model.h"
+#include "lucerna/trace/body_tracer.h"
 #include "lucerna/trace/curve_view.h"
 #include "lucerna/trace/facet_mirror.h"
+#include "lucerna/trace/far_field_grid.h"
 #include "lucerna/trace/field_view.h"
+#include "lucerna/trace/glass_tracer.h"
+#include "lucerna/trace/plane_bins.h"
 #include "lucerna/trace/triangle_tree.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

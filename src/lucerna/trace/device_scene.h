@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "lucerna/reflector/height_field.h"
+#include "lucerna/scene.h"
+#include "lucerna/trace.h"
 #include "lucerna/trace/accelerator_buffer.h"
 #include "lucerna/trace/ray_numbering.h"
-#include "lucerna/trace/scene.h"
-#include "lucerna/trace/trace.h"
 
 namespace lucerna {
 

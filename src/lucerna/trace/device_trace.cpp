@@ -11,6 +11,7 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/trace/device_scene.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

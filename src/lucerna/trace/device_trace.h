@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "lucerna/core/progress.h"
+#include "lucerna/progress.h"
+#include "lucerna/scene.h"
+#include "lucerna/trace.h"
 #include "lucerna/trace/accelerator.h"
 #include "lucerna/trace/ray_numbering.h"
-#include "lucerna/trace/scene.h"
-#include "lucerna/trace/trace.h"
 
 namespace lucerna {
 

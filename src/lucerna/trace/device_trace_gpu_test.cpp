@@ -6,11 +6,12 @@
 #include <cmath>
 
 #include "lucerna/reflector/spline_surface.h"
+#include "lucerna/source.h"
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/cluster_compress.h"
-#include "lucerna/source/ray_set_source.h"
 #include "lucerna/trace/device_scene.h"
 #include "lucerna/trace/device_trace.h"
+#include "lucerna/trace/far_field_counts.h"
 #include "tests/support/device_scenes.h"
 
 namespace lucerna {

@@ -8,11 +8,12 @@
 #include <limits>
 
 #include "lucerna/core/error.h"
+#include "lucerna/source.h"
 #include "lucerna/source/adaptive_model.h"
 #include "lucerna/source/cluster_compress.h"
-#include "lucerna/source/emitter.h"
-#include "lucerna/source/ray_set_source.h"
+#include "lucerna/trace/body_tracer.h"
 #include "lucerna/trace/device_scene.h"
+#include "lucerna/trace/units.h"
 #include "tests/support/device_scenes.h"
 #include "tests/support/random_rays.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lucerna/core/direction.h"
+#include "lucerna/geometry.h"
 
 namespace lucerna {
 

@@ -3,8 +3,9 @@
 
 #include <numeric>
 
+#include "lucerna/trace.h"
 #include "lucerna/trace/benchmark.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/trace/far_field_counts.h"
 
 namespace lucerna {
 namespace {

@@ -8,10 +8,11 @@
 #include <optional>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/random.h"
+#include "lucerna/source.h"
+#include "lucerna/trace.h"
 #include "lucerna/trace/facet_mirror.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/trace/far_field_counts.h"
 #include "tests/support/random_direction.h"
 
 namespace lucerna {

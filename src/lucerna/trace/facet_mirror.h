@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "lucerna/reflector/reflector.h"
+#include "lucerna/reflector.h"
 #include "lucerna/trace/facet_kernel.h"
 
 namespace lucerna {

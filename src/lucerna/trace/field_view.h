@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "lucerna/core/frame.h"
+#include "lucerna/geometry.h"
 #include "lucerna/reflector/height_field.h"
 #include "lucerna/trace/kernel.h"
 

@@ -12,9 +12,10 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 #include "lucerna/reflector/faceted_surface.h"
-#include "lucerna/trace/body.h"
+#include "lucerna/scene.h"
+#include "lucerna/trace/body_tracer.h"
 #include "lucerna/trace/exact_mirrors.h"
 #include "lucerna/trace/field_view.h"
 #include "lucerna/trace/reference_tracer.h"

@@ -7,7 +7,7 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/photometry/jackknife.h"
-#include "lucerna/trace/trace_result.h"
+#include "lucerna/trace.h"
 
 namespace lucerna {
 

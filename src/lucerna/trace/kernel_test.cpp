@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "lucerna/core/error.h"
-#include "lucerna/core/random.h"
-#include "lucerna/trace/far_field.h"
+#include "lucerna/random.h"
+#include "lucerna/trace/far_field_grid.h"
 #include "lucerna/trace/field_view.h"
 #include "lucerna/trace/reference_tracer.h"
 #include "lucerna/trace/units.h"

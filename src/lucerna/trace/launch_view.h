@@ -4,18 +4,19 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lucerna/core/sequence.h"
+#include "lucerna/detectors.h"
+#include "lucerna/random.h"
 #include "lucerna/reflector/field_hierarchy.h"
+#include "lucerna/scene.h"
 #include "lucerna/source/adaptive_view.h"
 #include "lucerna/source/cluster_view.h"
 #include "lucerna/trace/body_kernel.h"
 #include "lucerna/trace/curve_kernel.h"
 #include "lucerna/trace/facet_kernel.h"
-#include "lucerna/trace/far_field.h"
+#include "lucerna/trace/far_field_grid.h"
 #include "lucerna/trace/kernel.h"
-#include "lucerna/trace/plane_detector.h"
+#include "lucerna/trace/plane_bins.h"
 #include "lucerna/trace/plate_kernel.h"
-#include "lucerna/trace/reflectance.h"
 #include "lucerna/trace/units.h"
 
 namespace lucerna {

@@ -8,9 +8,10 @@
 #include <string>
 
 #include "lucerna/photometry/far_field_metrics.h"
+#include "lucerna/project.h"
+#include "lucerna/trace.h"
+#include "lucerna/trace/far_field_counts.h"
 #include "lucerna/trace/node_noise.h"
-#include "lucerna/trace/project.h"
-#include "lucerna/trace/trace.h"
 #include "tests/support/paths.h"
 
 namespace lucerna {

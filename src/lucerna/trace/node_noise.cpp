@@ -22,7 +22,7 @@ std::vector<double> steps(std::size_t count, double step_deg) {
 
 }  // namespace
 
-BinnedIntensity node_intensity(const FarField& field) {
+BinnedIntensity node_intensity(const CountedFarField& field) {
   const auto c = steps(field.c_count, field.c_step_deg);
   auto gamma = steps(field.gamma_count, field.gamma_step_deg);
   gamma.back() = 180.0;

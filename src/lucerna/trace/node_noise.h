@@ -2,12 +2,12 @@
 #pragma once
 
 #include "lucerna/photometry/binned_intensity.h"
-#include "lucerna/trace/trace_result.h"
+#include "lucerna/trace/far_field_counts.h"
 
 namespace lucerna {
 
 /// Intensities at the angles of a far field's grid, with their errors (binned_intensity.h).
-BinnedIntensity node_intensity(const FarField& field);
+BinnedIntensity node_intensity(const CountedFarField& field);
 
 /// The largest standard error of a value above 1 % of the largest value, over the largest value: what
 /// `trace --noise` brings down. NaN where errors are not known, 0 for a dark far field.

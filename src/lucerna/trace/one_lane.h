@@ -7,7 +7,7 @@
 
 #include <stdint.h>
 
-#include "lucerna/core/host_device.h"
+#include "lucerna/host_device.h"
 
 namespace lucerna {
 namespace {

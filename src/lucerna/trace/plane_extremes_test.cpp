@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lucerna/source/emitter.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/source.h"
+#include "lucerna/trace.h"
 
 namespace lucerna {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <optional>
 
-#include "lucerna/core/frame.h"
-#include "lucerna/core/host_device.h"
-#include "lucerna/core/random.h"
+#include "lucerna/geometry.h"
+#include "lucerna/host_device.h"
+#include "lucerna/random.h"
 #include "lucerna/trace/slope_error.h"
 
 namespace lucerna {

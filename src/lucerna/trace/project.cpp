@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/trace/project.h"
+#include "lucerna/project.h"
 
 #include <sstream>
 
 #include "lucerna/core/error.h"
 #include "lucerna/trace/project_parts.h"
+#include "lucerna/trace/project_tables.h"
 #include "lucerna/trace/toml_reader.h"
 
 namespace lucerna {
@@ -64,9 +65,9 @@ Frame read_placement(TomlReader& reader) {
 
 Project read_project(const fs::path& path, Progress& progress) {
   Project project;
-  project.table = parse_toml_file(path);
+  toml_tables(project) = parse_toml_file(path);
   project.inputs.push_back(path);
-  TomlReader root(project.table, path.string(), "");
+  TomlReader root(toml_tables(project), path.string(), "");
   const auto sources = root.tables("source");
   const auto reflectors = root.tables("reflector");
   const auto bodies = root.tables("body");
@@ -89,13 +90,13 @@ Project read_project(const fs::path& path, Progress& progress) {
     throw InputError(fmt::format("{}: {}", path.string(), e.what()));
   }
   check_sources_before_mirrors(project, path.string());
-  make_files_absolute(project.table, fs::absolute(path).parent_path());
+  make_files_absolute(toml_tables(project), fs::absolute(path).parent_path());
   return project;
 }
 
 std::string project_text(const Project& project) {
   std::ostringstream out;
-  out << project.table << '\n';
+  out << toml_tables(project) << '\n';
   return out.str();
 }
 

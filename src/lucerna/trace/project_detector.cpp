@@ -2,7 +2,8 @@
 #include <cmath>
 #include <utility>
 
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
+#include "lucerna/trace/far_field_grid.h"
 #include "lucerna/trace/project_parts.h"
 
 namespace lucerna::project_parts {

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "lucerna/core/error.h"
-#include "lucerna/trace/project.h"
+#include "lucerna/project.h"
 #include "lucerna/trace/toml_reader.h"
 
 /// The tables of a project file, each read by a file of its own; what `read_project` is made of. All throw

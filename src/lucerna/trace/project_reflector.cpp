@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "lucerna/core/error.h"
 #include "lucerna/core/number_table.h"
 #include "lucerna/reflector/faceted_surface.h"
 #include "lucerna/reflector/height_map.h"

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/rayset/ray_file.h"
-#include "lucerna/source/emitter.h"
-#include "lucerna/source/ray_set_source.h"
-#include "lucerna/source/source_model.h"
+#include "lucerna/ray_file.h"
+#include "lucerna/source.h"
+#include "lucerna/source_model.h"
 #include "lucerna/trace/project_parts.h"
 
 namespace lucerna::project_parts {

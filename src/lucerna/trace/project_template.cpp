@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/trace/project.h"
+#include "lucerna/project.h"
 
 namespace lucerna {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/trace/project.h"
+#include "lucerna/project.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,8 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
-#include "lucerna/rayset/ray_file.h"
+#include "lucerna/ray_file.h"
+#include "lucerna/reflector/swept_curve.h"
 #include "tests/support/random_rays.h"
 #include "tests/support/temp_dir.h"
 

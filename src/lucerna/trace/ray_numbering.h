@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lucerna/trace/scene.h"
+#include "lucerna/scene.h"
 #include "lucerna/trace/units.h"
 
 namespace lucerna {

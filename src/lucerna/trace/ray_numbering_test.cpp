@@ -9,6 +9,8 @@
 #include <numeric>
 #include <set>
 
+#include "lucerna/trace/units.h"
+
 namespace lucerna {
 namespace {
 

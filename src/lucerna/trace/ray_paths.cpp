@@ -7,8 +7,11 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/trace/body_tracer.h"
+#include "lucerna/trace/glass_tracer.h"
 #include "lucerna/trace/ray_numbering.h"
 #include "lucerna/trace/reference_tracer.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "lucerna/source/emitter.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/source.h"
+#include "lucerna/trace.h"
 
 namespace lucerna {
 namespace {

@@ -5,6 +5,7 @@
 #include "lucerna/trace/reference_tracer.h"
 #include "lucerna/trace/slope_error.h"
 #include "lucerna/trace/trace_engine.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

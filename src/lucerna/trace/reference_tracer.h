@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "lucerna/core/direction.h"
+#include "lucerna/geometry.h"
 #include "lucerna/reflector/height_mipmap.h"
 #include "lucerna/trace/curve_view.h"
 #include "lucerna/trace/facet_mirror.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 #include "tests/support/random_direction.h"
 
 namespace lucerna {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/trace/reflectance.h"
-
 #include <algorithm>
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/scene.h"
 
 namespace lucerna {
 

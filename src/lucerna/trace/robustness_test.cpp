@@ -7,14 +7,13 @@
 #include <cmath>
 #include <memory>
 
-#include "lucerna/core/random.h"
+#include "lucerna/random.h"
 #include "lucerna/reflector/faceted_surface.h"
 #include "lucerna/reflector/spline_surface.h"
-#include "lucerna/source/emitter.h"
-#include "lucerna/source/ray_set_source.h"
+#include "lucerna/source.h"
+#include "lucerna/trace.h"
 #include "lucerna/trace/field_view.h"
 #include "lucerna/trace/reference_tracer.h"
-#include "lucerna/trace/trace.h"
 
 namespace lucerna {
 namespace {

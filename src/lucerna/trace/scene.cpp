@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/trace/scene.h"
+#include "lucerna/scene.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "lucerna/core/error.h"
+#include "lucerna/reflector/swept_curve.h"
+#include "lucerna/trace/far_field_grid.h"
 
 namespace lucerna {
 

@@ -8,7 +8,7 @@
 
 #include <stdint.h>
 
-#include "lucerna/core/host_device.h"
+#include "lucerna/host_device.h"
 
 #if defined(LUCERNA_ONE_LANE) || defined(__CUDACC__)
 #include "lucerna/trace/one_lane.h"

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <numbers>
 
-#include "lucerna/core/frame.h"
-#include "lucerna/core/random.h"
+#include "lucerna/geometry.h"
+#include "lucerna/random.h"
 
 namespace lucerna {
 

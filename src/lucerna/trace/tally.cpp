@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/trace/tally.h"
-
 #include "lucerna/core/error.h"
+#include "lucerna/trace.h"
 
 namespace lucerna {
 

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lucerna/core/direction.h"
+#include "lucerna/geometry.h"
 
 namespace lucerna {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/trace/trace.h"
+#include "lucerna/trace.h"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,10 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/trace/device_trace.h"
+#include "lucerna/trace/far_field_grid.h"
 #include "lucerna/trace/ray_numbering.h"
 #include "lucerna/trace/trace_engine.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

@@ -6,10 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/rayset/ray_block.h"
+#include "lucerna/rays.h"
+#include "lucerna/trace.h"
+#include "lucerna/trace/body_tracer.h"
+#include "lucerna/trace/far_field_grid.h"
+#include "lucerna/trace/glass_tracer.h"
+#include "lucerna/trace/plane_bins.h"
 #include "lucerna/trace/ray_numbering.h"
-#include "lucerna/trace/tally.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

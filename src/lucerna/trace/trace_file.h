@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "lucerna/core/progress.h"
+#include "lucerna/progress.h"
+#include "lucerna/trace.h"
 #include "lucerna/trace/trace_origin.h"
-#include "lucerna/trace/trace_result.h"
 
 namespace lucerna {
 
@@ -31,7 +31,7 @@ inline constexpr const char* kTraceFileName = "trace.sums";
 /// Adds the traces of several ranges of one scene, given in any order: what one run over all of them would
 /// have left, to the bit. Each file is read twice, a few results at a time are in memory. Throws InputError,
 /// naming the folders, if the traces are of different projects or program versions, cannot be added (`merge`
-/// in trace_result.h), or rays are missing or double between them.
+/// in trace.h), or rays are missing or double between them.
 StoredTrace merge_trace_folders(const std::vector<std::filesystem::path>& folders,
                                 Progress& progress = no_progress());
 

@@ -5,9 +5,10 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
-#include "lucerna/core/random.h"
-#include "lucerna/source/emitter.h"
-#include "lucerna/trace/trace.h"
+#include "lucerna/random.h"
+#include "lucerna/source.h"
+#include "lucerna/trace.h"
+#include "lucerna/trace/far_field_counts.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {

@@ -4,7 +4,7 @@
 // What becomes of one ray, from its number to the bins: the body of the GPU's tracing kernel. Included by
 // what is compiled for one lane only (simd.h): the CUDA kernels, and the CPU's stand-in for them
 // (accelerator_emulated.cpp), which runs the same functions in a loop. Plain data in flat arrays; sums are
-// the whole units of tally.h, so that the order of adding does not matter.
+// the whole units of units.h, so that the order of adding does not matter.
 
 #include <cfloat>
 #include <type_traits>
@@ -14,6 +14,7 @@
 #include "lucerna/trace/field_kernel.h"
 #include "lucerna/trace/launch_view.h"
 #include "lucerna/trace/slope_error.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 namespace {

@@ -6,7 +6,8 @@
 
 #include "lucerna/core/file.h"
 #include "lucerna/core/sha256.h"
-#include "lucerna/core/version.h"
+#include "lucerna/trace/project_tables.h"
+#include "lucerna/version.h"
 
 namespace lucerna {
 
@@ -41,7 +42,7 @@ void set_luminous_size(const Scene& scene, TraceOrigin& origin) {
 
 TraceOrigin trace_origin(const Project& project) {
   TraceOrigin origin;
-  toml::table table = project.table;
+  toml::table table = toml_tables(project);
   table.erase("target");
   table.erase("design");
   hash_files(table);

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "lucerna/trace/project.h"
+#include "lucerna/project.h"
 
 namespace lucerna {
 

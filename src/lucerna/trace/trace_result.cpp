@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/trace/trace_result.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +6,9 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/trace.h"
+#include "lucerna/trace/far_field_counts.h"
+#include "lucerna/trace/far_field_grid.h"
 #include "lucerna/trace/jackknifed_units.h"
 
 namespace lucerna {
@@ -94,34 +95,34 @@ Ledger ledger(const TraceResult& result) {
   return l;
 }
 
-FarField far_field(const TraceResult& result, std::size_t index) {
+CountedFarField far_field(const TraceResult& result, std::size_t index) {
   LUCERNA_CHECK(index < result.far_fields.size(), "index = {}", index);
   const FarFieldDetector& detector = result.far_fields[index];
   const FarFieldGrid grid(detector), counted = FarFieldGrid::counted(detector);
   const FarFieldParts parts = counted_parts(detector);
   const std::size_t gammas = grid.gamma_count();
-  FarField f{detector.name,
-             detector.c_step_deg,
-             detector.gamma_step_deg,
-             grid.c_count(),
-             gammas,
-             detector.tent,
-             result.unit,
-             {},
-             std::vector<double>(grid.size()),
-             jackknifed_flux(result, grid.size(), [&](const Tally& t, std::size_t cell) {
-               const std::size_t c = cell / gammas * parts.c + counted.c_count() - parts.c / 2;
-               const std::size_t g = cell % gammas * parts.gamma, half = parts.gamma / 2;
-               const std::size_t from = g < half ? 0 : g - half,
-                                 to = std::min(g + half + 1, counted.gamma_count());
-               std::int64_t sum = 0;
-               for (std::size_t k = 0; k < parts.c; ++k) {
-                 const std::int64_t* const plane =
-                     t.bins[index].data() + (c + k) % counted.c_count() * counted.gamma_count();
-                 sum += std::accumulate(plane + from, plane + to, std::int64_t{0});
-               }
-               return sum;
-             })};
+  CountedFarField f{{detector.name,
+                     detector.c_step_deg,
+                     detector.gamma_step_deg,
+                     grid.c_count(),
+                     gammas,
+                     detector.tent,
+                     result.unit,
+                     {},
+                     std::vector<double>(grid.size())},
+                    jackknifed_flux(result, grid.size(), [&](const Tally& t, std::size_t cell) {
+                      const std::size_t c = cell / gammas * parts.c + counted.c_count() - parts.c / 2;
+                      const std::size_t g = cell % gammas * parts.gamma, half = parts.gamma / 2;
+                      const std::size_t from = g < half ? 0 : g - half,
+                                        to = std::min(g + half + 1, counted.gamma_count());
+                      std::int64_t sum = 0;
+                      for (std::size_t k = 0; k < parts.c; ++k) {
+                        const std::int64_t* const plane =
+                            t.bins[index].data() + (c + k) % counted.c_count() * counted.gamma_count();
+                        sum += std::accumulate(plane + from, plane + to, std::int64_t{0});
+                      }
+                      return sum;
+                    })};
   f.flux = f.replicated.fluxes();
   for (std::size_t i = 0; i < grid.size(); ++i) {
     const auto row = f.replicated.row(i);

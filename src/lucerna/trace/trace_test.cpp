@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/trace/trace.h"
+#include "lucerna/trace.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,9 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/source/emitter.h"
-#include "lucerna/source/ray_set_source.h"
+#include "lucerna/source.h"
+#include "lucerna/trace/far_field_counts.h"
+#include "lucerna/trace/far_field_grid.h"
 #include "lucerna/trace/reference_tracer.h"
 
 namespace lucerna {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/trace/trace_until.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/trace.h"
 #include "lucerna/trace/node_noise.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

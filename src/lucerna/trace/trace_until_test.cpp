@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/trace/trace_until.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "lucerna/core/parallel.h"
-#include "lucerna/source/emitter.h"
+#include "lucerna/source.h"
+#include "lucerna/trace.h"
 #include "lucerna/trace/node_noise.h"
 
 namespace lucerna {

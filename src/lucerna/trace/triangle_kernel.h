@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "lucerna/core/host_device.h"
-#include "lucerna/core/vec.h"
+#include "lucerna/geometry.h"
+#include "lucerna/host_device.h"
 
 namespace lucerna {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "lucerna/trace/body.h"
+#include "lucerna/scene.h"
 #include "lucerna/trace/triangle_kernel.h"
 
 namespace lucerna {

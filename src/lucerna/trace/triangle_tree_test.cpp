@@ -9,6 +9,7 @@
 #include <string>
 
 #include "lucerna/core/error.h"
+#include "lucerna/trace/body_tracer.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random_direction.h"
 

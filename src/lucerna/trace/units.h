@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "lucerna/core/host_device.h"
+#include "lucerna/host_device.h"
 
 namespace lucerna {
 
@@ -22,7 +22,7 @@ LUCERNA_HD static inline std::int64_t units_of(float flux) {
 
 /// Rays per block: the unit that is drawn, traced and given to one replicate.
 inline constexpr std::uint64_t kBlockRays = 512;
-/// Independent replicates of every run, for standard errors (design.md section 4).
+/// Independent replicates of every run, for standard errors.
 inline constexpr std::uint64_t kReplicates = 16;
 
 }  // namespace lucerna

@@ -13,9 +13,11 @@
 #include "lucerna/trace/curve_view.h"
 #include "lucerna/trace/exact_mirrors.h"
 #include "lucerna/trace/facet_mirror.h"
+#include "lucerna/trace/far_field_grid.h"
 #include "lucerna/trace/field_view.h"
 #include "lucerna/trace/slope_error.h"
 #include "lucerna/trace/trace_engine.h"
+#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

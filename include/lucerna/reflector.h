@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "lucerna/host_device.h"
+
+namespace lucerna {
+
+/// Height and exact gradient of a surface z = h(x, y) at one place.
+struct SurfacePoint {
+  double z_mm = 0.0;
+  double dzdx = 0.0, dzdy = 0.0;
+};
+
+/// A closed range of heights.
+struct HeightRange {
+  double low_mm = 0.0, high_mm = 0.0;
+};
+
+/// An axis-parallel rectangle in the reflector's xy plane.
+struct Rectangle {
+  double x0_mm = 0.0, x1_mm = 0.0, y0_mm = 0.0, y1_mm = 0.0;
+};
+
+/// The shape of a mirror as a height over the xy plane of its own frame: vertex at the origin, opening along
+/// +z; the side towards +z reflects. Defined for every (x, y): beyond the region that it describes it
+/// continues steadily, so that cells cut by an aperture's rim have heights. Immutable and thread safe.
+class HeightSurface {
+ public:
+  virtual ~HeightSurface() = default;
+
+  /// Height and gradient at (x, y).
+  virtual SurfacePoint at(double x_mm, double y_mm) const = 0;
+
+  /// A range that holds the height at every point of `region`; as tight as is cheap. What hierarchies are
+  /// built from.
+  virtual HeightRange range(const Rectangle& region) const = 0;
+};
+
+enum class ApertureShape { circle, rectangle };
+
+/// The part of a height surface that is there: a circle or a rectangle about the z axis, less a round hole
+/// for the lamp.
+class Aperture {
+ public:
+  /// Throws InputError unless diameter > 0 and 0 <= hole < diameter.
+  static Aperture circle(double diameter_mm, double hole_diameter_mm = 0.0);
+  /// Throws InputError unless both sizes are > 0 and 0 <= hole < the smaller of them.
+  static Aperture rectangle(double size_x_mm, double size_y_mm, double hole_diameter_mm = 0.0);
+
+  /// True if (x, y) is on the mirror; outer rims belong to it, the hole's rim does too.
+  bool contains(double x_mm, double y_mm) const {
+    const double r2 = x_mm * x_mm + y_mm * y_mm;
+    if (r2 < hole_radius_mm_ * hole_radius_mm_) return false;
+    if (shape_ == ApertureShape::circle) return r2 <= half_x_mm_ * half_x_mm_;
+    return x_mm <= half_x_mm_ && x_mm >= -half_x_mm_ && y_mm <= half_y_mm_ && y_mm >= -half_y_mm_;
+  }
+
+  /// The smallest rectangle about it.
+  Rectangle bounds() const { return {-half_x_mm_, half_x_mm_, -half_y_mm_, half_y_mm_}; }
+  /// Distance of its farthest point from the axis.
+  double outer_radius_mm() const;
+  LUCERNA_HD double hole_radius_mm() const { return hole_radius_mm_; }
+  LUCERNA_HD double half_x_mm() const { return half_x_mm_; }
+  LUCERNA_HD double half_y_mm() const { return half_y_mm_; }
+  LUCERNA_HD ApertureShape shape() const { return shape_; }
+
+  /// True if no point of `region` is on the mirror.
+  bool misses(const Rectangle& region) const;
+
+ private:
+  Aperture(ApertureShape shape, double half_x_mm, double half_y_mm, double hole_radius_mm);
+  ApertureShape shape_;
+  double half_x_mm_, half_y_mm_, hole_radius_mm_;
+};
+
+/// Least and greatest distance from the origin to points of `region`.
+struct RadiusRange {
+  double least_mm = 0.0, greatest_mm = 0.0;
+};
+RadiusRange radius_range(const Rectangle& region);
+
+/// One given point of a spline profile.
+struct ProfileKnot {
+  double r_mm = 0.0, z_mm = 0.0;
+};
+
+class SweptCurve;
+
+/// A mirror in its own frame: a shape and the part of it that is there.
+struct Reflector {
+  /// The shape; where `curve` is set, only the lowest sheet of it (CurveSheet).
+  std::shared_ptr<const HeightSurface> surface;
+  Aperture aperture = Aperture::circle(1.0);
+  /// Set if the shape is no function of (x, y): a profile that turns back towards the axis, or has vertical
+  /// parts. Then this is what is traced, within `aperture`.
+  std::shared_ptr<const SweptCurve> curve = nullptr;
+};
+
+enum class ConicPreset { parabola, ellipse, hyperbola };
+
+/// A conic of revolution. `focal2_mm` counts for ellipse and hyperbola only. Errors as in ConicProfile.
+Reflector conic_reflector(ConicPreset preset, double focal_mm, double focal2_mm, const Aperture& aperture);
+
+/// A surface of revolution from a spline profile. Points with ascending r, none of their chords
+/// steeper than 10 : 1, make a SplineProfile; errors as there, and where the aperture is wider than the
+/// profile or the profile starts outside the hole. All others make a SweptCurve, with its errors: there the
+/// outer size of the aperture is either that of the last point (the mouth; the bulge behind it belongs to the
+/// mirror) or holds the whole curve; a rectangle cuts it. A row of points from the rim to the axis (r
+/// strictly descending) is refused.
+Reflector profile_reflector(const std::vector<ProfileKnot>& knots, const Aperture& aperture);
+
+/// Troughs along y from the same profiles, over |x|. Errors alike; the aperture's half width counts as its
+/// radius.
+Reflector conic_trough(ConicPreset preset, double focal_mm, double focal2_mm, const Aperture& aperture);
+Reflector profile_trough(const std::vector<ProfileKnot>& knots, const Aperture& aperture);
+
+/// An ellipsoid of revolution past its equator: from the hole about its vertex to the mouth beyond the
+/// equator. Light from z = focal_mm meets at z = focal2_mm; equal focal lengths make a sphere. As a
+/// SweptCurve through 256 points or more: right to 1e-9 of its size. Throws InputError unless the focal
+/// lengths are > 0 and the mouth is smaller than the equator.
+Reflector deep_ellipse_reflector(double focal_mm, double focal2_mm, double mouth_diameter_mm,
+                                 double hole_diameter_mm = 0.0);
+
+}  // namespace lucerna

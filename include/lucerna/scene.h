@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lucerna/detectors.h"
+#include "lucerna/geometry.h"
+#include "lucerna/host_device.h"
+#include "lucerna/mesh.h"
+#include "lucerna/reflector.h"
+#include "lucerna/source.h"
+
+namespace lucerna {
+
+/// One entry of a table of reflectance over the angle of incidence.
+struct ReflectanceEntry {
+  /// From the normal, [0, 90].
+  double incidence_deg = 0.0;
+  double value = 0.0;
+};
+
+/// The table's value at `cos_incidence` in [0, 1]; at least one entry.
+LUCERNA_HD inline double reflectance_at(const ReflectanceEntry* table, std::size_t n, double cos_incidence) {
+  if (n == 1) return table[0].value;
+  const double cosine = cos_incidence < 0.0 ? 0.0 : cos_incidence > 1.0 ? 1.0 : cos_incidence;
+  const double angle = degrees(std::acos(cosine));
+  std::size_t after = 0;
+  while (after < n && !(angle < table[after].incidence_deg)) ++after;
+  if (after == 0) return table[0].value;
+  const ReflectanceEntry& a = table[after - 1];
+  if (after == n) return a.value;
+  const ReflectanceEntry& b = table[after];
+  return a.value + (b.value - a.value) * (angle - a.incidence_deg) / (b.incidence_deg - a.incidence_deg);
+}
+
+/// The share of light that a mirror returns: a number, or a table over the angle of incidence, linear in the
+/// angle between its entries and constant beyond them. Thread safe.
+class Reflectance {
+ public:
+  /// The same at every angle. Throws InputError unless it is in [0, 1].
+  explicit Reflectance(double value);
+
+  using Entry = ReflectanceEntry;
+  /// Throws InputError unless angles ascend within [0, 90] and values are in [0, 1]; at least one entry.
+  explicit Reflectance(std::vector<Entry> table);
+
+  /// `cos_incidence` in [0, 1].
+  double at(double cos_incidence) const {
+    return reflectance_at(table_.data(), table_.size(), cos_incidence);
+  }
+  /// The largest value at any angle.
+  double greatest() const;
+  /// The same over the angle with `change` added to every value, within [0, 1].
+  Reflectance shifted(double change) const;
+  /// True if it does not depend on the angle.
+  bool is_constant() const { return table_.size() == 1; }
+  const std::vector<Entry>& table() const { return table_; }
+
+ private:
+  std::vector<Entry> table_;
+};
+
+/// Something that is no height field: housing, shield, the lamp's own body; absorbs, or is a mirror on both
+/// sides.
+struct Body {
+  /// The cause in the ledger.
+  std::string name = "body";
+  std::shared_ptr<const Mesh> mesh;
+  Frame world_from_body;
+  /// 0 absorbs everything.
+  Reflectance reflectance{0.0};
+  /// True for the lamp's own body: rays of a lamp's file already left it, so it only meets light that comes
+  /// back from a mirror or another body; else its shadow would be counted twice.
+  bool only_returning_light = false;
+  /// > 0: a mirror's normal changes steadily across triangles that meet at less than this angle
+  /// (`corner_normals`); 0: every triangle is flat.
+  double smooth_below_deg = 0.0;
+  /// As PlacedReflector::slope_error_mrad, on both sides.
+  double slope_error_mrad = 0.0;
+};
+
+/// Throws InputError unless the body has triangles, 0 <= smooth_below_deg <= 180 and 0 <= slope_error_mrad <=
+/// 1000.
+void check(const Body& body);
+
+/// A flat cover glass: a plane-parallel plate that fills 0 <= z <= thickness_mm of its own frame, within a
+/// circle or a rectangle about the z axis. Both faces reflect and refract by Fresnel's formulas for
+/// unpolarised light; all reflections between the faces are summed (incoherent light), with what the glass
+/// absorbs on the way. Light that is let through keeps its direction and leaves beside the line it came on.
+/// The rim is black: light that enters or leaves through it is absorbed. Light that starts inside the plate
+/// is not touched.
+///
+/// A ray is not split: one random number of the ray's own stream says whether it is reflected or let through,
+/// a second how often it went to and fro (the light is taken as unpolarised again afterwards); what the plate
+/// absorbs is taken off its flux under the cause `name`. Being let through is no reflection: it counts
+/// neither towards TraceOptions::max_bounces nor makes direct light reflected light in the ledger.
+struct CoverGlass {
+  /// The cause in the ledger.
+  std::string name = "glass";
+  /// No hole.
+  Aperture aperture = Aperture::circle(100.0);
+  /// > 0.
+  double thickness_mm = 3.0;
+  /// 1 to 4. The default is soda-lime float glass in the visible.
+  double refractive_index = 1.52;
+  /// Natural absorption coefficient >= 0: a path of x mm leaves exp(-x * absorption_per_mm).
+  double absorption_per_mm = 0.0;
+  Frame world_from_glass;
+};
+
+/// Throws InputError naming the number that is out of its range.
+void check(const CoverGlass& glass);
+
+/// What a plate returns, lets through and keeps of unpolarised light; they sum to 1. `cos_incidence` in
+/// [0, 1], outside the glass.
+struct GlassShares {
+  double reflected = 0.0, transmitted = 0.0, absorbed = 0.0;
+};
+GlassShares glass_shares(const CoverGlass& glass, double cos_incidence);
+
+/// A source of light in the luminaire frame.
+struct PlacedSource {
+  std::shared_ptr<const RaySource> rays;
+  Frame world_from_source;
+  /// Overrides the source's own flux, in its own unit; > 0.
+  std::optional<double> flux;
+
+  double total_flux() const { return flux ? *flux : rays->flux(); }
+};
+
+/// The flux of all sources together, in their common unit.
+double total_flux(std::span<const PlacedSource> sources);
+
+/// A mirror in the luminaire frame. The side towards its +z reflects, the other absorbs.
+struct PlacedReflector {
+  Reflector reflector;
+  Frame world_from_reflector;
+  Reflectance reflectance{1.0};
+  /// Standard deviation of the surface normal's tilt about each of two perpendicular axes, Gaussian; >= 0.
+  /// Every reflection draws its own tilt.
+  double slope_error_mrad = 0.0;
+};
+
+/// All that light can meet, and what looks at it. Plain data; `trace` checks it.
+struct Scene {
+  std::vector<PlacedSource> sources;
+  std::vector<PlacedReflector> reflectors;
+  std::vector<FarFieldDetector> far_fields;
+  std::vector<PlaneDetector> planes;
+  std::vector<LuminanceDetector> luminances;
+  /// With any of these all rays that leave are kept, as TraceResult::out_rays: 28 bytes a ray.
+  std::vector<RayDetector> ray_detectors;
+  std::vector<Body> bodies;
+  std::vector<CoverGlass> glasses;
+};
+
+/// Share of a source's rays (of its first 4096) that start behind a mirror: within its aperture, on the side
+/// of its back. A source that is partly behind reaches through the mirror.
+double share_behind(const PlacedSource& source, const PlacedReflector& mirror);
+
+/// Throws InputError if the scene cannot be traced: no source, a flux that is not above 0, lm and W together,
+/// a detector whose steps do not divide the circle, two detectors of one name.
+void check(const Scene& scene);
+
+}  // namespace lucerna

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lucerna/progress.h"
+#include "lucerna/rays.h"
+#include "lucerna/source.h"
+
+namespace lucerna {
+
+struct NflFile;
+
+/// A ray set compressed to a density of rays: any number of rays can be drawn, and the density of each is
+/// known. Whatever the method, a model is immutable and thread safe, and the same file gives the same rays to
+/// the bit.
+class SourceModel : public RaySource {
+ public:
+  /// "clusters" or "adaptive".
+  virtual std::string_view method() const = 0;
+  /// Supports that rays start on.
+  virtual std::size_t layers() const = 0;
+  /// Constant pieces of density that are stored.
+  virtual std::size_t leaves() const = 0;
+  /// Rays that the model was made from; 0 = not known.
+  virtual std::uint64_t training_rays() const = 0;
+  /// Spectra that the ray file had beside its rays.
+  virtual std::span<const SpectralTable> spectra() const { return {}; }
+
+  /// Density of starts, 1/mm^2 on the surface; 0 off it. Starts that have no area (single points, lines) are
+  /// not in it. Throws InputError when no start has an area (rays on one point or line).
+  virtual double pdf_area(const Vec3& point_mm) const = 0;
+  /// Density of directions at a start, 1/sr. Exists for every model.
+  virtual double pdf_solid_angle(const Vec3& point_mm, const Direction& direction) const = 0;
+  /// Density of rays, 1/(mm^2 sr) projected: pdf_area * pdf_solid_angle / |cosine to the surface's normal|;
+  /// infinite at grazing directions that the model emits. Throws as pdf_area.
+  virtual double pdf_etendue(const Ray& ray) const = 0;
+
+  /// What its file holds.
+  virtual NflFile to_nfl() const = 0;
+};
+
+/// Reads a model file of any version and method. Throws InputError, one line that names the file, the place
+/// and what is wrong, on anything that is not a whole, undamaged model.
+std::unique_ptr<SourceModel> load_source_model(const std::filesystem::path& path);
+
+/// Writes `model`; returns the bytes of the file.
+std::uint64_t save_source_model(const std::filesystem::path& path, const SourceModel& model);
+
+/// Does the file begin as a model file does? False for files that are missing or too short; reads 8 bytes.
+bool is_source_model(const std::filesystem::path& path);
+
+/// The adaptive trees of docs/algorithms/adaptive.md, or Mas-Martin-Patow clusters
+/// (docs/algorithms/clusters.md).
+enum class CompressMethod { adaptive, clusters };
+/// "adaptive" or "clusters"; the second throws UsageError on anything else.
+std::string_view to_string(CompressMethod method);
+CompressMethod compress_method(std::string_view name);
+
+struct CompressOptions {
+  CompressMethod method = CompressMethod::adaptive;
+  /// The model file has at most so many bytes. Absent: as many as the rays justify.
+  std::optional<std::uint64_t> max_bytes;
+  /// Total flux of the model, in the unit of the rays; > 0. Absent: what the rays' header states.
+  std::optional<double> flux;
+  std::uint64_t seed = 1;
+};
+
+/// Makes a model of rays in memory. The same rays, options and seed give the same model for any number of
+/// threads. Throws InputError without rays, without flux, or if `max_bytes` is too little for any model (2000
+/// always do). Cost: about 1 us a ray and core; memory: 40 bytes a ray (clusters 70) beside the rays.
+[[nodiscard]] std::unique_ptr<SourceModel> compress(const RaySet& rays, const CompressOptions& options = {},
+                                                    Progress& progress = no_progress());
+
+/// A model of ray files.
+struct CompressedFiles {
+  std::unique_ptr<SourceModel> model;
+  /// Rays in the files.
+  std::uint64_t rays = 0;
+  /// What was odd in the files but could be read, each with its place.
+  std::vector<std::string> warnings;
+  /// What was done that options do not say: rays of a large file that were left out.
+  std::vector<std::string> notes;
+};
+
+/// Makes a model of ray files; several are superposed, and their fluxes add. One file is read block by block
+/// by the adaptive method, which uses at most 20 M of its rays, so that it may be larger than memory;
+/// otherwise all rays are held (28 bytes each). Throws as above, and what `open_ray_file` throws; UsageError
+/// without files.
+[[nodiscard]] CompressedFiles compress(const std::vector<std::filesystem::path>& files,
+                                       const CompressOptions& options = {},
+                                       Progress& progress = no_progress());
+
+}  // namespace lucerna

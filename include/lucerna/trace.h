@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "lucerna/detectors.h"
+#include "lucerna/estimate.h"
+#include "lucerna/flux_unit.h"
+#include "lucerna/progress.h"
+#include "lucerna/random.h"
+#include "lucerna/rays.h"
+#include "lucerna/scene.h"
+
+namespace lucerna {
+
+/// Why light ended on a mirror.
+enum class MirrorLoss { face, back };
+/// Why the tracer gave a ray up.
+enum class LostCause {
+  bounce_limit,  ///< still inside after TraceOptions::max_bounces reflections
+  not_finite,    ///< a coordinate became infinite or not a number
+};
+inline constexpr std::size_t kMirrorLosses = 2;
+inline constexpr std::size_t kLostCauses = 2;
+
+/// The sums of the rays of one replicate, in units.
+struct Tally {
+  std::uint64_t rays = 0;
+  std::uint64_t reflections = 0;
+  std::int64_t emitted = 0;
+  /// What left without and after being reflected (a cover glass that lets light through does not count).
+  std::int64_t out_direct = 0, out_reflected = 0;
+  /// By cause: kMirrorLosses, then one per body, then one per cover glass.
+  std::vector<std::int64_t> absorbed;
+  /// By cause: kLostCauses; and how many rays that were.
+  std::vector<std::int64_t> lost;
+  std::vector<std::uint64_t> lost_rays;
+  /// One array of bins per detector: far fields, planes, luminances.
+  std::vector<std::vector<std::int64_t>> bins;
+
+  /// Adds another tally of the same scene.
+  Tally& operator+=(const Tally& other);
+  friend bool operator==(const Tally&, const Tally&) = default;
+};
+
+/// The rays of one source in one block of 512 numbers that left; runs ascend by (block, source), so that the
+/// kept rays of two ranges join to the order of one run, also where the cut is within a block.
+struct OutRun {
+  std::uint64_t block = 0;
+  std::uint32_t source = 0, rays = 0;
+  friend bool operator==(const OutRun&, const OutRun&) = default;
+};
+
+/// What a trace leaves: raw sums by replicate, before any normalisation, so that ranges of rays can be added.
+struct TraceResult {
+  /// The rays traced, [first_ray, last_ray).
+  std::uint64_t first_ray = 0, last_ray = 0;
+  std::uint64_t seed = 0;
+  SequenceKind sequence = SequenceKind::sobol;
+  int max_bounces = 0;
+  /// Which tracer and instruction set made the sums: only equal ones can be merged.
+  std::string isa;
+  /// Flux of all sources together.
+  double flux = 0.0;
+  FluxUnit unit = FluxUnit::lumen;
+  std::vector<FarFieldDetector> far_fields;
+  std::vector<PlaneDetector> planes;
+  std::vector<LuminanceDetector> luminances;
+  std::vector<RayDetector> ray_detectors;
+  /// Causes of absorption after the mirrors': bodies, then cover glasses.
+  std::vector<std::string> body_names;
+  /// kReplicates tallies.
+  std::vector<Tally> replicates;
+  /// If the scene has ray detectors: where rays left and where to, in the order of `out_runs`. Together they
+  /// carry ledger().out_direct + out_reflected; weights are in mean rays.
+  RayBlock out_rays;
+  std::vector<OutRun> out_runs;
+};
+
+/// Where the light went. Every figure in the unit of the sources' flux. A standard error is NaN where it is
+/// not known: fewer than two replicates have rays.
+struct Ledger {
+  FluxUnit unit = FluxUnit::lumen;
+  /// Exactly the flux of the sources.
+  double emitted = 0.0;
+  Estimate out_direct, out_reflected;
+  /// By cause: "mirror" (what its face kept), "mirror_back", then the bodies, then the cover glasses.
+  std::vector<std::pair<std::string, Estimate>> absorbed;
+  /// By cause: "bounce_limit", "not_finite"; rays beside it.
+  std::vector<std::pair<std::string, Estimate>> lost;
+  /// All causes together.
+  Estimate all_lost;
+  std::uint64_t lost_rays = 0;
+  std::uint64_t rays = 0;
+  Estimate reflections_per_ray;
+};
+
+/// The figures of the energy ledger. emitted = out + absorbed + lost to rounding of the last digit.
+Ledger ledger(const TraceResult& result);
+
+/// Flux by far-field cell, numbered as in FarFieldGrid: c * gamma_count + g.
+struct FarField {
+  std::string name;
+  double c_step_deg = 0.0, gamma_step_deg = 0.0;
+  std::size_t c_count = 0, gamma_count = 0;
+  bool tent = false;
+  FluxUnit unit = FluxUnit::lumen;
+  std::vector<double> flux;
+  /// NaN where not known, as in Ledger.
+  std::vector<double> standard_error;
+};
+
+/// A figure by cell of a plane grid, numbered iy * nx + ix.
+struct PlaneImage {
+  std::string name;
+  PlaneGrid grid;
+  FluxUnit unit = FluxUnit::lumen;
+  /// Illuminance in lx, or luminance in cd/m2 (W/m2 and W/(m2 sr) when `unit` is watt).
+  std::vector<double> value;
+  /// NaN where not known, as in Ledger.
+  std::vector<double> standard_error;
+  /// Flux that was counted, all cells, and its error.
+  Estimate flux;
+};
+
+/// Illuminance on TraceResult::planes[index].
+PlaneImage illuminance(const TraceResult& result, std::size_t index);
+/// Luminance in TraceResult::luminances[index]: flux over `etendue_mm2sr` of the cell.
+PlaneImage luminance(const TraceResult& result, std::size_t index);
+
+/// Figures over all cells of a plane or luminance image. What choosing among noisy cells adds to the greatest
+/// and takes off the least is corrected; of more than 2048 cells within six errors
+/// of the extreme the 2048 best are looked at.
+struct PlaneExtremes {
+  Estimate mean, least, greatest;
+  /// least over mean; absent for a dark plane.
+  std::optional<Estimate> uniformity;
+  /// Where the greatest is.
+  std::size_t greatest_cell = 0;
+};
+
+/// Adds two traces of the same scene over different rays: the result is, to the bit, that of one run over
+/// both, whatever the order. Throws InputError if they differ in seed, sequence, bounces, instruction set,
+/// flux or detectors, or if their rays do not meet end to end (it says which rays are missing or double).
+TraceResult merge(const TraceResult& a, const TraceResult& b);
+
+/// `fast`: height fields sampled on a grid and traced in vectors of float32. `reference`: the exact surfaces,
+/// one ray at a time in double; what the fast one is checked against.
+enum class EngineKind { fast, reference };
+
+/// `automatic`: on CUDA devices where there are some, else on the CPU.
+enum class TraceDevice { cpu, cuda, automatic };
+
+/// "cpu", "cuda" or "auto"; throws UsageError on anything else.
+TraceDevice trace_device(std::string_view name);
+
+/// How a scene is traced.
+struct TraceOptions {
+  /// The rays to trace, [first_ray, last_ray); by default all from 0 to the scene's own count
+  /// (`default_ray_count`).
+  std::uint64_t first_ray = 0;
+  std::optional<std::uint64_t> last_ray;
+  std::uint64_t seed = 1;
+  SequenceKind sequence = SequenceKind::sobol;
+  /// Reflections after which a ray is given up and counted as lost; at least 1.
+  int max_bounces = 100;
+  EngineKind engine = EngineKind::fast;
+  /// Cells a side of the height fields of the fast engine: a power of two, 8 to 8192.
+  int cells = 1024;
+  /// Instruction set of the fast engine: "scalar", "portable", "avx2", "avx512"; empty = the best that the
+  /// processor has.
+  std::string isa;
+  /// `cuda` throws InputError where there is no device.
+  TraceDevice device = TraceDevice::cpu;
+};
+
+/// Rays that are traced when no number is asked for: every ray of the ray files once, and 2^20 for the other
+/// sources.
+std::uint64_t default_ray_count(const Scene& scene);
+
+/// Sends rays from all sources through the mirrors into all detectors. The same scene and options give the
+/// same bits for any number of threads. Rays are dealt as RayNumbering says. Progress phase: "trace", in
+/// rays. Throws InputError on a bad scene (`check`), UsageError on a bad range of rays, Interrupted when
+/// asked to stop. Memory: 17 times the bins of all detectors, and that once more per thread and 16.
+TraceResult trace(const Scene& scene, const TraceOptions& options, Progress& progress = no_progress());
+
+/// When `trace_until` has enough.
+struct NoiseGoal {
+  /// What `node_noise` shall be at most, and `peak_noise` half of it: a peak that is quoted shall be within
+  /// it.
+  double noise = 0.01;
+  /// Seconds after which it stops with what it has; at least one round is traced.
+  double most_seconds = 60.0;
+  /// Rays after which it stops; at most 2^34, which is the default.
+  std::uint64_t most_rays = std::uint64_t{1} << 34;
+};
+
+/// Why it stopped.
+enum class NoiseEnd {
+  reached,        ///< the noise is what was asked for
+  time,           ///< NoiseGoal::most_seconds
+  rays,           ///< NoiseGoal::most_rays
+  finite_source,  ///< a ray file has given all its rays: more would be the same ones again
+  no_goal,        ///< no far field to measure noise in, or kept rays that would fill the memory
+};
+/// One sentence for people; empty for `reached`.
+std::string_view to_string(NoiseEnd end);
+
+struct NoiseTrace {
+  TraceResult result;
+  /// node_noise of the result; NaN where it is not known.
+  double noise = 0.0;
+  NoiseEnd end = NoiseEnd::reached;
+};
+
+/// Traces until the far fields are as good as asked for. The number of rays grows in fixed rounds (2^20 times
+/// 1, 1.5, 2, 3, 4, 6, ...), and the noise after a round decides: with the same scene, seed and goal the
+/// result is the same to the bit for any number of threads, unless the time stops it, and a run that is gone
+/// on with (`from`) is the run that was never stopped. Finite sources are traced once; scenes without a far
+/// field, and those that keep rays, are traced as `trace` does by default. `options.last_ray` is ignored, and
+/// with `from` so is `first_ray`, `seed` and `sequence`. Throws as `trace`; what Interrupted stops is lost.
+NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const NoiseGoal& goal,
+                       std::optional<TraceResult> from = std::nullopt, Progress& progress = no_progress());
+
+}  // namespace lucerna

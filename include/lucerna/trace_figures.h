@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lucerna/far_field_metrics.h"
+#include "lucerna/trace.h"
+
+namespace lucerna {
+
+/// What is quoted of one far field.
+struct FarFieldFigures {
+  FarField field;
+  BinnedIntensity intensity;
+  /// Peak, beam angles, zones, estimated from the counted cells and not from the grid's angles.
+  FarFieldMetrics metrics;
+  /// Relative noise of the whole distribution: root of the solid-angle-weighted sum of squared standard
+  /// errors over that of the squared intensities. NaN where it is not known.
+  double noise = 0.0;
+  /// The largest standard error of a value above 1 % of the peak, over the peak . NaN where it
+  /// is not known.
+  double node_noise = 0.0;
+};
+
+/// What is quoted of a plane (illuminance) or luminance image.
+struct PlaneFigures {
+  PlaneImage image;
+  /// What makes it a luminance image; absent for a plane.
+  std::optional<LuminanceDetector> view;
+  PlaneExtremes extremes;
+  /// The middle of the brightest cell in the grid's frame.
+  double peak_x_mm = 0.0, peak_y_mm = 0.0;
+  /// Relative noise of the whole image: root of the sum of squared standard errors over that of the squared
+  /// values; NaN where it is not known.
+  double noise = 0.0;
+};
+
+/// Rays that left, to be written as a file.
+struct RayFigures {
+  RayDetector detector;
+  std::uint64_t rays = 0;
+  Estimate flux;
+};
+
+/// All figures of a trace, worked out once for text, JSON and files.
+struct TraceFigures {
+  Ledger ledger;
+  std::vector<FarFieldFigures> far_fields;
+  std::vector<PlaneFigures> planes, luminances;
+  std::vector<RayFigures> rays;
+};
+
+/// Cost: a few passes over the bins.
+TraceFigures trace_figures(const TraceResult& result);
+
+/// "C 12.3 +- 0.4, gamma 30.2 +- 0.1 deg", or what is known of it: "on the axis within 0.3 deg", "gamma 30.2
+/// +- 0.1 deg, C not determined", "not determined".
+std::string peak_place_text(const PeakEstimate& peak);
+/// "62.87 +- 0.03 deg" or "not determined".
+std::string angle_text(const std::optional<Estimate>& angle);
+
+/// "lx", "cd/m2", "W/m2" or "W/(m2 sr)".
+std::string plane_unit(const PlaneFigures& figures);
+
+/// The name of a ray detector's file: its own with the ending of its format.
+std::string ray_file_name(const RayDetector& detector);
+
+/// A short table for people, one line an entry.
+std::vector<std::string> trace_summary(const TraceFigures& figures);
+
+}  // namespace lucerna
