@@ -180,14 +180,15 @@ LUCERNA_HD inline Ray ray_from_chart(const Support& support, const ChartPoint& p
 /// start_on; nothing where even a line through the surface's centre misses it, which none does.
 LUCERNA_HD inline std::optional<Ray> placed_on(const BoundingSurface& surface, const Ray& ray) {
   if (surface.kind == SurfaceKind::none) return ray;
-  if (const auto t = surface.exit_distance_mm(ray)) return Ray{ray.at(*t), ray.direction};
   const Frame& f = surface.world_from_surface;
   const Vec3& d = ray.direction.vec();
-  if (surface.kind == SurfaceKind::plane) {
-    const double dz = dot(d, f.ez()), z = dot(ray.origin_mm - f.origin_mm(), f.ez());
-    if (std::abs(dz) > detail::kGrazing) return Ray{ray.at(-z / dz), ray.direction};
-    return Ray{ray.origin_mm - z * f.ez(), ray.direction};
-  }
+  const double dz = dot(d, f.ez());
+  // Along a plane the way to it has no length that numbers can hold: such a ray is dropped onto it.
+  const bool along_plane = surface.kind == SurfaceKind::plane && std::abs(dz) <= detail::kGrazing;
+  const double z = dot(ray.origin_mm - f.origin_mm(), f.ez());
+  if (along_plane) return Ray{ray.origin_mm - z * f.ez(), ray.direction};
+  if (const auto t = surface.exit_distance_mm(ray)) return Ray{ray.at(*t), ray.direction};
+  if (surface.kind == SurfaceKind::plane) return Ray{ray.at(-z / dz), ray.direction};
   const Vec3 o = ray.origin_mm - f.origin_mm(), nearest = o - dot(o, d) * d;
   double hits = 0.0, misses = 1.0;  // share of the offset; at 0 the line passes the centre
   for (int i = 0; i < 40; ++i) {
