@@ -167,7 +167,7 @@ TEST(StartOn, LinesAlongAPlaneAreDroppedOntoIt) {
   for (const double dz : {0.0, 5e-324, 1e-310, 1e-9, -1e-9, -1e-310}) {
     const Ray ray{{1, 2, 3}, Direction::from_unit({0, 1, dz})};
     const Ray start = start_on(BoundingSurface::plane(0.5), ray);
-    EXPECT_EQ(start.origin_mm, Vec3(1, 2, 0.5)) << dz;
+    EXPECT_EQ(start.origin_mm, (Vec3{1, 2, 0.5})) << dz;
     EXPECT_EQ(start.direction, ray.direction);
   }
 }
