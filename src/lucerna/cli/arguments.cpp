@@ -49,6 +49,7 @@ double parse_share(std::string_view word) {
 
 std::uint64_t parse_count(std::string_view word) {
   const auto value = to_number(word);
+  if (value && *value > 0x1p53) throw UsageError(fmt::format("'{}' is more than 2^53, about 9e15", word));
   const auto whole = value ? to_whole(*value) : std::nullopt;
   if (!whole) refuse(word, "a whole number (such as 250000 or 1e6)");
   return *whole;

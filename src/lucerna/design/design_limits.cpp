@@ -84,7 +84,7 @@ Mesh read_zone(TomlReader& reader) {
   const std::string kind = reader.required_text("kind");
   if (kind == "mesh") {
     const auto file = reader.file("file");
-    if (!file) reader.fail("file", "is missing: an STL or OBJ file");
+    if (!file) reader.missing("file", "an STL or OBJ file");
     return read_mesh(*file);
   }
   if (kind == "box") {
@@ -97,7 +97,7 @@ Mesh read_zone(TomlReader& reader) {
   if (kind == "cylinder") {
     const Vec3 from = required_vector(reader, "from_mm"), to = required_vector(reader, "to_mm");
     const auto radius = reader.positive("radius_mm");
-    if (!radius) reader.fail("radius_mm", "is missing");
+    if (!radius) reader.missing("radius_mm");
     if (!(length(to - from) > 0.0)) reader.fail("to_mm", "is the same point as from_mm");
     return cylinder_mesh(from, to, *radius);
   }

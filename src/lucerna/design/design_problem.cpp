@@ -235,7 +235,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   auto target_reader = root.table("target");
   auto reader = root.table("design");
   root.finish();
-  if (!target_reader) root.fail("target", "is missing: a design needs a [target]");
+  if (!target_reader) root.missing("target", "a design needs a [target]");
   static const toml::table kNothing;
   TomlReader design = reader ? *reader : TomlReader(kNothing, path.string(), "design");
   put_shaped_first(project, root, design);

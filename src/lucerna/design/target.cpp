@@ -50,7 +50,7 @@ IlluminanceMap read_map(TomlReader& reader, const std::filesystem::path& file, T
     reader.fail("file", fmt::format("found '{}', expected a .csv or .png with the illuminance", ending));
   }
   if (mode == TargetMode::absolute && !white) {
-    reader.fail("white_lx", "is missing: mode = \"absolute\" needs the illuminance of the picture's white");
+    reader.missing("white_lx", "mode = \"absolute\" needs the illuminance of the picture's white");
   }
   IlluminanceMap map = read_illuminance_png(file);
   for (double& v : map.value) v *= white.value_or(1.0);
@@ -61,11 +61,11 @@ IlluminanceMap read_map(TomlReader& reader, const std::filesystem::path& file, T
 PlaneTarget read_plane(TomlReader& reader, const Vec3& luminaire_mm) {
   PlaneTarget plane;
   const auto position = reader.vector("position_mm");
-  if (!position) reader.fail("position_mm", "is missing: the centre of the plane's rectangle");
+  if (!position) reader.missing("position_mm", "the centre of the plane's rectangle");
   const auto normal = reader.axis("normal");
-  if (!normal) reader.fail("normal", "is missing: where the lit side looks to, as \"+z\" for a floor");
+  if (!normal) reader.missing("normal", "where the lit side looks to, as \"+z\" for a floor");
   const auto size = reader.numbers("size_mm", 2);
-  if (!size) reader.fail("size_mm", "is missing: the rectangle's sides along x and y");
+  if (!size) reader.missing("size_mm", "the rectangle's sides along x and y");
   if (!((*size)[0] > 0.0 && (*size)[1] > 0.0)) {
     reader.fail("size_mm", fmt::format("found [{}, {}], expected both above 0", (*size)[0], (*size)[1]));
   }
@@ -96,7 +96,7 @@ std::shared_ptr<const ZoneCells> read_cells(TomlReader& reader, double source_fl
   const bool h_v = std::any_of(zones.begin(), zones.end(),
                                [](const TargetZone& z) { return z.coordinates == ZoneCoordinates::h_v; });
   if (axis && !h_v) reader.fail("axis", "is what zones with h_deg and v_deg are about; there are none");
-  if (h_v && !axis) reader.fail("axis", "is missing: the direction that h_deg = 0 and v_deg = 0 stand for");
+  if (h_v && !axis) reader.missing("axis", "the direction that h_deg = 0 and v_deg = 0 stand for");
   if (zones.empty()) return nullptr;
   if (plane) check_places(reader, *plane, zones);
   const auto frame = plane ? std::optional<Frame>(plane->world_from_plane) : std::nullopt;

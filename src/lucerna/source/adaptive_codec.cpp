@@ -301,6 +301,9 @@ NflFile encode_adaptive(const AdaptiveData& data) {
       for (const DensityTree& tree : chart.trees) codec.encode(coder, tree, number++);
     }
   }
+  const bool domes = std::any_of(data.layers.begin(), data.layers.end(),
+                                 [](const AdaptiveLayer& layer) { return layer.support.dome.exists(); });
+  if (domes) file.version = 2;
   file.add(kLayerTag, w.take());
   file.add(kTreeTag, coder.finish());
   put_spectra(file, data.spectra);

@@ -101,6 +101,8 @@ TEST(AdaptiveModel, FrozenFileOfVersion2Reads) {
 
 TEST(AdaptiveModel, ProgramsOfVersion1DoNotMistakeADome) {
   const NflFile plain = encode_adaptive(small_data()), dome = encode_adaptive(dome_data());
+  EXPECT_EQ(plain.version, 1u);
+  EXPECT_EQ(dome.version, 2u);
   // The kind of the first support, after the surface and the number of layers.
   constexpr std::size_t kKind = 1 + 16 * 8 + 1;
   EXPECT_LT(static_cast<std::uint8_t>(plain.sections[0].bytes[kKind]), kSupportKinds);

@@ -14,7 +14,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kNewestVersion = 2;
 constexpr std::size_t kHeader = 56, kTableEntry = 24, kDigest = 32;
 constexpr std::uint32_t kMostSections = 1024;
 constexpr int kZstdLevel = 19;
@@ -62,8 +62,9 @@ void check_frame(std::string_view bytes, std::string_view name) {
                       "the file ends; a model has at least {} bytes", kHeader + kDigest);
   }
   const std::uint64_t version = number_at(bytes, 8, 4);
-  if (version != kVersion) {
-    throw_input_error(name, "byte 8", "version {}; this program reads version {}", version, kVersion);
+  if (version < 1 || version > kNewestVersion) {
+    throw_input_error(name, "byte 8", "version {}; this program reads versions 1 to {}", version,
+                      kNewestVersion);
   }
   const std::uint64_t size = number_at(bytes, 16, 8);
   if (size != bytes.size()) {
@@ -107,7 +108,7 @@ std::string encode_nfl(const NflFile& file) {
   }
   NflWriter w;
   for (const char c : kNflMagic) w.u8(static_cast<std::uint8_t>(c));
-  w.u32(kVersion);
+  w.u32(file.version);
   for (const char c : file.method) w.u8(static_cast<std::uint8_t>(c));
   w.u64(total);
   w.f64(file.flux);
@@ -135,6 +136,7 @@ NflFile decode_nfl(std::string_view bytes, std::string_view name) {
     throw_input_error(name, "byte 24", "flux {}; expected a number > 0", file.flux);
   }
   file.training_rays = number_at(bytes, 32, 8);
+  file.version = static_cast<std::uint32_t>(number_at(bytes, 8, 4));
   const std::uint64_t unit = number_at(bytes, 40, 4), count = number_at(bytes, 44, 4);
   if (unit > 1) throw_input_error(name, "byte 40", "flux unit {}; expected 0 (lm) or 1 (W)", unit);
   file.flux_unit = unit == 0 ? FluxUnit::lumen : FluxUnit::watt;

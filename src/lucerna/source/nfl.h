@@ -26,6 +26,8 @@ struct NflFile {
     std::string bytes;  // not compressed
   };
   std::vector<Section> sections;
+  /// The oldest version of the format that has all that the sections hold.
+  std::uint32_t version = 1;
 
   void add(const NflTag& tag, std::string bytes) { sections.push_back({tag, std::move(bytes)}); }
 };

@@ -17,6 +17,19 @@ NflFile example() {
   return file;
 }
 
+TEST(Nfl, TheVersionIsWhatTheFileNeedsAndNewerOnesAreRefused) {
+  NflFile file = example();
+  EXPECT_EQ(encode_nfl(file)[8], 1);
+  file.version = 2;
+  const std::string bytes = encode_nfl(file);
+  EXPECT_EQ(bytes[8], 2);
+  EXPECT_EQ(decode_nfl(bytes, "x").version, 2u);
+  for (const std::uint32_t version : {0u, 3u}) {
+    file.version = version;
+    EXPECT_THROW(decode_nfl(encode_nfl(file), "x"), InputError);
+  }
+}
+
 void expect_one_clear_line(const std::string& bytes, const std::string& what) {
   try {
     decode_nfl(bytes, "model.nfl");

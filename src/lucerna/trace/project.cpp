@@ -76,7 +76,7 @@ Project read_project(const fs::path& path, Progress& progress) {
   root.has("target");
   root.has("design");
   root.finish();
-  if (sources.empty()) root.fail("source", "is missing: a project needs at least one [[source]]");
+  if (sources.empty()) root.missing("source", "a project needs at least one [[source]]");
   for (const TomlReader& reader : reflectors) project_parts::read_reflector(reader, project);
   for (const TomlReader& reader : bodies) project_parts::read_body(reader, project);
   for (const TomlReader& reader : detectors) project_parts::read_detector(reader, project.scene);

@@ -25,7 +25,7 @@ double read_slope_error(TomlReader& reader) {
 
 std::shared_ptr<const Mesh> read_mesh_file(TomlReader& reader, Project& project) {
   const auto file = reader.file("file");
-  if (!file) reader.fail("file", "is missing: an .stl or .obj file");
+  if (!file) reader.missing("file", "an .stl or .obj file");
   const double scale = reader.positive("scale").value_or(1.0);
   project.inputs.push_back(*file);
   auto mesh = std::make_shared<Mesh>(read_mesh(*file));

@@ -71,7 +71,7 @@ void read_luminance(TomlReader& reader, Scene& scene) {
   const auto from = reader.axis("from");
   if (from && from_mm) reader.fail("from_mm", "a view is from a direction (from) or from a point (from_mm)");
   if (!from && !from_mm)
-    reader.fail("from", "is missing: where the observer is, a direction (from) or a point (from_mm)");
+    reader.missing("from", "where the observer is, a direction (from) or a point (from_mm)");
   const auto half_angle = reader.positive("half_angle_deg"), pupil = reader.positive("pupil_radius_mm");
   if (from_mm && half_angle) reader.fail("half_angle_deg", "belongs to a view from a direction");
   if (from && pupil) reader.fail("pupil_radius_mm", "belongs to a view from a point");

@@ -22,13 +22,13 @@ Aperture read_aperture(TomlReader& reader, std::optional<double> default_diamete
   const double hole = reader.number("hole_diameter_mm", 0.0);
   if (shape == "circle") {
     if (size) reader.fail("size_mm", "belongs to a rectangular aperture; a circle has diameter_mm");
-    if (!diameter && !default_diameter_mm) reader.fail("diameter_mm", "is missing");
+    if (!diameter && !default_diameter_mm) reader.missing("diameter_mm");
     return at_key(reader, "aperture",
                   [&] { return Aperture::circle(diameter ? *diameter : *default_diameter_mm, hole); });
   }
   if (shape == "rectangle") {
     if (diameter) reader.fail("diameter_mm", "belongs to a circular aperture; a rectangle has size_mm");
-    if (!size) reader.fail("size_mm", "is missing");
+    if (!size) reader.missing("size_mm");
     return at_key(reader, "aperture", [&] { return Aperture::rectangle((*size)[0], (*size)[1], hole); });
   }
   reader.fail("aperture", fmt::format("found '{}', expected circle or rectangle", shape));
@@ -79,9 +79,9 @@ Reflector read_conic(TomlReader& reader, const std::string& preset, bool trough)
     reader.fail("preset", fmt::format("found '{}', expected parabola, ellipse or hyperbola", preset));
   }
   const auto focal = reader.positive("focal_mm"), focal2 = reader.positive("focal2_mm");
-  if (!focal) reader.fail("focal_mm", "is missing");
+  if (!focal) reader.missing("focal_mm");
   if (found->second == ConicPreset::parabola && focal2) reader.fail("focal2_mm", "a parabola has one focus");
-  if (found->second != ConicPreset::parabola && !focal2) reader.fail("focal2_mm", "is missing");
+  if (found->second != ConicPreset::parabola && !focal2) reader.missing("focal2_mm");
   if (const auto mouth = reader.positive("mouth_diameter_mm")) {
     if (found->second != ConicPreset::ellipse) {
       reader.fail("mouth_diameter_mm", fmt::format("a {} does not close in again", preset));
@@ -119,8 +119,7 @@ Reflector read_profile_family(TomlReader& reader, bool trough, Project& project)
   }
   if (preset) return read_conic(reader, *preset, trough);
   if (!profile && !file) {
-    reader.fail("preset",
-                "is missing: the reflector needs a preset or a profile_mm or a file with a profile");
+    reader.missing("preset", "the reflector needs a preset or a profile_mm or a file with a profile");
   }
   const char* const key = file ? "file" : "profile_mm";
   std::vector<ProfileKnot> knots;
@@ -140,7 +139,7 @@ Reflector read_profile_family(TomlReader& reader, bool trough, Project& project)
 /// Facets on a base of revolution: flat, or pillows of a radius of curvature.
 Reflector read_faceted(TomlReader& reader, Project& project) {
   const auto pitch = reader.positive("pitch_mm");
-  if (!pitch) reader.fail("pitch_mm", "is missing: the side of a facet");
+  if (!pitch) reader.missing("pitch_mm", "the side of a facet");
   const double radius = reader.number("pillow_radius_mm", std::numeric_limits<double>::infinity());
   Reflector base = read_profile_family(reader, false, project);
   if (base.curve) {
@@ -156,7 +155,7 @@ Reflector read_faceted(TomlReader& reader, Project& project) {
 /// The free-form family: a bicubic B-spline of heights over a paraboloid (docs/algorithms/design.md).
 Reflector read_bspline(TomlReader& reader) {
   const auto focal = reader.positive("focal_mm");
-  if (!focal) reader.fail("focal_mm", "is missing: the paraboloid that the spline stands on");
+  if (!focal) reader.missing("focal_mm", "the paraboloid that the spline stands on");
   const auto intervals = reader.numbers("intervals", 2).value_or(std::vector<double>{4.0, 4.0});
   for (const double n : intervals) {
     if (!(n >= 1.0 && n <= 1000.0 && n == std::floor(n))) {
@@ -176,9 +175,9 @@ Reflector read_bspline(TomlReader& reader) {
 /// Heights of a file over `size_mm`: z = z_offset_mm + z_scale_mm * value.
 Reflector read_heightmap(TomlReader& reader, Project& project) {
   const auto file = reader.file("file");
-  if (!file) reader.fail("file", "is missing: the heights, a .csv, .txt, .npy, .pgm or .png file");
+  if (!file) reader.missing("file", "the heights, a .csv, .txt, .npy, .pgm or .png file");
   const auto size = reader.numbers("size_mm", 2);
-  if (!size) reader.fail("size_mm", "is missing: the distances [x, y] from the first to the last sample");
+  if (!size) reader.missing("size_mm", "the distances [x, y] from the first to the last sample");
   for (const double mm : *size) {
     if (!(mm > 0.0)) reader.fail("size_mm", fmt::format("found {}, expected > 0", mm));
   }
@@ -194,7 +193,7 @@ Reflector read_heightmap(TomlReader& reader, Project& project) {
   project.inputs.push_back(*file);
   HeightMap map = read_height_map(*file, first_row);
   const auto scale = reader.number("z_scale_mm");
-  if (map.white && !scale) reader.fail("z_scale_mm", "is missing: the mm that one level of grey stands for");
+  if (map.white && !scale) reader.missing("z_scale_mm", "the mm that one level of grey stands for");
   if (map.white && *map.white < 256.0) {
     project.warnings.push_back(
         fmt::format("{}: {} levels of grey make steps of {} mm; a mirror wants 16 bits", file->string(),

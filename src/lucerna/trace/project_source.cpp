@@ -95,7 +95,7 @@ PlacedSource read_source(TomlReader reader, Project& project, Progress& progress
       source.rays = read_ray_file_source(reader, *file, flux, project, progress);
     }
   } else {
-    if (!reader.has("kind")) reader.fail("kind", "is missing: a source needs a file or a kind");
+    if (!reader.has("kind")) reader.missing("kind", "a source needs a file or a kind");
     source.rays = read_emitter(reader, flux);
   }
   reader.finish();

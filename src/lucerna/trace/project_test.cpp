@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/project.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -304,6 +305,24 @@ TEST(Project, BadMirrorsNameTheirKey) {
   expect(std::string(kSource) + "surface = 'sphere'\nsurface_mm = 1.0\n", "outside its sphere surface");
   expect(std::string(kSource) + "[[detector]]\nkind = 'far-field'\nc_step_deg = 7\n", "detector[0]");
   expect(std::string(kSource) + "[[detector]]\nkind = 'far-field'\nname = '../x'\n", "no slash");
+}
+
+TEST(Project, AMisspeltKeyIsNamedWhereItsMeaningIsMissing) {
+  const test::TempDir dir;
+  const auto message = [&](const std::string& reflector) {
+    return test::message_of<InputError>([&] { read_with_files("[[reflector]]\n" + reflector, dir); });
+  };
+  const std::string rest = "preset = 'parabola'\ndiameter_mm = 80\n";
+  const std::string family = "family = 'revolution'\n" + rest;
+  for (const std::string typed : {"famly", "fammily", "familg", "afmily"}) {
+    EXPECT_THAT(message(typed + " = 'revolution'\n" + rest),
+                testing::HasSubstr("line 6: reflector[0]." + typed +
+                                   ": unknown key; the nearest known one is 'family', which is missing"));
+  }
+  EXPECT_THAT(message(family + "focal_m = 15\n"), testing::HasSubstr("reflector[0].focal_m: unknown key"));
+  // Too far from what is missing to be meant, or a key that is known.
+  EXPECT_THAT(message(family + "focus = 15\n"), testing::HasSubstr("reflector[0].focal_mm: is missing"));
+  EXPECT_THAT(message(family + "focal2_mm = 15\n"), testing::HasSubstr("reflector[0].focal_mm: is missing"));
 }
 
 TEST(Project, BadBodiesMapsAndDetectorsNameTheirKey) {

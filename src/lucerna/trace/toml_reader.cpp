@@ -30,6 +30,14 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+/// One letter too many, too few or wrong, or two that changed places. More would take one key for another.
+bool is_misspelt(std::string_view word, std::string_view meant) {
+  if (edit_distance(word, meant) == 1) return true;
+  const auto [a, b] = std::mismatch(word.begin(), word.end(), meant.begin(), meant.end());
+  if (word.size() != meant.size() || a == word.end() || a + 1 == word.end()) return false;
+  return a[0] == b[1] && a[1] == b[0] && std::equal(a + 2, word.end(), b + 2);
+}
+
 std::string_view type_name(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::table:
@@ -87,6 +95,20 @@ std::string TomlReader::full_key(std::string_view key) const {
   return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }
 
+std::string TomlReader::misspelt(std::string_view key) const {
+  for (const auto& [other, node] : *table_) {
+    const std::string_view name = other.str();
+    if (!known_.contains(name) && is_misspelt(name, key)) return std::string(name);
+  }
+  return "";
+}
+
+void TomlReader::missing(std::string_view key, const std::string& what) const {
+  const std::string typed = misspelt(key);
+  if (typed.empty()) fail(key, what.empty() ? "is missing" : "is missing: " + what);
+  fail(typed, fmt::format("unknown key; the nearest known one is '{}', which is missing", key));
+}
+
 void TomlReader::fail(std::string_view key, const std::string& what) const {
   const toml::node* node = table_->get(key);
   const auto line = node != nullptr ? node->source().begin.line : table_->source().begin.line;
@@ -127,7 +149,7 @@ std::optional<std::string> TomlReader::text(std::string_view key) {
 
 std::string TomlReader::required_text(std::string_view key) {
   auto value = text(key);
-  if (!value) fail(key, "is missing");
+  if (!value) missing(key);
   return *value;
 }
 

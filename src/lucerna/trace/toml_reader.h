@@ -54,11 +54,17 @@ class TomlReader {
   /// Throws for the first key that was never asked for. Call when all known keys have been.
   void finish() const;
 
+  /// A required key that is not there, and what it is to say. Where a key that is not known is spelt nearly
+  /// like it, that is the error.
+  [[noreturn]] void missing(std::string_view key, const std::string& what = {}) const;
+
   /// An error at `key`: "project.toml: line 7: reflector[0].focal_mm: ...".
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
   const std::string& path() const { return path_; }
 
  private:
+  /// A key of the table that was not asked for and looks like `key` misspelt; empty if there is none.
+  std::string misspelt(std::string_view key) const;
   const toml::node* find(std::string_view key);
   double to_number(const toml::node& node, std::string_view key) const;
   const toml::array& to_array(const toml::node& node, std::string_view key, std::string_view expected) const;
