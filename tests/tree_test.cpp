@@ -64,6 +64,8 @@ const std::map<std::string, std::string> kPublicHeaders{
     {"scene.h", "trace"},
     {"trace.h", "trace"},
     {"trace_figures.h", "trace"},
+    {"design.h", "design"},
+    {"report.h", "report"},
     {"lucerna.h", "cli"},  // all of them
 };
 

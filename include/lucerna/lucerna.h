@@ -4,6 +4,7 @@
 /// All of the library. Each header can be included by itself.
 #include "lucerna/bounding_surface.h"
 #include "lucerna/cad.h"
+#include "lucerna/design.h"
 #include "lucerna/detectors.h"
 #include "lucerna/error.h"
 #include "lucerna/estimate.h"
@@ -23,6 +24,7 @@
 #include "lucerna/ray_statistics.h"
 #include "lucerna/rays.h"
 #include "lucerna/reflector.h"
+#include "lucerna/report.h"
 #include "lucerna/scene.h"
 #include "lucerna/source.h"
 #include "lucerna/source_model.h"

@@ -98,4 +98,25 @@ struct CompressedFiles {
                                        const CompressOptions& options = {},
                                        Progress& progress = no_progress());
 
+struct SampleOptions {
+  std::uint64_t seed = 1;
+  SequenceKind sequence = SequenceKind::random;
+  /// Of the file, as `ray_formats` names them; empty: what its ending says.
+  std::string format = {};
+  /// What the file says that its rays were sampled from.
+  std::string origin = {};
+};
+
+/// Draws `rays` rays from a model into a file: weights that sum to its flux, wavelengths and spectra where it
+/// has them. The same bits for any number of threads. Returns what the format could not hold, one sentence
+/// each. Throws UsageError as `ray_format_for`, InputError for no rays or a file that cannot be written;
+/// Interrupted leaves no file. Cost: about 0.05 us a ray and core, and writing.
+std::vector<std::string> sample(const SourceModel& model, std::uint64_t rays,
+                                const std::filesystem::path& file, const SampleOptions& options = {},
+                                Progress& progress = no_progress());
+
+/// The same into memory, of any source: rays 0 .. n - 1 of the stream that `sequence` fixes, with the
+/// source's own weights (mean 1).
+[[nodiscard]] RayBlock sample(const RaySource& source, std::size_t rays, const Sequence& sequence);
+
 }  // namespace lucerna

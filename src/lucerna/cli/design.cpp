@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/design/design.h"
-
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "lucerna/cli/arguments.h"
 #include "lucerna/cli/commands.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
+#include "lucerna/design/design_run.h"
 #include "lucerna/report/design_files.h"
 #include "lucerna/report/report_design.h"
+#include "lucerna/report/trace_json.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace/accelerator.h"
 
@@ -21,27 +20,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The result is traced until its figures are good to 1 %, but no longer than this share of the time (1 to 10
-/// seconds); and as many rays are set aside for it, in units of what a trace would take by default.
-constexpr double kFinalTraceShare = 0.1;
-constexpr std::uint64_t kFinalTraceRays = 4;
-
 struct DesignArguments {
   std::string project, output, time, seed = "1", rays, device = "auto", report;
   bool resume = false, tolerances = false, pareto = false, advise = false;
 };
 
-/// Where evaluations are traced: the first CUDA device, or null for the CPU.
-std::shared_ptr<Accelerator> chosen_accelerator(const std::string& name) {
-  const TraceDevice device = trace_device(name);
-  if (device == TraceDevice::cpu) return nullptr;
-  auto found = cuda_accelerators();
-  if (!found.empty()) return std::move(found.front());
-  if (device == TraceDevice::cuda) throw InputError(fmt::format("--device cuda: {}", why_no_cuda()));
-  return nullptr;
-}
-
-DesignOptions design_options(const DesignArguments& a, const DesignProblem& problem) {
+DesignOptions design_options(const DesignArguments& a) {
   DesignOptions options;
   options.seed = parse_count(a.seed);
   options.pareto = a.pareto;
@@ -50,10 +34,6 @@ DesignOptions design_options(const DesignArguments& a, const DesignProblem& prob
   if (!a.rays.empty()) {
     options.max_rays = parse_count(a.rays);
     options.judge_rays = 4 * options.max_rays;
-  }
-  options.rays_after = kFinalTraceRays * default_ray_count(problem.project.scene);
-  if (problem.tolerances) {
-    options.rays_after += problem.tolerances->rays * tolerance_cases(*problem.tolerances, 1).size();
   }
   return options;
 }
@@ -87,36 +67,27 @@ class DesignWatch {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-DesignFigures finish(const DesignProblem& problem, const DesignResult& result, const DesignOptions& options,
-                     TraceResult& traced, Session& session) {
-  const Project project = with_shape(problem, result.shape);
-  TraceOptions trace_options;
-  trace_options.seed = options.seed + 1;
-  NoiseGoal goal;
-  goal.most_seconds = std::clamp(kFinalTraceShare * options.time_s.value_or(problem.time_s), 1.0, 10.0);
-  NoiseTrace final_trace =
-      session.timed("trace", [&] { return trace_until(project.scene, trace_options, goal); });
-  if (final_trace.end == NoiseEnd::time) {
+DesignRun run(const DesignProblem& problem, const DesignOptions& options, DesignWatch& watch,
+              Session& session) {
+  DesignRun made = run_design(problem, options, session.progress(), std::ref(watch));
+  session.add_seconds("design", made.design_s);
+  session.add_seconds("trace", made.trace_s);
+  session.add_seconds("figures", made.figures_s);
+  if (made.figures.tolerances) session.add_seconds("tolerances", made.tolerances_s);
+  if (made.trace.end == NoiseEnd::time) {
     session.note(fmt::format("the trace of the result has {:.2g} % noise, {:.2g} % wanted: {}",
-                             100.0 * final_trace.noise, 100.0 * goal.noise, to_string(final_trace.end)));
+                             100.0 * made.trace.noise, 100.0 * made.wanted_noise, to_string(made.trace.end)));
   }
-  traced = std::move(final_trace.result);
-  DesignFigures figures = session.timed("figures", [&] { return design_figures(problem, result, traced); });
-  if (problem.tolerances && result.end != DesignEnd::interrupted) {
-    figures.tolerances = session.timed("tolerances", [&] {
-      return tolerance_sweep(project.scene, *problem.tolerances, options.seed + 2, session.progress());
-    });
-  }
-  return figures;
+  return made;
 }
 
-void run_design(const DesignArguments& a, Session& session, int& exit_code) {
+void design_mirror(const DesignArguments& a, Session& session, int& exit_code) {
   session.start();
-  const auto accelerator = chosen_accelerator(a.device);
+  const auto accelerator = design_accelerator(trace_device(a.device));
   DesignProblem problem = session.timed(
       "read", [&] { return design_problem(read_project(a.project, session.progress()), a.project); });
   if (a.tolerances && !problem.tolerances) problem.tolerances = ToleranceRanges{};
-  DesignOptions options = design_options(a, problem);
+  DesignOptions options = design_options(a);
   options.accelerator = accelerator;
   prepare_folder(a.output, session.force || a.resume);
   for (const std::string& warning : problem.project.warnings) session.note(warning);
@@ -128,10 +99,10 @@ void run_design(const DesignArguments& a, Session& session, int& exit_code) {
   }
   options.checkpoint = start.checkpoint;
   DesignWatch watch(a.output, problem, start.history, session);
-  const DesignResult result =
-      session.timed("design", [&] { return design(problem, options, session.progress(), std::ref(watch)); });
-  TraceResult traced;
-  const DesignFigures figures = finish(problem, result, options, traced, session);
+  const DesignRun made = run(problem, options, watch, session);
+  const DesignResult& result = made.result;
+  const TraceResult& traced = made.trace.result;
+  const DesignFigures& figures = made.figures;
   Json json = session.json_head(options.seed, traced.isa);
   json["device"] = accelerator ? accelerator->name() : "cpu";
   json.update(design_json(problem, result, figures));
@@ -180,7 +151,7 @@ void add_design(CLI::App& app, Session& session, int& exit_code) {
   command.flag("--force", session.force, "Write into a folder that is not empty");
   session.add_json(command);
   session.add_common(command);
-  command.on_run([arguments, &session, &exit_code] { run_design(*arguments, session, exit_code); });
+  command.on_run([arguments, &session, &exit_code] { design_mirror(*arguments, session, exit_code); });
 }
 
 }  // namespace lucerna::cli

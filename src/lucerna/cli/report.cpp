@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "lucerna/report.h"
+
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -7,8 +9,6 @@
 #include "lucerna/cli/describe.h"
 #include "lucerna/cli/model_report.h"
 #include "lucerna/core/error.h"
-#include "lucerna/report/report_design.h"
-#include "lucerna/report/report_trace.h"
 
 namespace lucerna::cli {
 
@@ -36,11 +36,7 @@ void report(const ReportArguments& a, Session& session) {
     throw InputError(
         fmt::format("{}: is neither a source model (.nfl) nor the folder of a trace or design", a.input));
   }
-  if (is_design_folder(a.input)) {
-    write_design_report(a.input, a.output);
-  } else {
-    write_trace_report(a.input, a.output);
-  }
+  write_report(a.input, a.output);
   session.say(fmt::format("{} written, {:.2f} MB: opens in any browser, asks nothing of any network",
                           a.output, 1e-6 * static_cast<double>(std::filesystem::file_size(a.output))));
 }

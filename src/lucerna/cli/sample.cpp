@@ -5,9 +5,7 @@
 #include "lucerna/cli/commands.h"
 #include "lucerna/core/error.h"
 #include "lucerna/ray_file.h"
-#include "lucerna/source/draw_rays.h"
 #include "lucerna/source_model.h"
-#include "lucerna/version.h"
 
 namespace lucerna::cli {
 
@@ -17,26 +15,17 @@ struct SampleArguments {
   std::string model, output, count, to, seed = "1", sequence = "random";
 };
 
-void sample(const SampleArguments& a, Session& session) {
+void run_sample(const SampleArguments& a, Session& session) {
   session.start();
   const std::uint64_t n = parse_count(a.count);
   const std::string format = ray_format_for(a.output, a.to);
-  const Sequence sequence(sequence_kind(a.sequence), parse_count(a.seed));
+  SampleOptions options{.sequence = sequence_kind(a.sequence), .format = format};
+  options.seed = parse_count(a.seed);
+  options.origin = std::filesystem::path(a.model).filename().string();
   const auto model = session.timed("read", [&] { return load_source_model(a.model); });
   if (n == 0) throw InputError("-n 0: zero rays asked for, expected at least one");
-  RaySetHeader header;
-  header.flux_unit = model->flux_unit();
-  header.set_flux(model->flux());
-  header.texts.light_source = "sampled from " + std::filesystem::path(a.model).filename().string();
-  header.texts.file_creator = fmt::format("Lucerna {}", version());
-  header.creation_method = 0;
-  header.spectra.assign(model->spectra().begin(), model->spectra().end());
-  if (model->has_wavelengths()) {
-    header.columns.push_back({ColumnKind::wavelength_nm, standard_label(ColumnKind::wavelength_nm)});
-  }
-  const auto warnings = session.timed("write", [&] {
-    return draw_rays(*model, sequence, n, *create_ray_file(a.output, format, header, n), session.progress());
-  });
+  const auto warnings =
+      session.timed("write", [&] { return sample(*model, n, a.output, options, session.progress()); });
   for (const std::string& warning : warnings) session.note(fmt::format("{}: {}", a.output, warning));
   session.say(fmt::format("{}: {} rays of {:g} {} as {}, {:.1f} M rays/s", a.output, n, model->flux(),
                           symbol(model->flux_unit()), format,
@@ -56,7 +45,7 @@ void add_sample(CLI::App& app, Session& session, int&) {
   command.option("--seed", a.seed, "Seed of the random numbers");
   command.option("--sequence", a.sequence, "random or sobol");
   session.add_common(command);
-  command.on_run([arguments, &session] { sample(*arguments, session); });
+  command.on_run([arguments, &session] { run_sample(*arguments, session); });
 }
 
 }  // namespace lucerna::cli

@@ -8,12 +8,10 @@
 #include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "lucerna/cli/arguments.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
-#include "lucerna/version.h"
 
 namespace lucerna::cli {
 
@@ -91,52 +89,37 @@ void Session::start() {
   std::signal(SIGTERM, on_stop_signal);
 }
 
-Session::PhaseTimer::~PhaseTimer() {
-  const double elapsed = seconds_since(start);
-  auto& phases = session.phases_;
+Session::PhaseTimer::~PhaseTimer() { session.add_seconds(name, seconds_since(start)); }
+
+void Session::add_seconds(const std::string& phase, double seconds) {
   const auto found =
-      std::find_if(phases.begin(), phases.end(), [&](const auto& p) { return p.first == name; });
-  if (found == phases.end()) {
-    phases.emplace_back(name, elapsed);
+      std::find_if(run_.wall_s.begin(), run_.wall_s.end(), [&](const auto& p) { return p.first == phase; });
+  if (found == run_.wall_s.end()) {
+    run_.wall_s.emplace_back(phase, seconds);
   } else {
-    found->second += elapsed;
+    found->second += seconds;
   }
 }
 
 void Session::set_command(int argc, char** argv) {
-  command_ = "lucerna";
+  run_.command = "lucerna";
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     const bool plain =
         !word.empty() && word.find_first_of(" \t\n'\"\\$*?[](){}<>|&;`#~!") == std::string::npos;
-    command_ += plain ? " " + word : " '" + word + "'";
+    run_.command += plain ? " " + word : " '" + word + "'";
   }
 }
 
 double Session::seconds(const std::string& phase) const {
-  for (const auto& [name, elapsed] : phases_) {
+  for (const auto& [name, elapsed] : run_.wall_s) {
     if (name == phase) return elapsed;
   }
   return 0.0;
 }
 
 Json Session::json_head(std::optional<std::uint64_t> seed, const std::string& isa) const {
-  Json head;
-  head["program_version"] = std::string(version());
-  head["schema_version"] = kJsonSchemaVersion;
-  head["command"] = command_;
-  head["seed"] = seed ? Json(*seed) : Json();
-  head["threads"] = ThreadLimit::current();
-  head["isa"] = isa;
-  head["inputs"] = Json::array();
-  std::set<std::filesystem::path> seen;
-  for (const auto& path : inputs_) {
-    if (!seen.insert(path).second) continue;
-    head["inputs"].push_back({{"path", path.string()}, {"sha256", sha256_of_file(path)}});
-  }
-  head["wall_s"] = Json::object();
-  for (const auto& [name, elapsed] : phases_) head["wall_s"][name] = elapsed;
-  return head;
+  return run_json(run_, seed, isa);
 }
 
 void Session::say(const std::string& line) {

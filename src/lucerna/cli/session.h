@@ -15,6 +15,7 @@
 #include "lucerna/cli/command.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/progress.h"
+#include "lucerna/report/run_json.h"
 
 namespace lucerna::cli {
 
@@ -65,14 +66,16 @@ class Session {
     return std::forward<Work>(work)();
   }
   double seconds(const std::string& phase) const;
+  /// Adds a wall time that something else took.
+  void add_seconds(const std::string& phase, double seconds);
 
   /// Notes the words of the command line, for the record.
   void set_command(int argc, char** argv);
 
   /// Notes a file that the result depends on.
-  void add_input(const std::filesystem::path& path) { inputs_.push_back(path); }
+  void add_input(const std::filesystem::path& path) { run_.inputs.push_back(path); }
 
-  /// The keys that every JSON result begins with; `isa` is the instruction set that computed it.
+  /// run_json of this run.
   Json json_head(std::optional<std::uint64_t> seed, const std::string& isa = "scalar") const;
 
   /// Prints the line unless --quiet or --json; `note` goes to stderr also with --json.
@@ -93,9 +96,7 @@ class Session {
 
   std::unique_ptr<ThreadLimit> limit_;
   std::unique_ptr<TerminalProgress> progress_;
-  std::vector<std::pair<std::string, double>> phases_;
-  std::vector<std::filesystem::path> inputs_;
-  std::string command_;
+  RunRecord run_;
 };
 
 /// The folder that a command writes to: made if missing; refused (InputError) when it holds files, unless

@@ -5,8 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "lucerna/report/trace_files.h"
-#include "lucerna/trace/trace_file.h"
+#include "lucerna/report/trace_results.h"
 
 namespace lucerna::cli {
 
@@ -14,14 +13,8 @@ std::vector<std::string> write_trace_output(const std::string& folder, const Tra
                                             const TraceOrigin& origin, const TraceFigures& figures,
                                             Session& session) {
   Json json = session.json_head(result.seed, result.isa);
-  json["sequence"] = std::string(to_string(result.sequence));
-  json["rays"] = {{"first", result.first_ray}, {"last", result.last_ray}};
-  json.update(trace_json(figures));
-  const std::filesystem::path path = folder;
-  write_trace_file(path / kTraceFileName, result, origin);
   std::vector<std::string> warnings;
-  auto names = write_trace_files(path, origin, figures, result.out_rays, json, &warnings);
-  names.insert(names.end() - 2, kTraceFileName);
+  const auto names = write_trace_results(folder, result, origin, figures, json, warnings);
   for (const std::string& warning : warnings) session.note(warning);
   session.print_json(json);
   return names;

@@ -25,16 +25,6 @@ struct AdviceChange {
 /// begin at the given mirror; within the limits on its form, like every start.
 std::vector<AdviceChange> advice_changes(const DesignProblem& problem);
 
-/// What a design with a change came to.
-struct AdviceTrial {
-  std::string change;
-  /// Validated like a result.
-  DesignError error;
-  /// Whether the error is less than the result's by more than three standard errors of the difference, with
-  /// no less light in the target's rectangle (but for half a per cent of the source's) and all limits held.
-  bool helps = false;
-};
-
 /// Designs the problem again with each of the changes. Each takes as long as the design itself, and `found`
 /// is the error of that. Empty for targets of zones alone, which have no error. Ends with what it has when
 /// asked to stop. Throws what `design` throws.

@@ -9,16 +9,6 @@
 
 namespace lucerna {
 
-/// What no mirror of an aperture and a height can do better than, whatever its shape.
-struct DesignBound {
-  /// Below this no error in 48 x 48 boxes can be: with as much light in the rectangle as was reached by
-  /// shape, with any in absolute mode. 0 where nothing forbids the target.
-  double error = 0.0;
-  /// Where it binds: the share of the target's light in its brightest boxes, the largest share of the
-  /// sources' flux that their étendue can take, and that étendue in mm^2 sr.
-  double target_share = 0.0, max_share = 1.0, etendue_mm2sr = 0.0;
-};
-
 /// The bound from étendue and luminance (Liouville): light that leaves towards some boxes passes an opening
 /// of projected area A(direction), so that it has at most the étendue of A over the boxes, and no more flux
 /// than the sources' brightest light of that étendue (`curve`, which must not state too much étendue). Of all

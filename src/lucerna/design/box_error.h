@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "lucerna/design.h"
 #include "lucerna/design/error_boxes.h"
 #include "lucerna/design/target.h"
 #include "lucerna/estimate.h"
@@ -34,37 +35,6 @@ Estimate replicate_share(std::span<const BoxSums> replicates, const Flux& flux) 
   for (const BoxSums& r : replicates) shares.push_back(flux(r) / r.emitted);
   return mean_estimate(shares);
 }
-
-/// A relative l2 error with the noise taken out.
-struct BoxErrorEstimate {
-  /// |s f - t| / |t|, weighted by solid angle (or area).
-  double value = 0.0;
-  /// What the noise of f alone makes of it, from the scatter of the replicates.
-  double floor = 0.0;
-  /// sqrt(max(0, value^2 - floor^2)): what is left.
-  double excess = 0.0;
-  /// Of the excess; not a number where the noise is not known (fewer than two replicates).
-  double standard_error = 0.0;
-};
-
-/// The error of a design (docs/algorithms/design.md): every figure with its error.
-struct DesignError {
-  /// In 12 x 12, 24 x 24 and 48 x 48 boxes over the target's rectangle. The headline is c48.excess.
-  BoxErrorEstimate c12, c24, c48;
-  /// What the flux shares were multiplied with to stand beside the target at n = 48 (1 in absolute mode).
-  double scale = 1.0;
-  /// Share of the sources' flux in the rectangle.
-  Estimate in_rectangle;
-  /// Share of the sources' flux that leaves the luminaire but not into the rectangle, and the part of that
-  /// which met no mirror: no shape of the mirror can send it elsewhere, only stand in its way.
-  Estimate outside_share, outside_direct;
-  /// l2 over the cells outside, relative to the target's l2 in the rectangle, at the scale above.
-  BoxErrorEstimate outside;
-  /// Largest deviation of one of the 48 x 48 boxes as a share of the target's brightest box, with the
-  /// standard error of that box. Noise raises it: the largest of 2304 deviations.
-  Estimate worst_cell;
-  std::uint64_t rays = 0;
-};
 
 /// The target's flux per cell of the boxes: in its own unit by shape, as shares of `source_flux` in absolute
 /// mode. Throws InputError where the rectangle has no light.

@@ -112,6 +112,18 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
   return result;
 }
 
+std::string_view to_string(DesignEnd end) {
+  switch (end) {
+    case DesignEnd::converged:
+      return "converged";
+    case DesignEnd::time:
+      return "time";
+    case DesignEnd::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
 std::string history_csv(const std::vector<FitRecord>& history) {
   std::string csv =
       "evaluations,candidate,stage,step,rays,total_rays,relative_rms,floor,lambda,accepted,efficiency,in_"

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lucerna/design.h"
 #include "lucerna/design/advice.h"
 #include "lucerna/design/bounds.h"
 #include "lucerna/design/box_error.h"
@@ -29,7 +30,7 @@ struct DesignOptions {
   /// Rays of the validation, at most (ValidationOptions::max_rays), other than those it was fitted with.
   /// Where time ran out or the user asked to stop, fewer may be traced.
   std::uint64_t judge_rays = std::uint64_t{1} << 24;
-  /// Rays that the caller will trace after that; time is kept for them.
+  /// Rays that will be traced after that (run_design sets it); time is kept for them.
   std::uint64_t rays_after = 0;
   /// Where evaluations are traced (device_evaluator.h); null: on the CPU.
   std::shared_ptr<Accelerator> accelerator;
@@ -40,9 +41,6 @@ struct DesignOptions {
   /// State to go on from (`checkpoint_text`); empty: from the start.
   std::string checkpoint;
 };
-
-/// Why a design ended.
-enum class DesignEnd { converged, time, interrupted };
 
 struct DesignResult {
   DesignShape shape;

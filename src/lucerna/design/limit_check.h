@@ -4,16 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "lucerna/design.h"
 #include "lucerna/design/design_limits.h"
 
 namespace lucerna {
-
-/// One limit and what was found.
-struct LimitCheck {
-  std::string limit;
-  double allowed = 0.0, found = 0.0;
-  bool held = true;
-};
 
 /// Whether a mirror as exported (a mesh in the mirror's frame, as `cad_mesh` and an STL file have it) holds
 /// the limits on its form: from its triangles alone, knowing nothing of splines. `tolerance` is what the mesh

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lucerna/report/design_figures.h"
+#include "lucerna/report/design_json.h"
 
 namespace lucerna {
 

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "lucerna/design/design.h"
-#include "lucerna/design/tolerances.h"
 #include "lucerna/intensity_comparison.h"
-#include "lucerna/report/trace_json.h"
+#include "lucerna/photometric_figures.h"
+#include "lucerna/trace_figures.h"
 
 namespace lucerna {
 
@@ -38,16 +35,5 @@ struct DesignFigures {
 /// `traced` is a trace of `with_shape(problem, result.shape)`. About a second for a far-field target.
 DesignFigures design_figures(const DesignProblem& problem, const DesignResult& result,
                              const TraceResult& traced);
-
-/// What design adds to result.json. What is not known is null.
-nlohmann::ordered_json design_json(const DesignProblem& problem, const DesignResult& result,
-                                   const DesignFigures& figures);
-
-/// "converged", "time" or "interrupted".
-std::string_view to_string(DesignEnd end);
-
-/// The table of target against result, losses, limits and tolerances for people, one line an entry.
-std::vector<std::string> design_summary(const DesignProblem& problem, const DesignResult& result,
-                                        const DesignFigures& figures);
 
 }  // namespace lucerna

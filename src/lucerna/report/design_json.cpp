@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/report/design_figures.h"
+#include "lucerna/report/design_json.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "lucerna/report/error_json.h"
+#include "lucerna/report/trace_json.h"
 #include "lucerna/report/zone_figures.h"
 
 namespace lucerna {
@@ -16,19 +15,6 @@ namespace lucerna {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Of a target.
-PlaneSummary summary_of(const std::vector<double>& values, double factor) {
-  double mean = 0.0, least = std::numeric_limits<double>::infinity(), greatest = 0.0;
-  for (const double v : values) {
-    mean += factor * v / static_cast<double>(values.size());
-    least = std::min(least, factor * v);
-    greatest = std::max(greatest, factor * v);
-  }
-  PlaneSummary s{{mean, 0.0}, {least, 0.0}, {greatest, 0.0}, {}};
-  if (mean > 0.0) s.uniformity = Estimate{least / mean, 0.0};
-  return s;
-}
 
 template <class Plane>
 const Plane* plane_at(const std::vector<Plane>& planes, double c_deg) {
@@ -255,49 +241,6 @@ Json error_figures(const DesignProblem& problem, const DesignResult& result) {
 }
 
 }  // namespace
-
-std::string_view to_string(DesignEnd end) {
-  switch (end) {
-    case DesignEnd::converged:
-      return "converged";
-    case DesignEnd::time:
-      return "time";
-    case DesignEnd::interrupted:
-      return "interrupted";
-  }
-  return "";
-}
-
-DesignFigures design_figures(const DesignProblem& problem, const DesignResult& result,
-                             const TraceResult& traced) {
-  DesignFigures f;
-  f.trace = trace_figures(traced);
-  const DesignTarget& target = problem.target;
-  if (target.zones_only) return f;  // a guide is nothing to compare with
-  if (target.mode == TargetMode::shape && result.error.scale > 0.0) {
-    f.target_factor = total_flux(problem.project.scene.sources) / result.error.scale;
-  }
-  if (target.plane) {
-    f.target_plane = summary_of(target.plane->map.value, f.target_factor);
-    for (const PlaneFigures& p : f.trace.planes) {
-      if (p.image.name == kTargetPlane)
-        f.result_plane =
-            PlaneSummary{p.extremes.mean, p.extremes.least, p.extremes.greatest, p.extremes.uniformity};
-    }
-    return f;
-  }
-  IntensityDistribution wanted = target.distribution;
-  scale(wanted, f.target_factor);
-  f.target_beam = beam_figures(wanted);
-  if (f.trace.far_fields.empty()) return f;
-  const BinnedIntensity& have = f.trace.far_fields.front().intensity;
-  wanted.unit = have.distribution.unit;  // by shape alone, cd and W/sr may be compared
-  CompareOptions options;
-  options.test_error_cd = have.standard_error_cd;
-  options.align = false;
-  f.comparison = compare_distributions(wanted, have.distribution, options);
-  return f;
-}
 
 Json design_json(const DesignProblem& problem, const DesignResult& result, const DesignFigures& f) {
   Json json = error_figures(problem, result);

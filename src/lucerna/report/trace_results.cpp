@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/report/trace_results.h"
+
+#include <nlohmann/json.hpp>
+
+#include "lucerna/report/trace_files.h"
+#include "lucerna/report/trace_json.h"
+#include "lucerna/trace/trace_file.h"
+
+namespace lucerna {
+
+std::vector<std::string> write_trace_results(const std::filesystem::path& folder, const TraceResult& result,
+                                             const TraceOrigin& origin, const TraceFigures& figures,
+                                             nlohmann::ordered_json& json,
+                                             std::vector<std::string>& warnings) {
+  json["sequence"] = std::string(to_string(result.sequence));
+  json["rays"] = {{"first", result.first_ray}, {"last", result.last_ray}};
+  json.update(trace_json(figures));
+  write_trace_file(folder / kTraceFileName, result, origin);
+  auto names = write_trace_files(folder, origin, figures, result.out_rays, json, &warnings);
+  names.insert(names.end() - 2, kTraceFileName);
+  return names;
+}
+
+}  // namespace lucerna
