@@ -26,7 +26,7 @@ TEST(DeviceCli, CudaWithoutADeviceIsOneLineAndExitOne) {
   for (const char* command : {"trace p.toml -o out --device cuda", "design p.toml -o out --device cuda"}) {
     const auto run = run_lucerna(dir.path(), command);
     EXPECT_EQ(run.exit_code, 1) << command;
-    EXPECT_NE(run.err.find("--device cuda: "), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("no CUDA device: "), std::string::npos) << run.err;
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
     EXPECT_FALSE(std::filesystem::exists(dir.path() / "out")) << "nothing may be written";
   }

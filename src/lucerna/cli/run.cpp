@@ -22,6 +22,20 @@ int complain(const char* text, ExitCode code) {
   return code;
 }
 
+/// The command's option that the error says would help, as a hint; empty if the command has none. Formats are
+/// chosen where a file is written (a bad call) and where one is read (bad input).
+std::string hint(const Error& error, const CLI::App& app, ExitCode code) {
+  if (error.option().empty() || app.get_subcommands().empty()) return "";
+  const std::string format = code == kUsage ? "to" : "from";
+  const std::string name = "--" + (error.option() == "format" ? format : std::string(error.option()));
+  const bool known = app.get_subcommands().front()->get_option_no_throw(name) != nullptr;
+  return known ? "; see " + name : "";
+}
+
+int complain(const Error& error, const CLI::App& app, ExitCode code) {
+  return complain((error.what() + hint(error, app, code)).c_str(), code);
+}
+
 }  // namespace
 
 int run(int argc, char** argv) {
@@ -38,11 +52,11 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? kDone : kUsage;
   } catch (const UsageError& e) {
-    return complain(e.what(), kUsage);
+    return complain(e, app, kUsage);
   } catch (const Interrupted&) {
     return complain("interrupted", kInterrupted);
   } catch (const Error& e) {
-    return complain(e.what(), kBadInput);
+    return complain(e, app, kBadInput);
   } catch (const std::bad_alloc&) {
     return complain("out of memory", kBadInput);
   } catch (const std::exception& e) {

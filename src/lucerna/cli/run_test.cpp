@@ -244,6 +244,23 @@ TEST(ProgramCli, BadRayFilesAreOneClearLine) {
   expect_refusal(dir, "trace p.toml -o out", "no rays");
 }
 
+// The library does not know what the program calls its options, nor which a command has.
+TEST(ProgramCli, ErrorsNameTheOptionThatHelpsWhereTheCommandHasIt) {
+  const TempDir dir;
+  write_file(dir / "rays.txt", "0 0 0 0 0 1 1\n0 0 1 0 0 1 1\n");
+  const auto compressed = run_lucerna(dir.path(), "compress rays.txt -o m.nfl");
+  EXPECT_EQ(compressed.exit_code, 1);
+  EXPECT_TRUE(has(compressed.err, "states no total flux in lm: it has to be given; see --flux\n"))
+      << compressed.err;
+  write_file(dir / "p.toml", "[[source]]\nfile = \"rays.txt\"\n");
+  const auto traced = run_lucerna(dir.path(), "trace p.toml -o out");
+  EXPECT_EQ(traced.exit_code, 1);
+  EXPECT_FALSE(has(traced.err, "--flux")) << traced.err;
+  const auto written = run_lucerna(dir.path(), "make-source disk -n 10 -o s.ray");
+  EXPECT_EQ(written.exit_code, 2);
+  EXPECT_TRUE(has(written.err, "; see --to\n")) << written.err;
+}
+
 TEST(ProgramCli, BadProjectsAreOneClearLine) {
   const TempDir dir;
   make_source(dir, "disk -n 100");

@@ -27,9 +27,7 @@ struct TraceArguments {
 TraceOptions trace_options(const TraceArguments& a) {
   TraceOptions options;
   options.device = trace_device(a.device);
-  if (options.device == TraceDevice::cuda && !why_no_cuda().empty()) {
-    throw InputError(fmt::format("--device cuda: {}", why_no_cuda()));
-  }
+  if (options.device == TraceDevice::cuda) require_cuda();
   options.seed = parse_count(a.seed);
   options.sequence = sequence_kind(a.sequence);
   if (!a.rays.empty()) {

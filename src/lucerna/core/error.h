@@ -11,13 +11,22 @@
 
 namespace lucerna {
 
+/// An error in a file that `option` (a literal, Error::option) of the call would help with.
+template <class... Args>
+[[noreturn]] void throw_input_error_for(std::string_view option, std::string_view file,
+                                        std::string_view place, fmt::format_string<Args...> text,
+                                        Args&&... args) {
+  const std::string what = fmt::format(text, std::forward<Args>(args)...);
+  throw InputError(
+      place.empty() ? fmt::format("{}: {}", file, what) : fmt::format("{}: {}: {}", file, place, what),
+      option);
+}
+
 /// An error in a file: "FILE: byte 20: ray count 5000000 needs 140000000 bytes, the file has 2816".
 template <class... Args>
 [[noreturn]] void throw_input_error(std::string_view file, std::string_view place,
                                     fmt::format_string<Args...> text, Args&&... args) {
-  const std::string what = fmt::format(text, std::forward<Args>(args)...);
-  throw InputError(place.empty() ? fmt::format("{}: {}", file, what)
-                                 : fmt::format("{}: {}: {}", file, place, what));
+  throw_input_error_for("", file, place, text, std::forward<Args>(args)...);
 }
 
 namespace detail {

@@ -69,7 +69,7 @@ std::shared_ptr<Accelerator> design_accelerator(TraceDevice device) {
   if (device == TraceDevice::cpu) return nullptr;
   auto found = cuda_accelerators();
   if (!found.empty()) return std::move(found.front());
-  if (device == TraceDevice::cuda) throw InputError("--device cuda: " + why_no_cuda());
+  if (device == TraceDevice::cuda) require_cuda();
   return nullptr;
 }
 

@@ -178,9 +178,8 @@ class AsciiOpener {
       const std::size_t line_end = tail.rfind('\n');
       layout_.end = line_end == tail.npos ? layout_.begin : from + line_end + 1;
     } else {
-      throw_input_error(file_.name(), fmt::format("byte {}", file_.size()),
-                        "'lt_endofdata' expected before the end of the file: it was cut short; --salvage "
-                        "reads the whole lines");
+      throw_input_error_for("salvage", file_.name(), fmt::format("byte {}", file_.size()),
+                            "'lt_endofdata' expected before the end of the file: it was cut short");
     }
   }
 

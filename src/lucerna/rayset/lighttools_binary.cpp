@@ -128,8 +128,7 @@ class BinaryOpener {
         "'LTRFEND' expected after whole rays of {} bytes; the file ends after {} rays and {} bytes",
         layout_.record_bytes(), rays, over);
     if (!salvage_)
-      throw_input_error(file_.name(), fmt::format("byte {}", file_.size()),
-                        "{}; --salvage reads the whole ones", what);
+      throw_input_error_for("salvage", file_.name(), fmt::format("byte {}", file_.size()), "{}", what);
     warn("byte {}: {}: the whole ones are read", file_.size(), what);
   }
 

@@ -35,7 +35,7 @@ void judge(const RaySetHeader& header, const RaySummary& summary, std::vector<Fi
   const auto flux = header.flux();
   if (!flux)
     return warn(
-        fmt::format("no total flux in {} is stated: --flux will be needed", symbol(header.flux_unit)));
+        fmt::format("no total flux in {} is stated: it will have to be given", symbol(header.flux_unit)));
   if (std::abs(summary.weight_sum / *flux - 1.0) > 1e-3) {
     warn(fmt::format(
         "the rays' flux sums to {:.6g} {unit}, {:.6g} {unit} is stated: the rays share the stated flux",

@@ -63,7 +63,8 @@ std::optional<std::string> detect(const InputFile& file) {
     if (format.looks_like(file)) candidates.emplace_back(format.name);
   }
   if (candidates.size() > 1) {
-    throw_input_error(file.name(), "", "could be {}: say which with --from", fmt::join(candidates, " or "));
+    throw_input_error_for("format", file.name(), "", "could be {}: expected to be told which",
+                          fmt::join(candidates, " or "));
   }
   if (candidates.empty()) return std::nullopt;
   return candidates.front();
@@ -106,8 +107,9 @@ std::string ray_format_for(const std::filesystem::path& path, std::string_view t
   if (ending == ".tm25ray" || ending == ".tm25") return "tm25";
   if (ending == ".sdf") return "zemax-binary";
   if (ending == ".dis") return "asap";
-  throw UsageError(fmt::format("{}: the ending '{}' does not say the format: give --to with one of {}",
-                               path.string(), ending, fmt::join(kNames, ", ")));
+  throw UsageError(fmt::format("{}: the ending '{}' does not say the format: expected one of {}",
+                               path.string(), ending, fmt::join(kNames, ", ")),
+                   "format");
 }
 
 RaySet read_ray_set(const std::filesystem::path& path, const ReadOptions& options, Progress& progress,
@@ -132,7 +134,8 @@ std::vector<std::string> write_ray_set(const std::filesystem::path& path, const 
 
 double require_flux(const RaySetHeader& header, std::string_view name) {
   if (const auto flux = header.flux()) return *flux;
-  throw_input_error(name, "", "states no total flux in {}: give it with --flux", symbol(header.flux_unit));
+  throw_input_error_for("flux", name, "", "states no total flux in {}: it has to be given",
+                        symbol(header.flux_unit));
 }
 
 }  // namespace lucerna

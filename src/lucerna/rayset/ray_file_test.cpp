@@ -238,15 +238,14 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(DamagedFilesData, AreReportedAndSalvaged) {
   LUCERNA_DATA_FILE(swapped, "rayfiles/ansys_test_08_sdf.sdf");
-  EXPECT_THAT(message_of<InputError>([&] { read_ray_set(swapped); }),
-              AllOf(HasSubstr("swapped"), HasSubstr("--salvage")));
+  EXPECT_THAT(message_of<InputError>([&] { read_ray_set(swapped); }), HasSubstr("swapped"));
   const RaySet right = read_ray_set(swapped, {.salvage = true});
   EXPECT_EQ(right.rays.size(), 11u);
   EXPECT_EQ(right.rays.weight[0], 1.0F);
   EXPECT_NEAR(right.rays.extra[0][0], 486.0F, 1e-3F);
   LUCERNA_DATA_FILE(cut, "rayfiles/pyspeos_RaysWithoutSpectralData.RAY");
   EXPECT_THAT(message_of<InputError>([&] { read_ray_set(cut); }),
-              AllOf(HasSubstr("LTRFEND"), HasSubstr("113 rays"), HasSubstr("--salvage")));
+              AllOf(HasSubstr("LTRFEND"), HasSubstr("113 rays")));
   const RaySet whole = read_ray_set(cut, {.salvage = true});
   EXPECT_EQ(whole.rays.size(), 113u);
   EXPECT_EQ(whole.header.flux(), 55.0);

@@ -122,8 +122,7 @@ std::unique_ptr<RayReader> open_speos(InputFile file, const ReadOptions& options
     const std::string what = fmt::format(
         "whole rays of 32 bytes expected; the file ends after {} rays and {} bytes", facts.ray_count, over);
     if (!options.salvage)
-      throw_input_error(file.name(), fmt::format("byte {}", file.size()),
-                        "{}; --salvage reads the whole ones", what);
+      throw_input_error_for("salvage", file.name(), fmt::format("byte {}", file.size()), "{}", what);
     facts.warnings.push_back(fmt::format("byte {}: {}: the whole ones are read", file.size(), what));
   }
   return std::make_unique<RecordReader>(std::move(file), std::move(facts), std::move(layout),

@@ -148,8 +148,7 @@ std::unique_ptr<RayReader> open_zemax_binary(InputFile file, const ReadOptions& 
     constexpr std::string_view kSwapped =
         "flux and wavelength are swapped: the flux column holds visible wavelengths, the "
         "wavelength column none";
-    if (!options.salvage)
-      throw_input_error(file.name(), "byte 232", "{}; --salvage reads them the other way round", kSwapped);
+    if (!options.salvage) throw_input_error_for("salvage", file.name(), "byte 232", "{}", kSwapped);
     facts.warnings.push_back(fmt::format("byte 232: {}: read the other way round", kSwapped));
     layout.main[6].at = 7;
     layout.extra[0].at = 6;

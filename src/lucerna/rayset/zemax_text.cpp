@@ -125,7 +125,7 @@ std::unique_ptr<RayReader> open_zemax_text(InputFile file, const ReadOptions& op
   facts.ray_count = std::min(lines, first->rays);
   if (lines < first->rays) {
     const std::string what = fmt::format("{} rays expected, {} lines found", first->rays, lines);
-    if (!options.salvage) throw_input_error(file.name(), "line 1", "{}; --salvage reads those", what);
+    if (!options.salvage) throw_input_error_for("salvage", file.name(), "line 1", "{}", what);
     facts.warnings.push_back(fmt::format("line 1: {}", what));
   } else if (lines > first->rays) {
     facts.warnings.push_back(

@@ -208,10 +208,9 @@ std::string model_report_html(const SourceModel& model, Json json, const ModelRe
         fmt::format("<p>Left {}, in the middle {} rays drawn from the model.</p>\n", of, options.model_rays) +
             view_table(result, all) + compared.view_plots);
   } else {
-    page.section(
-        "views", "Rays and model in five views",
-        "<p>The rays that the model was made from were not given (lucerna report MODEL --rays FILE), so "
-        "there is no comparison.</p>\n");
+    page.section("views", "Rays and model in five views",
+                 "<p>The rays that the model was made from were not given, so "
+                 "there is no comparison.</p>\n");
   }
   add_etendue(page, compared, options.rays != nullptr);
   page.section("layers", "What the model is made of", layer_table(model));

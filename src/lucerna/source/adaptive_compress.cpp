@@ -316,7 +316,7 @@ void check_rays(const RayBlock& rays) {
 
 double model_flux(const RaySetHeader& header, const AdaptiveOptions& options) {
   const auto flux = options.flux ? options.flux : header.flux();
-  if (!flux) throw InputError("the rays' total flux is not stated; give it with --flux");
+  if (!flux) throw InputError("the rays' total flux is not stated: it has to be given", "flux");
   if (!(*flux > 0.0) || !std::isfinite(*flux)) {
     throw InputError(fmt::format("total flux {}, expected > 0", *flux));
   }

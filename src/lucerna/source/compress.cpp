@@ -17,6 +17,7 @@ CompressedFiles compress_stream(const std::filesystem::path& file, const Compres
                                 Progress& progress) {
   const AdaptiveOptions adaptive{.max_bytes = options.max_bytes, .seed = options.seed, .flux = options.flux};
   const auto reader = open_ray_file(file);
+  if (!options.flux) require_flux(reader->header(), file.string());
   CompressedFiles made;
   made.rays = reader->ray_count();
   if (made.rays > adaptive.most_rays) {

@@ -2,11 +2,17 @@
 #include "lucerna/trace/accelerator_error.h"
 
 #include "lucerna/core/error.h"
+#include "lucerna/trace/accelerator.h"
 
 namespace lucerna {
 
 void throw_accelerator_error(const char* name, const char* what) {
   throw InputError(fmt::format("{}: {}", name, what));
+}
+
+void require_cuda() {
+  if (const std::string why = why_no_cuda(); !why.empty())
+    throw InputError("no CUDA device: " + why, "device");
 }
 
 }  // namespace lucerna

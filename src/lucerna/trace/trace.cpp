@@ -101,7 +101,7 @@ Accelerators chosen_accelerators(const TraceOptions& options) {
     return {};
   }
   Accelerators devices = cuda_accelerators();
-  if (devices.empty() && must) throw InputError(fmt::format("--device cuda: {}", why_no_cuda()));
+  if (must) require_cuda();
   return devices;
 }
 
