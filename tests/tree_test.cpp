@@ -320,7 +320,7 @@ TEST(Tree, CheckSeesUnnamedNames) {
 /// Lines of the longest function, after the one that opens its body to the one that closes it. Goes by the
 /// form that clang-format gives: a line that ends with the list of parameters and a brace, and the first
 /// brace as far left as the function, two left of its body. clang-tidy counts more exactly (`make check
-/// STAGES=tidy`), but takes half an hour.
+/// STAGES=tidy`), but takes minutes.
 std::size_t longest_function(const std::vector<std::string>& lines) {
   const auto indent = [](const std::string& line) { return line.find_first_not_of(' '); };
   std::size_t longest = 0;

@@ -227,7 +227,7 @@ struct DesignedMirror {
 /// the given mirror by that, and traced. When progress asks to stop, the result is the best so far, whole,
 /// with `end` saying so. Progress phases "rays", "design", "validate", "trace", "tolerances". Uses all
 /// threads; other calls may run at the same time. Throws InputError with file, line, key, found and expected
-/// on a project that cannot be designed. Memory: about 1 GB at 2^23 rays.
+/// on a project that cannot be designed.
 [[nodiscard]] DesignedMirror design(const std::filesystem::path& project, const DesignSettings& settings = {},
                                     Progress& progress = no_progress());
 

@@ -110,7 +110,7 @@ struct SampleOptions {
 /// Draws `rays` rays from a model into a file: weights that sum to its flux, wavelengths and spectra where it
 /// has them. The same bits for any number of threads. Returns what the format could not hold, one sentence
 /// each. Throws UsageError as `ray_format_for`, InputError for no rays or a file that cannot be written;
-/// Interrupted leaves no file. Cost: about 0.05 us a ray and core, and writing.
+/// Interrupted leaves no file.
 std::vector<std::string> sample(const SourceModel& model, std::uint64_t rays,
                                 const std::filesystem::path& file, const SampleOptions& options = {},
                                 Progress& progress = no_progress());

@@ -19,8 +19,8 @@ struct FarFieldFigures {
   /// Relative noise of the whole distribution: root of the solid-angle-weighted sum of squared standard
   /// errors over that of the squared intensities. NaN where it is not known.
   double noise = 0.0;
-  /// The largest standard error of a value above 1 % of the peak, over the peak . NaN where it
-  /// is not known.
+  /// The largest standard error of a value above 1 % of the peak, over the peak. NaN where it is
+  /// not known.
   double node_noise = 0.0;
 };
 

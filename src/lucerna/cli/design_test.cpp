@@ -193,7 +193,7 @@ TEST(DesignCli, ARectangleOnTheFloor) {
 TEST(DesignCli, CtrlCWritesTheBestSoFar) {
   const TempDir dir;
   write_project(dir);
-  // Two seconds are not up when the first line of its history is there.
+  // As soon as its first step is in the history.
   const std::string command = "cd '" + dir.path().string() + "' && '" + test::program().string() +
                               "' design p.toml -o out > log 2>&1 & "
                               "while kill -0 $! && ! [ -s '" +
