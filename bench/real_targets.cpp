@@ -138,7 +138,7 @@ DesignShape solve(const Run& run, const std::string& name, const DesignProblem& 
   options.seed = run.seed;
   options.judge_rays = std::uint64_t{1} << 18;  // the validation below has more
   const auto clock = std::chrono::steady_clock::now();
-  DesignResult result{p.start};
+  DesignResult result(p.start);
   const auto observer = [&](const FitRecord& r, const DesignShape&, const std::string&) {
     if (!run.history) return;
     fmt::print(

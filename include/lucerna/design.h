@@ -166,7 +166,7 @@ enum class DesignEnd { converged, time, interrupted };
 std::string_view to_string(DesignEnd end);
 
 /// A mirror of the trade between error and light.
-struct TradePoint {
+struct ParetoPoint {
   /// `light_weight` of [design] that it was fitted with, and how far its vertex is from the given mirror's.
   double light_weight = 0.0, vertex_mm = 0.0;
   /// Validated with fewer rays than a result; `in_rectangle` is the light.
@@ -190,35 +190,41 @@ struct DesignSettings {
   bool pareto = false, advise = false;
 };
 
-/// What a design came to.
-struct DesignedMirror {
-  /// In its own frame: what cad.h writes.
-  Reflector reflector;
-  Frame world_from_reflector;
-  /// The project with this mirror, as a file that `trace` takes.
-  std::string project_text;
+/// What was found of a design's mirror.
+struct DesignFindings {
   DesignEnd end = DesignEnd::converged;
   /// Against the target, by fresh rays through the exported mesh; and of the given mirror.
   DesignError error, start_error;
-  /// What no mirror of this aperture and height can be better than.
+  /// The target's zones in the light of the result and of the start, by the same rays.
+  std::vector<ZoneCheck> zones, start_zones;
+  /// What no mirror of this aperture and height can be better than, with the light that this one has in the
+  /// target's rectangle.
   DesignBound bound;
-  /// The target's zones in this light.
-  std::vector<ZoneCheck> zones;
   /// Every limit that was set, as found in the exported mesh and its light.
   std::vector<LimitCheck> limits;
   /// Shares of the sources' flux: what leaves the luminaire; what the mirror's face, its back and bodies
   /// absorb; rays that were given up.
   Estimate efficiency, absorbed, back, bodies, lost;
-  /// The light of the finished project: raw sums and figures.
-  TraceResult traced;
-  TraceFigures light;
-  std::optional<ToleranceSweep> tolerances;
-  std::vector<TradePoint> trade;
+  /// What was asked for by `pareto` and `advise`.
+  std::vector<ParetoPoint> pareto;
   std::vector<AdviceTrial> advice;
   /// What is known of why the error is not smaller, in one sentence each, with the figure that shows it.
   std::vector<std::string> remarks;
   int evaluations = 0;
   std::uint64_t rays = 0;
+};
+
+/// What a design came to.
+struct DesignedMirror : DesignFindings {
+  /// In its own frame: what cad.h writes.
+  Reflector reflector;
+  Frame world_from_reflector;
+  /// The project with this mirror, as a file that `trace` takes.
+  std::string project_text;
+  /// The light of the finished project: raw sums and figures.
+  TraceResult traced;
+  TraceFigures light;
+  std::optional<ToleranceSweep> tolerances;
 };
 
 /// Shapes a project's mirror until its light is the project's [target], as well as it can be: a free form, a

@@ -23,7 +23,6 @@ void run_sample(const SampleArguments& a, Session& session) {
   options.seed = parse_count(a.seed);
   options.origin = std::filesystem::path(a.model).filename().string();
   const auto model = session.timed("read", [&] { return load_source_model(a.model); });
-  if (n == 0) throw InputError("-n 0: zero rays asked for, expected at least one");
   const auto warnings =
       session.timed("write", [&] { return sample(*model, n, a.output, options, session.progress()); });
   for (const std::string& warning : warnings) session.note(fmt::format("{}: {}", a.output, warning));

@@ -91,7 +91,7 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
   rays.evaluate_on(options.accelerator);
   rays.shade_by(shadows_of(problem.project.scene, problem.world_from_mirror.inverse()));
   FitProblem fit_data = fit_problem(problem, options, rays);
-  DesignResult result{problem.start};
+  DesignResult result(problem.start);
   search_mirror({problem, options, problem_key(problem, options), time, progress, observer}, fit_data,
                 result);
   result.shape = ShapeLimits(problem.limits, problem.start).nearest(result.shape);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lucerna/design.h"
@@ -42,33 +43,15 @@ struct DesignOptions {
   std::string checkpoint;
 };
 
-struct DesignResult {
+struct DesignResult : DesignFindings {
+  explicit DesignResult(DesignShape found) : shape(std::move(found)) {}
+
   DesignShape shape;
-  DesignEnd end = DesignEnd::converged;
   std::vector<FitRecord> history;
   /// State to resume from; a design that is taken up from it ends at the same bits as one never stopped.
   std::string checkpoint;
-  /// Against the target, by fresh rays through the exported mesh (validation.h).
-  DesignError error, start_error;
-  /// The target's zones in the light of the result and of the start, by the same rays.
-  std::vector<ZoneCheck> zones, start_zones;
-  /// What no mirror of this aperture and height can be better than, with the light that this one has in the
-  /// target's rectangle.
-  DesignBound bound;
-  /// Shares of the sources' flux: what leaves the luminaire; what the mirror's face, its back and bodies
-  /// absorb; rays that were given up.
-  Estimate efficiency, absorbed, back, bodies, lost;
-  /// Seconds that finding these took.
+  /// Seconds that validating start and result took.
   double validation_s = 0.0;
-  int evaluations = 0;
-  std::uint64_t rays = 0;
-  /// Every limit that was set, as found in the exported mesh and the judging light.
-  std::vector<LimitCheck> limits;
-  /// What was asked for by DesignOptions::pareto and DesignOptions::advise.
-  std::vector<ParetoPoint> pareto;
-  std::vector<AdviceTrial> advice;
-  /// What is known of why the error is not smaller, in one sentence each, with the figure that shows it.
-  std::vector<std::string> remarks;
 };
 
 /// Called after every step with the best so far and the state to resume from.

@@ -36,31 +36,14 @@ auto timed(double& seconds, const Work& work) {
 
 /// What users of the library get of it.
 DesignedMirror designed_mirror(const DesignProblem& problem, DesignRun run) {
-  DesignResult& r = run.result;
-  DesignedMirror out{.reflector = r.shape.reflector(),
-                     .world_from_reflector = problem.world_from_mirror,
-                     .project_text = project_text(with_shape(problem, r.shape)),
-                     .end = r.end,
-                     .error = r.error,
-                     .start_error = r.start_error,
-                     .bound = r.bound,
-                     .zones = std::move(r.zones),
-                     .limits = std::move(r.limits),
-                     .efficiency = r.efficiency,
-                     .absorbed = r.absorbed,
-                     .back = r.back,
-                     .bodies = r.bodies,
-                     .lost = r.lost,
-                     .traced = std::move(run.trace.result),
-                     .light = std::move(run.figures.trace),
-                     .tolerances = std::move(run.figures.tolerances),
-                     .trade = {},
-                     .advice = std::move(r.advice),
-                     .remarks = std::move(r.remarks),
-                     .evaluations = r.evaluations,
-                     .rays = r.rays};
-  for (const ParetoPoint& p : r.pareto) out.trade.push_back({p.light_weight, p.vertex_mm, p.error});
-  return out;
+  const DesignShape shape = run.result.shape;
+  return {std::move(run.result),
+          shape.reflector(),
+          problem.world_from_mirror,
+          project_text(with_shape(problem, shape)),
+          std::move(run.trace.result),
+          std::move(run.figures.trace),
+          std::move(run.figures.tolerances)};
 }
 
 }  // namespace

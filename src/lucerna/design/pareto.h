@@ -11,15 +11,6 @@ namespace lucerna {
 
 struct DesignOptions;
 
-/// A mirror of the trade between error and light.
-struct ParetoPoint {
-  /// DesignProblem::light_weight that it was fitted with, and how far its vertex is from the given mirror's.
-  double light_weight = 0.0, vertex_mm = 0.0;
-  DesignShape shape;
-  /// Validated with fewer rays than a result.
-  DesignError error;
-};
-
 /// The trade between error and light in the target's rectangle. The light that a mirror catches follows
 /// mostly from where its vertex is, so point sources' mirrors of several vertex distances are fitted, each
 /// with the problem's light weight and with ten times that, and `found` with both; all are validated. Only
