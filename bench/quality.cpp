@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Quality of source models: size, error, floor, excess and raw in the five views, and seconds, for emitters
-// of known truth and for ray files. `quality --help` has the options; docs/validation.md the commands whose
-// output is quoted.
+// of known truth and for ray files. `quality --help` has the options; docs/benchmarks/index.md the commands
+// whose output is quoted.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -225,7 +225,7 @@ void run_all(const Case& c, const Options& options) {
 
 int main(int argc, char** argv) try {
   Options options;
-  CLI::App app("Quality of source models in the five views of docs/algorithms/views.md");
+  CLI::App app("Quality of source models in the five views of docs/theory/comparison.md");
   app.add_option("sources", options.sources, "emitters (phong500, led, filament, ...) and ray files")
       ->required();
   app.add_option("--train", options.train, "training rays of emitters");

@@ -146,7 +146,7 @@ void run(const Options& o) {
 
 int main(int argc, char** argv) try {
   Options o;
-  CLI::App app("Source models side by side (docs/algorithms/rivals.md)");
+  CLI::App app("Source models side by side (docs/benchmarks/baselines.md)");
   app.add_option("source", o.source, "emitter, dome, tilted, strip, arc, or ray file")->required();
   app.add_option("--train", o.train, "training rays of emitters");
   app.add_option("--draw", o.draw, "rays drawn from each model, and of the truth");

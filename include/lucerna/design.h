@@ -28,7 +28,7 @@ struct BoxErrorEstimate {
   double standard_error = 0.0;
 };
 
-/// The error of a design (docs/algorithms/design.md): every figure with its error.
+/// The error of a design (docs/theory/design.md): every figure with its error.
 struct DesignError {
   /// In 12 x 12, 24 x 24 and 48 x 48 boxes over the target's rectangle. The headline is c48.excess.
   BoxErrorEstimate c12, c24, c48;
@@ -228,7 +228,7 @@ struct DesignedMirror : DesignFindings {
 };
 
 /// Shapes a project's mirror until its light is the project's [target], as well as it can be: a free form, a
-/// profile of revolution or of a trough, within [design.limits] (docs/algorithms/design.md and
+/// profile of revolution or of a trough, within [design.limits] (docs/theory/design.md and
 /// free-form-search.md). The result is validated by code that shares nothing with the fit, never worse than
 /// the given mirror by that, and traced. When progress asks to stop, the result is the best so far, whole,
 /// with `end` saying so. Progress phases "rays", "design", "validate", "trace", "tolerances". Uses all

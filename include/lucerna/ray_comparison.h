@@ -12,7 +12,7 @@
 
 namespace lucerna {
 
-/// The five ways in which light sources are compared (docs/algorithms/views.md).
+/// The five ways in which light sources are compared (docs/theory/comparison.md).
 enum class ViewKind { far, near, focus, beam, four_d };
 
 inline constexpr std::array<ViewKind, 5> kViewKinds{ViewKind::far, ViewKind::near, ViewKind::focus,

@@ -58,7 +58,7 @@ class RaySource {
 /// - cosine: on the sphere, with the same pattern; Lambertian outward.
 ///
 /// The positional pattern is a checker of 16 sectors of azimuth by 8 bands of equal area, alternately 1 and
-/// 0.25. The last four are the synthetic sets of Mas et al. (docs/algorithms/clusters.md); their patterns are
+/// 0.25. The last four are the synthetic sets of Mas et al. (docs/theory/clusters.md); their patterns are
 /// ours.
 enum class EmitterKind {
   point,

@@ -57,8 +57,8 @@ std::uint64_t save_source_model(const std::filesystem::path& path, const SourceM
 /// Does the file begin as a model file does? False for files that are missing or too short; reads 8 bytes.
 bool is_source_model(const std::filesystem::path& path);
 
-/// The adaptive trees of docs/algorithms/adaptive.md, or Mas-Martin-Patow clusters
-/// (docs/algorithms/clusters.md).
+/// The adaptive trees of docs/theory/source-model.md, or Mas-Martin-Patow clusters
+/// (docs/theory/clusters.md).
 enum class CompressMethod { adaptive, clusters };
 /// "adaptive" or "clusters"; the second throws UsageError on anything else.
 std::string_view to_string(CompressMethod method);

@@ -14,7 +14,7 @@ namespace lucerna {
 /// Boxes a side in which a design's error is measured at its finest. 24 and 12 a side are sums of these.
 inline constexpr int kErrorBoxes = 48;
 
-/// The cells of a design's error (docs/algorithms/design.md): the target's rectangle in 48 x 48 equal boxes
+/// The cells of a design's error (docs/theory/design.md): the target's rectangle in 48 x 48 equal boxes
 /// with hard edges, and cells of the same size over the rest of the sphere. Cells are numbered: the boxes of
 /// the rectangle (iv * 48 + iu, from the negative sides), then the rest. Immutable and thread safe.
 ///

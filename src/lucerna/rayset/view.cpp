@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kViewBlock = std::size_t{1} << 16;
 constexpr std::array<std::string_view, 5> kViewNames{"far", "near", "focus", "beam", "four_d"};
-/// Shares that docs/algorithms/views.md fixes.
+/// Shares that docs/theory/comparison.md fixes.
 constexpr double kRadiusShare = 0.98, kLeastMeanLength = 0.2, kNearPlaneGap_mm = 1.0;
 /// A window is never narrower than this share of the size that rounding of float32 rays is proportional to:
 /// rays through one point then share a cell instead of showing their rounding (6e-8) as structure.

@@ -8,7 +8,7 @@
 
 namespace lucerna {
 
-/// Share of the flux that a view's window holds (docs/algorithms/views.md).
+/// Share of the flux that a view's window holds (docs/theory/comparison.md).
 inline constexpr double kViewWindowShare = 0.99;
 
 struct WeightedValue {

@@ -27,7 +27,7 @@ struct AdaptiveOptions {
   bool overlap = true;
 };
 
-/// Compresses a ray set by the adaptive method (docs/algorithms/adaptive.md). The same rays, options and seed
+/// Compresses a ray set by the adaptive method (docs/theory/source-model.md). The same rays, options and seed
 /// give the same model for any number of threads. Throws InputError without rays, without flux, or if
 /// `max_bytes` is too little for any model (1000 always do). Cost: about 1 us a ray; memory: 40 bytes a ray
 /// beside the rays.

@@ -58,8 +58,8 @@ struct AdaptiveData {
   std::size_t leaves() const;
 };
 
-/// The file's sections, and back (docs/nfl-format.md); `name` is for messages. Every count and tree is
-/// checked.
+/// The file's sections, and back (docs/reference/nfl-adaptive.md); `name` is for messages. Every count and
+/// tree is checked.
 NflFile encode_adaptive(const AdaptiveData& data);
 AdaptiveData decode_adaptive(const NflFile& file, std::string_view name);
 

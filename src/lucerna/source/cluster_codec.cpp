@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sections of a model of clusters: docs/nfl-format.md, "Method CLUS".
+// The sections of a model of clusters: docs/reference/nfl.md, "Method CLUS".
 #include <algorithm>
 #include <cmath>
 

@@ -12,7 +12,7 @@
 
 namespace lucerna {
 
-/// Defaults are those of the sweeps in docs/algorithms/clusters.md.
+/// Defaults are those of the sweeps in docs/theory/clusters.md.
 struct ClusterOptions {
   /// Largest file in bytes, at least 2000: where the penalty below gives more, it is raised. Absent =
   /// whatever the other thresholds give.
@@ -54,7 +54,7 @@ struct ClusterStatistics {
   double seconds_octree = 0.0, seconds_removal = 0.0, seconds_final = 0.0;
 };
 
-/// Compresses a ray set to Mas-Martin-Patow clusters (docs/algorithms/clusters.md): octree, removal of
+/// Compresses a ray set to Mas-Martin-Patow clusters (docs/theory/clusters.md): octree, removal of
 /// clusters, directional distributions, mesh. Throws InputError without rays or flux, or if the size cannot
 /// be met. Same seed, same bits, for any number of threads. About 70 bytes a ray beside the ray set.
 std::unique_ptr<ClusterModel> compress_clusters(const RaySet& rays, const ClusterOptions& options = {},

@@ -14,7 +14,7 @@ namespace lucerna {
 /// Four ASCII characters that name a method or a section.
 using NflTag = std::array<char, 4>;
 
-/// A model file (.nfl) taken apart, whatever its method: docs/nfl-format.md has every byte.
+/// A model file (.nfl) taken apart, whatever its method: docs/reference/nfl.md has every byte.
 struct NflFile {
   NflTag method{};
   double flux = 0.0;

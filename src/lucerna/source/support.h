@@ -29,7 +29,7 @@ namespace lucerna {
 ///
 /// Directions about a normal are (sin^2/2, azimuth) for `polar` and the concentric square of the unit disk
 /// for `concentric`, the projected solid angle either way. A focal support with `polar` has p^2/2 and azimuth
-/// for the position. docs/algorithms/adaptive.md derives the measures.
+/// for the position. docs/theory/source-model.md derives the measures.
 enum class SupportKind : std::uint8_t { plane, sphere, cylinder, box, focal, axis, disk };
 inline constexpr std::size_t kSupportKinds = 7;
 enum class PolarMap : std::uint8_t { polar, concentric };

@@ -7,8 +7,8 @@
 namespace lucerna {
 
 /// Codes trees node by node in preorder: is it a leaf, which axis, which cut, which step; each with
-/// probabilities that depend on the rays in the node and the split above it (docs/nfl-format.md). About 12
-/// bits a leaf. The same object must see the same trees in the same order on both sides.
+/// probabilities that depend on the rays in the node and the split above it (docs/reference/nfl-adaptive.md).
+/// About 12 bits a leaf. The same object must see the same trees in the same order on both sides.
 class TreeCodec {
  public:
   /// `tree_number` as the tree was grown with; it foretells the offered cuts.

@@ -9,7 +9,7 @@
 
 namespace lucerna {
 
-// The first hit of a ray with a swept curve (docs/algorithms/height-field-tracing.md), one ray at a time in
+// The first hit of a ray with a swept curve (docs/theory/height-fields.md), one ray at a time in
 // double: small functions that CPU and GPU share.
 
 /// A SweptCurve and its aperture as a kernel reads them; points into the curve.

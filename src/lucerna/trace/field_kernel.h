@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The first hit of rays with a HeightField, kLanes rays at a time (docs/algorithms/height-field-tracing.md).
+// The first hit of rays with a HeightField, kLanes rays at a time (docs/theory/height-fields.md).
 // Included by the kernel_*.cpp files and by what runs on a GPU, see simd.h.
 
 #include "lucerna/trace/ray_kernel.h"

@@ -152,7 +152,7 @@ Reflector read_faceted(TomlReader& reader, Project& project) {
   });
 }
 
-/// The free-form family: a bicubic B-spline of heights over a paraboloid (docs/algorithms/design.md).
+/// The free-form family: a bicubic B-spline of heights over a paraboloid (docs/theory/design.md).
 Reflector read_bspline(TomlReader& reader) {
   const auto focal = reader.positive("focal_mm");
   if (!focal) reader.missing("focal_mm", "the paraboloid that the spline stands on");

@@ -230,7 +230,7 @@ bins = "hard"                 # tent: a ray counts for its four neighbours; smoo
 
 # Beside a file or without one a free form may have bounds by zone, as standards have them:
 #   [[target.zone]] name, gamma_deg and c_deg (or h_deg and v_deg about the target's axis; x_mm and y_mm on a plane),
-#   each a number or [low, high], and min_cd, max_cd, min_lx, max_lx, min_uo, min_ul: docs/algorithms/zones.md
+#   each a number or [low, high], and min_cd, max_cd, min_lx, max_lx, min_uo, min_ul: docs/theory/zones.md
 )";
 
 }  // namespace
