@@ -10,16 +10,20 @@
 
 #include "lucerna/geometry.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
+/// The shapes that a bounding surface can have.
 enum class SurfaceKind { none, plane, sphere, cylinder, box };
 
-/// "none", "plane", "sphere", "cylinder", "box"; the second throws UsageError on anything else.
+/// "none", "plane", "sphere", "cylinder", "box".
 std::string_view to_string(SurfaceKind kind);
+/// The kind of such a name. Throws UsageError on anything else.
 SurfaceKind surface_kind(std::string_view name);
 
 /// The convex surface that the starts of a ray set lie on, wrapped round its source. Immutable, thread safe.
 struct BoundingSurface {
+  /// Which shape it is; the sizes below that do not belong to it are ignored.
   SurfaceKind kind = SurfaceKind::none;
   /// Places the surface: plane z = 0 of the frame (light goes to +z), sphere about its origin, cylinder about
   /// its z axis and closed by discs at +-half its length, box about its origin.
@@ -29,9 +33,13 @@ struct BoundingSurface {
   /// Half the edges of a box; z is also half the length of a cylinder.
   Vec3 half_size_mm;
 
+  /// The plane z = `z_mm`.
   static BoundingSurface plane(double z_mm);
+  /// A sphere about the origin; `radius_mm` > 0.
   static BoundingSurface sphere(double radius_mm);
+  /// A closed cylinder about the z axis, centred at the origin; both sizes > 0.
   static BoundingSurface cylinder(double radius_mm, double length_mm);
+  /// A box about the origin with these edges, each > 0.
   static BoundingSurface box(const Vec3& size_mm);
 
   /// The same from the numbers that users give: plane Z, sphere RADIUS, cylinder RADIUS LENGTH, box X Y Z,
@@ -116,3 +124,4 @@ LUCERNA_HD inline std::optional<double> BoundingSurface::exit_distance_mm(const 
 }
 
 }  // namespace lucerna
+#pragma GCC visibility pop

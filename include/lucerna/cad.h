@@ -8,6 +8,7 @@
 #include "lucerna/mesh.h"
 #include "lucerna/reflector.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// How far a file of flat pieces may be from the surface.
@@ -57,3 +58,4 @@ std::string csv_profile(const std::vector<std::array<double, 2>>& profile);
 std::string step_text(const Reflector& reflector, const std::string& name = "reflector");
 
 }  // namespace lucerna
+#pragma GCC visibility pop

@@ -14,6 +14,7 @@
 #include "lucerna/trace.h"
 #include "lucerna/trace_figures.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// A relative l2 error with the noise taken out.
@@ -44,6 +45,7 @@ struct DesignError {
   /// Largest deviation of one of the 48 x 48 boxes as a share of the target's brightest box, with the
   /// standard error of that box. Noise raises it: the largest of 2304 deviations.
   Estimate worst_cell;
+  /// Rays that it was judged by.
   std::uint64_t rays = 0;
 };
 
@@ -59,32 +61,41 @@ struct DesignBound {
 
 /// Whether a bound is kept: decided only where the noise leaves no doubt.
 enum class ZoneVerdict { met, missed, undetermined };
+/// "met", "missed" or "undetermined".
 std::string_view to_string(ZoneVerdict verdict);
 
 /// One bound of a zone against the light that was found.
 struct ZoneBoundCheck {
+  /// The key of [[target.zone]] that sets it.
   std::string key;
+  /// A lower bound, else an upper one.
   bool is_min = true;
   /// In cd or lx, or a multiple of the bound's reference, which `reference` is (1 for absolute bounds).
   double allowed = 0.0;
   double reference = 1.0;
   /// Of the cell that comes nearest to breaking it, in the same unit as `allowed`.
   Estimate found;
+  /// Where that cell is, in words.
   std::string place;
   /// What that cell is short of the bound (or above it), over the bound; negative: so much is to spare.
   double missing = 0.0;
+  /// Whether the bound is kept.
   ZoneVerdict verdict = ZoneVerdict::met;
 };
 
 /// A zone's light, by its measuring cells, in cd or lx.
 struct ZoneCheck {
+  /// As the project has it.
   std::string name;
+  /// Number of measuring cells.
   std::size_t cells = 0;
   /// Side of the cells, degrees or mm.
   double cell = 1.0;
+  /// True for lx on a plane, false for cd by direction.
   bool on_plane = false;
   /// Darkest and brightest cell, with their own errors; noise spreads the two. And the mean over the zone.
   Estimate min, max, mean;
+  /// Each bound that is set.
   std::vector<ZoneBoundCheck> bounds;
 
   /// Missed where any bound is, else undetermined where any is.
@@ -93,8 +104,11 @@ struct ZoneCheck {
 
 /// One limit and what was found.
 struct LimitCheck {
+  /// The key of [design.limits], or which keep-out zone or body.
   std::string limit;
+  /// In the unit of the limit.
   double allowed = 0.0, found = 0.0;
+  /// True if what was found is allowed.
   bool held = true;
 };
 
@@ -117,8 +131,11 @@ struct ToleranceRanges {
 
 /// What is changed in one case.
 struct ToleranceCase {
+  /// The case in words.
   std::string name;
+  /// Of the sources together.
   Vec3 shift_mm;
+  /// Tilts of the sources, slope error of the mirror, change of its reflectance.
   double tilt_x_deg = 0.0, tilt_y_deg = 0.0, slope_error_mrad = 0.0, reflectance = 0.0;
 };
 
@@ -136,13 +153,19 @@ struct ToleranceFigures {
 /// cases, so that differences between cases are better known than either. A case whose figure is not
 /// determined is left out.
 struct ToleranceSpread {
+  /// Which of ToleranceFigures.
   std::string figure;
+  /// Of the design itself, and the mean over the cases.
   Estimate nominal, mean;
+  /// Over the cases.
   double standard_deviation = 0.0;
+  /// The extreme cases.
   Estimate least, greatest;
 };
 
+/// Result of a tolerance sweep: the cases and their scatter.
 struct ToleranceSweep {
+  /// What was varied.
   ToleranceRanges ranges;
   std::vector<ToleranceCase> cases;       ///< the first is the design itself, then one change a case
   std::vector<ToleranceFigures> figures;  ///< of each case
@@ -151,6 +174,7 @@ struct ToleranceSweep {
 
 /// A change of the mirror that was tried, and what a design with it came to.
 struct AdviceTrial {
+  /// The change in words.
   std::string change;
   /// Validated like a result.
   DesignError error;
@@ -175,6 +199,7 @@ struct ParetoPoint {
 
 /// How a project is designed.
 struct DesignSettings {
+  /// Of all random numbers; the same seed gives the same design.
   std::uint64_t seed = 1;
   /// Seconds after which to have stopped with the best so far, validated and traced; absent: `time_s` of
   /// [design]. Time only stops: every decision depends on counts.
@@ -192,6 +217,7 @@ struct DesignSettings {
 
 /// What was found of a design's mirror.
 struct DesignFindings {
+  /// Why it ended.
   DesignEnd end = DesignEnd::converged;
   /// Against the target, by fresh rays through the exported mesh; and of the given mirror.
   DesignError error, start_error;
@@ -210,6 +236,7 @@ struct DesignFindings {
   std::vector<AdviceTrial> advice;
   /// What is known of why the error is not smaller, in one sentence each, with the figure that shows it.
   std::vector<std::string> remarks;
+  /// Evaluations of the objective, and the rays of all of them.
   int evaluations = 0;
   std::uint64_t rays = 0;
 };
@@ -218,12 +245,14 @@ struct DesignFindings {
 struct DesignedMirror : DesignFindings {
   /// In its own frame: what cad.h writes.
   Reflector reflector;
+  /// Where it is in the luminaire frame.
   Frame world_from_reflector;
   /// The project with this mirror, as a file that `trace` takes.
   std::string project_text;
   /// The light of the finished project: raw sums and figures.
   TraceResult traced;
   TraceFigures light;
+  /// If DesignSettings::tolerances asked for it.
   std::optional<ToleranceSweep> tolerances;
 };
 
@@ -238,3 +267,4 @@ struct DesignedMirror : DesignFindings {
                                     Progress& progress = no_progress());
 
 }  // namespace lucerna
+#pragma GCC visibility pop

@@ -6,10 +6,12 @@
 
 #include "lucerna/geometry.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// A far-field detector: all light that leaves, by direction, on a CIE Type C grid in the luminaire frame.
 struct FarFieldDetector {
+  /// The stem of the files that are written of it.
   std::string name = "far-field";
   /// Must divide 360 and 180 evenly.
   double c_step_deg = 5.0;
@@ -22,19 +24,25 @@ struct FarFieldDetector {
 
 /// An even grid of nx x ny cells on a rectangle about the origin of a frame, in its xy plane.
 struct PlaneGrid {
+  /// Where the grid is.
   Frame world_from_plane;
+  /// Size of the rectangle; > 0.
   double size_x_mm = 1000.0, size_y_mm = 1000.0;
+  /// Cells along x and y; nx * ny at most 16 M.
   std::size_t nx = 100, ny = 100;
 
+  /// Number of cells.
   std::size_t size() const { return nx * ny; }
-  /// Middle of a cell in the plane's frame.
+  /// Centre of a cell along x, in the plane's frame.
   double cell_x_mm(std::size_t cell) const {
     return (static_cast<double>(cell % nx) + 0.5) * size_x_mm / static_cast<double>(nx) - 0.5 * size_x_mm;
   }
+  /// Centre of a cell along y, in the plane's frame.
   double cell_y_mm(std::size_t cell) const {
     const std::size_t row = cell / nx;
     return (static_cast<double>(row) + 0.5) * size_y_mm / static_cast<double>(ny) - 0.5 * size_y_mm;
   }
+  /// Area of a cell, mm^2.
   double cell_mm2() const {
     return size_x_mm / static_cast<double>(nx) * size_y_mm / static_cast<double>(ny);
   }
@@ -44,6 +52,7 @@ struct PlaneGrid {
 /// Illuminance on a plane: counts light that has left the luminaire and falls on the side that the frame's +z
 /// points to. It does not block light. Cells are numbered iy * nx + ix, both from the negative side.
 struct PlaneDetector {
+  /// The stem of the files that are written of it.
   std::string name = "plane";
   PlaneGrid grid;
   friend bool operator==(const PlaneDetector&, const PlaneDetector&) = default;
@@ -55,10 +64,14 @@ struct PlaneDetector {
 /// point, parallel to the plane. Either way a ray counts where its line crosses the plane, so a narrow cone
 /// or pupil is sharper and noisier.
 struct LuminanceDetector {
+  /// The stem of the files that are written of it.
   std::string name = "luminance";
   PlaneGrid grid;
+  /// Half angle of the cone of directions that count, from afar.
   double half_angle_deg = 2.0;
+  /// Of the observer from the plane; 0 = from afar.
   double distance_mm = 0.0;
+  /// Of the near observer.
   double pupil_radius_mm = 1.0;
   friend bool operator==(const LuminanceDetector&, const LuminanceDetector&) = default;
 };
@@ -79,6 +92,7 @@ double etendue_mm2sr(const LuminanceDetector& detector, std::size_t cell);
 
 /// All rays that leave, as a file: a traced luminaire as a new source.
 struct RayDetector {
+  /// The stem of the file that is written.
   std::string name = "rays";
   /// One of `ray_formats()`.
   std::string format = "tm25";
@@ -89,3 +103,4 @@ struct RayDetector {
 void check(const RayDetector& detector);
 
 }  // namespace lucerna
+#pragma GCC visibility pop

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// Everything that Lucerna throws. The text says what is wrong, where, what was found and what was expected.
@@ -41,3 +42,4 @@ class Interrupted : public Error {
 };
 
 }  // namespace lucerna
+#pragma GCC visibility pop

@@ -5,10 +5,12 @@
 #include <string>
 #include <string_view>
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// A Monte Carlo figure: what leaves the library instead of a naked number.
 struct Estimate {
+  /// The best value.
   double mean = 0.0;
   /// Standard error of `mean`, same unit; NaN where it is not known.
   double standard_error = 0.0;
@@ -28,3 +30,4 @@ inline constexpr double kIntervalErrors = 2.131;
 std::string estimate_text(const Estimate& estimate, std::string_view unit = {});
 
 }  // namespace lucerna
+#pragma GCC visibility pop

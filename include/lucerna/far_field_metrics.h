@@ -8,10 +8,12 @@
 #include "lucerna/estimate.h"
 #include "lucerna/intensity.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// The largest intensity and where it is, from counted flux.
 struct PeakEstimate {
+  /// The largest intensity, cd (W/sr for radiometric light).
   Estimate cd;
   /// The brightest direction found, also where it is not determined.
   Direction direction;
@@ -32,6 +34,7 @@ struct PeakEstimate {
 /// the replicates; NaN where there are fewer than two). Absent: not determined, because the threshold is not
 /// reached or the error is larger than the figure could bear.
 struct FarFieldMetrics {
+  /// All light, lm (or W).
   Estimate flux;
   /// Absent for a dark far field.
   std::optional<PeakEstimate> peak;
@@ -74,3 +77,4 @@ struct BinnedIntensity {
 };
 
 }  // namespace lucerna
+#pragma GCC visibility pop

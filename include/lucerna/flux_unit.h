@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// What a flux counts: luminous flux (lm) or radiant flux (W). The two are never added or converted silently.
@@ -12,3 +13,4 @@ enum class FluxUnit { lumen, watt };
 constexpr std::string_view symbol(FluxUnit unit) { return unit == FluxUnit::lumen ? "lm" : "W"; }
 
 }  // namespace lucerna
+#pragma GCC visibility pop

@@ -8,37 +8,49 @@
 
 #include "lucerna/host_device.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// Three doubles: a point or a displacement. Units are in the name of the variable (`origin_mm`).
 struct Vec3 {
+  /// Components.
   double x = 0.0, y = 0.0, z = 0.0;
 
+  /// Adds component by component.
   LUCERNA_HD constexpr Vec3& operator+=(const Vec3& b) {
     x += b.x;
     y += b.y;
     z += b.z;
     return *this;
   }
+  /// Sum, component by component.
   LUCERNA_HD friend constexpr Vec3 operator+(const Vec3& a, const Vec3& b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
   }
+  /// Difference, component by component.
   LUCERNA_HD friend constexpr Vec3 operator-(const Vec3& a, const Vec3& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
   }
+  /// The opposite vector.
   LUCERNA_HD friend constexpr Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
+  /// Every component times `s`.
   LUCERNA_HD friend constexpr Vec3 operator*(double s, const Vec3& a) { return {s * a.x, s * a.y, s * a.z}; }
+  /// Every component times `s`.
   LUCERNA_HD friend constexpr Vec3 operator*(const Vec3& a, double s) { return s * a; }
+  /// Every component over `s`.
   LUCERNA_HD friend constexpr Vec3 operator/(const Vec3& a, double s) { return {a.x / s, a.y / s, a.z / s}; }
   friend constexpr bool operator==(const Vec3&, const Vec3&) = default;
 };
 
+/// Scalar product.
 LUCERNA_HD constexpr double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
+/// Vector product, right-handed.
 LUCERNA_HD constexpr Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/// Euclidean length.
 LUCERNA_HD inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 
 /// True if no component is infinite or not a number.
@@ -58,12 +70,18 @@ class Direction {
   /// `v` taken as it is: for vectors that are unit by construction, as after a rotation or reflection.
   LUCERNA_HD static constexpr Direction from_unit(const Vec3& v) { return Direction(v); }
 
+  /// Component along x, in [-1, 1].
   LUCERNA_HD constexpr double x() const { return v_.x; }
+  /// Component along y, in [-1, 1].
   LUCERNA_HD constexpr double y() const { return v_.y; }
+  /// Component along z, in [-1, 1].
   LUCERNA_HD constexpr double z() const { return v_.z; }
+  /// The same as a vector.
   LUCERNA_HD constexpr const Vec3& vec() const { return v_; }
+  /// A direction is a vector wherever one is expected.
   // NOLINTNEXTLINE(google-explicit-constructor): a direction is a vector wherever one is asked for
   LUCERNA_HD constexpr operator const Vec3&() const { return v_; }
+  /// The opposite direction.
   LUCERNA_HD friend constexpr Direction operator-(const Direction& d) { return Direction(-d.v_); }
   friend constexpr bool operator==(const Direction&, const Direction&) = default;
 
@@ -74,8 +92,8 @@ class Direction {
 
 /// A half line: where it starts, where it goes.
 struct Ray {
-  Vec3 origin_mm;
-  Direction direction;
+  Vec3 origin_mm;       ///< where it starts
+  Direction direction;  ///< where it goes
 
   /// The point at distance `t_mm` along the ray.
   LUCERNA_HD Vec3 at(double t_mm) const { return origin_mm + t_mm * direction.vec(); }
@@ -92,7 +110,9 @@ inline double angle_between(const Direction& a, const Direction& b) {
   return 2.0 * std::atan2(length(a.vec() - b.vec()), length(a.vec() + b.vec()));
 }
 
+/// Degrees to radians.
 LUCERNA_HD constexpr double radians(double degrees) { return degrees * (std::numbers::pi / 180.0); }
+/// Radians to degrees.
 LUCERNA_HD constexpr double degrees(double radians) { return radians * (180.0 / std::numbers::pi); }
 
 /// CIE Type C angles of a direction in the luminaire frame of docs/conventions.md: nadir (gamma 0) = -z,
@@ -102,6 +122,7 @@ struct TypeCAngles {
   double gamma_rad = 0.0;
 };
 
+/// The angles of a direction.
 LUCERNA_HD inline TypeCAngles type_c_angles(const Direction& d) {
   const double across = std::hypot(d.x(), d.y());
   double c = across > 0.0 ? std::atan2(d.y(), d.x()) : 0.0;
@@ -146,9 +167,13 @@ class Frame {
             origin_mm};
   }
 
+  /// A displacement of the inner frame in the outer frame: rotated only.
   LUCERNA_HD Vec3 vector(const Vec3& v) const { return v.x * ex_ + v.y * ey_ + v.z * ez_; }
+  /// A point of the inner frame in the outer frame: rotated, then translated.
   LUCERNA_HD Vec3 point(const Vec3& p_mm) const { return vector(p_mm) + origin_mm_; }
+  /// A direction of the inner frame in the outer frame.
   LUCERNA_HD Direction direction(const Direction& d) const { return Direction::from_unit(vector(d)); }
+  /// A ray of the inner frame in the outer frame.
   LUCERNA_HD Ray ray(const Ray& r) const { return {point(r.origin_mm), direction(r.direction)}; }
 
   /// The way back.
@@ -157,11 +182,16 @@ class Frame {
     return {transposed.ex_, transposed.ey_, transposed.ez_, -transposed.vector(origin_mm_)};
   }
 
+  /// Image of the inner x axis; unit.
   LUCERNA_HD const Vec3& ex() const { return ex_; }
+  /// Image of the inner y axis; unit.
   LUCERNA_HD const Vec3& ey() const { return ey_; }
+  /// Image of the inner z axis; unit.
   LUCERNA_HD const Vec3& ez() const { return ez_; }
+  /// Image of the inner origin.
   LUCERNA_HD const Vec3& origin_mm() const { return origin_mm_; }
 
+  /// Composition: `b` first, then `a`.
   friend Frame operator*(const Frame& a, const Frame& b) {
     return {a.vector(b.ex_), a.vector(b.ey_), a.vector(b.ez_), a.point(b.origin_mm_)};
   }
@@ -172,3 +202,4 @@ class Frame {
 };
 
 }  // namespace lucerna
+#pragma GCC visibility pop

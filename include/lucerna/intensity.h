@@ -8,6 +8,7 @@
 #include "lucerna/flux_unit.h"
 #include "lucerna/geometry.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// Luminous (cd) or radiant (W/sr) intensity over the full sphere on a CIE Type C grid, in the luminaire
@@ -22,9 +23,12 @@ struct IntensityDistribution {
   std::vector<double> gamma_deg;
   /// Intensity, plane after plane: `cd[c * gamma_deg.size() + g]`, never negative. W/sr when `unit` is watt.
   std::vector<double> cd;
+  /// Lumen: values are cd; watt: W/sr.
   FluxUnit unit = FluxUnit::lumen;
 
+  /// Value of plane `c` and angle `gamma_deg[g]`; indices are not checked.
   double& at(std::size_t c, std::size_t g) { return cd[c * gamma_deg.size() + g]; }
+  /// The same, to read.
   double at(std::size_t c, std::size_t g) const { return cd[c * gamma_deg.size() + g]; }
 };
 
@@ -52,3 +56,4 @@ double intensity_in(const IntensityDistribution& distribution, const Direction& 
 void scale(IntensityDistribution& distribution, double factor);
 
 }  // namespace lucerna
+#pragma GCC visibility pop

@@ -7,8 +7,10 @@
 #include "lucerna/estimate.h"
 #include "lucerna/intensity.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
+/// How `compare_distributions` compares.
 struct CompareOptions {
   /// Standard errors of the reference's and the test's values (layout of `cd`); empty = known exactly.
   std::span<const double> reference_error_cd{}, test_error_cd{};
@@ -46,12 +48,19 @@ struct DistributionComparison {
   std::optional<Alignment> alignment;
   ComparisonErrors errors{};
 
+  /// `relative_rms` with its standard error.
   Estimate rms() const { return {relative_rms, errors.relative_rms}; }
+  /// `bergen_fit` with its standard error.
   Estimate bergen() const { return {bergen_fit, errors.bergen_fit}; }
+  /// `bergen_fit_unweighted` with its standard error.
   Estimate bergen_unweighted() const { return {bergen_fit_unweighted, errors.bergen_fit_unweighted}; }
+  /// `flux_ratio` with its standard error.
   Estimate flux() const { return {flux_ratio, errors.flux_ratio}; }
+  /// `peak_ratio` with its standard error.
   Estimate peak() const { return {peak_ratio, errors.peak_ratio}; }
+  /// `wasserstein_deg` with its standard error.
   Estimate wasserstein() const { return {wasserstein_deg, errors.wasserstein_deg}; }
+  /// `overlap` with its standard error.
   Estimate overlapping() const { return {overlap, errors.overlap}; }
 };
 
@@ -67,3 +76,4 @@ DistributionComparison compare_distributions(const IntensityDistribution& refere
 double wasserstein_deg(const IntensityDistribution& a, const IntensityDistribution& b);
 
 }  // namespace lucerna
+#pragma GCC visibility pop

@@ -8,11 +8,14 @@
 
 #include "lucerna/geometry.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// Triangles with shared vertices, mm. Counter-clockwise seen from outside, where the file keeps to that.
 struct Mesh {
+  /// Corners of the triangles, each once.
   std::vector<Vec3> vertices_mm;
+  /// Indices of the three corners of each.
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
@@ -38,3 +41,4 @@ std::vector<Vec3> corner_normals(const Mesh& mesh, double crease_deg);
 std::size_t open_edges(const Mesh& mesh);
 
 }  // namespace lucerna
+#pragma GCC visibility pop

@@ -9,6 +9,7 @@
 #include "lucerna/intensity.h"
 #include "lucerna/photometric_file.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// Weight of each C plane in the mean over a ring, by the trapezoid rule round the circle: half the gap to
@@ -38,6 +39,7 @@ struct PeakIntensity {
   double cd = 0.0;
   double c_deg = 0.0, gamma_deg = 0.0;
 };
+/// The peak of a distribution, which has at least one value.
 PeakIntensity peak_intensity(const IntensityDistribution& distribution);
 
 /// Which intensity the 50 % and 10 % of a beam or field angle refer to. They differ on batwings.
@@ -128,3 +130,4 @@ PhotometricFigures photometric_figures(const PhotometricFile& file);
 int nema_type(std::optional<double> field_angle_deg);
 
 }  // namespace lucerna
+#pragma GCC visibility pop

@@ -11,6 +11,7 @@
 
 #include "lucerna/intensity.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// One set of lamps of EULUMDAT lines 26a-26f. Sets are alternatives: their fluxes are not added.
@@ -41,9 +42,11 @@ struct LuminaireData {
   /// The lamps; none for absolute photometry made here. The first set is the one that EULUMDAT's cd/klm refer
   /// to.
   std::vector<LampSet> lamps;
+  /// Electric power of the luminaire; 0 = not stated.
   double input_watts = 0.0;
   double tilt_deg = 0.0;   ///< of the luminaire while it was measured
   int type_indicator = 0;  ///< EULUMDAT Ityp; 0 = choose from the symmetry when writing
+  /// EULUMDAT's direct ratios for room indices k = 0.6 to 5; 0 = not stated.
   std::array<double, 10> direct_ratios{};
   /// Further LM-63 keywords in their order, without brackets; a text with line ends was continued with
   /// [MORE].
@@ -53,6 +56,7 @@ struct LuminaireData {
 
 /// Something found in a file. `line` counts from 1; 0 means the file as a whole.
 struct Fault {
+  /// How bad it is.
   enum class Severity {
     note,     ///< legal, but changes how the numbers are to be read
     warning,  ///< a rule is broken; the reader repaired it as the text says
@@ -107,9 +111,12 @@ enum class IesTurn {
   minus_90,  ///< H = C - 90; sizes keep their names
 };
 
+/// The formats that are written.
 enum class PhotometricFormat { ies_2002, ies_2019, ldt };
 
+/// How a photometric file is written.
 struct PhotometricWriteOptions {
+  /// How C angles become H angles in IES files.
   IesTurn ies_turn = IesTurn::none;
   /// Significant digits of the peak; all other intensities get as many decimals. 17 or more: shortest text
   /// that reads back to the same double.
@@ -139,8 +146,10 @@ enum class Isym3Order {
   reversed,  ///< C90 over C180 to C270 (files of QLumEdit and its relatives)
 };
 
+/// How a photometric file is read.
 struct PhotometricReadOptions {
   bool strict = false;  ///< the first repair becomes an InputError
+  /// How EULUMDAT files of Isym 3 are meant.
   Isym3Order isym3 = Isym3Order::standard;
   IesTurn ies_turn = IesTurn::none;  ///< how the H angles and sizes of IES files are meant
 };
@@ -186,3 +195,4 @@ std::vector<Fault> check_photometric_file(const std::filesystem::path& path,
                                           const PhotometricReadOptions& options = {});
 
 }  // namespace lucerna
+#pragma GCC visibility pop

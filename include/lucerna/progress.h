@@ -6,6 +6,7 @@
 
 #include "lucerna/error.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// What a long call tells its caller, and how the caller stops it. The library itself never prints.
@@ -42,3 +43,4 @@ inline Progress& no_progress() {
 }
 
 }  // namespace lucerna
+#pragma GCC visibility pop

@@ -9,21 +9,29 @@
 #include "lucerna/progress.h"
 #include "lucerna/scene.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// The tables of a project file as they were read; a value that is copied deeply. `project_text` writes them.
 class ProjectTables {
  public:
+  /// No tables.
   ProjectTables();
   ~ProjectTables();
+  /// A deep copy.
   ProjectTables(const ProjectTables& other);
+  /// Takes the tables of `other`, which may then only be destroyed or assigned to.
   ProjectTables(ProjectTables&& other) noexcept;
+  /// A deep copy.
   ProjectTables& operator=(const ProjectTables& other);
+  /// Takes the tables of `other`.
   ProjectTables& operator=(ProjectTables&& other) noexcept;
 
   /// For the library itself.
   struct Toml;
+  /// For the library itself.
   Toml& toml() { return *toml_; }
+  /// For the library itself.
   const Toml& toml() const { return *toml_; }
 
  private:
@@ -32,6 +40,7 @@ class ProjectTables {
 
 /// A project file, read: what is to be traced.
 struct Project {
+  /// Sources, mirrors, bodies and detectors.
   Scene scene;
   /// Every file that the result depends on: the project and what it names.
   std::vector<std::filesystem::path> inputs;
@@ -55,3 +64,4 @@ std::string project_text(const Project& project);
 std::string project_template();
 
 }  // namespace lucerna
+#pragma GCC visibility pop

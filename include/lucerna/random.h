@@ -9,6 +9,7 @@
 
 #include "lucerna/host_device.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// Philox4x32-10: 128 random bits for every (key, counter), no state (Salmon, Moraes, Dror, Shaw, "Parallel
@@ -41,6 +42,7 @@ LUCERNA_HD constexpr double unit_from_bits(std::uint32_t bits) { return bits * 0
 /// (emission, scatter). Cheap to make; not to be shared between threads.
 class Rng {
  public:
+  /// The stream of item `index` under `seed`, for the use `stream`.
   LUCERNA_HD Rng(std::uint64_t seed, std::uint64_t index, std::uint32_t stream = 0)
       : seed_(seed), index_(index), high_(std::uint64_t{stream} << 32) {}
 
@@ -179,8 +181,9 @@ LUCERNA_HD inline std::uint32_t owen_sobol_bits(std::uint64_t index, std::uint32
 /// Where the numbers of a ray come from.
 enum class SequenceKind { random, sobol };
 
-/// "random" or "sobol"; throws UsageError on anything else.
+/// The kind of the name "random" or "sobol". Throws UsageError on anything else.
 SequenceKind sequence_kind(std::string_view name);
+/// "random" or "sobol".
 std::string_view to_string(SequenceKind kind);
 
 /// Points of the unit hypercube, numbered: `point<D>(i)` is the i-th, the same for the same (kind, seed, i).
@@ -188,6 +191,7 @@ std::string_view to_string(SequenceKind kind);
 /// runs of 2^k). Every coordinate is in [0, 1). Thread safe, no state.
 class Sequence {
  public:
+  /// The sequence of a kind under `seed`.
   LUCERNA_HD Sequence(SequenceKind kind, std::uint64_t seed) : kind_(kind), seed_(seed) {}
 
   /// The i-th point of dimension D <= kSobolDimensions. Coordinates 0.. are the best spread over: spend them
@@ -206,7 +210,9 @@ class Sequence {
     return u;
   }
 
+  /// As it was made with.
   SequenceKind kind() const { return kind_; }
+  /// As it was made with.
   std::uint64_t seed() const { return seed_; }
 
  private:
@@ -215,3 +221,4 @@ class Sequence {
 };
 
 }  // namespace lucerna
+#pragma GCC visibility pop

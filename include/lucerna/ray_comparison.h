@@ -10,11 +10,13 @@
 #include "lucerna/geometry.h"
 #include "lucerna/rays.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// The five ways in which light sources are compared (docs/theory/comparison.md).
 enum class ViewKind { far, near, focus, beam, four_d };
 
+/// All of them, in the order of ViewKind.
 inline constexpr std::array<ViewKind, 5> kViewKinds{ViewKind::far, ViewKind::near, ViewKind::focus,
                                                     ViewKind::beam, ViewKind::four_d};
 
@@ -53,7 +55,9 @@ class Views {
   /// Throws InputError when `reference` has no rays or no flux. Cost: about 0.5 s and 30 MB beside the rays.
   explicit Views(const RayBlock& reference);
 
+  /// Where the source is observed from.
   const ViewFrame& frame() const { return frame_; }
+  /// The window of one view and how it is cut into cells.
   const ViewWindow& window(ViewKind kind) const { return windows_[static_cast<std::size_t>(kind)]; }
 
   /// Cells of a view, the one for the rest among them (the last).
@@ -84,10 +88,13 @@ class ViewCounts {
   /// that a view does not see count in the total that shares refer to, and in no cell.
   void add(const RayBlock& rays);
 
+  /// The views that it was made for.
   const Views& views() const { return *views_; }
+  /// Sum of the weights of all rays that were added, seen or not.
   double total_weight() const { return total_weight_; }
-  /// Sum of weights, and of squared weights, per cell.
+  /// Sum of weights per cell.
   const std::vector<double>& weights(ViewKind kind) const { return weights_[static_cast<std::size_t>(kind)]; }
+  /// Sum of squared weights per cell.
   const std::vector<double>& squares(ViewKind kind) const { return squares_[static_cast<std::size_t>(kind)]; }
 
  private:
@@ -111,10 +118,12 @@ struct ViewDifference {
   double raw = 0.0;
 };
 
+/// How far a test is from its reference in all five views.
 struct RaySetComparison {
   ViewDifference far, near, focus, beam, four_d;
-  /// far, near, focus, beam or four_d.
+  /// The difference of one view.
   const ViewDifference& operator[](ViewKind kind) const;
+  /// The difference of one view, to write.
   ViewDifference& operator[](ViewKind kind);
 };
 
@@ -130,3 +139,4 @@ RaySetComparison compare_ray_sets(const RayBlock& reference, const RayBlock& tes
                                   const RayBlock* training = nullptr);
 
 }  // namespace lucerna
+#pragma GCC visibility pop

@@ -15,6 +15,7 @@
 
 /// Ray files of every format: what the rest of the program calls. All functions are thread safe (on different
 /// files).
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// Rays per block that readers and writers of large files use: a few MB, so that it stays in the cache.
@@ -46,11 +47,12 @@ class RayReader {
  public:
   virtual ~RayReader() = default;
 
+  /// All that the file says beside its rays.
   const RaySetHeader& header() const { return header_; }
   /// Rays in the file, known before the first is read. With ReadOptions::salvage faulty rays among them are
   /// left out as they are met, so that fewer may come.
   std::uint64_t ray_count() const { return ray_count_; }
-  /// The name that `--to` takes: "tm25", "zemax-binary", ...
+  /// One of `ray_formats()`: "tm25", "zemax-binary", ...
   const std::string& format() const { return format_; }
   /// The file's name as it was given, for messages.
   const std::string& name() const { return name_; }
@@ -92,7 +94,7 @@ class RayWriter {
   std::vector<std::string> warnings_;
 };
 
-/// The names of all formats, as `--to` takes them.
+/// The names of all formats, as `create_ray_file` and ReadOptions::format take them.
 std::span<const std::string_view> ray_formats();
 
 /// The usual ending of a format's files, with its dot. UsageError if it is no format.
@@ -136,7 +138,8 @@ void for_each_block(RayReader& reader, Progress& progress, std::string_view phas
   }
 }
 
-/// The file's total flux in its unit; InputError that asks for --flux if the file does not state one.
+/// The file's total flux in its unit; throws InputError if the file does not state one.
 double require_flux(const RaySetHeader& header, std::string_view name);
 
 }  // namespace lucerna
+#pragma GCC visibility pop

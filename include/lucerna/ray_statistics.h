@@ -6,6 +6,7 @@
 
 #include "lucerna/rays.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// The point that all rays pass nearest to: it minimises the flux-weighted sum of squared distances to their
@@ -20,6 +21,7 @@ struct VirtualFocus {
 /// What RayStatistics has found out. Shares and means are weighted by flux; those that need flux are absent
 /// when the weights sum to zero, as without rays.
 struct RaySummary {
+  /// Number of rays.
   std::uint64_t count = 0;
   /// Sum of the raw weights, and their range (0 without rays).
   double weight_sum = 0.0;
@@ -43,7 +45,9 @@ struct RaySummary {
 /// on all threads itself).
 class RayStatistics {
  public:
+  /// Adds the rays of a block.
   void add(const RayBlock& block);
+  /// The summary of all blocks added so far.
   RaySummary result() const;
 
  private:
@@ -71,3 +75,4 @@ RaySummary summarize(const RayBlock& rays);
 double sum_of_weights(const RayBlock& rays);
 
 }  // namespace lucerna
+#pragma GCC visibility pop

@@ -10,6 +10,7 @@
 #include "lucerna/flux_unit.h"
 #include "lucerna/geometry.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// Some rays as a structure of arrays, in the precision of ray files (float32). All arrays have the same
@@ -25,11 +26,14 @@ struct RayBlock {
   /// Further numbers per ray, one array for each entry of RaySetHeader::columns.
   std::vector<std::vector<float>> extra;
 
+  /// Number of rays.
   std::size_t size() const { return weight.size(); }
+  /// True if there are no rays.
   bool empty() const { return weight.empty(); }
 
   /// Makes room for exactly `n` rays and `columns` extra columns; new values are zero.
   void resize(std::size_t n, std::size_t columns);
+  /// The same with as many extra columns as there are.
   void resize(std::size_t n) { resize(n, extra.size()); }
 
   /// Makes appending up to `n` rays free of further allocations.
@@ -40,9 +44,11 @@ struct RayBlock {
   /// Appends all of `other`.
   void append(const RayBlock& other);
 
+  /// Start of ray `i`; `i` is not checked.
   Vec3 origin_mm(std::size_t i) const { return {x_mm[i], y_mm[i], z_mm[i]}; }
   /// Normalised in double, so that it is unit to a few ulp.
   Direction direction(std::size_t i) const { return Direction::from({kx[i], ky[i], kz[i]}); }
+  /// Start and direction of ray `i`.
   Ray ray(std::size_t i) const { return {origin_mm(i), direction(i)}; }
 
   /// Sets start and direction of ray `i`; weight and extra columns stay.
@@ -63,6 +69,7 @@ enum class ColumnKind {
   additional,      ///< whatever `label` says
 };
 
+/// One extra column of a ray set: what it holds and what it is called.
 struct ColumnSpec {
   ColumnKind kind = ColumnKind::additional;
   std::string label;
@@ -95,10 +102,13 @@ struct RaySetHeader {
   FluxUnit flux_unit = FluxUnit::lumen;
   /// Totals as the file states them; absent = not stated. A TM-25 file may state both.
   std::optional<double> flux_lm, flux_w;
+  /// What RayBlock::extra holds, column by column.
   std::vector<ColumnSpec> columns;
+  /// Spectra that a `spectrum_index` column refers to.
   std::vector<SpectralTable> spectra;
   /// Set when all rays have this one wavelength.
   std::optional<float> wavelength_nm;
+  /// Free text of the file.
   RaySetTexts texts;
   /// TM-25's creation method: 0 simulation, 1 measurement, -1 not said.
   int creation_method = -1;
@@ -107,6 +117,7 @@ struct RaySetHeader {
 
   /// The total flux in `flux_unit`; absent when the file does not state it.
   std::optional<double> flux() const { return flux_unit == FluxUnit::lumen ? flux_lm : flux_w; }
+  /// States the total flux in `flux_unit`.
   void set_flux(double flux) { (flux_unit == FluxUnit::lumen ? flux_lm : flux_w) = flux; }
 
   friend bool operator==(const RaySetHeader&, const RaySetHeader&) = default;
@@ -121,3 +132,4 @@ struct RaySet {
 };
 
 }  // namespace lucerna
+#pragma GCC visibility pop

@@ -6,6 +6,7 @@
 
 #include "lucerna/host_device.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// Height and exact gradient of a surface z = h(x, y) at one place.
@@ -39,6 +40,7 @@ class HeightSurface {
   virtual HeightRange range(const Rectangle& region) const = 0;
 };
 
+/// The outlines that an aperture can have.
 enum class ApertureShape { circle, rectangle };
 
 /// The part of a height surface that is there: a circle or a rectangle about the z axis, less a round hole
@@ -62,9 +64,13 @@ class Aperture {
   Rectangle bounds() const { return {-half_x_mm_, half_x_mm_, -half_y_mm_, half_y_mm_}; }
   /// Distance of its farthest point from the axis.
   double outer_radius_mm() const;
+  /// Radius of the hole; 0 without one.
   LUCERNA_HD double hole_radius_mm() const { return hole_radius_mm_; }
+  /// Radius of a circle, half the size of a rectangle along x.
   LUCERNA_HD double half_x_mm() const { return half_x_mm_; }
+  /// Radius of a circle, half the size of a rectangle along y.
   LUCERNA_HD double half_y_mm() const { return half_y_mm_; }
+  /// Circle or rectangle.
   LUCERNA_HD ApertureShape shape() const { return shape_; }
 
   /// True if no point of `region` is on the mirror.
@@ -80,6 +86,7 @@ class Aperture {
 struct RadiusRange {
   double least_mm = 0.0, greatest_mm = 0.0;
 };
+/// The least and greatest distance of `region`'s points from the origin.
 RadiusRange radius_range(const Rectangle& region);
 
 /// One given point of a spline profile.
@@ -87,18 +94,21 @@ struct ProfileKnot {
   double r_mm = 0.0, z_mm = 0.0;
 };
 
+/// A profile that is no function of the radius; opaque to users of the library.
 class SweptCurve;
 
 /// A mirror in its own frame: a shape and the part of it that is there.
 struct Reflector {
   /// The shape; where `curve` is set, only the lowest sheet of it (CurveSheet).
   std::shared_ptr<const HeightSurface> surface;
+  /// The part of the shape that is there.
   Aperture aperture = Aperture::circle(1.0);
   /// Set if the shape is no function of (x, y): a profile that turns back towards the axis, or has vertical
   /// parts. Then this is what is traced, within `aperture`.
   std::shared_ptr<const SweptCurve> curve = nullptr;
 };
 
+/// The conics of revolution that are made from focal lengths.
 enum class ConicPreset { parabola, ellipse, hyperbola };
 
 /// A conic of revolution. `focal2_mm` counts for ellipse and hyperbola only. Errors as in ConicProfile.
@@ -112,9 +122,10 @@ Reflector conic_reflector(ConicPreset preset, double focal_mm, double focal2_mm,
 /// strictly descending) is refused.
 Reflector profile_reflector(const std::vector<ProfileKnot>& knots, const Aperture& aperture);
 
-/// Troughs along y from the same profiles, over |x|. Errors alike; the aperture's half width counts as its
-/// radius.
+/// A trough along y with a conic as its profile. The aperture's half width along x counts as its radius;
+/// errors as `conic_reflector`.
 Reflector conic_trough(ConicPreset preset, double focal_mm, double focal2_mm, const Aperture& aperture);
+/// A trough along y with a spline profile over |x|; errors as `profile_reflector`.
 Reflector profile_trough(const std::vector<ProfileKnot>& knots, const Aperture& aperture);
 
 /// An ellipsoid of revolution past its equator: from the hole about its vertex to the mouth beyond the
@@ -125,3 +136,4 @@ Reflector deep_ellipse_reflector(double focal_mm, double focal2_mm, double mouth
                                  double hole_diameter_mm = 0.0);
 
 }  // namespace lucerna
+#pragma GCC visibility pop

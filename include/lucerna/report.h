@@ -8,6 +8,7 @@
 #include "lucerna/project.h"
 #include "lucerna/trace.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// Writes what `lucerna trace` leaves in a folder, which is made if it is missing: result.json, project.toml,
@@ -26,3 +27,4 @@ std::vector<std::string> write_trace(const std::filesystem::path& folder, const 
 void write_report(const std::filesystem::path& folder, const std::filesystem::path& html);
 
 }  // namespace lucerna
+#pragma GCC visibility pop

@@ -16,6 +16,7 @@
 #include "lucerna/reflector.h"
 #include "lucerna/source.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// One entry of a table of reflectance over the angle of incidence.
@@ -46,6 +47,7 @@ class Reflectance {
   /// The same at every angle. Throws InputError unless it is in [0, 1].
   explicit Reflectance(double value);
 
+  /// An entry of the table.
   using Entry = ReflectanceEntry;
   /// Throws InputError unless angles ascend within [0, 90] and values are in [0, 1]; at least one entry.
   explicit Reflectance(std::vector<Entry> table);
@@ -60,6 +62,7 @@ class Reflectance {
   Reflectance shifted(double change) const;
   /// True if it does not depend on the angle.
   bool is_constant() const { return table_.size() == 1; }
+  /// Its entries; one for a constant.
   const std::vector<Entry>& table() const { return table_; }
 
  private:
@@ -71,7 +74,9 @@ class Reflectance {
 struct Body {
   /// The cause in the ledger.
   std::string name = "body";
+  /// Its triangles, in its own frame; not null.
   std::shared_ptr<const Mesh> mesh;
+  /// Where it is in the luminaire frame.
   Frame world_from_body;
   /// 0 absorbs everything.
   Reflectance reflectance{0.0};
@@ -111,6 +116,7 @@ struct CoverGlass {
   double refractive_index = 1.52;
   /// Natural absorption coefficient >= 0: a path of x mm leaves exp(-x * absorption_per_mm).
   double absorption_per_mm = 0.0;
+  /// Where it is in the luminaire frame.
   Frame world_from_glass;
 };
 
@@ -122,15 +128,19 @@ void check(const CoverGlass& glass);
 struct GlassShares {
   double reflected = 0.0, transmitted = 0.0, absorbed = 0.0;
 };
+/// The shares of a plate at one angle of incidence. Thread safe.
 GlassShares glass_shares(const CoverGlass& glass, double cos_incidence);
 
 /// A source of light in the luminaire frame.
 struct PlacedSource {
+  /// The source; not null.
   std::shared_ptr<const RaySource> rays;
+  /// Where it is in the luminaire frame.
   Frame world_from_source;
   /// Overrides the source's own flux, in its own unit; > 0.
   std::optional<double> flux;
 
+  /// `flux` if given, else the source's own; in the source's unit.
   double total_flux() const { return flux ? *flux : rays->flux(); }
 };
 
@@ -139,8 +149,11 @@ double total_flux(std::span<const PlacedSource> sources);
 
 /// A mirror in the luminaire frame. The side towards its +z reflects, the other absorbs.
 struct PlacedReflector {
+  /// The mirror in its own frame.
   Reflector reflector;
+  /// Where it is in the luminaire frame.
   Frame world_from_reflector;
+  /// Of the reflecting side.
   Reflectance reflectance{1.0};
   /// Standard deviation of the surface normal's tilt about each of two perpendicular axes, Gaussian; >= 0.
   /// Every reflection draws its own tilt.
@@ -149,14 +162,21 @@ struct PlacedReflector {
 
 /// All that light can meet, and what looks at it. Plain data; `trace` checks it.
 struct Scene {
+  /// At least one; all in lm or all in W.
   std::vector<PlacedSource> sources;
+  /// Mirrors; there may be none.
   std::vector<PlacedReflector> reflectors;
+  /// Detectors of intensity.
   std::vector<FarFieldDetector> far_fields;
+  /// Detectors of illuminance.
   std::vector<PlaneDetector> planes;
+  /// Detectors of luminance.
   std::vector<LuminanceDetector> luminances;
   /// With any of these all rays that leave are kept, as TraceResult::out_rays: 28 bytes a ray.
   std::vector<RayDetector> ray_detectors;
+  /// What absorbs or reflects and is no mirror of the list above.
   std::vector<Body> bodies;
+  /// Flat plates that light passes.
   std::vector<CoverGlass> glasses;
 };
 
@@ -169,3 +189,4 @@ double share_behind(const PlacedSource& source, const PlacedReflector& mirror);
 void check(const Scene& scene);
 
 }  // namespace lucerna
+#pragma GCC visibility pop

@@ -13,6 +13,7 @@
 #include "lucerna/random.h"
 #include "lucerna/rays.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// Anything that light can be drawn from by number: an analytic emitter, a compressed model, the rays of a
@@ -23,6 +24,7 @@ class RaySource {
 
   /// Total flux in `flux_unit`; > 0.
   virtual double flux() const = 0;
+  /// lm or W.
   virtual FluxUnit flux_unit() const = 0;
 
   /// Distinct rays there are (a ray file), or nothing when any number can be drawn.
@@ -35,9 +37,10 @@ class RaySource {
   /// the file.
   virtual void emit(const Sequence& sequence, std::uint64_t first, RayBlock& out) const = 0;
 
-  /// Have the rays wavelengths of their own? `emit_wavelengths` is for those that have: it sets those of rays
-  /// `first` .. `first + nm.size() - 1` of the same stream, nm. Thread safe.
+  /// True if the rays have wavelengths of their own (`emit_wavelengths`).
   virtual bool has_wavelengths() const { return false; }
+  /// Sets the wavelengths of rays `first` .. `first + nm.size() - 1` of the stream of `emit`, nm. Only for
+  /// sources that have them. Thread safe.
   virtual void emit_wavelengths(const Sequence& sequence, std::uint64_t first, std::span<float> nm) const;
 };
 
@@ -74,11 +77,14 @@ enum class EmitterKind {
   cosine
 };
 
-/// The names above; `emitter_kind` throws UsageError with the list on anything else.
+/// The names above.
 std::string_view to_string(EmitterKind kind);
+/// The kind of a name above. Throws UsageError with the list on anything else.
 EmitterKind emitter_kind(std::string_view name);
 
+/// Which emitter, and its sizes.
 struct EmitterOptions {
+  /// Which of the sources above.
   EmitterKind kind = EmitterKind::point;
   /// Disk, cylinder, sphere, filament (coil), and the sphere of the synthetic sets; > 0. Absent: 1, but
   /// filament 0.6, synthetic sets 10.
@@ -89,6 +95,7 @@ struct EmitterOptions {
   std::array<double, 2> size_mm{1.0, 1.0};
   /// Filament: share of the flux in the image, [0, 1).
   double ghost_share = 0.05;
+  /// Total flux in `flux_unit`; > 0.
   double flux = 1000.0;
   FluxUnit flux_unit = FluxUnit::lumen;
   /// Rays are slid forward to this surface, which must enclose the emitter (or lie above it). Absent: led a
@@ -115,6 +122,7 @@ class RaySetSource final : public RaySource {
   RaySetSource(std::shared_ptr<const RaySet> rays, const std::string& name);
 
   double flux() const override { return flux_; }
+  /// The unit of the file's weights.
   FluxUnit flux_unit() const override { return rays_->header.flux_unit; }
   std::optional<std::uint64_t> ray_count() const override { return rays_->rays.size(); }
   void emit(const Sequence& sequence, std::uint64_t first, RayBlock& out) const override;
@@ -128,3 +136,4 @@ class RaySetSource final : public RaySource {
 };
 
 }  // namespace lucerna
+#pragma GCC visibility pop

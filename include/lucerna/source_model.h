@@ -14,8 +14,10 @@
 #include "lucerna/rays.h"
 #include "lucerna/source.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
+/// Sections of a model file; opaque to users of the library.
 struct NflFile;
 
 /// A ray set compressed to a density of rays: any number of rays can be drawn, and the density of each is
@@ -60,16 +62,20 @@ bool is_source_model(const std::filesystem::path& path);
 /// The adaptive trees of docs/theory/source-model.md, or Mas-Martin-Patow clusters
 /// (docs/theory/clusters.md).
 enum class CompressMethod { adaptive, clusters };
-/// "adaptive" or "clusters"; the second throws UsageError on anything else.
+/// "adaptive" or "clusters".
 std::string_view to_string(CompressMethod method);
+/// The method of such a name. Throws UsageError on anything else.
 CompressMethod compress_method(std::string_view name);
 
+/// How a model is made.
 struct CompressOptions {
+  /// How the density is modelled.
   CompressMethod method = CompressMethod::adaptive;
   /// The model file has at most so many bytes. Absent: as many as the rays justify.
   std::optional<std::uint64_t> max_bytes;
   /// Total flux of the model, in the unit of the rays; > 0. Absent: what the rays' header states.
   std::optional<double> flux;
+  /// Of the random choices; the same seed gives the same model.
   std::uint64_t seed = 1;
 };
 
@@ -81,6 +87,7 @@ struct CompressOptions {
 
 /// A model of ray files.
 struct CompressedFiles {
+  /// The model; never null.
   std::unique_ptr<SourceModel> model;
   /// Rays in the files.
   std::uint64_t rays = 0;
@@ -98,8 +105,11 @@ struct CompressedFiles {
                                        const CompressOptions& options = {},
                                        Progress& progress = no_progress());
 
+/// How rays are drawn into a file.
 struct SampleOptions {
+  /// Of the random numbers.
   std::uint64_t seed = 1;
+  /// Independent or evenly spread rays.
   SequenceKind sequence = SequenceKind::random;
   /// Of the file, as `ray_formats` names them; empty: what its ending says.
   std::string format = {};
@@ -120,3 +130,4 @@ std::vector<std::string> sample(const SourceModel& model, std::uint64_t rays,
 [[nodiscard]] RayBlock sample(const RaySource& source, std::size_t rays, const Sequence& sequence);
 
 }  // namespace lucerna
+#pragma GCC visibility pop

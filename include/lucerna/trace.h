@@ -17,6 +17,7 @@
 #include "lucerna/rays.h"
 #include "lucerna/scene.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// Why light ended on a mirror.
@@ -26,13 +27,17 @@ enum class LostCause {
   bounce_limit,  ///< still inside after TraceOptions::max_bounces reflections
   not_finite,    ///< a coordinate became infinite or not a number
 };
+/// Number of MirrorLoss values.
 inline constexpr std::size_t kMirrorLosses = 2;
+/// Number of LostCause values.
 inline constexpr std::size_t kLostCauses = 2;
 
 /// The sums of the rays of one replicate, in units.
 struct Tally {
+  /// Rays that were traced, and reflections of all of them.
   std::uint64_t rays = 0;
   std::uint64_t reflections = 0;
+  /// Flux of these rays.
   std::int64_t emitted = 0;
   /// What left without and after being reflected (a cover glass that lets light through does not count).
   std::int64_t out_direct = 0, out_reflected = 0;
@@ -61,6 +66,7 @@ struct OutRun {
 struct TraceResult {
   /// The rays traced, [first_ray, last_ray).
   std::uint64_t first_ray = 0, last_ray = 0;
+  /// Of the random numbers, the sequence that they came from, and the limit of reflections.
   std::uint64_t seed = 0;
   SequenceKind sequence = SequenceKind::sobol;
   int max_bounces = 0;
@@ -69,6 +75,7 @@ struct TraceResult {
   /// Flux of all sources together.
   double flux = 0.0;
   FluxUnit unit = FluxUnit::lumen;
+  /// The detectors of the scene, in its order.
   std::vector<FarFieldDetector> far_fields;
   std::vector<PlaneDetector> planes;
   std::vector<LuminanceDetector> luminances;
@@ -89,6 +96,7 @@ struct Ledger {
   FluxUnit unit = FluxUnit::lumen;
   /// Exactly the flux of the sources.
   double emitted = 0.0;
+  /// What left without and after being reflected.
   Estimate out_direct, out_reflected;
   /// By cause: "mirror" (what its face kept), "mirror_back", then the bodies, then the cover glasses.
   std::vector<std::pair<std::string, Estimate>> absorbed;
@@ -97,6 +105,7 @@ struct Ledger {
   /// All causes together.
   Estimate all_lost;
   std::uint64_t lost_rays = 0;
+  /// All rays, and their mean number of reflections.
   std::uint64_t rays = 0;
   Estimate reflections_per_ray;
 };
@@ -107,10 +116,12 @@ Ledger ledger(const TraceResult& result);
 /// Flux by far-field cell, numbered as in FarFieldGrid: c * gamma_count + g.
 struct FarField {
   std::string name;
+  /// Steps and numbers of the cells.
   double c_step_deg = 0.0, gamma_step_deg = 0.0;
   std::size_t c_count = 0, gamma_count = 0;
   bool tent = false;
   FluxUnit unit = FluxUnit::lumen;
+  /// Flux of each cell.
   std::vector<double> flux;
   /// NaN where not known, as in Ledger.
   std::vector<double> standard_error;
@@ -166,10 +177,13 @@ struct TraceOptions {
   /// (`default_ray_count`).
   std::uint64_t first_ray = 0;
   std::optional<std::uint64_t> last_ray;
+  /// Of the random numbers.
   std::uint64_t seed = 1;
+  /// Independent or evenly spread rays.
   SequenceKind sequence = SequenceKind::sobol;
   /// Reflections after which a ray is given up and counted as lost; at least 1.
   int max_bounces = 100;
+  /// Which tracer.
   EngineKind engine = EngineKind::fast;
   /// Cells a side of the height fields of the fast engine: a power of two, 8 to 8192.
   int cells = 1024;
@@ -212,10 +226,13 @@ enum class NoiseEnd {
 /// One sentence for people; empty for `reached`.
 std::string_view to_string(NoiseEnd end);
 
+/// What `trace_until` returns.
 struct NoiseTrace {
+  /// The sums of all rays traced.
   TraceResult result;
   /// node_noise of the result; NaN where it is not known.
   double noise = 0.0;
+  /// Why it stopped.
   NoiseEnd end = NoiseEnd::reached;
 };
 
@@ -229,3 +246,4 @@ NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const No
                        std::optional<TraceResult> from = std::nullopt, Progress& progress = no_progress());
 
 }  // namespace lucerna
+#pragma GCC visibility pop

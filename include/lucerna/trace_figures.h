@@ -8,6 +8,7 @@
 #include "lucerna/far_field_metrics.h"
 #include "lucerna/trace.h"
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// What is quoted of one far field.
@@ -46,13 +47,14 @@ struct RayFigures {
 
 /// All figures of a trace, worked out once for text, JSON and files.
 struct TraceFigures {
+  /// Where the light went.
   Ledger ledger;
   std::vector<FarFieldFigures> far_fields;
   std::vector<PlaneFigures> planes, luminances;
   std::vector<RayFigures> rays;
 };
 
-/// Cost: a few passes over the bins.
+/// The figures of a trace. Thread safe. Cost: a few passes over the bins.
 TraceFigures trace_figures(const TraceResult& result);
 
 /// "C 12.3 +- 0.4, gamma 30.2 +- 0.1 deg", or what is known of it: "on the axis within 0.3 deg", "gamma 30.2
@@ -71,3 +73,4 @@ std::string ray_file_name(const RayDetector& detector);
 std::vector<std::string> trace_summary(const TraceFigures& figures);
 
 }  // namespace lucerna
+#pragma GCC visibility pop

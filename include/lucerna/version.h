@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#pragma GCC visibility push(default)
 namespace lucerna {
 
 /// The program's version, as CMake's project() has it.
@@ -12,3 +13,4 @@ std::string_view version();
 inline constexpr int kJsonSchemaVersion = 3;
 
 }  // namespace lucerna
+#pragma GCC visibility pop
