@@ -6,7 +6,8 @@
 //   ONE_SUPPORT=1 bench_adaptive ...     without a second support for light that overlaps
 // SOURCE is an emitter, one of own_sources.h (dome, tilted, strip, arc ...), or a ray file: then one half of
 // its rays trains and the other is the truth. 0 = default; one line per ceiling. `table` prints the table of
-// docs/theory/source-model.md: every source with ceilings of 256, 64 and 16 kB (once where less is enough).
+// docs/benchmarks/source-models.md: every source with ceilings of 256, 64 and 16 kB (once where less is
+// enough).
 #include <fmt/format.h>
 #include <sys/resource.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Quality of source models: size, error, floor, excess and raw in the five views, and seconds, for emitters
-// of known truth and for ray files. `quality --help` has the options; docs/benchmarks/index.md the commands
-// whose output is quoted.
+// of known truth and for ray files. `quality --help` has the options; docs/benchmarks/source-models.md the
+// commands whose output is quoted.
 #include <fmt/format.h>
 #include <sys/resource.h>
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Builds the fuzz targets and runs each for its share of MINUTES, as many at a time as there are processors. Prints executions and
-# findings, and adds a line per target to fuzz/executions.csv, whose total docs/benchmarks/index.md quotes. Usage: scripts/fuzz.sh MINUTES [TARGET...]
+# findings, and adds a line per target to fuzz/executions.csv, whose total docs/benchmarks/gate.md quotes. Usage: scripts/fuzz.sh MINUTES [TARGET...]
 # What is new stays in build/fuzz/grown; with KEEP=1 it is minimised into fuzz/corpus (files of at most 4096 bytes). A finding is left
 # in build/fuzz/grown/TARGET-*; the script then ends with 1.
 set -eu

@@ -1,6 +1,6 @@
 #!/bin/sh
 # On a machine with a CUDA compiler and device: builds, runs the tests labelled gpu, compute-sanitizer where it is
-# installed, and the benchmark; prints what belongs in docs/benchmarks/index.md. Usage: scripts/gpu_check.sh [BUILD FOLDER]
+# installed, and the benchmark; prints what belongs in docs/benchmarks/gpu.md. Usage: scripts/gpu_check.sh [BUILD FOLDER]
 set -eu
 cd "$(dirname "$0")/.."
 build=${1:-build/cuda}

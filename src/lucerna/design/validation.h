@@ -26,7 +26,7 @@ struct ValidationOptions {
   /// Time only stops: fewer rays are traced than the above where they would take longer (at least 2^18).
   double max_s = std::numeric_limits<double>::infinity();
   /// Of the mesh. Flat facets blur the light by about their angle to the surface; what these do to the error
-  /// is in docs/benchmarks/index.md.
+  /// is in docs/benchmarks/design.md.
   CadTolerance tolerance = kOpticalTolerance;
   HitEngine engine = HitEngine::best;
   /// Zones whose light is counted too; then rays are also doubled until every zone's verdict is clear. Null:

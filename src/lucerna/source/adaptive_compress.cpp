@@ -25,7 +25,7 @@ constexpr double kSmallestShare = 1e-7;
 constexpr double kGrowShare = 0.7;
 
 /// Views sum over much of the four dimensions, where noise averages out and blur does not: they want deeper
-/// trees than the likelihood of single rays does (docs/theory/source-model.md has the figures).
+/// trees than the likelihood of single rays does (docs/theory/source-model.md, "Depth").
 constexpr double kDeeper = 0.7;
 
 /// Of two trees the first offers all cuts. The penalty is chosen for a quarter of them: four times as many

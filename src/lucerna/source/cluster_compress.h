@@ -12,7 +12,7 @@
 
 namespace lucerna {
 
-/// Defaults are those of the sweeps in docs/theory/clusters.md.
+/// Defaults are those of the sweeps in docs/development/notebook/clusters.md.
 struct ClusterOptions {
   /// Largest file in bytes, at least 2000: where the penalty below gives more, it is raised. Absent =
   /// whatever the other thresholds give.
