@@ -80,9 +80,9 @@ struct LuminanceDetector {
 /// to the right for who looks at the lit side. `up` parallel to `normal`: +y takes its place.
 Frame facing_frame(const Direction& normal, const Vec3& up, const Vec3& position_mm);
 
-/// Throw InputError on a size that is not above 0, no cells or more than 16 M, an angle outside (0, 90), a
-/// pupil or distance that is not above 0, a name that is no file name.
+/// Throws InputError on a size that is not above 0, no cells or more than 16 M.
 void check(const PlaneDetector& detector);
+/// The same, and on an angle outside (0, 90), a distance below 0 or a pupil that is not above 0.
 void check(const LuminanceDetector& detector);
 
 /// What light of luminance 1 carries into a cell, mm^2 sr. From afar: cell area times pi sin^2 of the cone;

@@ -13,8 +13,6 @@
 #include "lucerna/progress.h"
 #include "lucerna/rays.h"
 
-/// Ray files of every format: what the rest of the program calls. All functions are thread safe (on different
-/// files).
 #pragma GCC visibility push(default)
 namespace lucerna {
 
