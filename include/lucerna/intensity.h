@@ -12,9 +12,9 @@
 namespace lucerna {
 
 /// Luminous (cd) or radiant (W/sr) intensity over the full sphere on a CIE Type C grid, in the luminaire
-/// frame of docs/conventions.md: nadir (gamma 0) = -z, C0 = +x, C90 = +y. Always expanded: symmetry is found
-/// when writing. Between grid angles the intensity is bilinear in (C, gamma); beyond the first and last gamma
-/// it is zero.
+/// frame of docs/concepts/frames-and-units.md: nadir (gamma 0) = -z, C0 = +x, C90 = +y. Always expanded:
+/// symmetry is found when writing. Between grid angles the intensity is bilinear in (C, gamma); beyond the
+/// first and last gamma it is zero.
 struct IntensityDistribution {
   /// C planes, ascending, first 0, all < 360 (the plane at 360 is the first one again). One plane =
   /// rotational.

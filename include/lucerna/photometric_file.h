@@ -105,7 +105,8 @@ std::optional<double> lamp_flux_lm(const LuminaireData& luminaire);
 /// linear between the file's tilt factors, the first and last beyond them, 1 if the file has none.
 double tilt_factor(const PhotometricOrigin& origin, double tilt_deg);
 
-/// How IES's H angles stand to C (docs/conventions.md): both are in use, and no file says which.
+/// How IES's H angles stand to C (docs/concepts/frames-and-units.md): both are in use, and no file says
+/// which.
 enum class IesTurn {
   none,      ///< H = C; sizes swap (IES width = our length, IES length = our width)
   minus_90,  ///< H = C - 90; sizes keep their names
