@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The two commands of the README, and the longer suites. Each installs what is missing first (scripts/packages.sh).
 # CUDA=1 compiles the CUDA back end too (needs nvcc).
-.PHONY: demo test check check-quick fuzz bench test-report test-slow gallery program packages format clean
+.PHONY: demo test check check-quick fuzz bench benchmarks test-report test-slow gallery program packages format clean
 
 BUILD := build/release
 
@@ -32,6 +32,12 @@ bench: program
 	$(BUILD)/bench/bench_trace
 	$(BUILD)/bench/bench_read_write
 	$(BUILD)/bench/bench_quality led
+
+# Runs the benchmarks whose tables stand in docs/benchmarks, and writes tables and plots there (an hour, on an idle machine).
+benchmarks: program
+	scripts/packages.sh scripts/packages-benchmarks.txt
+	cmake --build --preset release --target benchmarks
+	scripts/benchmarks.py --build $(BUILD)
 
 test-slow: program
 	cmake --build --preset release --target tests

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -110,7 +111,8 @@ double combined_seconds(const Measured& forward, const Measured& backward) {
   return best;
 }
 
-void run(const std::string& file, std::uint64_t samples) {
+/// All of a scene's row in the table but the axis.
+std::string run(const std::string& file, std::uint64_t samples) {
   const Project project = read_project(file);
   Measured forward, backward;
   forward.seconds = -processor_seconds();
@@ -128,21 +130,22 @@ void run(const std::string& file, std::uint64_t samples) {
   const CountedFarField seen = traced_backward(project.scene, field, cells, samples);
   backward.seconds += processor_seconds();
   backward.error = errors_at(node_intensity(seen), cells, peak);
-  fmt::print("{}: {} angles; processor seconds to 1 %: forward {:.3g}, backward {:.3g}, combined {:.3g}\n",
-             file, cells.size(), forward.seconds_to_goal(), backward.seconds_to_goal(),
-             combined_seconds(forward, backward));
+  const std::string row =
+      fmt::format("| {} | {} | {:.3g} s | {:.3g} s | {:.3g} s |", std::filesystem::path(file).stem().string(),
+                  cells.size(), forward.seconds_to_goal(), backward.seconds_to_goal(),
+                  combined_seconds(forward, backward));
   fmt::print("  measured: forward {:.2f} % in {:.2f} s, backward {:.2f} % in {:.2f} s\n",
              100.0 * forward.worst(), forward.seconds, 100.0 * backward.worst(), backward.seconds);
+  return row;
 }
 
 /// One direction: a lone figure has no other angles to share its rays with.
-void run_one(const std::string& file) {
+std::string run_one(const std::string& file) {
   const Project project = read_project(file);
   const BackwardEstimator estimator(project.scene);
   const double start = processor_seconds();
   const Estimate axis = estimator.intensity_cd(Direction::from_unit({0.0, 0.0, -1.0}), 1024);
-  fmt::print("  axis alone, backward: {} in {:.3f} s\n", estimate_text(axis, "cd"),
-             processor_seconds() - start);
+  return fmt::format(" {}, {:.3f} s |", estimate_text(axis, "cd"), processor_seconds() - start);
 }
 
 }  // namespace
@@ -151,8 +154,11 @@ int main(int argc, char** argv) {
   std::uint64_t samples = 256;
   int at = 1;
   if (at < argc && std::atoi(argv[at]) > 0) samples = static_cast<std::uint64_t>(std::atoi(argv[at++]));
+  fmt::print(
+      "| scene | angles | forward | backward | combined | axis alone, backward "
+      "|\n|---|---|---|---|---|---|\n");
   for (; at < argc; ++at) {
-    run(argv[at], samples);
-    run_one(argv[at]);
+    const std::string row = run(argv[at], samples);
+    fmt::print("{}{}\n", row, run_one(argv[at]));
   }
 }

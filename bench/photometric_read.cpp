@@ -56,6 +56,8 @@ int main(int argc, char** argv) {
   const int repeats = argc > 3 ? std::max(1, std::atoi(argv[3])) : 41;
   const PhotometricFile file = random_file(planes, gammas);
   fmt::print("{} x {} values, {} repeats\n", planes, gammas, repeats);
+  fmt::print(
+      "| format | size | read, median | read, least | values | write, median |\n|---|---|---|---|---|---|\n");
   for (const auto& named :
        {std::pair{"ies-2002", PhotometricFormat::ies_2002},
         std::pair{"ies-2019", PhotometricFormat::ies_2019}, std::pair{"ldt", PhotometricFormat::ldt}}) {
@@ -69,10 +71,8 @@ int main(int argc, char** argv) {
       values = (ldt ? read_ldt(text, name) : read_ies(text, name)).distribution.cd.size();
     });
     const double mb = 1e-6 * static_cast<double>(text.size()), median = read[read.size() / 2];
-    fmt::print(
-        "{:9} {:.2f} MB  read {:6.2f} ms least {:6.2f} ms median ({:.0f} MB/s, {} values)  write {:6.2f} "
-        "ms\n",
-        name, mb, read.front(), median, 1e3 * mb / median, values, write[write.size() / 2]);
+    fmt::print("| {} | {:.2f} MB | {:.1f} ms | {:.1f} ms | {} | {:.1f} ms |\n", name, mb, median,
+               read.front(), values, write[write.size() / 2]);
   }
   return 0;
 }

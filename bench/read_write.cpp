@@ -88,8 +88,9 @@ int main(int argc, char** argv) {
   const double million = static_cast<double>(rays) * 1e-6;
   fmt::print("{:.1f} M rays, {} threads, best of 3, input cached, output file new\n", million,
              ThreadLimit::current());
-  fmt::print("{:<18} {:>9} {:>18} {:>26} {:>30}\n", "format", "file, MB", "read + check, M/s",
-             "read + check + write, M/s", "the same, M per processor s");
+  fmt::print(
+      "| format | file | read + check, M rays/s | read + check + write, M rays/s | the same per processor "
+      "second |\n|---|---|---|---|---|\n");
   for (const std::string_view format :
        {"tm25", "zemax-binary", "lighttools-binary", "lighttools-ascii", "zemax-text"}) {
     const fs::path in = folder / "in", out = folder / "out";
@@ -102,7 +103,7 @@ int main(int argc, char** argv) {
       copy = std::min(copy, pass(in, out));
       cpu = std::min(cpu, cpu_seconds() - before);
     }
-    fmt::print("{:<18} {:>9.0f} {:>18.1f} {:>26.1f} {:>30.1f}\n", format,
+    fmt::print("| {} | {:.0f} MB | {:.3g} | {:.3g} | {:.2g} |\n", format,
                static_cast<double>(fs::file_size(in)) * 1e-6, million / read, million / copy, million / cpu);
   }
   fmt::print("peak memory {:.0f} MB\n", peak_mb());

@@ -79,8 +79,8 @@ void run(const char* name, const Scene& scene) {
     return 100.0 * std::sqrt(sum / (seeds * square));
   };
   for (const int n : {14, 16, 18, 20}) {
-    fmt::print("{:8} 2^{} rays: 16 streams {:6.3f} %  one {:6.3f} %  random {:6.3f} %\n", name, n,
-               error(Streams::sixteen, n), error(Streams::one, n), error(Streams::random, n));
+    fmt::print("| {} | 2^{} | {:.2f} % | {:.2f} % | {:.2f} % |\n", name, n, error(Streams::sixteen, n),
+               error(Streams::one, n), error(Streams::random, n));
   }
 }
 
@@ -88,6 +88,7 @@ void run(const char* name, const Scene& scene) {
 
 int main() {
   const ThreadLimit one(1);
+  fmt::print("| source | rays | 16 streams | one | random |\n|---|---|---|---|---|\n");
   run("disk", lamp(true));
   run("cylinder", lamp(false));
 }

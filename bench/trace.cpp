@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <string>
@@ -43,17 +44,46 @@ double exit_error_deg(const Scene& scene, int cells) {
   return std::sqrt(squares / n);
 }
 
-void run(const BenchmarkScene& c, int cells, const std::shared_ptr<const RaySet>& rays) {
+/// M rays/s or a ratio; "-" where it was not measured.
+std::string number_or_dash(double x) { return x > 0.0 ? fmt::format("{:.3g}", x) : "-"; }
+
+constexpr std::array kSets{"portable", "avx2", "avx512"};
+
+/// What is measured of one scene; rates in M rays/s, 0 where there is none.
+struct Measured {
+  std::array<double, kSets.size()> one_thread{};  ///< of kSets
+  double all_threads = 0.0, embree = 0.0;
+  double rebuild_ms = 0.0, error_deg = 0.0;
+
+  double fastest() const { return *std::max_element(one_thread.begin(), one_thread.end()); }
+  std::string row(const std::string& scene) const {
+    std::string row = fmt::format("| {} |", scene);
+    for (const double rate : one_thread) row += fmt::format(" {} |", number_or_dash(rate));
+    for (const double x : {all_threads, embree, embree > 0.0 ? fastest() / embree : 0.0,
+                           embree > 0.0 ? one_thread[1] / embree : 0.0}) {
+      row += fmt::format(" {} |", number_or_dash(x));
+    }
+    return row + fmt::format(" {:.1f} ms | {:.5f} deg |", rebuild_ms, error_deg);
+  }
+};
+
+constexpr const char* kTableHead =
+    "| scene | portable | AVX2 | AVX-512 | all threads | Embree | best / Embree | AVX2 / Embree | rebuild | "
+    "exit direction |\n|---|---|---|---|---|---|---|---|---|---|\n";
+
+Measured run(const BenchmarkScene& c, int cells, const std::shared_ptr<const RaySet>& rays) {
   const Scene scene = benchmark_scene(c, rays);
   std::unique_ptr<HeightField> field;
   const double build =
       wall_seconds([&] { field = std::make_unique<HeightField>(scene.reflectors[0].reflector, cells); });
   const double rebuild = best_of(5, wall_seconds, [&] { field->rebuild(); });
   const std::size_t beside = field->nodes().size() * sizeof(FieldNode);
+  Measured m;
+  m.rebuild_ms = 1e3 * rebuild;
+  m.error_deg = exit_error_deg(scene, cells);
   fmt::print(
       "{:5} {:4}  build with evaluation {:7.1f} ms  hierarchy {:6.2f} ms, {:.2f} MB  exit error {:.5f} deg\n",
-      c.name, cells, 1e3 * build, 1e3 * rebuild, 1e-6 * static_cast<double>(beside),
-      exit_error_deg(scene, cells));
+      c.name, cells, 1e3 * build, m.rebuild_ms, 1e-6 * static_cast<double>(beside), m.error_deg);
   const double n = static_cast<double>(rays->rays.size());
   const auto rate = [&](TraceOptions options, double (*clock)(const std::function<void()>&)) {
     options.cells = cells;
@@ -62,28 +92,29 @@ void run(const BenchmarkScene& c, int cells, const std::shared_ptr<const RaySet>
     const double per_s = rays_per_second(scene, options, rays->rays.size(), clock, &result);
     fmt::print("            {:10} {} thread(s) {:7.2f} M rays/s  {:.3f} reflections a ray\n", result.isa,
                ThreadLimit::current(), 1e-6 * per_s, ledger(result).reflections_per_ray.mean);
-    return per_s;
+    return 1e-6 * per_s;
   };
-  double fast = 0.0;
   {
     const ThreadLimit one(1);
-    for (const char* isa : {"portable", "avx2", "avx512"}) {
+    for (std::size_t i = 0; i < kSets.size(); ++i) {
       try {
-        kernels_named(isa);
-        fast = rate({.isa = isa}, cpu_seconds);
+        kernels_named(kSets[i]);
+        m.one_thread[i] = rate({.isa = kSets[i]}, cpu_seconds);
       } catch (const UsageError&) {
       }
     }
   }
-  const double two = rate({}, wall_seconds);
-  fmt::print("            all threads / one: {:.2f}\n", two / fast);
-  if (!EmbreeYardstick::available()) return;
+  m.all_threads = rate({}, wall_seconds);
+  fmt::print("            all threads / one: {:.2f}\n", m.all_threads / m.fastest());
+  if (!EmbreeYardstick::available()) return m;
   const EmbreeYardstick embree(*field);
   std::vector<double> bins(std::size_t{360} * 181);
   const double t =
       best_of(2, cpu_seconds, [&] { embree.trace(rays->rays, c.focal_mm, kBenchmarkBounces, bins); });
+  m.embree = 1e-6 * n / t;
   fmt::print("            embree     1 thread(s) {:7.2f} M rays/s  build {:.0f} ms; ours / Embree {:.1f}\n",
-             1e-6 * n / t, 1e3 * embree.build_s(), fast * t / n);
+             m.embree, 1e3 * embree.build_s(), m.fastest() / m.embree);
+  return m;
 }
 
 }  // namespace
@@ -93,7 +124,10 @@ int main(int argc, char** argv) {
   std::vector<int> sizes;
   for (int i = 2; i < argc; ++i) sizes.push_back(std::atoi(argv[i]));
   if (sizes.empty()) sizes = {256, 1024, 2048};
+  std::string table = kTableHead;
   for (const int cells : sizes) {
-    for (const BenchmarkScene& c : benchmark_scenes()) run(c, cells, rays);
+    for (const BenchmarkScene& c : benchmark_scenes())
+      table += run(c, cells, rays).row(fmt::format("{} {}", cells, c.name)) + "\n";
   }
+  fmt::print("{}", table);
 }

@@ -6,7 +6,7 @@
 #   format        clang-format changes nothing
 #   tidy          clang-tidy on every source, with the rule of 60 lines a function (tidy-changed: on those changed since $BASE)
 #   tree          layers, lengths, licences, one type a name
-#   docs          every link and path of the docs leads somewhere
+#   docs          every link and path of the docs leads somewhere; measured tables have a commit and a benchmark
 #   release       g++, everything with the benchmarks, all tests but the slow ones
 #   install       the program runs from where it was installed; so does a program of another project that finds the library there
 #   consumers     the same program with the sources of Lucerna within its project
@@ -94,7 +94,7 @@ stage() {
     tidy) cmake --preset tidy-unity >/dev/null && compiled_files tidy-unity | tidy tidy-unity ;;
     tidy-changed) cmake --preset tidy >/dev/null && changed_sources | tidy tidy ;;
     tree) tree_tests '-Docs.*' ;;
-    docs) tree_tests 'Docs.*' ;;
+    docs) tree_tests 'Docs.*' && { ! command -v python3 >/dev/null || scripts/benchmarks.py --check; } ;;
     release) build_and_test release all benchmarks ;;
     install) installs ;;
     consumers) within_sources ;;
