@@ -2,9 +2,9 @@
 #include "lucerna/design/design_rays.h"
 
 #include <algorithm>
-#include <atomic>
 #include <utility>
 
+#include "lucerna/core/counted_progress.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/design/device_evaluator.h"
@@ -48,11 +48,10 @@ void DesignRays::grow(std::uint64_t n, Progress& progress) {
   const std::size_t blocks = (n + unit - 1) / unit * kDesignTasks, old = block_.size();
   if (blocks <= old) return;
   block_.resize(blocks);
-  std::atomic<std::uint64_t> done{0};
+  CountedProgress counted(progress, "rays", 0, (blocks - old) * kBlockRays);
   parallel_blocks(blocks - old, kDesignTasks, [&](std::size_t first, std::size_t last) {
     for (std::size_t b = old + first; b < old + last; ++b) fill(b);
-    done += last - first;
-    progress.update("rays", done * kBlockRays, (blocks - old) * kBlockRays);
+    counted.add((last - first) * kBlockRays);
   });
 }
 

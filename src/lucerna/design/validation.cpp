@@ -2,12 +2,12 @@
 #include "lucerna/design/validation.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <memory>
 #include <utility>
 
+#include "lucerna/core/counted_progress.h"
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/design/mesh_hits.h"
@@ -323,13 +323,16 @@ class BatchTracer {
 void trace_round(const Scene& scene, const RayNumbering& numbering, const Meshes& meshes,
                  const ErrorBoxes& boxes, const ZoneCells* zones, std::uint64_t first, std::uint64_t last,
                  std::vector<BoxSums>& replicates, std::uint64_t expected, Progress& progress) {
-  std::atomic<std::uint64_t> done{first * kReplicates};
+  CountedProgress counted(progress, "validate", first * kReplicates * kBlockRays, expected);
   parallel_blocks(kReplicates, 1, [&](std::size_t r, std::size_t) {
     const auto tracer = std::make_unique<BatchTracer>(scene, numbering, meshes, boxes, zones);
     BoxSums& sums = replicates[r];
+    std::uint64_t told = first;
     for (std::uint64_t j = first; j < last; ++j) {
       tracer->add_block(kReplicates * j + r, sums);
-      if (j % 64 == 63) progress.update("validate", (done += 64) * kBlockRays, expected);
+      if (j % 64 != 63 && j + 1 != last) continue;
+      counted.add((j + 1 - told) * kBlockRays);
+      told = j + 1;
     }
     tracer->finish(sums);
   });

@@ -13,6 +13,7 @@
 #include "lucerna/source.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace/units.h"
+#include "tests/support/one_at_a_time.h"
 
 namespace lucerna {
 namespace {
@@ -146,6 +147,16 @@ TEST(Validation, OwnTreeAndEmbreeAgree) {
   EXPECT_NEAR(a.error.c48.value, t.error.c48.value, 2e-3);
   EXPECT_NEAR(a.efficiency.mean, t.efficiency.mean, 1e-4);
   EXPECT_NEAR(a.error.in_rectangle.mean, t.error.in_rectangle.mean, 1e-4);
+}
+
+TEST(Validation, TellsProgressOneAtATime) {
+  const ErrorBoxes b = boxes();
+  test::OneAtATime watch;
+  const ThreadLimit limit(4);
+  validate(bumpy_scene(), b, lambert(b), TargetMode::shape, rays(1 << 20), watch);
+  EXPECT_GE(watch.calls, 16);
+  EXPECT_EQ(watch.overlaps, 0);
+  EXPECT_EQ(watch.falls, 0);
 }
 
 TEST(Validation, IsTheSameForAnyNumberOfThreads) {
