@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The two commands of the README, and the longer suites. Each installs what is missing first (scripts/packages.sh).
 # CUDA=1 compiles the CUDA back end too (needs nvcc).
-.PHONY: demo test check check-quick fuzz bench benchmarks test-report test-slow gallery program packages format clean
+.PHONY: reference demo test check check-quick fuzz bench benchmarks test-report test-slow gallery program packages format clean
 
 BUILD := build/release
 
@@ -52,6 +52,11 @@ test-report: program
 gallery: program
 	scripts/packages.sh scripts/packages-report.txt
 	scripts/gallery.sh $(BUILD)/lucerna
+
+# The pages of docs/reference that follow from the code.
+reference: program
+	cmake --build --preset release --target write_reference_pages
+	$(BUILD)/tests/write_reference_pages
 
 program: packages
 	cmake --preset release -DLUCERNA_CUDA=$(if $(CUDA),ON,OFF)

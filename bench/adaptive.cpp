@@ -119,10 +119,10 @@ void print_table(std::size_t train, std::uint64_t tests) {
         "radial", "cosine", "dome", "egg", "tilted", "strip", "arc", "ghost", "remote"}) {
     const Case c = make_case(name, train, tests);
     std::uint64_t bytes = ~std::uint64_t{0};
-    for (const std::uint64_t most : {256'000u, 64'000u, 16'000u}) {
-      if (bytes <= most) continue;
+    for (const std::uint64_t max : {256'000u, 64'000u, 16'000u}) {
+      if (bytes <= max) continue;
       AdaptiveOptions options;
-      options.max_bytes = most;
+      options.max_bytes = max;
       bytes = report(c, options, tests, false);
     }
   }

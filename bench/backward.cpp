@@ -46,12 +46,12 @@ struct Measured {
 };
 
 /// Samples of a cell: fewer where angles are pooled about the poles.
-std::uint64_t samples_of(const DirectionCell& cell, std::uint64_t most) {
+std::uint64_t samples_of(const DirectionCell& cell, std::uint64_t max) {
   const double wide =
       (cell.c1_rad - cell.c0_rad) * std::max(std::sin(cell.gamma0_rad), std::sin(cell.gamma1_rad));
   const double share = std::min(1.0, wide / (cell.gamma1_rad - cell.gamma0_rad));
-  std::uint64_t n = most;
-  while (n > 4 && static_cast<double>(n) > 1.5 * share * static_cast<double>(most)) n /= 2;
+  std::uint64_t n = max;
+  while (n > 4 && static_cast<double>(n) > 1.5 * share * static_cast<double>(max)) n /= 2;
   return n;
 }
 

@@ -87,13 +87,13 @@ class LightField final : public RaySource {
   }
 
   void round_to_bytes() {
-    double most = 0.0;
+    double max = 0.0;
     for (const Chart& chart : charts_)
-      most = std::max(most, *std::max_element(chart.weight.begin(), chart.weight.end()));
+      max = std::max(max, *std::max_element(chart.weight.begin(), chart.weight.end()));
     std::string bytes;
     for (Chart& chart : charts_) {
       for (double& w : chart.weight) {
-        const double level = w > 0.0 ? std::max(1.0, 255.0 + std::round(16.0 * std::log2(w / most))) : 0.0;
+        const double level = w > 0.0 ? std::max(1.0, 255.0 + std::round(16.0 * std::log2(w / max))) : 0.0;
         bytes.push_back(static_cast<char>(static_cast<std::uint8_t>(level)));
         w = level > 0.0 ? std::exp2((level - 255.0) / 16.0) : 0.0;
       }

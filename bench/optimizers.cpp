@@ -63,7 +63,7 @@ DesignShape by_search(GlobalMethod method, FitProblem problem, const DesignShape
   constexpr std::uint64_t kRays = std::uint64_t{1} << 15;
   problem.rays->grow(kRays);
   Eigen::VectorXd best = space.shape.parameters();
-  double least = 1e300;
+  double min = 1e300;
   try {
     global_search(method, space.box, {problem.seed, 1000000},
                   [&](const std::vector<Eigen::VectorXd>& points) {
@@ -73,8 +73,8 @@ DesignShape by_search(GlobalMethod method, FitProblem problem, const DesignShape
                       costs[i] = fit_cost(problem, space.shape.with(points[i]), bins, target, kRays);
                     });
                     for (std::size_t i = 0; i < points.size(); ++i) {
-                      if (!(costs[i] < least)) continue;
-                      least = costs[i];
+                      if (!(costs[i] < min)) continue;
+                      min = costs[i];
                       best = points[i];
                     }
                     return costs;

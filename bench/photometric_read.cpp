@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
   const PhotometricFile file = random_file(planes, gammas);
   fmt::print("{} x {} values, {} repeats\n", planes, gammas, repeats);
   fmt::print(
-      "| format | size | read, median | read, least | values | write, median |\n|---|---|---|---|---|---|\n");
+      "| format | size | read, median | read, min | values | write, median |\n|---|---|---|---|---|---|\n");
   for (const auto& named :
        {std::pair{"ies-2002", PhotometricFormat::ies_2002},
         std::pair{"ies-2019", PhotometricFormat::ies_2019}, std::pair{"ldt", PhotometricFormat::ldt}}) {

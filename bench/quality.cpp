@@ -36,8 +36,7 @@ struct Options {
   std::vector<std::uint64_t> sizes;
   std::vector<std::size_t> removal_rays{ClusterOptions{}.removal_rays};
   std::vector<std::uint64_t> targets;
-  std::vector<std::size_t> clusters, leaves{ClusterOptions{}.max_leaves},
-      least{ClusterOptions{}.least_clusters};
+  std::vector<std::size_t> clusters, leaves{ClusterOptions{}.max_leaves}, min{ClusterOptions{}.min_clusters};
   std::vector<int> level_steps{ClusterOptions{}.level_step};
   std::string pictures, save;
   int threads = 0;
@@ -195,7 +194,7 @@ std::vector<ClusterOptions> settings_of(const Options& o) {
   };
   sweep(o.leaves, [](ClusterOptions& c, std::size_t x) { c.max_leaves = x; });
   sweep(o.removal_rays, [](ClusterOptions& c, std::size_t x) { c.removal_rays = x; });
-  sweep(o.least, [](ClusterOptions& c, std::size_t x) { c.least_clusters = x; });
+  sweep(o.min, [](ClusterOptions& c, std::size_t x) { c.min_clusters = x; });
   sweep(o.level_steps, [](ClusterOptions& c, int x) { c.level_step = x; });
   sweep(o.prices, [](ClusterOptions& c, double x) { c.cluster_price = x; });
   sweep(o.penalties, [](ClusterOptions& c, double x) { c.penalty_nats = x; });
@@ -241,7 +240,7 @@ int main(int argc, char** argv) try {
   app.add_option("--clusters", options.clusters, "most clusters, several for a sweep")->delimiter(',');
   app.add_option("--leaves", options.leaves, "most leaves of the octree, several for a sweep")
       ->delimiter(',');
-  app.add_option("--least-clusters", options.least, "clusters that always stay, several for a sweep")
+  app.add_option("--min-clusters", options.min, "clusters that always stay, several for a sweep")
       ->delimiter(',');
   app.add_option("--level-step", options.level_steps, "steps of stored weights, several for a sweep")
       ->delimiter(',');

@@ -160,7 +160,7 @@ struct ToleranceSpread {
   /// Over the cases.
   double standard_deviation = 0.0;
   /// The extreme cases.
-  Estimate least, greatest;
+  Estimate min, max;
 };
 
 /// Result of a tolerance sweep: the cases and their scatter.

@@ -82,11 +82,11 @@ class Aperture {
   double half_x_mm_, half_y_mm_, hole_radius_mm_;
 };
 
-/// Least and greatest distance from the origin to points of `region`.
+/// Minimum and maximum distance from the origin to points of `region`.
 struct RadiusRange {
-  double least_mm = 0.0, greatest_mm = 0.0;
+  double min_mm = 0.0, max_mm = 0.0;
 };
-/// The least and greatest distance of `region`'s points from the origin.
+/// The minimum and maximum distance of `region`'s points from the origin.
 RadiusRange radius_range(const Rectangle& region);
 
 /// One given point of a spline profile.

@@ -57,7 +57,7 @@ class Reflectance {
     return reflectance_at(table_.data(), table_.size(), cos_incidence);
   }
   /// The largest value at any angle.
-  double greatest() const;
+  double max() const;
   /// The same over the angle with `change` added to every value, within [0, 1].
   Reflectance shifted(double change) const;
   /// True if it does not depend on the angle.

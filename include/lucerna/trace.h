@@ -145,15 +145,15 @@ PlaneImage illuminance(const TraceResult& result, std::size_t index);
 /// Luminance in TraceResult::luminances[index]: flux over `etendue_mm2sr` of the cell.
 PlaneImage luminance(const TraceResult& result, std::size_t index);
 
-/// Figures over all cells of a plane or luminance image. What choosing among noisy cells adds to the greatest
+/// Figures over all cells of a plane or luminance image. What choosing among noisy cells adds to the maximum
 /// and takes off the least is corrected; of more than 2048 cells within six errors
 /// of the extreme the 2048 best are looked at.
 struct PlaneExtremes {
-  Estimate mean, least, greatest;
-  /// least over mean; absent for a dark plane.
+  Estimate mean, min, max;
+  /// minimum over mean; absent for a dark plane.
   std::optional<Estimate> uniformity;
-  /// Where the greatest is.
-  std::size_t greatest_cell = 0;
+  /// Where the maximum is.
+  std::size_t max_cell = 0;
 };
 
 /// Adds two traces of the same scene over different rays: the result is, to the bit, that of one run over
@@ -210,16 +210,16 @@ struct NoiseGoal {
   /// it.
   double noise = 0.01;
   /// Seconds after which it stops with what it has; at least one round is traced.
-  double most_seconds = 60.0;
+  double max_seconds = 60.0;
   /// Rays after which it stops; at most 2^34, which is the default.
-  std::uint64_t most_rays = std::uint64_t{1} << 34;
+  std::uint64_t max_rays = std::uint64_t{1} << 34;
 };
 
 /// Why it stopped.
 enum class NoiseEnd {
   reached,        ///< the noise is what was asked for
-  time,           ///< NoiseGoal::most_seconds
-  rays,           ///< NoiseGoal::most_rays
+  time,           ///< NoiseGoal::max_seconds
+  rays,           ///< NoiseGoal::max_rays
   finite_source,  ///< a ray file has given all its rays: more would be the same ones again
   no_goal,        ///< no far field to measure noise in, or kept rays that would fill the memory
 };

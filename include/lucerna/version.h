@@ -10,7 +10,7 @@ namespace lucerna {
 std::string_view version();
 
 /// Version of the layout of every JSON result; grows when a key changes its meaning or goes.
-inline constexpr int kJsonSchemaVersion = 3;
+inline constexpr int kJsonSchemaVersion = 4;
 
 }  // namespace lucerna
 #pragma GCC visibility pop

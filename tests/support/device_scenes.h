@@ -146,7 +146,7 @@ inline Scene with_bodies(Scene scene) {
 /// How the rays that left two traces compare, pairwise by number.
 struct RayPairs {
   std::size_t rays = 0, differ = 0;
-  double most_mm = 0.0, most_direction = 0.0;
+  double max_mm = 0.0, max_direction = 0.0;
 };
 
 /// Pairs the rays of two traces of one scene, run by run. Where one of the two has a ray less, the next that
@@ -173,8 +173,8 @@ class RayPairing {
         j += skip_j;
         continue;
       }
-      pairs_.most_mm = std::max(pairs_.most_mm, apart_mm(i, j));
-      pairs_.most_direction = std::max(pairs_.most_direction, turn(i++, j++));
+      pairs_.max_mm = std::max(pairs_.max_mm, apart_mm(i, j));
+      pairs_.max_direction = std::max(pairs_.max_direction, turn(i++, j++));
     }
     pairs_.differ += (i_end - i) + (j_end - j);
   }

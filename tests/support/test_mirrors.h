@@ -23,7 +23,7 @@ class Pillows final : public HeightSurface {
   }
   HeightRange range(const Rectangle& r) const override {
     const RadiusRange q = radius_range(r);
-    return {q.least_mm * q.least_mm / f_ - 0.4, q.greatest_mm * q.greatest_mm / f_ + 0.4};
+    return {q.min_mm * q.min_mm / f_ - 0.4, q.max_mm * q.max_mm / f_ + 0.4};
   }
 
  private:

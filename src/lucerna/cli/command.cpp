@@ -27,8 +27,8 @@ void Command::option(const std::string& names, std::vector<std::string>& values,
   app_.add_option(names, values, help);
 }
 
-void Command::option(const std::string& names, int& value, const std::string& help, int least, int most) {
-  app_.add_option(names, value, help)->check(CLI::Range(least, most));
+void Command::option(const std::string& names, int& value, const std::string& help, int min, int max) {
+  app_.add_option(names, value, help)->check(CLI::Range(min, max));
 }
 
 void Command::repeated(const std::string& names, std::vector<std::string>& values, const std::string& help) {

@@ -25,8 +25,8 @@ class Command {
   void option(const std::string& names, std::string& value, const std::string& help,
               const std::vector<std::string>& choices = {});
   void option(const std::string& names, std::vector<std::string>& values, const std::string& help);
-  /// A whole number from `least` to `most`.
-  void option(const std::string& names, int& value, const std::string& help, int least, int most);
+  /// A whole number from `min` to `max`.
+  void option(const std::string& names, int& value, const std::string& help, int min, int max);
   /// Takes one word each time that it is given.
   void repeated(const std::string& names, std::vector<std::string>& values, const std::string& help);
   void flag(const std::string& names, bool& value, const std::string& help);

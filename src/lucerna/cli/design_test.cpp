@@ -181,7 +181,7 @@ TEST(DesignCli, ARectangleOnTheFloor) {
                 "[900, 900]\n");
   const auto run = run_lucerna(dir.path(), std::string(kFast) + "out");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("uniformity (least / mean)"));
+  EXPECT_THAT(run.out, HasSubstr("uniformity (min / mean)"));
   const Json json = Json::parse(slurp(dir / "out" / "result.json"));
   EXPECT_TRUE(json["bergen_fit"].is_null());
   EXPECT_GT(json["plane"]["mean"]["value"].get<double>(), 0.0);

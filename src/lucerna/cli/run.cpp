@@ -38,14 +38,20 @@ int complain(const Error& error, const CLI::App& app, ExitCode code) {
 
 }  // namespace
 
-int run(int argc, char** argv) {
-  CLI::App app{"Lucerna: from ray file to reflector", "lucerna"};
+void set_up(CLI::App& app, Session& session, int& exit_code) {
+  app.name("lucerna");
+  app.description("Lucerna: from ray file to reflector");
   app.set_version_flag("--version", std::string(version()));
   app.require_subcommand(1);
+  for (const AddCommand add : kCommands) add(app, session, exit_code);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app;
   Session session;
   session.set_command(argc, argv);
   int exit_code = kDone;
-  for (const AddCommand add : kCommands) add(app, session, exit_code);
+  set_up(app, session, exit_code);
   try {
     app.parse(argc, argv);
     return exit_code;

@@ -144,7 +144,8 @@ void prepare_folder(const std::filesystem::path& folder, bool force) {
   std::filesystem::create_directories(folder, error);
   if (error || !std::filesystem::is_directory(folder)) {
     throw InputError(fmt::format("{}: cannot make the folder: {}", folder.string(),
-                                 error ? error.message() : "a file of that name is in the way"));
+                                 error ? error.message() : "a file of that name is in the way"),
+                     ErrorCause::unwritable);
   }
   if (!force && !std::filesystem::is_empty(folder)) {
     throw InputError(

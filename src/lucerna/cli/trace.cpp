@@ -81,7 +81,7 @@ NoiseTrace run_rays(const TraceArguments& a, const Scene& scene, const TraceOpti
   if (!a.rays.empty()) return trace_rays(scene, options, std::move(from), session);
   NoiseGoal goal;
   goal.noise = parse_share(a.noise);
-  goal.most_seconds = parse_number(a.time);
+  goal.max_seconds = parse_number(a.time);
   NoiseTrace traced = trace_until(scene, options, goal, std::move(from), session.progress());
   if (traced.end == NoiseEnd::time || traced.end == NoiseEnd::finite_source) {
     session.note(fmt::format("noise {:.2g} % of the peak, {:.2g} % wanted: {}", 100.0 * traced.noise,

@@ -11,7 +11,7 @@
 
 namespace lucerna {
 
-/// An error in a file that `option` (a literal, Error::option) of the call would help with.
+/// A file that breaks its format, which `option` (a literal, Error::option) of the call would help with.
 template <class... Args>
 [[noreturn]] void throw_input_error_for(std::string_view option, std::string_view file,
                                         std::string_view place, fmt::format_string<Args...> text,
@@ -19,10 +19,11 @@ template <class... Args>
   const std::string what = fmt::format(text, std::forward<Args>(args)...);
   throw InputError(
       place.empty() ? fmt::format("{}: {}", file, what) : fmt::format("{}: {}: {}", file, place, what),
-      option);
+      ErrorCause::damaged, option);
 }
 
-/// An error in a file: "FILE: byte 20: ray count 5000000 needs 140000000 bytes, the file has 2816".
+/// A file that breaks its format: "FILE: byte 20: ray count 5000000 needs 140000000 bytes, the file has
+/// 2816".
 template <class... Args>
 [[noreturn]] void throw_input_error(std::string_view file, std::string_view place,
                                     fmt::format_string<Args...> text, Args&&... args) {

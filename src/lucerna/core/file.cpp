@@ -16,19 +16,33 @@ namespace lucerna {
 
 namespace {
 
+/// Of errno.
 std::string reason() { return std::strerror(errno); }
+
+[[noreturn]] void throw_cannot_write(const std::filesystem::path& path, int error) {
+  const bool full = error == ENOSPC || error == EDQUOT;
+  throw InputError(fmt::format("{}: cannot write: {}", path.string(), std::strerror(error)),
+                   full ? ErrorCause::no_space : ErrorCause::unwritable);
+}
+
+[[noreturn]] void throw_cannot_read(const std::string& name, int error) {
+  const bool absent = error == ENOENT || error == ENOTDIR;
+  throw InputError(fmt::format("{}: cannot read: {}", name, std::strerror(error)),
+                   absent ? ErrorCause::not_found : ErrorCause::unreadable);
+}
 
 }  // namespace
 
 OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path_, ignored)) {
-    throw InputError(fmt::format("{}: cannot write: it is a directory", path_.string()));
+    throw InputError(fmt::format("{}: cannot write: it is a directory", path_.string()),
+                     ErrorCause::unwritable);
   }
   temporary_ = path_;
   temporary_ += fmt::format(".tmp{}", ::getpid());
   file_ = std::fopen(temporary_.c_str(), "wb");
-  if (file_ == nullptr) throw InputError(fmt::format("{}: cannot write: {}", path_.string(), reason()));
+  if (file_ == nullptr) throw_cannot_write(path_, errno);
 }
 
 OutputFile::~OutputFile() {
@@ -40,19 +54,13 @@ OutputFile::~OutputFile() {
 
 void OutputFile::write(std::span<const std::byte> bytes) {
   if (bytes.empty()) return;  // whose place may be null, which fwrite must not be given
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) {
-    throw InputError(fmt::format("{}: cannot write: {}", path_.string(), reason()));
-  }
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) throw_cannot_write(path_, errno);
 }
 
 void OutputFile::patch(std::uint64_t offset, std::span<const std::byte> bytes) {
-  if (::fseeko(file_, static_cast<off_t>(offset), SEEK_SET) != 0) {
-    throw InputError(fmt::format("{}: cannot write: {}", path_.string(), reason()));
-  }
+  if (::fseeko(file_, static_cast<off_t>(offset), SEEK_SET) != 0) throw_cannot_write(path_, errno);
   write(bytes);
-  if (::fseeko(file_, 0, SEEK_END) != 0) {
-    throw InputError(fmt::format("{}: cannot write: {}", path_.string(), reason()));
-  }
+  if (::fseeko(file_, 0, SEEK_END) != 0) throw_cannot_write(path_, errno);
 }
 
 void OutputFile::commit() {
@@ -60,10 +68,10 @@ void OutputFile::commit() {
   // fclose also reports what a full disk refused when the buffer was flushed.
   const bool good = std::fclose(file) == 0 && std::rename(temporary_.c_str(), path_.c_str()) == 0;
   if (good) return;
-  const std::string why = reason();
+  const int why = errno;
   std::error_code ignored;
   std::filesystem::remove(temporary_, ignored);
-  throw InputError(fmt::format("{}: cannot write: {}", path_.string(), why));
+  throw_cannot_write(path_, why);
 }
 
 void write_file(const std::filesystem::path& path, std::string_view text) {
@@ -74,12 +82,13 @@ void write_file(const std::filesystem::path& path, std::string_view text) {
 
 InputFile::InputFile(const std::filesystem::path& path) : name_(path.string()) {
   struct stat status {};
-  if (::stat(path.c_str(), &status) != 0)
-    throw InputError(fmt::format("{}: cannot read: {}", name_, reason()));
-  if (!S_ISREG(status.st_mode)) throw InputError(fmt::format("{}: cannot read: not a regular file", name_));
+  if (::stat(path.c_str(), &status) != 0) throw_cannot_read(name_, errno);
+  if (!S_ISREG(status.st_mode)) {
+    throw InputError(fmt::format("{}: cannot read: not a regular file", name_), ErrorCause::unreadable);
+  }
   size_ = static_cast<std::uint64_t>(status.st_size);
   file_.reset(std::fopen(path.c_str(), "rb"));
-  if (!file_) throw InputError(fmt::format("{}: cannot read: {}", name_, reason()));
+  if (!file_) throw_cannot_read(name_, errno);
 }
 
 void InputFile::read_at(std::uint64_t offset, std::span<std::byte> out) const {
@@ -106,7 +115,8 @@ std::string read_file(const std::filesystem::path& path, std::uint64_t max_bytes
   const InputFile file(path);
   if (file.size() > max_bytes) {
     throw InputError(fmt::format("{}: {} bytes, at most {} expected for a file of this kind", file.name(),
-                                 file.size(), max_bytes));
+                                 file.size(), max_bytes),
+                     ErrorCause::damaged);
   }
   std::string text(file.size(), '\0');
   file.read_at(0, std::as_writable_bytes(std::span(text)));

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/core/file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
+#include <set>
 
 #include "lucerna/core/error.h"
 #include "tests/support/temp_dir.h"
@@ -43,16 +46,41 @@ TEST(OutputFile, PatchesWhatWasWritten) {
   EXPECT_EQ(read_file(dir / "a", 100), "count=7 and more!");
 }
 
+/// The cause of the InputError that `work` throws.
+template <class Work>
+ErrorCause cause_of(const Work& work) {
+  try {
+    work();
+  } catch (const InputError& e) {
+    return e.cause();
+  }
+  return ErrorCause::interrupted;
+}
+
 TEST(OutputFile, AnUnwritablePlaceIsOneClearLine) {
   const test::TempDir dir;
-  EXPECT_THROW(OutputFile(dir / "missing" / "a"), InputError);
-  EXPECT_THROW(OutputFile(dir.path()), InputError);
+  EXPECT_EQ(cause_of([&] { OutputFile(dir / "missing" / "a"); }), ErrorCause::unwritable);
+  EXPECT_EQ(cause_of([&] { OutputFile(dir.path()); }), ErrorCause::unwritable);
+}
+
+TEST(OutputFile, AFullDiskIsToldApart) {
+  const test::TempDir dir;
+  std::filesystem::create_symlink("/dev/full", dir / fmt::format("a.tmp{}", ::getpid()));
+  EXPECT_EQ(cause_of([&] { write_file(dir / "a", "text"); }), ErrorCause::no_space);
+  EXPECT_FALSE(std::filesystem::exists(dir / "a"));
+}
+
+TEST(ErrorCauses, HaveNamesOfTheirOwn) {
+  std::set<std::string_view> names;
+  for (const ErrorCause cause : kErrorCauses) EXPECT_TRUE(names.insert(to_string(cause)).second);
+  EXPECT_FALSE(names.contains(""));
+  EXPECT_EQ(static_cast<std::size_t>(ErrorCause::interrupted) + 1, kErrorCauses.size());
 }
 
 TEST(InputFile, NamesWhatIsMissing) {
   const test::TempDir dir;
-  EXPECT_THROW(InputFile(dir / "none"), InputError);
-  EXPECT_THROW(InputFile(dir.path()), InputError);
+  EXPECT_EQ(cause_of([&] { InputFile(dir / "none"); }), ErrorCause::not_found);
+  EXPECT_EQ(cause_of([&] { InputFile(dir.path()); }), ErrorCause::unreadable);
   write_file(dir / "a", "12345");
   const InputFile file(dir / "a");
   std::array<std::byte, 4> four{};

@@ -14,12 +14,12 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kMostTableBytes = std::uint64_t{2} << 30;
+constexpr std::uint64_t kMaxTableBytes = std::uint64_t{2} << 30;
 
 }  // namespace
 
 NumberTable read_number_table(const std::filesystem::path& path, TableHeader header) {
-  const std::string bytes = read_file(path, kMostTableBytes);
+  const std::string bytes = read_file(path, kMaxTableBytes);
   std::string_view text = bytes;
   if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);  // a byte order mark, as spreadsheets write
   const std::string file = path.string();

@@ -12,31 +12,31 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kMostPgmBytes = std::uint64_t{1} << 28;
-constexpr std::uint64_t kMostPgmPixels = std::uint64_t{1} << 24;
+constexpr std::uint64_t kMaxPgmBytes = std::uint64_t{1} << 28;
+constexpr std::uint64_t kMaxPgmPixels = std::uint64_t{1} << 24;
 
 /// The numbers of a PGM file; comments run from # to the end of the line.
 class PgmReader {
  public:
   explicit PgmReader(const std::filesystem::path& path)
-      : file_(path.string()), bytes_(read_file(path, kMostPgmBytes)) {}
+      : file_(path.string()), bytes_(read_file(path, kMaxPgmBytes)) {}
 
   GreyImage read() {
     const std::string_view kind = std::string_view(bytes_).substr(0, 2);
     if (kind != "P5" && kind != "P2") fail("this is no PGM: expected P5 or P2");
     at_ = 2;
     GreyImage image;
-    image.width = number(1, kMostPgmPixels);
-    image.height = number(1, kMostPgmPixels);
-    if (image.height > kMostPgmPixels / image.width)
-      fail("{} x {} pixels, expected at most {}", image.width, image.height, kMostPgmPixels);
+    image.width = number(1, kMaxPgmPixels);
+    image.height = number(1, kMaxPgmPixels);
+    if (image.height > kMaxPgmPixels / image.width)
+      fail("{} x {} pixels, expected at most {}", image.width, image.height, kMaxPgmPixels);
     const std::uint64_t white = number(1, 65535);
     image.white = static_cast<double>(white);
     const std::size_t n = image.width * image.height;
     const std::size_t each = white > 255 ? 2 : 1;
     if (kind == "P5") ++at_;  // one white space ends the header
-    const std::size_t least = kind == "P5" ? n * each : 2 * n - 1;
-    if (at_ > bytes_.size() || bytes_.size() - at_ < least) fail("the file ends before its {} pixels", n);
+    const std::size_t min = kind == "P5" ? n * each : 2 * n - 1;
+    if (at_ > bytes_.size() || bytes_.size() - at_ < min) fail("the file ends before its {} pixels", n);
     image.value.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
       std::uint64_t value = 0;
@@ -68,14 +68,14 @@ class PgmReader {
     }
   }
 
-  std::uint64_t number(std::uint64_t least, std::uint64_t most) {
+  std::uint64_t number(std::uint64_t min, std::uint64_t max) {
     skip();
     std::uint64_t value = 0;
     const std::size_t begin = at_;
-    while (at_ < bytes_.size() && bytes_[at_] >= '0' && bytes_[at_] <= '9' && value <= most)
+    while (at_ < bytes_.size() && bytes_[at_] >= '0' && bytes_[at_] <= '9' && value <= max)
       value = 10 * value + static_cast<std::uint64_t>(bytes_[at_++] - '0');
-    if (at_ == begin || value < least || value > most) {
-      fail("found '{}', expected a whole number from {} to {}", bytes_.substr(begin, 12), least, most);
+    if (at_ == begin || value < min || value > max) {
+      fail("found '{}', expected a whole number from {} to {}", bytes_.substr(begin, 12), min, max);
     }
     return value;
   }

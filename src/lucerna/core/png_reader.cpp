@@ -15,8 +15,8 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kMostPngPixels = std::uint64_t{1} << 24;
-constexpr std::uint64_t kMostPngBytes = std::uint64_t{1} << 28;
+constexpr std::uint64_t kMaxPngPixels = std::uint64_t{1} << 24;
+constexpr std::uint64_t kMaxPngBytes = std::uint64_t{1} << 28;
 
 /// What a file's chunks say, clause by clause of ISO/IEC 15948.
 struct Picture {
@@ -31,7 +31,7 @@ struct Picture {
 class PngReader {
  public:
   explicit PngReader(const std::filesystem::path& path)
-      : name_(path.string()), bytes_(read_file(path, kMostPngBytes)) {}
+      : name_(path.string()), bytes_(read_file(path, kMaxPngBytes)) {}
 
   GreyImage read() {
     if (bytes_.substr(0, 8) != "\x89PNG\r\n\x1a\n") fail(0, "is no PNG file: it does not begin like one");
@@ -89,7 +89,7 @@ class PngReader {
       fail(at, fmt::format("found {} bits a sample, expected 8 or 16", picture_.bits));
     }
     if (data[12] != 0) fail(at, "is interlaced; expected a picture saved without interlacing");
-    if (picture_.width == 0 || picture_.height == 0 || picture_.width * picture_.height > kMostPngPixels) {
+    if (picture_.width == 0 || picture_.height == 0 || picture_.width * picture_.height > kMaxPngPixels) {
       fail(at, fmt::format("found {} x {} pixels, expected 1 to 16 M", picture_.width, picture_.height));
     }
   }

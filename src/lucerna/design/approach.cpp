@@ -11,7 +11,7 @@ namespace lucerna {
 namespace {
 
 /// Rays of all evaluations, at most; and how many evaluations of the most rays.
-constexpr std::uint64_t kMaxRays = std::uint64_t{1} << 23, kMaxEvaluations = 64;
+constexpr std::uint64_t kMaxApproachRays = std::uint64_t{1} << 23, kMaxEvaluations = 64;
 /// Random streams of perturbed starts begin here.
 constexpr std::uint64_t kStream = std::uint64_t{1} << 34;
 
@@ -41,7 +41,7 @@ Approached approach(const FitProblem& problem, const DesignShape& given, int res
   coarse.starts.clear();
   if (coarse.flux_weight > 0.0) coarse.flux_weight = kLadderFluxWeight;
   Fit fit(coarse, stages_to_gate(start, problem.bins, max_rays), start);
-  const std::uint64_t enough = std::min(kMaxRays, kMaxEvaluations * max_rays);
+  const std::uint64_t enough = std::min(kMaxApproachRays, kMaxEvaluations * max_rays);
   while (!fit.done() && fit.state().total_rays < enough) fit.step();
   // The cap on rays may end the ladder before it has come to the mirror's own knots.
   return {fit.best().refined(given.intervals_x(), given.intervals_y()), fit.state().evaluations,

@@ -35,7 +35,7 @@ std::vector<std::size_t> brightest_first(const ErrorBoxes& boxes, std::span<cons
 double positive(double x) { return std::max(0.0, x); }
 
 /// The least of ((p - s c)+)^2 / a + ((s d - q)+)^2 / b over s >= 0: a convex function of one number.
-double least_over_scale(double p, double c, double a, double d, double q, double b) {
+double min_over_scale(double p, double c, double a, double d, double q, double b) {
   const auto f = [&](double s) {
     return positive(p - s * c) * positive(p - s * c) / a + positive(s * d - q) * positive(s * d - q) / b;
   };
@@ -71,15 +71,15 @@ DesignBound etendue_bound(const ErrorBoxes& boxes, std::span<const double> targe
     const double area = opening_mm2 * cosine + mantle_mm2 * std::sqrt(positive(1.0 - cosine * cosine));
     etendue += boxes.measure()[b] * area;
     if (k % 16 != 15) continue;
-    const double most = std::min(1.0, kEtendueSlack * share_in(curve, etendue));
-    if (most >= 1.0) break;  // and more étendue holds all the more
+    const double max = std::min(1.0, kEtendueSlack * share_in(curve, etendue));
+    if (max >= 1.0) break;  // and more étendue holds all the more
     // By shape: s f has at most s most in the set, and the rest of s share is elsewhere.
     const double square = mode == TargetMode::absolute
-                              ? positive(part - most) * positive(part - most) / part_sr
-                              : least_over_scale(part, std::min(most, share), part_sr,
-                                                 share - std::min(most, share), total - part, sr - part_sr);
+                              ? positive(part - max) * positive(part - max) / part_sr
+                              : min_over_scale(part, std::min(max, share), part_sr,
+                                               share - std::min(max, share), total - part, sr - part_sr);
     const double error = std::sqrt(square / norm2);
-    if (error > bound.error) bound = {error, part / total, most, etendue};
+    if (error > bound.error) bound = {error, part / total, max, etendue};
   }
   return bound;
 }

@@ -43,13 +43,13 @@ TEST(Bounds, TheCoreTakesNoMoreThanItsEtendue) {
   const Spot s = two_levels(0.1, 0.9);
   // Of 5 mm2 sr half fits, and 5 per cent are granted: with s f having at most s * 0.525 in the core and the
   // rest outside, the least of the two deviations; found here by trying scales.
-  const double core_sr = 0.05 * 0.05, rest_sr = 0.2 * 0.2 - core_sr, most = 0.525;
-  double least = 1e9;
+  const double core_sr = 0.05 * 0.05, rest_sr = 0.2 * 0.2 - core_sr, max = 0.525;
+  double min = 1e9;
   for (double scale = 0.0; scale < 3.0; scale += 1e-4) {
-    const double in = std::max(0.0, 0.9 - scale * most), out = std::max(0.0, scale * (1.0 - most) - 0.1);
-    least = std::min(least, in * in / core_sr + out * out / rest_sr);
+    const double in = std::max(0.0, 0.9 - scale * max), out = std::max(0.0, scale * (1.0 - max) - 0.1);
+    min = std::min(min, in * in / core_sr + out * out / rest_sr);
   }
-  const double expected = std::sqrt(least / (0.81 / core_sr + 0.01 / rest_sr));
+  const double expected = std::sqrt(min / (0.81 / core_sr + 0.01 / rest_sr));
   const DesignBound b =
       etendue_bound(s.boxes, s.target, TargetMode::shape, 1.0, even(5.0), kDown, 1000.0, 0.0);
   EXPECT_NEAR(b.error, expected, 0.02 * expected);

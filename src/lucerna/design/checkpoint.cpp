@@ -15,14 +15,15 @@ namespace {
 constexpr const char* kMagic = "lucerna-design-checkpoint-9";
 constexpr const char* kSearchMagic = "lucerna-search-checkpoint-2";
 /// More numbers than any design has; keeps a damaged count from asking for memory.
-constexpr std::size_t kMostNumbers = 1 << 20;
+constexpr std::size_t kMaxNumbers = 1 << 20;
 /// A square of so many intervals has about as many coefficients.
-constexpr int kMostIntervals = 1020;
+constexpr int kMaxIntervals = 1020;
 /// More steps, rounds or evaluations than any design makes; one more is still an int.
-constexpr int kMostCount = 1 << 30;
+constexpr int kMaxCount = 1 << 30;
 
 [[noreturn]] void damaged(std::string_view what) {
-  throw InputError(fmt::format("checkpoint: {}; expected a whole one written by this version", what));
+  throw InputError(fmt::format("checkpoint: {}; expected a whole one written by this version", what),
+                   ErrorCause::damaged);
 }
 
 class Reader {
@@ -42,14 +43,14 @@ class Reader {
     expect(name);
     return value<T>();
   }
-  int count(const char* name, int least = 0, int most = kMostCount) {
+  int count(const char* name, int min = 0, int max = kMaxCount) {
     expect(name);
-    return whole(least, most);
+    return whole(min, max);
   }
   std::vector<double> numbers(const char* name) {
     expect(name);
     const auto n = value<std::size_t>();
-    if (n > kMostNumbers) damaged("a count is out of range");
+    if (n > kMaxNumbers) damaged("a count is out of range");
     std::vector<double> v;
     for (std::size_t i = 0; i < n; ++i) v.push_back(value<double>());
     return v;
@@ -60,22 +61,22 @@ class Reader {
     m.cost = value<double>();
     m.merit = value<double>();
     m.over_noise = value<double>();
-    m.intervals_x = whole(1, kMostIntervals);
-    m.intervals_y = whole(0, kMostIntervals);  // 0: of revolution
+    m.intervals_x = whole(1, kMaxIntervals);
+    m.intervals_y = whole(0, kMaxIntervals);  // 0: of revolution
     m.parameters = numbers("of");
     return m;
   }
   FreeFormMark search_mark(const char* name) {
     expect(name);
     FreeFormMark m;
-    m.candidate = whole(-1, kMostCount);
+    m.candidate = whole(-1, kMaxCount);
     m.level = whole(m.exists() ? 0 : -1, kFreeFormLevels - 1);
     m.transport.sign = value<double>();
     m.transport.vertex_distance_mm = value<double>();
     m.cost = value<double>();
     m.over_noise = value<double>();
-    m.intervals_x = whole(1, kMostIntervals);
-    m.intervals_y = whole(1, kMostIntervals);
+    m.intervals_x = whole(1, kMaxIntervals);
+    m.intervals_y = whole(1, kMaxIntervals);
     m.parameters = numbers("of");
     return m;
   }
@@ -85,7 +86,8 @@ class Reader {
     expect("key");
     if (word() != key) {
       throw InputError(
-          "checkpoint: belongs to another project, seed, ray count or device; start without resuming");
+          "checkpoint: belongs to another project, seed, ray count or device; start without resuming",
+          ErrorCause::mismatch);
     }
   }
 
@@ -101,9 +103,9 @@ class Reader {
     }
     return t;
   }
-  int whole(int least, int most) {
+  int whole(int min, int max) {
     const auto n = value<int>();
-    if (n < least || n > most) damaged(fmt::format("found {}, expected {} to {}", n, least, most));
+    if (n < min || n > max) damaged(fmt::format("found {}, expected {} to {}", n, min, max));
     return n;
   }
   std::istringstream in_;
@@ -155,7 +157,7 @@ FreeFormState parse_search_checkpoint(const std::string& text, const std::string
   s.costs = in.numbers("costs");
   s.now = in.search_mark("now");
   const auto marks = in.number<std::size_t>("done");
-  if (marks > kMostNumbers) damaged("a count is out of range");
+  if (marks > kMaxNumbers) damaged("a count is out of range");
   for (std::size_t i = 0; i < marks; ++i) s.done.push_back(in.search_mark("mark"));
   in.expect("end");
   return s;
@@ -182,8 +184,8 @@ FitState parse_checkpoint(const std::string& text, const std::string& key) {
   Reader in(text);
   in.header(kMagic, key);
   FitState s;
-  s.intervals_x = in.count("intervals_x", 1, kMostIntervals);
-  s.intervals_y = in.count("intervals_y", 0, kMostIntervals);
+  s.intervals_x = in.count("intervals_x", 1, kMaxIntervals);
+  s.intervals_y = in.count("intervals_y", 0, kMaxIntervals);
   s.stage = in.count("stage");
   s.step = in.count("step");
   s.lambda = in.number<double>("lambda");

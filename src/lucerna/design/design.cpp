@@ -25,7 +25,7 @@ namespace {
 /// Seconds that a validation gets where none are left, and without a limit.
 constexpr double kMinValidation_s = 2.0, kNoLimit = std::numeric_limits<double>::infinity();
 /// Rays that judge a result for which there is no time left.
-constexpr std::uint64_t kFewestJudgeRays = std::uint64_t{1} << 18;
+constexpr std::uint64_t kMinJudgeRays = std::uint64_t{1} << 18;
 /// Rays that measure how much light leaves the mirror to begin with.
 constexpr std::uint64_t kFluxRays = std::uint64_t{1} << 16;
 
@@ -97,9 +97,9 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
   result.shape = ShapeLimits(problem.limits, problem.start).nearest(result.shape);
   std::uint64_t judge_rays = options.judge_rays;
   if (result.end != DesignEnd::converged) {
-    judge_rays = time.affordable(judge_rays, options.rays_after, std::min(judge_rays, kFewestJudgeRays));
+    judge_rays = time.affordable(judge_rays, options.rays_after, std::min(judge_rays, kMinJudgeRays));
   }
-  if (result.end == DesignEnd::interrupted) judge_rays = std::min(judge_rays, kFewestJudgeRays);
+  if (result.end == DesignEnd::interrupted) judge_rays = std::min(judge_rays, kMinJudgeRays);
   // Time stops a validation too, but not before there is an error to show.
   const double max_s = result.end == DesignEnd::time ? std::max(time.left_s(), kMinValidation_s) : kNoLimit;
   check_result(problem, options, fit_data, judge_rays, max_s, result, progress);

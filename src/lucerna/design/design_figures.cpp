@@ -11,14 +11,14 @@ namespace {
 
 /// Of a target.
 PlaneSummary summary_of(const std::vector<double>& values, double factor) {
-  double mean = 0.0, least = std::numeric_limits<double>::infinity(), greatest = 0.0;
+  double mean = 0.0, min = std::numeric_limits<double>::infinity(), max = 0.0;
   for (const double v : values) {
     mean += factor * v / static_cast<double>(values.size());
-    least = std::min(least, factor * v);
-    greatest = std::max(greatest, factor * v);
+    min = std::min(min, factor * v);
+    max = std::max(max, factor * v);
   }
-  PlaneSummary s{{mean, 0.0}, {least, 0.0}, {greatest, 0.0}, {}};
-  if (mean > 0.0) s.uniformity = Estimate{least / mean, 0.0};
+  PlaneSummary s{{mean, 0.0}, {min, 0.0}, {max, 0.0}, {}};
+  if (mean > 0.0) s.uniformity = Estimate{min / mean, 0.0};
   return s;
 }
 
@@ -37,8 +37,7 @@ DesignFigures design_figures(const DesignProblem& problem, const DesignResult& r
     f.target_plane = summary_of(target.plane->map.value, f.target_factor);
     for (const PlaneFigures& p : f.trace.planes) {
       if (p.image.name == kTargetPlane)
-        f.result_plane =
-            PlaneSummary{p.extremes.mean, p.extremes.least, p.extremes.greatest, p.extremes.uniformity};
+        f.result_plane = PlaneSummary{p.extremes.mean, p.extremes.min, p.extremes.max, p.extremes.uniformity};
     }
     return f;
   }

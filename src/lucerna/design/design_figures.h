@@ -12,8 +12,8 @@ namespace lucerna {
 
 /// Illuminance figures of a rectangle; a target's are exact, without errors.
 struct PlaneSummary {
-  Estimate mean, least, greatest;
-  /// least over mean; absent in the dark.
+  Estimate mean, min, max;
+  /// minimum over mean; absent in the dark.
   std::optional<Estimate> uniformity;
 };
 

@@ -35,7 +35,7 @@ struct GlareLimit {
 /// What a design must not do: [design.limits] of a project. Lengths in mm, in the mirror's own frame.
 struct DesignLimits {
   std::optional<double> max_diameter_mm, min_opening_mm, min_hole_diameter_mm;
-  /// Greatest less least height of the mirror along its axis.
+  /// Maximum minus minimum height of the mirror along its axis.
   std::optional<double> max_height_mm;
   /// Largest angle between the surface's normal and the mirror's axis: draft for the tool.
   std::optional<double> max_slope_deg;

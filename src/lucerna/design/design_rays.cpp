@@ -55,8 +55,8 @@ void DesignRays::grow(std::uint64_t n, Progress& progress) {
   });
 }
 
-RayBlock DesignRays::first(std::uint64_t most) const {
-  const std::uint64_t blocks = std::min(most, size()) / kBlockRays;
+RayBlock DesignRays::first(std::uint64_t max) const {
+  const std::uint64_t blocks = std::min(max, size()) / kBlockRays;
   RayBlock out;
   out.reserve(blocks * kBlockRays);
   const auto append = [](std::vector<float>& to, const std::array<float, kBlockRays>& from) {

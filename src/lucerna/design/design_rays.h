@@ -52,8 +52,8 @@ class DesignRays {
   /// Null without bodies.
   const BodyShadows* shadows() const { return shadows_.get(); }
 
-  /// A copy of the first `most` rays (whole blocks of them), for what takes ray sets.
-  RayBlock first(std::uint64_t most) const;
+  /// A copy of the first `max` rays (whole blocks of them), for what takes ray sets.
+  RayBlock first(std::uint64_t max) const;
 
  private:
   void fill(std::uint64_t b);

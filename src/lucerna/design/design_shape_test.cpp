@@ -18,16 +18,15 @@ DesignShape with_random(const DesignShape& shape, std::uint64_t seed) {
 
 /// The largest difference of height and slope between two shapes over the aperture.
 double difference(const DesignShape& a, const DesignShape& b) {
-  double most = 0.0;
+  double max = 0.0;
   for (double x = -24.9; x < 25.0; x += 1.7) {
     for (double y = -24.9; y < 25.0; y += 1.9) {
       if (!a.aperture().contains(x, y)) continue;
       const SurfacePoint p = a.at(x, y), q = b.at(x, y);
-      most =
-          std::max({most, std::abs(p.z_mm - q.z_mm), std::abs(p.dzdx - q.dzdx), std::abs(p.dzdy - q.dzdy)});
+      max = std::max({max, std::abs(p.z_mm - q.z_mm), std::abs(p.dzdx - q.dzdx), std::abs(p.dzdy - q.dzdy)});
     }
   }
-  return most;
+  return max;
 }
 
 TEST(DesignShape, DoublingTheKnotsKeepsTheSurface) {

@@ -24,13 +24,13 @@ double width(int size) { return 2.0 * std::pow(3.0, -size); }
 /// The cells that some rate of change could hide the least cost in: the lower right hull of (size, cost), one
 /// a size, where the promise is at least a little less than the best.
 std::vector<std::size_t> promising(const std::vector<Cell>& cells, double best) {
-  std::map<int, std::size_t> least;  // by size, the largest boxes first
+  std::map<int, std::size_t> min;  // by size, the largest boxes first
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto [at, fresh] = least.try_emplace(cells[i].size(), i);
+    const auto [at, fresh] = min.try_emplace(cells[i].size(), i);
     if (!fresh && cells[i].cost < cells[at->second].cost) at->second = i;
   }
   std::vector<std::size_t> hull;
-  for (const auto& [size, i] : least) {
+  for (const auto& [size, i] : min) {
     // From the largest down: keep those below the line from what is kept to what comes.
     while (!hull.empty() && !std::isfinite(cells[hull.back()].cost)) hull.pop_back();
     if (!hull.empty() && cells[i].cost >= cells[hull.back()].cost) continue;

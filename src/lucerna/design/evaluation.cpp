@@ -178,7 +178,7 @@ class BlockTracer {
   }
 
   static bool body_sends_on(State& s) {
-    if (s.bodies >= kMostPathHits) s.share = 0.0;
+    if (s.bodies >= kMaxPathHits) s.share = 0.0;
     return s.share > 0.0;
   }
 
@@ -188,7 +188,7 @@ class BlockTracer {
       s.end = s.hits == 0 ? PathEnd::direct : PathEnd::reflected;
       return false;
     }
-    if (what != kHitFront || s.hits == kMostPathHits) {
+    if (what != kHitFront || s.hits == kMaxPathHits) {
       s.end = what == kHitBack ? PathEnd::back : PathEnd::lost;
       return false;
     }

@@ -67,7 +67,7 @@ struct EvaluationView {
   template <class Sums>
   LUCERNA_HD void differentiate(const Path<Shape>& path, double energy, const TentDeposit& d,
                                 Sums& sums) const {
-    std::array<HitAdjoint, kMostPathHits> by_u, by_v;
+    std::array<HitAdjoint, kMaxPathHits> by_u, by_v;
     const TentGradient in_u = bins.gradient_u(path.origin, path.direction);
     path_adjoint(path, path.hits - 1, in_u.direction, in_u.origin, by_u.data());
     if (!bins.is_rings()) {
@@ -92,7 +92,7 @@ struct EvaluationView {
     const auto& hit = path.hit[static_cast<std::size_t>(last)];
     const RimDistance rim = rim_distance(aperture, hit.x, hit.y);
     if (!(rim.inside_mm < rim_mm)) return;
-    std::array<HitAdjoint, kMostPathHits> by_place;
+    std::array<HitAdjoint, kMaxPathHits> by_place;
     path_adjoint(path, last, {}, rim.gradient, by_place.data());
     TentDeposit missed;
     if (last > 0 || direct_light) {

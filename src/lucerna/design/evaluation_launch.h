@@ -18,7 +18,7 @@ namespace lucerna {
 inline constexpr double kDerivativeUnits = 0x1p20;
 /// One derivative of one ray is held to +-2^50 units, a thousand million mean rays per mm, which only rays
 /// that graze the mirror reach: the sum of 2^13 such rays still fits.
-inline constexpr double kMostDerivative = 0x1p50;
+inline constexpr double kMaxDerivative = 0x1p50;
 
 /// PathEnd by PathEnd, then what the mirror absorbed.
 inline constexpr int kEvaluationEnds = 5;
@@ -47,8 +47,8 @@ struct EvaluationThread {
     std::int64_t* at;
     LUCERNA_HD void add(int coefficient, double x) const {
       double u = x * kDerivativeUnits;
-      u = u < kMostDerivative ? u : kMostDerivative;
-      u = u > -kMostDerivative ? u : -kMostDerivative;
+      u = u < kMaxDerivative ? u : kMaxDerivative;
+      u = u > -kMaxDerivative ? u : -kMaxDerivative;
       atomic_add(at + coefficient, whole(u));
     }
   };

@@ -185,7 +185,7 @@ class HitSearch {
     ended = ended | touch(m, ended);
     const V ahead = step_length(m, look);
     looks_ = looks_ + V(1.0);
-    const Mask stuck = (~(V(0.0) < ahead) & ~is(only_one_)) | (V(kMostLooks) <= looks_);
+    const Mask stuck = (~(V(0.0) < ahead) & ~is(only_one_)) | (V(kMaxLooks) <= looks_);
     what_ = select(stuck & ~ended, V(static_cast<double>(kHitFailed)), what_);
     ended = ended | stuck;
     t_ = select(ended, t_, t_ + ahead);
@@ -228,7 +228,7 @@ class HitSearch {
   /// Height above the surface at which a ray has arrived; a last Newton step follows, which leaves 1e-12 of
   /// it.
   static constexpr double kTouch_mm = 1e-6;
-  static constexpr double kMostLooks = 200.0;
+  static constexpr double kMaxLooks = 200.0;
 
   LUCERNA_HD static Mask is(V flag) { return V(0.5) < flag; }
   LUCERNA_HD static bool any(Mask a) { return bits(a) != 0; }
@@ -317,10 +317,10 @@ class HitSearch {
     const V half = V(0.5) * across_, whole = c2_ + V(m.bend) * half;
     const Mask front = V(0.0) < side_;
     const V behind = select(front, V(0.0), V(2.0) * c2_);  // there the base bends the other way
-    // On a stretch as long as `good`, |f''| is at most twice `most`.
-    V good = V(static_cast<double>(near_cells(0))) * cell_t_, most = c2_ + look.near[0] * half;
+    // On a stretch as long as `good`, |f''| is at most twice `max`.
+    V good = V(static_cast<double>(near_cells(0))) * cell_t_, bound = c2_ + look.near[0] * half;
     const V to_low = low_ - t_;
-    const V falls = max(V(2.0) * (select(to_low < good, most, whole) - V(2.0) * c2_), V(0.0));
+    const V falls = max(V(2.0) * (select(to_low < good, bound, whole) - V(2.0) * c2_), V(0.0));
     const Mask only = front & (df_ < V(0.0)) & (V(0.0) < to_low) & (df_ + falls * to_low < V(0.0));
     only_one_ = select(only, V(1.0), only_one_);
     const Mask one = is(only_one_);
@@ -328,12 +328,12 @@ class HitSearch {
     if (!any(~one)) return ahead;
     V longest = V(0.0);
     for (int size = 0; size <= kNearSizes; ++size) {
-      const V zero = zero_ahead(f_, df_, max(most - behind, V(1e-30)));
+      const V zero = zero_ahead(f_, df_, max(bound - behind, V(1e-30)));
       longest = max(min(good, zero), longest);
       if (!any(good < zero)) break;
       const bool last = size + 1 >= kNearSizes;
       good = last ? V(__builtin_inf()) : V(static_cast<double>(near_cells(size + 1))) * cell_t_;
-      most = last ? whole : c2_ + look.near[last ? 0 : size + 1] * half;
+      bound = last ? whole : c2_ + look.near[last ? 0 : size + 1] * half;
     }
     return select(one, ahead, longest);
   }

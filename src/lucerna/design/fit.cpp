@@ -25,7 +25,7 @@ constexpr double kGateFloors = 1.5;
 constexpr double kEndShare = 0.1;
 
 /// Steps in a row, each five times as damped as the one before, after which a stage is at its end.
-constexpr int kMostRefused = 5;
+constexpr int kMaxRefused = 5;
 
 /// A restart has failed unless it brings the error down to this share of the incumbent's.
 constexpr double kGain = 0.97;
@@ -104,9 +104,9 @@ Fit::Fit(const FitProblem& problem, std::vector<FitStage> stages, const DesignSh
   if (problem_.starts.empty()) problem_.starts = {{family}};
 }
 
-std::size_t Fit::first_stage(int least_intervals) const {
+std::size_t Fit::first_stage(int min_intervals) const {
   std::size_t stage = search_stages_;
-  while (stage + 1 < stages_.size() && !stages_[stage].gate && stages_[stage].intervals_x < least_intervals) {
+  while (stage + 1 < stages_.size() && !stages_[stage].gate && stages_[stage].intervals_x < min_intervals) {
     ++stage;
   }
   return stage;
@@ -167,7 +167,7 @@ void Fit::begin_stage(Progress& progress) {
 bool Fit::stalled() const {
   const std::vector<double>& c = state_.costs;
   if (c.size() < 3) return false;
-  return std::sqrt(c.back()) > (1.0 - stage().least_gain) * std::sqrt(c[c.size() - 3]);
+  return std::sqrt(c.back()) > (1.0 - stage().min_gain) * std::sqrt(c[c.size() - 3]);
 }
 
 void Fit::finish_stage() {
@@ -404,7 +404,7 @@ FitRecord Fit::step(Progress& progress) {
   // At the noise of its own rays a stage has nothing left to learn that more rays would not teach better.
   const bool last = state_.stage + 1 == static_cast<int>(stages_.size());
   const bool at_noise = !last && !scale_ && equations_.cost <= error.floor * error.floor;
-  if (state_.step >= stage().most_steps || state_.refused >= kMostRefused || at_noise || stalled()) {
+  if (state_.step >= stage().max_steps || state_.refused >= kMaxRefused || at_noise || stalled()) {
     finish_stage();
   }
   return record;

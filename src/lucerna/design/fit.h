@@ -69,9 +69,9 @@ struct FitStage {
   int bins = 48;
   double widen = 1.0;
   std::uint64_t rays = 1 << 16;
-  int most_steps = 30;
+  int max_steps = 30;
   /// The stage ends when the last two accepted steps gained less than this share of the error.
-  double least_gain = 0.03;
+  double min_gain = 0.03;
   /// Weight of `roughness` in the cost.
   double smoothing = 0.0;
   /// Starts are compared here: only the best goes on, later restarts only where they beat it.
@@ -185,7 +185,7 @@ class Fit {
   void take(const FitMark& mark);
   NormalEquations equations_at(const DesignShape& shape, const Evaluation& e) const;
   /// Of the ladder, after those of the search.
-  std::size_t first_stage(int least_intervals) const;
+  std::size_t first_stage(int min_intervals) const;
   std::size_t gate_stage() const;
   void begin_with(const DesignShape& start, std::size_t stage);
   std::size_t stage_of(const FitStart& start) const;

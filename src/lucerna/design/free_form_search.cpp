@@ -44,7 +44,7 @@ constexpr double kHopeless = 4.0;
 /// Candidates in a row that have no start, after which there are no others.
 constexpr int kMaxFailed = 8;
 /// Steps in a row, each five times as damped as the one before, after which a level is at its end.
-constexpr int kMaxRefused = 5;
+constexpr int kMaxRefusedInARow = 5;
 /// The squared error at the end is the noise's and this share more.
 constexpr double kNoiseShare = 0.1;
 /// What of the squared error counts where candidates are compared at a level: mirrors that are fitted roughly
@@ -75,11 +75,11 @@ const std::array<FreeFormLevel, kLevels> kLevel{{
     {.bins = 120, .rays = 1 << 23, .max_steps = 40, .min_gain = 0.005},
 }};
 
-/// Intervals along both sides where the longer has `most`.
-std::pair<int, int> intervals_of(const Aperture& a, int most) {
+/// Intervals along both sides where the longer has `max`.
+std::pair<int, int> intervals_of(const Aperture& a, int max) {
   const double x = a.half_x_mm(), y = a.half_y_mm(), longer = std::max(x, y);
-  return {std::max(4, static_cast<int>(std::lround(most * x / longer))),
-          std::max(4, static_cast<int>(std::lround(most * y / longer)))};
+  return {std::max(4, static_cast<int>(std::lround(max * x / longer))),
+          std::max(4, static_cast<int>(std::lround(max * y / longer)))};
 }
 
 }  // namespace
@@ -88,9 +88,9 @@ std::optional<DesignShape> free_form_start(const FitProblem& problem, const Desi
                                            const TransportChoice& choice) {
   problem.rays->grow(kStartRays);
   const TentBins bins = graded_bins(problem.rectangle, problem.mirror_from_world, kStartBins, kStartWiden, 0);
-  return transport_start({problem.rays, kStartRays, problem.reflectance.greatest(), problem.direct_light,
-                          problem.target(bins), bins},
-                         family, choice);
+  return transport_start(
+      {problem.rays, kStartRays, problem.reflectance.max(), problem.direct_light, problem.target(bins), bins},
+      family, choice);
 }
 
 FreeFormSearch::FreeFormSearch(const FitProblem& problem, const DesignShape& given, int max_intervals,
@@ -104,8 +104,8 @@ FreeFormSearch::FreeFormSearch(const FitProblem& problem, const DesignShape& giv
 FreeFormLevel FreeFormSearch::level(int number) const {
   FreeFormLevel out = kLevel[static_cast<std::size_t>(number)];
   const double half = 0.5 * std::max(problem_.rectangle.width(), problem_.rectangle.height());
-  const int most = number == 0 ? std::min(kRoughIntervals, max_intervals_) : max_intervals_;
-  std::tie(out.intervals_x, out.intervals_y) = intervals_of(given_.aperture(), most);
+  const int max = number == 0 ? std::min(kRoughIntervals, max_intervals_) : max_intervals_;
+  std::tie(out.intervals_x, out.intervals_y) = intervals_of(given_.aperture(), max);
   out.rays = std::min(out.rays, max_rays_);
   out.smoothing = problem_.rectangle.is_plane ? kSmoothing : kSmoothing / (half * half);
   out.zones = zone_stage(number);
@@ -260,7 +260,7 @@ void FreeFormSearch::choose(Progress& progress) {
 
 bool FreeFormSearch::level_ended() const {
   const FreeFormLevel l = level(state_.now.level);
-  if (state_.step >= l.max_steps || state_.refused >= kMaxRefused) return true;
+  if (state_.step >= l.max_steps || state_.refused >= kMaxRefusedInARow) return true;
   const std::vector<double>& c = state_.costs;
   const FreeFormMark* best = best_of(0);
   if (state_.now.level == 0 && best != nullptr && state_.step >= 2 &&

@@ -28,7 +28,7 @@ GlobalSearchRun::GlobalSearchRun(const SearchBox& box, const SearchOptions& opti
     : box_(box), options_(options), cost_(cost), best_point_(Eigen::VectorXd::Zero(box.centre.size())) {
   LUCERNA_CHECK(box.centre.size() > 0 && box.centre.size() == box.half.size() && box.half.minCoeff() > 0.0,
                 "a search box of {} by {} numbers", box.centre.size(), box.half.size());
-  LUCERNA_CHECK(options.most_evaluations > 0, "a search of {} evaluations", options.most_evaluations);
+  LUCERNA_CHECK(options.max_evaluations > 0, "a search of {} evaluations", options.max_evaluations);
   best_.best = box.centre;
   best_.cost = std::numeric_limits<double>::infinity();
   costs({best_point_});
@@ -36,7 +36,7 @@ GlobalSearchRun::GlobalSearchRun(const SearchBox& box, const SearchOptions& opti
 
 std::vector<double> GlobalSearchRun::costs(const std::vector<Eigen::VectorXd>& points) {
   constexpr double kWorst = std::numeric_limits<double>::infinity();
-  const auto left = static_cast<std::size_t>(options_.most_evaluations - best_.evaluations);
+  const auto left = static_cast<std::size_t>(options_.max_evaluations - best_.evaluations);
   const std::size_t n = std::min(points.size(), left);
   std::vector<Eigen::VectorXd> in_box;
   for (std::size_t i = 0; i < n; ++i) {

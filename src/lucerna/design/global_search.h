@@ -31,7 +31,7 @@ struct SearchBox {
 struct SearchOptions {
   std::uint64_t seed = 1;
   /// Evaluations after which the search ends; it evaluates exactly so many, unless it divides no further.
-  int most_evaluations = 1000;
+  int max_evaluations = 1000;
 };
 
 struct GlobalSearchResult {
@@ -55,9 +55,9 @@ class GlobalSearchRun {
 
   Eigen::Index size() const { return box_.centre.size(); }
   std::uint64_t seed() const { return options_.seed; }
-  bool spent() const { return best_.evaluations >= options_.most_evaluations; }
+  bool spent() const { return best_.evaluations >= options_.max_evaluations; }
   /// Share of the budget that is used.
-  double used() const { return static_cast<double>(best_.evaluations) / options_.most_evaluations; }
+  double used() const { return static_cast<double>(best_.evaluations) / options_.max_evaluations; }
   /// Costs of points in [-1, 1]^n (clipped to it); what the budget does not reach costs infinity.
   std::vector<double> costs(const std::vector<Eigen::VectorXd>& points);
   const GlobalSearchResult& best() const { return best_; }

@@ -89,13 +89,13 @@ TEST(GlobalSearch, SpendsTheBudgetAndStaysInTheBox) {
       EXPECT_EQ(seen.size(), static_cast<std::size_t>(budget)) << to_string(method);
       EXPECT_EQ(result.evaluations, budget);
       EXPECT_EQ(seen[0], box(3).centre);
-      double least = 1e300;
+      double min = 1e300;
       for (const Eigen::VectorXd& p : seen) {
         EXPECT_LE((p - box(3).centre).cwiseAbs().maxCoeff(), 2.0 + 1e-12) << to_string(method);
-        least = std::min(least, holes(p));
+        min = std::min(min, holes(p));
       }
-      EXPECT_EQ(result.cost, least);
-      EXPECT_EQ(holes(result.best), least);
+      EXPECT_EQ(result.cost, min);
+      EXPECT_EQ(holes(result.best), min);
     }
   }
 }

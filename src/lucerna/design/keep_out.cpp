@@ -13,7 +13,7 @@ namespace {
 /// Places across an aperture; a zone is seen on so many at most.
 constexpr int kColumnsAcross = 80;
 /// Points of a zone are at most half a place apart, but no more than this many a triangle's side.
-constexpr double kMostParts = 400.0;
+constexpr double kMaxParts = 400.0;
 
 /// Distances along a row of places, for fixed columns.
 struct Lattice {
@@ -38,7 +38,7 @@ std::vector<Vec3> surface_points(const Mesh& mesh, double spacing_mm) {
   for (const auto& t : mesh.triangles) {
     const Vec3 &a = mesh.vertices_mm[t[0]], &b = mesh.vertices_mm[t[1]], &c = mesh.vertices_mm[t[2]];
     const double longest = std::max({length(b - a), length(c - b), length(a - c)});
-    const int n = static_cast<int>(std::clamp(std::ceil(longest / spacing_mm), 1.0, kMostParts));
+    const int n = static_cast<int>(std::clamp(std::ceil(longest / spacing_mm), 1.0, kMaxParts));
     for (int i = 0; i <= n; ++i) {
       for (int k = 0; i + k <= n; ++k) {
         const double u = static_cast<double>(i) / n, v = static_cast<double>(k) / n;

@@ -23,10 +23,10 @@ double half_angle(const TentBins& bins) {
 /// Gathers stages, leaving out what repeats.
 class Stages {
  public:
-  explicit Stages(std::uint64_t most_rays) : most_rays_(most_rays) {}
+  explicit Stages(std::uint64_t max_rays) : max_rays_(max_rays) {}
 
   void add(FitStage stage) {
-    stage.rays = std::min(most_rays_, stage.rays);
+    stage.rays = std::min(max_rays_, stage.rays);
     if (!all_.empty()) {
       const FitStage& last = all_.back();
       if (last.rays == stage.rays && last.bins == stage.bins && last.intervals_x == stage.intervals_x &&
@@ -41,7 +41,7 @@ class Stages {
   std::vector<FitStage> take() { return std::move(all_); }
 
  private:
-  std::uint64_t most_rays_;
+  std::uint64_t max_rays_;
   std::vector<FitStage> all_;
 };
 
@@ -98,18 +98,18 @@ std::vector<FitStage> ladder(const DesignShape& shape, const TentBins& bins, con
   if (o.far) {
     add_search({nx, ny}, k, smoothing, stages);
     for (const auto& [x, y] : knots) {
-      const int most = std::max(x, y);
-      if (most > 6) break;
+      const int max = std::max(x, y);
+      if (max > 6) break;
       stages.add({x, y, k / 4, 1.2, two_to(15), 30, 0.03, smoothing});
     }
   }
   for (const auto& [x, y] : knots) {
-    const int most = std::max(x, y);
-    if (o.far && most <= 3 && knots.size() > 1) continue;
+    const int max = std::max(x, y);
+    if (o.far && max <= 3 && knots.size() > 1) continue;
     const bool own = x == nx && y == ny;
     // Twice as many bins across as knots, and more: three bins for each parameter.
-    if (most <= 6) stages.add({x, y, k / 3, 1.0, two_to(15), 30, 0.02, own ? 0.0 : 0.1 * smoothing});
-    if (most <= 10) stages.add({x, y, k / 2, 1.0, two_to(17), 30, 0.03});
+    if (max <= 6) stages.add({x, y, k / 3, 1.0, two_to(15), 30, 0.02, own ? 0.0 : 0.1 * smoothing});
+    if (max <= 10) stages.add({x, y, k / 2, 1.0, two_to(17), 30, 0.03});
   }
   // The gate, where restarts are compared.
   const bool many = std::max(nx, ny) > 10;

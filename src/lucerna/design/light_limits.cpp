@@ -99,13 +99,14 @@ void LightLimits::check(const DesignShape& start, const DesignRays& rays) const 
       meets += weight;
     }
   }
-  const double most = 1.0 - (1.0 - reflectance_.greatest()) * meets / all;
-  if (*min_efficiency_ <= most) return;
+  const double max = 1.0 - (1.0 - reflectance_.max()) * meets / all;
+  if (*min_efficiency_ <= max) return;
   throw InputError(
       fmt::format("design.limits: min_efficiency = {} and the reflector's reflectance, at most {}, "
                   "contradict each other: "
                   "at least {:.0f} % of the light meets the mirror, so that no more than {:.3f} leaves",
-                  *min_efficiency_, reflectance_.greatest(), 100.0 * meets / all, most));
+                  *min_efficiency_, reflectance_.max(), 100.0 * meets / all, max),
+      ErrorCause::contradiction);
 }
 
 }  // namespace lucerna

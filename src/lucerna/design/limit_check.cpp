@@ -73,7 +73,7 @@ double curvature(const Mesh& mesh) {
   const auto normal_of = [&](const std::array<std::uint32_t, 3>& t) {
     return cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
   };
-  double most = 0.0;
+  double max = 0.0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto& t = mesh.triangles[i];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -86,10 +86,10 @@ double curvature(const Mesh& mesh) {
           length(circumcentre(at(t[0]), at(t[1]), at(t[2])) - circumcentre(at(s[0]), at(s[1]), at(s[2])));
       if (across < 0.2 * along) continue;
       const double angle = angle_between(Direction::from(normal_of(t)), Direction::from(normal_of(s)));
-      most = std::max(most, angle / across);
+      max = std::max(max, angle / across);
     }
   }
-  return most;
+  return max;
 }
 
 /// Points in cells, to find near ones.
@@ -101,17 +101,17 @@ class Near {
   /// Distance to the nearest point, or the reach if none is nearer.
   double distance(const Vec3& p) const {
     const auto [x, y, z] = cell(p);
-    double least = reach_;
+    double min = reach_;
     for (long k = -1; k <= 1; ++k) {
       for (long j = -1; j <= 1; ++j) {
         for (long i = -1; i <= 1; ++i) {
           const auto found = cells_.find(key({x + i, y + j, z + k}));
           if (found == cells_.end()) continue;
-          for (const std::size_t n : found->second) least = std::min(least, length(points_[n] - p));
+          for (const std::size_t n : found->second) min = std::min(min, length(points_[n] - p));
         }
       }
     }
-    return least;
+    return min;
   }
 
  private:
@@ -147,19 +147,19 @@ double distance_to(const Mesh& mirror, const KeepOut& zone) {
   }
   const std::vector<Vec3> points = surface_points(zone.mesh, 0.25 * std::max(reach, 1.0));
   const Near near(points, reach);
-  double least = reach;
+  double min = reach;
   for (const auto& t : mirror.triangles) {
     const Vec3 &a = mirror.vertices_mm[t[0]], &b = mirror.vertices_mm[t[1]], &c = mirror.vertices_mm[t[2]];
     for (const Vec3& p : {a, b, c, (a + b + c) / 3.0}) {
       if (p.x < low.x - reach || p.y < low.y - reach || p.z < low.z - reach) continue;
       if (p.x > high.x + reach || p.y > high.y + reach || p.z > high.z + reach) continue;
-      least = std::min(least, near.distance(p));
+      min = std::min(min, near.distance(p));
       const bool boxed =
           p.x > low.x && p.y > low.y && p.z > low.z && p.x < high.x && p.y < high.y && p.z < high.z;
       if (boxed && inside(zone.mesh, p)) return 0.0;
     }
   }
-  return least;
+  return min;
 }
 
 }  // namespace
@@ -168,21 +168,20 @@ std::vector<LimitCheck> check_limits(const Mesh& mirror, const DesignLimits& lim
                                      double slope_deg) {
   const Figures f = figures(mirror);
   std::vector<LimitCheck> out;
-  const auto most = [&](const char* name, const std::optional<double>& allowed, double found, double within) {
+  const auto max = [&](const char* name, const std::optional<double>& allowed, double found, double within) {
     if (allowed) out.push_back({name, *allowed, found, found <= *allowed + within});
   };
-  const auto least = [&](const char* name, const std::optional<double>& allowed, double found,
-                         double within) {
+  const auto min = [&](const char* name, const std::optional<double>& allowed, double found, double within) {
     if (allowed) out.push_back({name, *allowed, found, found >= *allowed - within});
   };
-  most("max_diameter_mm", limits.max_diameter_mm, 2.0 * f.widest, 1e-4);
-  least("min_opening_mm", limits.min_opening_mm, 2.0 * std::min(f.half_x, f.half_y), 2.0 * chord_mm);
-  least("min_hole_diameter_mm", limits.min_hole_diameter_mm, 2.0 * f.hole, 2.0 * chord_mm);
-  most("max_height_mm", limits.max_height_mm, f.high - f.low, 1e-4);
-  most("max_slope_deg", limits.max_slope_deg, degrees(f.steepest), slope_deg);
+  max("max_diameter_mm", limits.max_diameter_mm, 2.0 * f.widest, 1e-4);
+  min("min_opening_mm", limits.min_opening_mm, 2.0 * std::min(f.half_x, f.half_y), 2.0 * chord_mm);
+  min("min_hole_diameter_mm", limits.min_hole_diameter_mm, 2.0 * f.hole, 2.0 * chord_mm);
+  max("max_height_mm", limits.max_height_mm, f.high - f.low, 1e-4);
+  max("max_slope_deg", limits.max_slope_deg, degrees(f.steepest), slope_deg);
   if (limits.min_radius_mm) {
     const double radius = 1.0 / std::max(curvature(mirror), 1e-9);
-    least("min_radius_mm", limits.min_radius_mm, radius, 0.1 * *limits.min_radius_mm);
+    min("min_radius_mm", limits.min_radius_mm, radius, 0.1 * *limits.min_radius_mm);
   }
   for (const KeepOut& zone : limits.keep_out) {
     const double distance = distance_to(mirror, zone);

@@ -22,7 +22,7 @@ constexpr double kInside = 2.0;
 /// Places looked at in a knot interval: as a cost beside the light, and where a limit itself must be held.
 constexpr int kCoarsePlaces = 4, kFinePlaces = 12;
 /// Gauss-Newton steps on the limits alone; hinges settle in a few dozen.
-constexpr int kMostSteps = 200;
+constexpr int kMaxSteps = 200;
 
 /// Places where the surface is looked at: a grid of `per_interval` to a knot interval, and the outline.
 template <class Place>
@@ -292,7 +292,7 @@ DesignShape minimised(DesignShape now, const Cost& cost) {
   };
   Equations equations = equations_at(now);
   double lambda = 1e-3;
-  for (int step = 0; step < kMostSteps && equations.cost > 1e-12 && lambda < 1e8; ++step) {
+  for (int step = 0; step < kMaxSteps && equations.cost > 1e-12 && lambda < 1e8; ++step) {
     const Eigen::VectorXd move = damped(equations, lambda);
     if (!move.allFinite()) {
       lambda *= 10.0;
@@ -337,23 +337,27 @@ DesignShape ShapeLimits::nearest(const DesignShape& shape) const {
       throw InputError(
           fmt::format("design.limits: {} contradicts the reflector's aperture and knots: no mirror "
                       "over it holds the limit",
-                      a.text));
+                      a.text),
+          ErrorCause::contradiction);
     }
   }
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     for (std::size_t k = i + 1; k < limits_.size(); ++k) {
       const std::array<const Limit*, 2> pair{&limits_[i], &limits_[k]};
       if (!solve(shape, pair)) {
-        throw InputError(fmt::format(
-            "design.limits: {} and {} contradict each other: no mirror of this aperture holds both",
-            pair[0]->text, pair[1]->text));
+        throw InputError(
+            fmt::format(
+                "design.limits: {} and {} contradict each other: no mirror of this aperture holds both",
+                pair[0]->text, pair[1]->text),
+            ErrorCause::contradiction);
       }
     }
   }
   std::string names;
   for (const Limit& l : limits_) names += (names.empty() ? "" : ", ") + l.text;
   throw InputError(
-      fmt::format("design.limits: {} leave no mirror of this aperture, though any two of them do", names));
+      fmt::format("design.limits: {} leave no mirror of this aperture, though any two of them do", names),
+      ErrorCause::contradiction);
 }
 
 void add_flux_term(const Evaluation& e, double weight, double reference, NormalEquations& equations) {

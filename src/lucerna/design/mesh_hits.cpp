@@ -47,7 +47,7 @@ class TreeHits final : public MeshHitFinder {
 class EmbreeHits final : public MeshHitFinder {
  public:
   explicit EmbreeHits(const std::vector<Body>& meshes) : device_(rtcNewDevice(nullptr)) {
-    if (device_ == nullptr) throw Error("Embree gives no device");
+    if (device_ == nullptr) throw InputError("Embree gives no device", ErrorCause::unsupported);
     scene_ = rtcNewScene(device_);
     for (std::size_t i = 0; i < meshes.size(); ++i) attach(meshes[i], static_cast<unsigned>(i));
     // Robust: no ray passes between two triangles that share an edge.

@@ -58,8 +58,8 @@ bool add_profiles(FitProblem& problem, const DesignShape& shape, std::uint64_t r
   std::vector<FitStart> found = profile_search(problem, shape, rays, on_progress, whole);
   problem.search_rays = record.total_rays;
   // The point source's solutions stay in reserve, should the search be misled.
-  constexpr std::size_t kMost = 8;
-  if (found.size() > kMost) found.erase(found.begin() + kMost, found.end());
+  constexpr std::size_t kMax = 8;
+  if (found.size() > kMax) found.erase(found.begin() + kMax, found.end());
   problem.compared = kProfilesCompared;
   found.insert(found.end(), problem.starts.begin(), problem.starts.end());
   std::stable_sort(found.begin(), found.end(),
@@ -85,8 +85,8 @@ Optimizer optimizer(std::string_view name) {
 
 SearchSpace search_space(const DesignShape& about, const std::vector<FitStage>& stages) {
   // Enough knots for a shape, few enough for methods that learn from costs alone.
-  const int most = about.is_revolution() ? 8 : 3;
-  const int nx = std::min(most, stages.back().intervals_x), ny = std::min(most, stages.back().intervals_y);
+  const int max = about.is_revolution() ? 8 : 3;
+  const int nx = std::min(max, stages.back().intervals_x), ny = std::min(max, stages.back().intervals_y);
   const DesignShape shape = about.refined(nx, about.is_revolution() ? about.intervals_y() : ny);
   const double half = kReach * shape.aperture().outer_radius_mm();
   return {shape, {shape.parameters(), Eigen::VectorXd::Constant(shape.parameters().size(), half)}};
@@ -141,7 +141,7 @@ bool prepare_starts(FitProblem& problem, const DesignShape& shape, const std::ve
     record.total_rays = asked * rays;
     record.stage = -1;  // before the fit's first
     ++record.step;
-    progress.update("search", asked, static_cast<std::uint64_t>(options.most_evaluations));
+    progress.update("search", asked, static_cast<std::uint64_t>(options.max_evaluations));
     if (fresh && !watch(record, space.shape.with(best))) throw Stopped();
     return now;
   };

@@ -17,7 +17,7 @@ namespace lucerna {
 namespace {
 
 constexpr std::uint64_t kFitRays = std::uint64_t{1} << 20, kValidationRays = std::uint64_t{1} << 22;
-constexpr int kBins = 96, kMaxSteps = 12, kMaxRefusedSteps = 3;
+constexpr int kBins = 96, kMaxParetoSteps = 12, kMaxRefusedSteps = 3;
 /// A step that gains less than this share of the error ends a fit.
 constexpr double kMinGain = 0.01;
 /// The stronger of the two light weights, over the problem's.
@@ -36,7 +36,7 @@ DesignShape fitted(const FitProblem& problem, const DesignShape& from, std::uint
   FreeFormPoint point = fit.at(from);
   double lambda = 1e-2;
   int refused = 0;
-  for (int step = 0; step < kMaxSteps && refused < kMaxRefusedSteps; ++step) {
+  for (int step = 0; step < kMaxParetoSteps && refused < kMaxRefusedSteps; ++step) {
     if (progress.stop_requested()) throw Interrupted();
     const double before = std::sqrt(point.equations.cost);
     refused = fit.step(point, lambda) ? 0 : refused + 1;

@@ -16,14 +16,14 @@ namespace lucerna {
 namespace {
 
 constexpr std::uint64_t kTableRays = std::uint64_t{1} << 22;
-constexpr std::size_t kMostParameters = 40;
+constexpr std::size_t kMaxParameters = 40;
 /// Heights that the table knows, and sizes of random shapes, of hops, and of what counts as another shape,
 /// over the mirror's radius.
 constexpr double kHalfHeight = 0.08;
 constexpr std::array<double, 3> kPerturbations{0.01, 0.02, 0.04};
 constexpr std::array<double, 2> kHops{0.004, 0.01};
 constexpr double kApart = 0.003;
-constexpr int kFirstPerParameter = 300, kMostFirst = 3000, kFirstSteps = 12, kSecondPerParameter = 30,
+constexpr int kFirstPerParameter = 300, kMaxFirst = 3000, kFirstSteps = 12, kSecondPerParameter = 30,
               kSecondSteps = 60;
 constexpr int kHopsPerRound = 3, kHoppers = 48, kHoppersPerParameter = 5, kHopsEach = 8, kHopSteps = 30,
               kKept = 96;
@@ -75,7 +75,7 @@ class Search {
     const DesignShape few = shape_.refined(std::max(2, shape_.intervals_x() / 2), shape_.intervals_y());
     std::vector<Candidate> all;
     const int parameters =
-        std::min(static_cast<int>(shape_.parameter_count()), kMostFirst / kFirstPerParameter);
+        std::min(static_cast<int>(shape_.parameter_count()), kMaxFirst / kFirstPerParameter);
     for (int i = 0; i < kFirstPerParameter * parameters; ++i) {
       const double size = kPerturbations[static_cast<std::size_t>(i) % kPerturbations.size()];
       // Every other shape is smooth: many knots by chance alone are only waves.
@@ -161,11 +161,11 @@ class Search {
   /// The nearest shape that was traced.
   const Traced* nearest(const DesignShape& shape) const {
     const Traced* found = nullptr;
-    double least = 0.0;
+    double min = 0.0;
     for (const Traced& t : traced_) {
       const double d = (t.candidate.shape.parameters() - shape.parameters()).squaredNorm();
-      if (found != nullptr && d >= least) continue;
-      least = d;
+      if (found != nullptr && d >= min) continue;
+      min = d;
       found = &t;
     }
     return found;
@@ -188,12 +188,12 @@ class Search {
   }
 
   /// Levenberg-Marquardt on the table.
-  void descend(Candidate& c, int most_steps) const {
+  void descend(Candidate& c, int max_steps) const {
     const Traced* known = nearest(c.shape);
     NormalEquations now = equations(c.shape, known);
     double lambda = 1e-2;
     int slow = 0;
-    for (int step = 0; step < most_steps && slow < 3 && lambda < 1e4; ++step) {
+    for (int step = 0; step < max_steps && slow < 3 && lambda < 1e4; ++step) {
       Eigen::VectorXd move = damped_step(now, lambda);
       while (!(move.cwiseAbs().maxCoeff() <= kLongestMove * radius_mm_) && lambda < kMaxLambda) {
         lambda *= 4.0;
@@ -213,9 +213,9 @@ class Search {
     }
     c.cost = now.cost;
   }
-  void descend(std::vector<Candidate>& all, int most_steps) const {
+  void descend(std::vector<Candidate>& all, int max_steps) const {
     parallel_blocks(all.size(), 8, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) descend(all[i], most_steps);
+      for (std::size_t i = first; i < last; ++i) descend(all[i], max_steps);
     });
   }
 
@@ -250,7 +250,7 @@ class Search {
 bool can_search_profiles(const FitProblem& problem, const DesignShape& shape) {
   return !problem.limits && problem.rays->shadows() == nullptr && shape.is_revolution() &&
          problem.bins.is_rings() && std::abs(problem.bins.axes().ez().z) > 0.999999 &&
-         shape.parameter_count() <= kMostParameters;
+         shape.parameter_count() <= kMaxParameters;
 }
 
 std::vector<FitStart> profile_search(const FitProblem& problem, const DesignShape& shape, std::uint64_t rays,

@@ -33,12 +33,12 @@ void bound_by_etendue(const EtendueCurve& curve, const TentBins& bins, const Eig
   const double total = target.sum();
   double part = 0.0, etendue = 0.0;
   bool half = false;
-  reach.most_share = 1.0;
+  reach.max_share = 1.0;
   for (const std::size_t i : brightest_first(bins, target)) {
     part += target[static_cast<Eigen::Index>(i)] / total;
     const double cosine = std::abs(bin_direction(bins, i, {}).z());
     etendue += bins.measure()[i] * (cosine * reach.opening_mm2);
-    reach.most_share = std::min(reach.most_share, share_in(curve, etendue) / part);
+    reach.max_share = std::min(reach.max_share, share_in(curve, etendue) / part);
     if (half || part < 0.5) continue;
     half = true;
     reach.etendue_mm2sr = etendue;
@@ -55,18 +55,18 @@ std::vector<std::string> etendue_statements(const Reach& reach, TargetMode mode,
         "etendue: an opening of {:.4g} mm2 passes {:.3g} mm2 sr towards the brighter half of the target, "
         "where the sources' light needs {:.3g}; at most {:.1f} % of it can have the target's distribution, "
         "{} {:.1f} %",
-        reach.opening_mm2, reach.etendue_mm2sr, reach.needed_mm2sr, 100.0 * reach.most_share, what,
+        reach.opening_mm2, reach.etendue_mm2sr, reach.needed_mm2sr, 100.0 * reach.max_share, what,
         100.0 * share));
   };
-  const double most = kEtendueSlack * reach.most_share;
-  if (reach.wanted_share > most && reach.wanted_share <= 1.0) {
+  const double max = kEtendueSlack * reach.max_share;
+  if (reach.wanted_share > max && reach.wanted_share <= 1.0) {
     forbids("the target asks for", reach.wanted_share);
   }
-  if (mode == TargetMode::shape && most < 1.0) forbids("the sources have", 1.0);
-  if (wanted_efficiency > most) {
+  if (mode == TargetMode::shape && max < 1.0) forbids("the sources have", 1.0);
+  if (wanted_efficiency > max) {
     statements.push_back(
         fmt::format("efficiency: {:.3f} is asked for, the etendue lets {:.3f} have the target's distribution",
-                    wanted_efficiency, reach.most_share));
+                    wanted_efficiency, reach.max_share));
   }
   return statements;
 }

@@ -24,7 +24,7 @@ struct Reach {
   double opening_mm2 = 0.0, etendue_mm2sr = 0.0, needed_mm2sr = 0.0;
   /// The largest share of the sources' flux that can leave with the target's distribution: min over the
   /// brighter parts p of the target of F(étendue of p's directions) / p, F the sources' brightest flux.
-  double most_share = 1.0;
+  double max_share = 1.0;
   /// Share that the target asks for: its flux in absolute mode, 0 by shape.
   double wanted_share = 0.0;
   /// What cannot be, in one sentence each, with the figure that limits it; empty if nothing forbids the

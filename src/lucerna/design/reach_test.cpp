@@ -45,10 +45,10 @@ TEST(Reach, BoundsTheShareByTheEtendue) {
   for (const double half_deg : {2.0, 4.5}) {
     const Reach r = reach_of(half_deg, 0.5, TargetMode::absolute);
     const double expected = 101.0 * std::pow(std::sin(radians(half_deg)), 2);
-    EXPECT_NEAR(r.most_share, expected, 0.12 * expected) << half_deg;
+    EXPECT_NEAR(r.max_share, expected, 0.12 * expected) << half_deg;
     EXPECT_NEAR(r.opening_mm2, 101.0 * std::numbers::pi, 0.05 * 101.0 * std::numbers::pi);
   }
-  EXPECT_DOUBLE_EQ(reach_of(12.0, 0.9, TargetMode::absolute).most_share, 1.0);
+  EXPECT_DOUBLE_EQ(reach_of(12.0, 0.9, TargetMode::absolute).max_share, 1.0);
 }
 
 TEST(Reach, SaysWhatForbidsATarget) {
@@ -68,7 +68,7 @@ TEST(Reach, ACoilIsNotJudgedByItsFocusPlane) {
   // On its focus plane the light of a coil fills twice its étendue and would not fit (model_etendue_test).
   const Reach r = reach_of(8.0, 1.0, TargetMode::shape, 0.0, EmitterKind::filament);
   EXPECT_LT(r.needed_mm2sr, 0.7 * r.etendue_mm2sr);
-  EXPECT_GT(r.most_share, 0.96);
+  EXPECT_GT(r.max_share, 0.96);
   EXPECT_THAT(r.statements, testing::IsEmpty());
 }
 

@@ -38,8 +38,8 @@ std::vector<LimitCheck> checked_limits(const DesignProblem& problem, const Desig
   if (light.empty()) return out;
   const LightLimits::Measured found = light.measure(shape, rays, n);
   if (limits.glare) {
-    const double most = limits.glare->max_per_flux * rays.flux(), has = found.glare_per_flux * rays.flux();
-    out.push_back({"glare " + limits.glare->text, most, has, has <= most});
+    const double max = limits.glare->max_per_flux * rays.flux(), has = found.glare_per_flux * rays.flux();
+    out.push_back({"glare " + limits.glare->text, max, has, has <= max});
   }
   if (limits.min_efficiency) {
     out.push_back({"min_efficiency", *limits.min_efficiency, found.efficiency,

@@ -14,7 +14,7 @@ namespace {
 
 /// Knots along the longer side where the project does not say how many: 2.5 mm on a mirror of 120 mm, which
 /// closes the image of a hole of 8 mm.
-constexpr int kMaxIntervals = 48;
+constexpr int kMaxFreeIntervals = 48;
 
 /// Asks after every step whether to stop, and says why.
 class Stop {
@@ -56,7 +56,7 @@ void search_free_form(const SearchRun& run, const FitProblem& fit, DesignResult&
   FreeFormState state;
   if (!run.options.checkpoint.empty()) state = parse_search_checkpoint(run.options.checkpoint, run.key);
   Stop stop(run, state.total_rays, result);
-  const int intervals = run.problem.fixed_knots ? 0 : kMaxIntervals;
+  const int intervals = run.problem.fixed_knots ? 0 : kMaxFreeIntervals;
   FreeFormSearch search(fit, run.problem.start, intervals, run.options.max_rays, std::move(state));
   step_until_done(run, search, stop, result);
 }

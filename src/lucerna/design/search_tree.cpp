@@ -28,7 +28,7 @@ struct Node {
   double half = 1.0;  ///< of the range of every parameter, in the box's half widths
   /// What was seen in each cell of each parameter's range: the mean cost and how often.
   Eigen::MatrixXd mean, count;
-  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  double min = std::numeric_limits<double>::infinity(), max = 0.0;
   int evaluations = 0;
   Eigen::VectorXd best;
   std::map<std::vector<int>, std::unique_ptr<Node>> children;
@@ -42,9 +42,9 @@ struct Node {
 
   void learn(const Eigen::VectorXd& at, double cost) {
     if (!std::isfinite(cost)) return;
-    if (cost < least) best = at;
-    least = std::min(least, cost);
-    most = std::max(most, cost);
+    if (cost < min) best = at;
+    min = std::min(min, cost);
+    max = std::max(max, cost);
     ++evaluations;
     for (Eigen::Index d = 0; d < centre.size(); ++d) {
       const double u = (at[d] - centre[d]) / half;  // -1 to 1
@@ -137,7 +137,7 @@ void search_tree(GlobalSearchRun& run) {
     // Close in from the best place of every branch's last node; what is found counts all the way up.
     std::vector<HookeJeeves> local;
     for (const Branch& b : branches) {
-      local.emplace_back(b.path.back()->best, b.path.back()->least, 0.5 * b.path.back()->half);
+      local.emplace_back(b.path.back()->best, b.path.back()->min, 0.5 * b.path.back()->half);
     }
     for (int i = 0; i < kSweeps * static_cast<int>(n) && !run.spent(); ++i) {
       std::vector<Eigen::VectorXd> points;

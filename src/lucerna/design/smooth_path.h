@@ -18,7 +18,7 @@ namespace lucerna {
 enum class PathEnd { direct, reflected, back, lost };
 
 /// Reflections that a path keeps; a ray with more is lost.
-inline constexpr int kMostPathHits = 24;
+inline constexpr int kMaxPathHits = 24;
 
 /// The way of one ray, kept for its derivative.
 template <class Shape>
@@ -33,7 +33,7 @@ struct Path {
   };
   PathEnd end = PathEnd::direct;
   int hits = 0;
-  std::array<Hit, kMostPathHits> hit;
+  std::array<Hit, kMaxPathHits> hit;
   /// Where the ray leaves from, the last hit or its start, and along what.
   Vec3 origin, direction;
 };
@@ -100,7 +100,7 @@ class SmoothTracer {
         path.direction = d;
         return;
       }
-      if (what != kHitFront || path.hits == kMostPathHits) {
+      if (what != kHitFront || path.hits == kMaxPathHits) {
         path.end = what == kHitBack ? PathEnd::back : PathEnd::lost;
         return;
       }

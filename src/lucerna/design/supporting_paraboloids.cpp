@@ -13,14 +13,14 @@ namespace lucerna {
 namespace {
 
 /// Directions of the source that are transported; more only smooth what the entropy smooths anyway.
-constexpr std::size_t kMostSources = 1024;
+constexpr std::size_t kMaxSources = 1024;
 
 /// -log(1 - d . o): the logarithm of the polar radius at d of a paraboloid about o with parameter 1.
 double log_radius(const Direction& d, const Direction& o) {
   return -std::log(std::max(1e-9, 1.0 - dot(d, o)));
 }
 
-/// The source's light towards the mirror, thinned to kMostSources of equal share of the list.
+/// The source's light towards the mirror, thinned to kMaxSources of equal share of the list.
 std::vector<DirectedFlux> towards(const DesignShape& shape, const PointSource& source) {
   std::vector<DirectedFlux> hits;
   for (const DirectedFlux& l : source.light) {
@@ -38,9 +38,9 @@ std::vector<DirectedFlux> towards(const DesignShape& shape, const PointSource& s
       break;
     }
   }
-  if (hits.size() <= kMostSources) return hits;
+  if (hits.size() <= kMaxSources) return hits;
   std::vector<DirectedFlux> thinned;
-  for (std::size_t i = 0; i < kMostSources; ++i) thinned.push_back(hits[i * hits.size() / kMostSources]);
+  for (std::size_t i = 0; i < kMaxSources; ++i) thinned.push_back(hits[i * hits.size() / kMaxSources]);
   return thinned;
 }
 
@@ -69,12 +69,12 @@ class Envelope {
       for (int round = 0; round < kRounds; ++round) {
         parallel_blocks(from.size(), 64, [&](std::size_t first, std::size_t last) {
           for (auto i = static_cast<Eigen::Index>(first); i < static_cast<Eigen::Index>(last); ++i) {
-            f[i] = soft_least(((g_ - cost.col(i)) / e + b).array(), e);
+            f[i] = soft_min(((g_ - cost.col(i)) / e + b).array(), e);
           }
         });
         parallel_blocks(to.size(), 16, [&](std::size_t first, std::size_t last) {
           for (auto j = static_cast<Eigen::Index>(first); j < static_cast<Eigen::Index>(last); ++j) {
-            g_[j] = soft_least(((f - cost.row(j).transpose()) / e + a).array(), e);
+            g_[j] = soft_min(((f - cost.row(j).transpose()) / e + a).array(), e);
           }
         });
       }
@@ -90,7 +90,7 @@ class Envelope {
       const auto k = static_cast<Eigen::Index>(j);
       terms[k] = (g_[k] - sign_ * log_radius(d, to_[j].direction)) / entropy_ + b_[k];
     }
-    return std::exp(sign_ * soft_least(terms, entropy_));
+    return std::exp(sign_ * soft_min(terms, entropy_));
   }
 
  private:
@@ -104,9 +104,9 @@ class Envelope {
     return log;
   }
   /// -entropy * log(sum of exp(terms)).
-  static double soft_least(const Eigen::ArrayXd& terms, double entropy) {
-    const double most = terms.maxCoeff();
-    return -entropy * (most + std::log((terms - most).exp().sum()));
+  static double soft_min(const Eigen::ArrayXd& terms, double entropy) {
+    const double max = terms.maxCoeff();
+    return -entropy * (max + std::log((terms - max).exp().sum()));
   }
 
   std::vector<DirectedFlux> to_;
@@ -143,10 +143,10 @@ std::optional<double> height_at(const Envelope& envelope, double scale, const Ve
 std::vector<DesignShape> supporting_paraboloids(const DesignShape& family, const PointSource& source,
                                                 std::span<const DirectedFlux> wanted, double blur_rad) {
   std::vector<DirectedFlux> to;
-  double most = 0.0;
-  for (const DirectedFlux& l : wanted) most = std::max(most, l.flux);
+  double max = 0.0;
+  for (const DirectedFlux& l : wanted) max = std::max(max, l.flux);
   for (const DirectedFlux& l : wanted) {
-    if (l.flux > 1e-4 * most) to.push_back(l);
+    if (l.flux > 1e-4 * max) to.push_back(l);
   }
   std::vector<DesignShape> shapes;
   const double vertex = family.at(0.0, 0.0).z_mm, distance = source.at_mm.z - vertex;

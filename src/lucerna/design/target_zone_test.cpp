@@ -149,7 +149,7 @@ TEST(TargetZone, NamesFaultsOfRegions) {
   EXPECT_THAT(zone(""), HasSubstr("gamma_deg: is missing"));
   EXPECT_THAT(zone("gamma_deg = [20, 20]\nc_deg = 0\n"), HasSubstr("an empty range"));
   EXPECT_THAT(zone("gamma_deg = [20, 10]\nc_deg = 0\n"), HasSubstr("an empty range"));
-  EXPECT_THAT(zone("gamma_deg = [20, 190]\nc_deg = 0\n"), HasSubstr("expected within 0 to 180"));
+  EXPECT_THAT(zone("gamma_deg = [20, 190]\nc_deg = 0\n"), HasSubstr("found 190, expected 0 to 180"));
   EXPECT_THAT(zone("gamma_deg = [1, 2, 3]\nc_deg = 0\n"), HasSubstr("found 3 numbers"));
   EXPECT_THAT(zone("gamma_deg = 10\nc_deg = [-200, 200]\n"), HasSubstr("at most 360"));
   EXPECT_THAT(zone("h_deg = 10\nv_deg = 0\n"), HasSubstr("axis: is missing"));

@@ -34,11 +34,11 @@ class TimeBudget {
   /// Seconds until the time is up; below 0 after it.
   double left_s() const { return time_s_ - seconds(begin_, Clock::now()); }
 
-  /// The most of `wanted` rays (halved as often as need be, not below `least`) such that they and the
+  /// The most of `wanted` rays (halved as often as need be, not below `min`) such that they and the
   /// `others` fit into what is left.
-  std::uint64_t affordable(std::uint64_t wanted, std::uint64_t others, std::uint64_t least) const {
+  std::uint64_t affordable(std::uint64_t wanted, std::uint64_t others, std::uint64_t min) const {
     const double left = left_s();
-    while (wanted / 2 >= least && static_cast<double>(wanted + others) * per_ray_s_ > left) wanted /= 2;
+    while (wanted / 2 >= min && static_cast<double>(wanted + others) * per_ray_s_ > left) wanted /= 2;
     return wanted;
   }
 

@@ -54,8 +54,8 @@ TEST(Tolerances, TheSweepSeesWhatOpticsSays) {
   EXPECT_NEAR(figures(sweep, "shift_x+").centre.mean, figures(sweep, "shift_y+").centre.mean,
               0.05 * nominal.centre.mean);
   for (const ToleranceSpread& s : sweep.spread) {
-    EXPECT_LE(s.least.mean, s.mean.mean + 1e-12) << s.figure;
-    EXPECT_GE(s.greatest.mean, s.mean.mean - 1e-12) << s.figure;
+    EXPECT_LE(s.min.mean, s.mean.mean + 1e-12) << s.figure;
+    EXPECT_GE(s.max.mean, s.mean.mean - 1e-12) << s.figure;
   }
   EXPECT_EQ(sweep.spread[0].figure, "efficiency");
   const std::string csv = tolerances_csv(sweep);

@@ -63,9 +63,8 @@ class Sinkhorn {
     for (int i = 0; i < kIterations; ++i) {
       balance(u_, from_columns(b_.cwiseProduct(v_)));
       balance(v_, from_rows(a_.cwiseProduct(u_)));
-      const float most = std::max(u_.maxCoeff(), v_.maxCoeff()),
-                  least = std::min(u_.minCoeff(), v_.minCoeff());
-      if (most > kMaxScaling || least < 1.0f / kMaxScaling) absorb();
+      const float max = std::max(u_.maxCoeff(), v_.maxCoeff()), min = std::min(u_.minCoeff(), v_.minCoeff());
+      if (max > kMaxScaling || min < 1.0f / kMaxScaling) absorb();
     }
     absorb();
   }
@@ -76,8 +75,8 @@ class Sinkhorn {
   void soften() {
     for_rows([&](Eigen::Index i) {
       const Eigen::ArrayXf x = (g_.array() - cost_.row(i).transpose().array()) / entropy_;
-      const float most = x.maxCoeff();
-      f_[i] = -entropy_ * (most + std::log((b_.array() * (x - most).exp()).sum()));
+      const float max = x.maxCoeff();
+      f_[i] = -entropy_ * (max + std::log((b_.array() * (x - max).exp()).sum()));
     });
     u_ = Eigen::VectorXf::Ones(a_.size());
     v_ = Eigen::VectorXf::Ones(b_.size());
@@ -151,9 +150,9 @@ double PointTransport::radius(const Direction& towards) const {
                           static_cast<float>(towards.z()));
   const float per = static_cast<float>(sign_ / entropy_);
   const Eigen::ArrayXf x = potential_.array() + per * (1.0f - (wanted_ * d).array()).max(kMinOpening).log();
-  const float most = x.maxCoeff();
+  const float max = x.maxCoeff();
   const double soft =
-      -entropy_ * (static_cast<double>(most) + std::log(static_cast<double>((x - most).exp().sum())));
+      -entropy_ * (static_cast<double>(max) + std::log(static_cast<double>((x - max).exp().sum())));
   return std::exp(sign_ * soft);
 }
 

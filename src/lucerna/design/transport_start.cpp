@@ -123,10 +123,10 @@ std::vector<DirectedFlux> wanted(const TransportProblem& problem, const SplitLig
                                  const Vec3& vertex) {
   const double total = problem.reflectance * light.caught_share + light.direct.sum();
   const Eigen::VectorXd flux = (total / problem.target.sum() * problem.target - light.direct).cwiseMax(0.0);
-  const double most = flux.maxCoeff();
+  const double max = flux.maxCoeff();
   std::vector<DirectedFlux> out;
   for (Eigen::Index i = 0; i < flux.size(); ++i) {
-    if (!(flux[i] > 1e-6 * most)) continue;
+    if (!(flux[i] > 1e-6 * max)) continue;
     out.push_back({bin_direction(problem.bins, static_cast<std::size_t>(i), vertex), flux[i]});
   }
   return out;
@@ -152,9 +152,9 @@ Outline outline(const PointTransport& transport, const Aperture& aperture, const
     const double rim = rim_mm(aperture, along.x, along.y), hole = aperture.hole_radius_mm();
     Meridian out;
     double r_before = 0.0, theta_before = 0.0;
-    constexpr double kMostAngle = 0.9 * std::numbers::pi;
+    constexpr double kMaxAngle = 0.9 * std::numbers::pi;
     for (int k = 0; k < kPlaces; ++k) {
-      const double theta = kMostAngle * (k + 0.5) / kPlaces;
+      const double theta = kMaxAngle * (k + 0.5) / kPlaces;
       const Direction d = Direction::from_unit(std::sin(theta) * along + Vec3{0.0, 0.0, -std::cos(theta)});
       const Vec3 at = source + (scale * transport.radius(d)) * d.vec();
       const double r = std::hypot(at.x, at.y);

@@ -35,14 +35,14 @@ EvaluationOptions reflected_point() {
 }
 
 /// The least error against a target among shapes, whatever the scale.
-double least_error(const std::vector<DesignShape>& shapes, const DesignRays& rays, const TentBins& bins,
-                   const Eigen::VectorXd& target) {
-  double least = 1e9;
+double min_error(const std::vector<DesignShape>& shapes, const DesignRays& rays, const TentBins& bins,
+                 const Eigen::VectorXd& target) {
+  double min = 1e9;
   for (const DesignShape& s : shapes) {
     const Evaluation e = evaluate(s, Reflectance(1.0), rays, bins, reflected_point());
-    least = std::min(least, bin_error(e, target, bins, TargetMode::shape).relative_rms);
+    min = std::min(min, bin_error(e, target, bins, TargetMode::shape).relative_rms);
   }
-  return least;
+  return min;
 }
 
 /// Light of an intensity over direction cosines, as small cells.
@@ -89,8 +89,8 @@ TEST(ZeroEtendue, APointSourceGivesAnyRotationalBeam) {
   const std::vector<DesignShape> shapes =
       zero_etendue_shapes(plain, point_source(rays, kPointRays), wanted, 0.0);
   ASSERT_GE(shapes.size(), 2u);
-  EXPECT_LT(least_error(shapes, rays, bins, target), 0.06);
-  EXPECT_GT(least_error({plain}, rays, bins, target), 0.9);
+  EXPECT_LT(min_error(shapes, rays, bins, target), 0.06);
+  EXPECT_GT(min_error({plain}, rays, bins, target), 0.9);
   for (const DesignShape& s : shapes) EXPECT_NEAR(s.at(0, 0).z_mm, 0.0, 0.05);
 }
 
@@ -106,8 +106,8 @@ TEST(ZeroEtendue, ParaboloidsMakeARectangleOfLight) {
   const std::vector<DesignShape> shapes =
       zero_etendue_shapes(plain, point_source(rays, kPointRays), wanted, 0.05);
   ASSERT_GE(shapes.size(), 1u);
-  EXPECT_LT(least_error(shapes, rays, bins, target), 0.35);
-  EXPECT_GT(least_error({plain}, rays, bins, target), 0.8);
+  EXPECT_LT(min_error(shapes, rays, bins, target), 0.35);
+  EXPECT_GT(min_error({plain}, rays, bins, target), 0.8);
 }
 
 TEST(ZeroEtendue, ATroughSpreadsTheLightOfALine) {
@@ -149,9 +149,9 @@ TEST(ZeroEtendue, ATroughSpreadsTheLightOfALine) {
   Eigen::VectorXd target = Eigen::VectorXd::Zero(12);
   target.segment(1, 5).setConstant(1.0 / 15.0);
   target.segment(6, 5).setConstant(2.0 / 15.0);
-  double least = 1e9;
-  for (const DesignShape& s : shapes) least = std::min(least, (shares(s) - target).norm() / target.norm());
-  EXPECT_LT(least, 0.12);
+  double min = 1e9;
+  for (const DesignShape& s : shapes) min = std::min(min, (shares(s) - target).norm() / target.norm());
+  EXPECT_LT(min, 0.12);
   EXPECT_GT((shares(plain) - target).norm() / target.norm(), 0.8);
 }
 

@@ -135,9 +135,9 @@ std::vector<ZoneCheck> check_zones(const ZoneCells& cells, std::span<const BoxSu
 double missing_in_zones(std::span<const ZoneCheck> zones) {
   double sum = 0.0;
   for (const ZoneCheck& zone : zones) {
-    double most = 0.0;
-    for (const ZoneBoundCheck& b : zone.bounds) most = std::max(most, b.missing);
-    sum += most;
+    double max = 0.0;
+    for (const ZoneBoundCheck& b : zone.bounds) max = std::max(max, b.missing);
+    sum += max;
   }
   return sum;
 }

@@ -55,8 +55,8 @@ TEST(ZoneCheck, FindsTheExtremesAndWhatIsMissing) {
 }
 
 TEST(ZoneCheck, DecidesOnlyBeyondTheNoise) {
-  const auto verdict = [](double least, double relative) {
-    return check({"min_lx", true, 10.0}, {12, 20, least, 16}, relative).verdict();
+  const auto verdict = [](double min, double relative) {
+    return check({"min_lx", true, 10.0}, {12, 20, min, 16}, relative).verdict();
   };
   EXPECT_EQ(verdict(10.5, 0.01), ZoneVerdict::met);  // 4.8 errors
   EXPECT_EQ(verdict(10.3, 0.01), ZoneVerdict::undetermined);

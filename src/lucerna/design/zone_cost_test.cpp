@@ -180,13 +180,13 @@ TEST(ZoneCost, ASearchEndsWithTheBandsHeld) {
     const auto field = static_cast<Eigen::Index>(p.zones.cells->first(1));
     return std::pair(x.head(field).minCoeff(), x.tail(x.size() - field).maxCoeff());
   };
-  const auto [least, most] = range(search.best());
-  const auto [least_given, most_given] = range(given);
+  const auto [min, max] = range(search.best());
+  const auto [min_given, max_given] = range(given);
   // What coarse knots and few rays leave is some per cent; the given mirror has a spot.
-  EXPECT_GT(least, 0.93 * 250.0);
-  EXPECT_LT(most, 1.07 * 700.0);
-  EXPECT_LT(least_given, 50.0);
-  EXPECT_GT(most_given, 2000.0);
+  EXPECT_GT(min, 0.93 * 250.0);
+  EXPECT_LT(max, 1.07 * 700.0);
+  EXPECT_LT(min_given, 50.0);
+  EXPECT_GT(max_given, 2000.0);
 }
 
 }  // namespace

@@ -21,11 +21,11 @@ constexpr double kMaxGap_deg = 15.0, kMaxGapShare = 0.25;
 constexpr int kMapCells = 96;
 
 double absolute_level(const TargetZone& zone) {
-  const ZoneBound* least = zone.bound(true, ZoneReference::absolute);
-  const ZoneBound* most = zone.bound(false, ZoneReference::absolute);
-  if (least == nullptr) return 0.0;
-  const double level = kAbove * least->value;
-  return most == nullptr ? level : std::min(level, 0.5 * (least->value + most->value));
+  const ZoneBound* min = zone.bound(true, ZoneReference::absolute);
+  const ZoneBound* max = zone.bound(false, ZoneReference::absolute);
+  if (min == nullptr) return 0.0;
+  const double level = kAbove * min->value;
+  return max == nullptr ? level : std::min(level, 0.5 * (min->value + max->value));
 }
 
 /// What each zone suggests; 0 where it has no minimum.
@@ -78,8 +78,8 @@ class Guide {
     for (std::size_t c = 0; c < hit_.size(); ++c) {
       if (hit_[c] == 0.0) continue;
       const TargetZone& zone = zones_.zones()[zones_.cells()[c].zone];
-      if (const ZoneBound* most = zone.bound(false, ZoneReference::absolute)) {
-        value = std::min(value, kBelow * most->value);
+      if (const ZoneBound* max = zone.bound(false, ZoneReference::absolute)) {
+        value = std::min(value, kBelow * max->value);
       }
     }
     return value;

@@ -18,11 +18,11 @@ namespace {
 
 constexpr std::size_t kZones = 100, kHeightLevels = 5;
 /// Cells of arriving light per zone at most, and turns.
-constexpr double kMostCells = 4096.0, kMostTurns = 400.0;
+constexpr double kMaxTableCells = 4096.0, kMaxTurns = 400.0;
 /// Longest step of an angle over what the source spreads.
 constexpr double kStepShare = 0.06;
 /// Where light meets a zone nearly along its face, how much more of it a tilted zone may catch.
-constexpr double kMostGain = 8.0;
+constexpr double kMaxGain = 8.0;
 /// Parts that the rays are counted in, by their number alone: sums never depend on threads.
 constexpr std::uint64_t kParts = 4;
 
@@ -101,33 +101,33 @@ ZoneTable::ZoneTable(const DesignShape& family, const Reflectance& reflectance, 
 ZoneTable::Grid ZoneTable::make_grid(const DesignRays& rays, std::uint64_t blocks, double extent,
                                      double cell) {
   Grid grid;
-  double half_chi = 0.0, most_beta = 0.0;  // how far the source spreads its light about its middle
+  double half_chi = 0.0, max_beta = 0.0;  // how far the source spreads its light about its middle
   for (std::uint64_t b = 0; b < blocks; b += kLookAtBlocks) {
     for (std::size_t i = 0; i < kBlockRays; ++i) {
       for (const double level_mm : {-half_height_mm_, half_height_mm_}) {
         Arrival a;
         if (!arrive(rays.block(b), i, level_mm, a)) continue;
         half_chi = std::max(half_chi, std::abs(a.chi - middle_chi(a.r, a.z)));
-        most_beta = std::max(most_beta, a.beta);
+        max_beta = std::max(max_beta, a.beta);
       }
     }
   }
   // Fine beside the rings, and beside what one zone throws.
-  const double extent_of_turns = std::min(std::numbers::pi, extent + cell + half_chi + most_beta);
-  grid.step = std::min(0.5 * cell, kStepShare * std::max(half_chi, most_beta));
-  grid.step = std::max(grid.step, extent_of_turns / kMostTurns);
-  const double cells = (2.0 * half_chi / grid.step + 1.0) * (most_beta / grid.step + 1.0);
-  grid.step *= std::max(1.0, std::sqrt(cells / kMostCells));
+  const double extent_of_turns = std::min(std::numbers::pi, extent + cell + half_chi + max_beta);
+  grid.step = std::min(0.5 * cell, kStepShare * std::max(half_chi, max_beta));
+  grid.step = std::max(grid.step, extent_of_turns / kMaxTurns);
+  const double cells = (2.0 * half_chi / grid.step + 1.0) * (max_beta / grid.step + 1.0);
+  grid.step *= std::max(1.0, std::sqrt(cells / kMaxTableCells));
   grid.chis = 2 * static_cast<std::size_t>(std::ceil(half_chi / grid.step)) + 3;
   grid.half_chi = 0.5 * static_cast<double>(grid.chis - 1) * grid.step;
-  grid.betas = static_cast<std::size_t>(std::ceil(most_beta / grid.step)) + 2;
+  grid.betas = static_cast<std::size_t>(std::ceil(max_beta / grid.step)) + 2;
 
   turn_step_ = 2.0 * grid.step;
   turns_ = 2 * static_cast<std::size_t>(std::ceil(extent_of_turns / turn_step_)) + 1;
   half_turn_ = 0.5 * static_cast<double>(turns_ - 1) * turn_step_;
 
-  const std::size_t most_off = turns_ + grid.chis;
-  for (std::size_t off = 0; off < most_off; ++off) {
+  const std::size_t max_off = turns_ + grid.chis;
+  for (std::size_t off = 0; off < max_off; ++off) {
     for (std::size_t b = 0; b < grid.betas; ++b) {
       const double cosine =
           std::cos(static_cast<double>(b) * grid.step) * std::cos(static_cast<double>(off) * grid.step);
@@ -237,8 +237,8 @@ void ZoneTable::fill(std::size_t level, std::size_t zone, const Light& light, co
       const double chi = static_cast<double>(c) * grid.step - grid.half_chi + middle;
       const double facing = std::cos(chi - slope), on_base = std::cos(chi - base_angle);
       if (!(facing > 0.0)) continue;
-      // What a flat square mm of the aperture catches, at most kMostGain times the base's share.
-      const double caught = std::min(facing / std::cos(slope), kMostGain * on_base / std::cos(base_angle));
+      // What a flat square mm of the aperture catches, at most kMaxGain times the base's share.
+      const double caught = std::min(facing / std::cos(slope), kMaxGain * on_base / std::cos(base_angle));
       const auto gain = static_cast<float>(std::max(0.0, caught) * reflectance.at(std::min(1.0, facing)));
       const auto off = static_cast<std::ptrdiff_t>(c) - static_cast<std::ptrdiff_t>(grid.chis / 2) -
                        2 * (static_cast<std::ptrdiff_t>(t) - static_cast<std::ptrdiff_t>(turns_ / 2));

@@ -16,15 +16,15 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 /// Planes further apart than this are cut.
-constexpr std::size_t kFewestPlanes = 72;
+constexpr std::size_t kMinPlanes = 72;
 /// Planes to either side that a kernel spans at least: a mean needs its neighbours, a quadratic two of them.
 constexpr double kMeanPlanes = 1.2, kFitPlanes = 2.4;
 constexpr double kWidestC_rad = kWidestKernelC_deg * std::numbers::pi / 180.0;
 
 /// Into how many parts each of `planes` is cut; odd, so that one lies where the plane was.
 std::size_t parts_of(std::size_t planes) {
-  if (planes >= kFewestPlanes) return 1;
-  return ((kFewestPlanes + planes - 1) / planes) | std::size_t{1};
+  if (planes >= kMinPlanes) return 1;
+  return ((kMinPlanes + planes - 1) / planes) | std::size_t{1};
 }
 
 /// The directions of growing C and gamma about a direction.

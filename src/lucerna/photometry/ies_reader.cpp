@@ -356,13 +356,13 @@ void report_tilt(const IesBody& body, std::size_t line, PhotometricOrigin& origi
     log.note(line, "0 tilt factors");
     return;
   }
-  const auto [least, most] =
+  const auto [min, max] =
       std::minmax_element(body.tilt_factors.begin(), body.tilt_factors.end(),
                           [](const auto& a, const auto& b) { return a.second < b.second; });
   log.note(line,
            "{} tilt factors kept, not applied: {} to {} for lamp tilts of {} to {} deg (lamp geometry {}); "
            "intensities hold for the luminaire as measured",
-           body.tilt_factors.size(), least->second, most->second, body.tilt_factors.front().first,
+           body.tilt_factors.size(), min->second, max->second, body.tilt_factors.front().first,
            body.tilt_factors.back().first, body.tilt_geometry);
 }
 

@@ -17,8 +17,8 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kMostCells = std::size_t{1} << 24;
-constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
+constexpr std::size_t kMaxMapCells = std::size_t{1} << 24;
+constexpr std::uint64_t kMaxMapBytes = std::uint64_t{1} << 30;
 
 /// A text of lines, and the errors in them.
 struct Text {
@@ -66,7 +66,7 @@ IlluminanceMap from_rows(const Text& text, const std::vector<std::string_view>& 
       text.fail(i + 1, fmt::format("found {} numbers, expected {} as in the first row", row.size(), map.nx));
     }
     map.nx = row.size();
-    if ((rows.size() + 1) * map.nx > kMostCells) text.fail(i + 1, "more than 16 M cells");
+    if ((rows.size() + 1) * map.nx > kMaxMapCells) text.fail(i + 1, "more than 16 M cells");
     rows.push_back(std::move(row));
   }
   map.ny = rows.size();
@@ -107,7 +107,7 @@ IlluminanceMap from_places(const Text& text, const std::vector<std::string_view>
     if (words.size() < 3) {
       text.fail(i + 1, fmt::format("found {} columns, expected x_mm, y_mm and a value", words.size()));
     }
-    if (cells.size() == kMostCells) text.fail(i + 1, "more than 16 M cells");
+    if (cells.size() == kMaxMapCells) text.fail(i + 1, "more than 16 M cells");
     cells.push_back({text.number(words[0], i + 1), text.number(words[1], i + 1),
                      text.illuminance(words[2], i + 1), i + 1});
     xs.push_back(cells.back().x);
@@ -156,7 +156,7 @@ double IlluminanceMap::at(double u, double v) const {
 }
 
 IlluminanceMap read_illuminance_csv(const std::filesystem::path& path) {
-  const Text text{path.string(), decoded_text(read_file(path, kMostBytes))};
+  const Text text{path.string(), decoded_text(read_file(path, kMaxMapBytes))};
   const std::vector<std::string_view> lines = lines_of(text.decoded);
   std::size_t first = 0;
   while (first < lines.size() && (trimmed(lines[first]).empty() || trimmed(lines[first]).front() == '#')) {

@@ -73,10 +73,10 @@ TEST(JackknifeStatistical, TheLargestOfManyIsNotTooLarge) {
       truth = std::max(truth, mean);
       candidates.push_back(noisy(mean, kSpread, rng));
     }
-    const LargestFigure most = largest(candidates);
-    plain += (candidates[most.index].all() - truth) / kRuns;
-    corrected += (most.estimate.mean - truth) / kRuns;
-    if (std::abs(most.estimate.mean - truth) <= kIntervalErrors * most.estimate.standard_error) ++inside;
+    const LargestFigure max = largest(candidates);
+    plain += (candidates[max.index].all() - truth) / kRuns;
+    corrected += (max.estimate.mean - truth) / kRuns;
+    if (std::abs(max.estimate.mean - truth) <= kIntervalErrors * max.estimate.standard_error) ++inside;
   }
   EXPECT_GT(plain, 0.5 * kError);
   EXPECT_LT(std::abs(corrected), 0.3 * kError);
@@ -86,10 +86,10 @@ TEST(JackknifeStatistical, TheLargestOfManyIsNotTooLarge) {
 TEST(Jackknife, WithNothingToChooseTheLargestIsItself) {
   Rng rng(5, 1);
   const std::vector<Jackknife> candidates{noisy(10.0, 0.1, rng), noisy(20.0, 0.1, rng), noisy(5.0, 0.1, rng)};
-  const LargestFigure most = largest(candidates);
-  EXPECT_EQ(most.index, 1u);
-  EXPECT_NEAR(most.estimate.mean, candidates[1].all(), 1e-9);
-  EXPECT_NEAR(most.estimate.standard_error, candidates[1].estimate().standard_error, 1e-9);
+  const LargestFigure max = largest(candidates);
+  EXPECT_EQ(max.index, 1u);
+  EXPECT_NEAR(max.estimate.mean, candidates[1].all(), 1e-9);
+  EXPECT_NEAR(max.estimate.standard_error, candidates[1].estimate().standard_error, 1e-9);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ constexpr double kLevelAlongC = 0.8;
 constexpr double kSpacing = 0.5;
 /// Directions are candidates down to this share of the brightest: the fit moves a kernel mean by less.
 constexpr double kCandidateShare = 0.9;
-constexpr std::size_t kMostCandidates = 400;
+constexpr std::size_t kMaxCandidates = 400;
 /// Where a kernel's mean is below this share of the largest, kernels of half the solid angle need not look.
 constexpr double kDarkShare = 0.1;
 /// Each candidate's quadratic is looked at on a stencil of this many points a side within its spacing.
@@ -168,11 +168,11 @@ Candidates candidates(const CountedSphere& sphere, const Scan& s, const Kernel& 
   for (std::size_t i = 0; i < s.cd.size(); ++i) {
     if (s.cd[i] >= kCandidateShare * s.cd[s.best]) chosen.push_back(i);
   }
-  if (chosen.size() > kMostCandidates) {
+  if (chosen.size() > kMaxCandidates) {
     std::nth_element(
-        chosen.begin(), chosen.begin() + kMostCandidates, chosen.end(),
+        chosen.begin(), chosen.begin() + kMaxCandidates, chosen.end(),
         [&](std::size_t a, std::size_t b) { return std::pair(-s.cd[a], a) < std::pair(-s.cd[b], b); });
-    chosen.resize(kMostCandidates);
+    chosen.resize(kMaxCandidates);
     std::sort(chosen.begin(), chosen.end());
   }
   Candidates out;
@@ -196,9 +196,9 @@ Candidates candidates(const CountedSphere& sphere, const Scan& s, const Kernel& 
 double apart_deg(const Direction& a, const Direction& b) { return degrees(angle_between(a, b)); }
 
 /// Whether a candidate far from the brightest is as bright within the error of the difference.
-void find_rivals(const Candidates& c, const LargestFigure& most, const PeakEstimate& p, bool& other_c,
+void find_rivals(const Candidates& c, const LargestFigure& max, const PeakEstimate& p, bool& other_c,
                  bool& other_gamma) {
-  const TypeCAngles at = type_c_angles(c.direction(most.index));
+  const TypeCAngles at = type_c_angles(c.direction(max.index));
   for (std::size_t i = 0; i < c.cd.size(); ++i) {
     const TypeCAngles a = type_c_angles(c.direction(i));
     const double turn = std::remainder(a.c_rad - at.c_rad, 2.0 * std::numbers::pi);
@@ -207,7 +207,7 @@ void find_rivals(const Candidates& c, const LargestFigure& most, const PeakEstim
     const bool far_c = across > 2.0 * p.c_radius_deg;
     const bool far_gamma = std::abs(degrees(a.gamma_rad - at.gamma_rad)) > 2.0 * p.radius_deg;
     if (!far_c && !far_gamma) continue;
-    Jackknife difference = c.cd[most.index];
+    Jackknife difference = c.cd[max.index];
     difference.add(-1.0, c.cd[i].values());
     const Estimate e = difference.estimate();
     if (e.mean > 2.0 * e.standard_error) continue;
@@ -251,10 +251,10 @@ double scatter(const std::vector<double>& angles) {
 }
 
 /// Direction, its error and whether it is determined.
-void place_peak(const Candidates& c, const LargestFigure& most, PeakEstimate& p) {
+void place_peak(const Candidates& c, const LargestFigure& max, PeakEstimate& p) {
   std::vector<Direction> draws = tops(c);
   // A place is read off a stencil: a part of its step is the least error.
-  const double least = p.radius_deg * kSpacing / (kStencil - 1) / std::sqrt(12.0);
+  const double min = p.radius_deg * kSpacing / (kStencil - 1) / std::sqrt(12.0);
   p.direction = draws.front();
   draws.erase(draws.begin());
   const TypeCAngles at = type_c_angles(p.direction);
@@ -268,12 +268,12 @@ void place_peak(const Candidates& c, const LargestFigure& most, PeakEstimate& p)
       along.push_back(degrees(type_c_angles(d).gamma_rad - at.gamma_rad));
       across.push_back(std::sqrt(std::max(0.0, gaps.back() * gaps.back() - along.back() * along.back())));
     }
-    p.direction_error_deg = std::hypot(scatter(gaps), least);
-    gamma_error = std::hypot(scatter(along), least);
-    c_error = std::hypot(scatter(across), least) / std::max(std::sin(at.gamma_rad), 1e-9);
+    p.direction_error_deg = std::hypot(scatter(gaps), min);
+    gamma_error = std::hypot(scatter(along), min);
+    c_error = std::hypot(scatter(across), min) / std::max(std::sin(at.gamma_rad), 1e-9);
   }
   bool other_c = false, other_gamma = false;
-  find_rivals(c, most, p, other_c, other_gamma);
+  find_rivals(c, max, p, other_c, other_gamma);
   const double from_pole = degrees(std::min(at.gamma_rad, std::numbers::pi - at.gamma_rad));
   if (!other_gamma) p.gamma_deg = Estimate{degrees(at.gamma_rad), gamma_error};
   // The draws of a ring of light are far apart too, but all as far from the axis.
@@ -305,10 +305,10 @@ std::optional<FoundPeak> peak_estimate(const CountedSphere& sphere) {
   p.c_radius_deg = kernel.c_radius_deg;
   s = scan(sphere, kernel, &*s);
   const Candidates c = candidates(sphere, *s, kernel);
-  const LargestFigure most = largest(c.cd);
-  p.cd = most.estimate;
-  p.values = most.values;
-  place_peak(c, most, p);
+  const LargestFigure max = largest(c.cd);
+  p.cd = max.estimate;
+  p.values = max.values;
+  place_peak(c, max, p);
   return p;
 }
 

@@ -19,10 +19,10 @@
 namespace lucerna {
 namespace {
 
-/// `from`, `to` and up to `most` multiples of 2.5 between them.
-std::vector<double> random_angles(Rng& rng, double from, double to, std::uint32_t most) {
+/// `from`, `to` and up to `max` multiples of 2.5 between them.
+std::vector<double> random_angles(Rng& rng, double from, double to, std::uint32_t max) {
   std::set<double> angles{from, to};
-  for (std::uint32_t i = rng.bits() % (most + 1); i > 0; --i)
+  for (std::uint32_t i = rng.bits() % (max + 1); i > 0; --i)
     angles.insert(from + 2.5 * std::floor(rng.uniform() * (to - from) / 2.5));
   return {angles.begin(), angles.end()};
 }

@@ -97,7 +97,7 @@ std::optional<Jackknife> Section::measured(std::size_t radius, const Jackknife& 
 template <class Measure>
 std::optional<Jackknife> Section::best(const Jackknife& threshold, const Measure& measure) {
   std::optional<Jackknife> found;
-  double least = 0.0;
+  double min = 0.0;
   const Jackknife levels = threshold.draws();
   std::vector<Estimate> smaller;
   std::optional<Jackknife> next = measured(0, levels, measure);
@@ -119,13 +119,13 @@ std::optional<Jackknife> Section::best(const Jackknife& threshold, const Measure
     }
     smaller.push_back({here->all(), error});
     error = std::sqrt(error * error + moved);
-    if (!found || error < least) {
+    if (!found || error < min) {
       found = with_error(*here, error);
-      least = error;
+      min = error;
     }
     if (error <= std::max(kGood_deg, kGoodShare * here->all())) break;
   }
-  if (found && least > kUnknown_deg && least > kUnknownShare * found->all()) return std::nullopt;
+  if (found && min > kUnknown_deg && min > kUnknownShare * found->all()) return std::nullopt;
   return found;
 }
 

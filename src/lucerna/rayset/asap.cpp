@@ -13,7 +13,7 @@ namespace lucerna {
 namespace {
 
 constexpr std::int32_t kCode = 247, kCodeStep = 1024;
-constexpr std::size_t kFewestWords = 7, kMostWords = 64, kHeaderRecords = 5, kNameSize = 8, kLabelSize = 16;
+constexpr std::size_t kMinWords = 7, kMaxWords = 64, kHeaderRecords = 5, kNameSize = 8, kLabelSize = 16;
 constexpr std::string_view kFluxName = "Tot Flux", kLetters = "XYZABCF";
 struct AsapUnit {
   std::string_view name, label;
@@ -24,7 +24,7 @@ constexpr std::array<AsapUnit, 4> kAsapUnits{{{"mm", "MM"}, {"cm", "CM"}, {"m", 
 std::size_t words_from(std::int32_t code) {
   if (code < kCode || (code - kCode) % kCodeStep != 0) return 0;
   const auto words = static_cast<std::size_t>((code - kCode) / kCodeStep);
-  return words >= kFewestWords && words <= kMostWords ? words : 0;
+  return words >= kMinWords && words <= kMaxWords ? words : 0;
 }
 
 std::size_t words_of(const InputFile& file) {
@@ -93,13 +93,13 @@ class AsapWriter final : public RayWriter {
   AsapWriter(const std::filesystem::path& path, const RaySetHeader& header, const WriteOptions& options)
       : writer_(path, layout_for(header, options)) {
     warnings_ = losses(header, "asap", {});
-    constexpr std::size_t kRecord = 4 * kFewestWords;
+    constexpr std::size_t kRecord = 4 * kMinWords;
     std::vector<std::byte> head(kHeaderRecords * kRecord);
     const auto text = [&](std::size_t offset, std::size_t size, std::string_view value) {
       std::memset(head.data() + offset, ' ', size);
       std::memcpy(head.data() + offset, value.data(), std::min(size, value.size()));
     };
-    store(head, 0, kCode + kCodeStep * static_cast<std::int32_t>(kFewestWords));
+    store(head, 0, kCode + kCodeStep * static_cast<std::int32_t>(kMinWords));
     text(kRecord, 24, header.texts.light_source);
     text(2 * kRecord, kNameSize, kFluxName);
     store(head, 2 * kRecord + kNameSize, static_cast<float>(header.flux().value_or(0.0)));
@@ -130,7 +130,7 @@ class AsapWriter final : public RayWriter {
   }
 
  private:
-  static constexpr std::size_t kCountRecord = 12 * kFewestWords;
+  static constexpr std::size_t kCountRecord = 12 * kMinWords;
 
   static RecordLayout layout_for(const RaySetHeader& header, const WriteOptions& options) {
     if (std::ranges::find(kAsapUnits, options.length_unit, &AsapUnit::name) == kAsapUnits.end()) {

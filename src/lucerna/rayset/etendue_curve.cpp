@@ -15,7 +15,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kMostCurveRays = 1 << 20, kBins = 32, kFewest = 8;
+constexpr std::size_t kMaxCurveRays = 1 << 20, kBins = 32, kMin = 8;
 /// Log-likelihood that a cut must gain: with 4 x 31 cuts to choose from, about one in 20 would by chance in
 /// even light.
 constexpr double kGain = 8.0;
@@ -107,7 +107,7 @@ class Tree {
  private:
   void grow(std::size_t index, std::span<Point> points, int depth) {
     for (const Point& p : points) nodes_[index].trained += p.weight;
-    if (points.size() < kFewest || depth == kDeepest) return;
+    if (points.size() < kMin || depth == kDeepest) return;
     const Cut cut = best_cut(nodes_[index], points, scale_);
     if (cut.axis < 0) return;
     const auto d = static_cast<std::size_t>(cut.axis);
@@ -148,7 +148,7 @@ std::array<std::array<std::vector<Point>, 2>, 2> phase_space(const RayBlock& ray
   const Vec3 mean = *summary.mean_direction;
   const Direction axis = length(mean) < 0.2 ? Direction() : Direction::from(mean);
   const Frame plane_from_world = Frame::from_z(axis, summary.virtual_focus->point_mm).inverse();
-  const std::size_t n = std::min(kMostCurveRays, rays.size());
+  const std::size_t n = std::min(kMaxCurveRays, rays.size());
   for (std::size_t j = 0; j < n; ++j) {
     const std::size_t i = rays.size() * j / n;
     const Ray ray = plane_from_world.ray(rays.ray(i));

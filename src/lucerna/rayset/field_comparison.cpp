@@ -18,7 +18,7 @@ namespace lucerna {
 namespace {
 
 constexpr std::size_t kFieldBlock = std::size_t{1} << 16;
-constexpr double kLeastRays = 1000.0;
+constexpr double kMinRays = 1000.0;
 /// Of the dealing out of rays: not the seed of any source.
 constexpr std::uint64_t kDealSeed = 0x9e3779b97f4a7c15u;
 
@@ -178,7 +178,7 @@ MarkCounts count_marks(const RayBlock& rays, const ViewWindow& window, std::size
 /// A window about what `mark` gives of the reference, the axes' cells as they are set in `window`; how many
 /// rays that were.
 template <class MarkOf>
-std::size_t fit_window_to(const RayBlock& rays, double least_mm, const MarkOf& mark, ViewWindow& window) {
+std::size_t fit_window_to(const RayBlock& rays, double min_mm, const MarkOf& mark, ViewWindow& window) {
   WindowPoints points;
   std::vector<double> weights;
   for (const std::size_t i : stratified_choice(rays.size(), Views::kWindowRays * 4)) {
@@ -187,12 +187,12 @@ std::size_t fit_window_to(const RayBlock& rays, double least_mm, const MarkOf& m
     points.push_back(m->at);
     weights.push_back(m->weight);
   }
-  if (!points.empty()) fit_view_window(points, weights, {least_mm, least_mm, 0.0, 0.0}, window);
+  if (!points.empty()) fit_view_window(points, weights, {min_mm, min_mm, 0.0, 0.0}, window);
   return points.size();
 }
 
 /// A length below which float32 rays have no structure (as in view.cpp).
-double least_width_mm(const Views& views) {
+double min_width_mm(const Views& views) {
   return 1e-4 * std::max({views.frame().radius_mm, length(views.frame().world_from_view.origin_mm()), 1e-3});
 }
 
@@ -238,7 +238,7 @@ FieldCorrelations field_correlations(const ViewCounts& reference, const ViewCoun
   };
   ViewWindow window;
   window.cells = {64, 64, 1, 1};
-  if (fit_window_to(reference_rays, least_width_mm(views), mark, window) == 0) return result;
+  if (fit_window_to(reference_rays, min_width_mm(views), mark, window) == 0) return result;
   const std::size_t cells = window.cells[0] * window.cells[1];
   const MarkCounts p = count_marks(reference_rays, window, cells, mark),
                    q = count_marks(test_rays, window, cells, mark);
@@ -256,10 +256,10 @@ std::optional<LuminanceImage> luminance_image(const Views& views, const RayBlock
   const Frame world_from_look =
       from == LookFrom::front ? view : Frame(-1.0 * view.ez(), view.ey(), view.ex(), view.origin_mm());
   const Frame look_from_world = world_from_look.inverse();
-  const double least_cosine = std::cos(kLookCone_rad);
+  const double min_cosine = std::cos(kLookCone_rad);
   const auto mark = [&](const Ray& ray, double weight) -> std::optional<Mark> {
     const Vec3 d = look_from_world.vector(ray.direction);
-    if (!(d.z > least_cosine) || !(weight > 0.0)) return std::nullopt;
+    if (!(d.z > min_cosine) || !(weight > 0.0)) return std::nullopt;
     const Vec3 p = look_from_world.point(ray.origin_mm);
     const double t = -p.z / d.z;
     return Mark{{p.x + t * d.x, p.y + t * d.y, 0.0, 0.0}, weight / d.z};
@@ -267,7 +267,7 @@ std::optional<LuminanceImage> luminance_image(const Views& views, const RayBlock
   LuminanceImage image;
   constexpr std::size_t n = LuminanceImage::kCells;
   image.window.cells = {n, n, 1, 1};
-  if (static_cast<double>(fit_window_to(reference, least_width_mm(views), mark, image.window)) < kLeastRays) {
+  if (static_cast<double>(fit_window_to(reference, min_width_mm(views), mark, image.window)) < kMinRays) {
     return std::nullopt;
   }
   double half = 0.0;
@@ -278,7 +278,7 @@ std::optional<LuminanceImage> luminance_image(const Views& views, const RayBlock
     image.window.low[k] = middle - half;
     image.window.high[k] = middle + half;
   }
-  const double cell_mm = 2.0 * half / n, cone_sr = 2.0 * std::numbers::pi * (1.0 - least_cosine);
+  const double cell_mm = 2.0 * half / n, cone_sr = 2.0 * std::numbers::pi * (1.0 - min_cosine);
   const auto picture = [&](const RayBlock& rays) {
     std::vector<double> cells = count_marks(rays, image.window, n * n, mark).weights;
     const double total = sum_of_weights(rays);

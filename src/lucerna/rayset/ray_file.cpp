@@ -57,14 +57,16 @@ const Format& format_named(std::string_view name) {
 }
 
 std::optional<std::string> detect(const InputFile& file) {
-  if (file.size() == 0) throw InputError(fmt::format("{}: empty file, rays expected", file.name()));
+  if (file.size() == 0)
+    throw InputError(fmt::format("{}: empty file, rays expected", file.name()), ErrorCause::damaged);
   std::vector<std::string> candidates;
   for (const Format& format : kFormats) {
     if (format.looks_like(file)) candidates.emplace_back(format.name);
   }
   if (candidates.size() > 1) {
-    throw_input_error_for("format", file.name(), "", "could be {}: expected to be told which",
-                          fmt::join(candidates, " or "));
+    throw InputError(
+        fmt::format("{}: could be {}: expected to be told which", file.name(), fmt::join(candidates, " or ")),
+        ErrorCause::missing, "format");
   }
   if (candidates.empty()) return std::nullopt;
   return candidates.front();
@@ -134,8 +136,9 @@ std::vector<std::string> write_ray_set(const std::filesystem::path& path, const 
 
 double require_flux(const RaySetHeader& header, std::string_view name) {
   if (const auto flux = header.flux()) return *flux;
-  throw_input_error_for("flux", name, "", "states no total flux in {}: it has to be given",
-                        symbol(header.flux_unit));
+  throw InputError(
+      fmt::format("{}: states no total flux in {}: it has to be given", name, symbol(header.flux_unit)),
+      ErrorCause::missing, "flux");
 }
 
 }  // namespace lucerna

@@ -11,7 +11,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kMostKept = 1 << 20;
+constexpr std::uint64_t kMaxKept = 1 << 20;
 
 /// Wavelengths of the rays seen so far.
 struct Range {
@@ -43,7 +43,7 @@ RayFileInfo describe_ray_file(const std::filesystem::path& path, const ReadOptio
                               Progress& progress) {
   const auto reader = open_ray_file(path, options);
   const auto wavelength = find_column(reader->header().columns, ColumnKind::wavelength_nm);
-  const std::uint64_t step = std::max<std::uint64_t>(1, (reader->ray_count() + kMostKept - 1) / kMostKept);
+  const std::uint64_t step = std::max<std::uint64_t>(1, (reader->ray_count() + kMaxKept - 1) / kMaxKept);
   RayStatistics statistics;
   Range range;
   RayBlock kept;

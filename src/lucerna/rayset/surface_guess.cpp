@@ -23,7 +23,7 @@ constexpr std::size_t kSample = 4096;
 /// Trials of each consensus search: with 30 % of the points on the face in question, four of them on it are
 /// missed in 200 trials with probability 0.2; on a surface that holds 90 % of the starts, never.
 constexpr std::uint64_t kTrials = 200;
-constexpr std::size_t kFewestOnFace = 8;  // points on a surface that make it one
+constexpr std::size_t kMinOnFace = 8;  // points on a surface that make it one
 constexpr double kSimplerBy = 0.03;
 
 /// Some of the starts, and what is needed of them.
@@ -197,7 +197,7 @@ std::pair<double, double> faces(const Starts& s, int axis) {
   for (const Vector3d& p : s.points) x.push_back(p[axis]);
   if (x.empty()) return {0.0, 0.0};
   std::ranges::sort(x);
-  const std::size_t many = std::max(kFewestOnFace, x.size() / 100);
+  const std::size_t many = std::max(kMinOnFace, x.size() / 100);
   const auto outermost = [&](const std::vector<double>& sorted) {
     for (std::size_t i = 0; i + many <= sorted.size(); ++i) {
       if (std::abs(sorted[i + many - 1] - sorted[i]) <= s.tolerance) {
@@ -284,7 +284,7 @@ SurfaceGuess try_cylinder(const Starts& s, const Matrix3d& roughly) {
   for (const Matrix3d& axes : {roughly, straightened(s, roughly)}) {
     const Starts t = turned(s, axes);
     const Circle circle = find_circle(t);
-    if (near_points(t, circle).size() < kFewestOnFace) continue;
+    if (near_points(t, circle).size() < kMinOnFace) continue;
     const auto [low, high] = faces(t, 2);
     const Vector3d middle(circle.centre.x(), circle.centre.y(), 0.5 * (low + high));
     BoundingSurface surface = BoundingSurface::cylinder(circle.radius, high - low);
@@ -379,7 +379,7 @@ SurfaceGuess guess_surface(const RayBlock& rays, double min_share) {
   if (guesses.back().share >= enough) return guesses.back();
   const auto sphere =
       consensus<Sphere>(s, 4, [](const std::vector<Vector3d>& points) { return fit_round(points, 3); });
-  if (near_points(s, sphere).size() >= kFewestOnFace) {
+  if (near_points(s, sphere).size() >= kMinOnFace) {
     BoundingSurface surface = BoundingSurface::sphere(sphere.radius);
     surface.world_from_surface = frame_of(Matrix3d::Identity(), sphere.centre);
     guesses.push_back(guess_with(s, surface));

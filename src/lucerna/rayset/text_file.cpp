@@ -16,7 +16,7 @@ namespace {
 
 /// Bytes read at a time, parsed per thread at a time, and looked at beyond a piece while lines are counted.
 constexpr std::uint64_t kChunk = 1 << 23, kPiece = 1 << 17, kLookAhead = 256;
-constexpr std::size_t kMostNumbers = 64;
+constexpr std::size_t kMaxNumbers = 64;
 
 bool is_separator(char c) { return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r'; }
 bool is_comment(char c) { return c == '#' || c == '!'; }
@@ -59,7 +59,7 @@ int parse_line(const char*& p, const char* end, float* out) {
       p = line_end == nullptr ? end : static_cast<const char*>(line_end) + 1;
       return -1;
     }
-    if (n < static_cast<int>(kMostNumbers)) out[n] = value;
+    if (n < static_cast<int>(kMaxNumbers)) out[n] = value;
     ++n;
     p = rest;
   }
@@ -79,12 +79,12 @@ class PieceParser {
 
   Piece parse_piece(std::string_view text) const {
     Piece piece;
-    const std::size_t most = text.size() / (2 * layout_.floats) + 1;  // a digit and a separator each
-    piece.rays.resize(most, layout_.extra.size());
+    const std::size_t max = text.size() / (2 * layout_.floats) + 1;  // a digit and a separator each
+    piece.rays.resize(max, layout_.extra.size());
     std::vector<std::uint32_t> line_of;
     line_of.reserve(text.size() / (8 * layout_.floats) + 1);
     const char *p = text.data(), *end = p + text.size();
-    float numbers[kMostNumbers] = {};
+    float numbers[kMaxNumbers] = {};
     std::size_t n = 0;
     for (; p != end; ++piece.lines) {
       const char* first = skip_separators(p, end);
@@ -190,7 +190,7 @@ TextReader::TextReader(InputFile file, RayFileFacts facts, TextLayout layout, bo
       next_byte_(layout_.begin),
       next_line_(layout_.first_line) {
   LUCERNA_CHECK(
-      layout_.numbers.extra.size() == facts.header.columns.size() && layout_.numbers.floats <= kMostNumbers,
+      layout_.numbers.extra.size() == facts.header.columns.size() && layout_.numbers.floats <= kMaxNumbers,
       "{} columns", layout_.numbers.floats);
   header_ = std::move(facts.header);
   pending_.resize(0, header_.columns.size());
@@ -267,10 +267,10 @@ std::uint64_t count_lines(const InputFile& file, std::uint64_t begin, std::uint6
 }
 
 std::optional<std::vector<double>> numbers_in(std::string_view line) {
-  float numbers[kMostNumbers] = {};
+  float numbers[kMaxNumbers] = {};
   const char* p = line.data();
   const int n = parse_line(p, line.data() + line.size(), numbers);
-  if (n <= 0 || n > static_cast<int>(kMostNumbers)) return std::nullopt;
+  if (n <= 0 || n > static_cast<int>(kMaxNumbers)) return std::nullopt;
   return std::vector<double>(numbers, numbers + n);
 }
 

@@ -16,10 +16,10 @@ namespace {
 constexpr std::size_t kViewBlock = std::size_t{1} << 16;
 constexpr std::array<std::string_view, 5> kViewNames{"far", "near", "focus", "beam", "four_d"};
 /// Shares that docs/theory/comparison.md fixes.
-constexpr double kRadiusShare = 0.98, kLeastMeanLength = 0.2, kNearPlaneGap_mm = 1.0;
+constexpr double kRadiusShare = 0.98, kMinMeanLength = 0.2, kNearPlaneGap_mm = 1.0;
 /// A window is never narrower than this share of the size that rounding of float32 rays is proportional to:
 /// rays through one point then share a cell instead of showing their rounding (6e-8) as structure.
-constexpr double kLeastWidth = 1e-4;
+constexpr double kMinWidth = 1e-4;
 /// Collimators clear the starts by this factor, so that no start lies on the mirror.
 constexpr double kClearance = 1.02;
 
@@ -112,7 +112,7 @@ void fit_cap(const WindowPoints& points, const std::vector<double>& weights, Vie
   std::vector<WeightedValue> cosines(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) cosines[i] = {points[i][0], weights[i]};
   window.low[0] =
-      std::min(weighted_quantile(cosines, 1.0 - kViewWindowShare) - 1e-12, 1.0 - kLeastWidth * kLeastWidth);
+      std::min(weighted_quantile(cosines, 1.0 - kViewWindowShare) - 1e-12, 1.0 - kMinWidth * kMinWidth);
   window.high[0] = 1.0 + 1e-12;
   window.low[1] = 0.0;
   window.high[1] = 1.0;
@@ -125,7 +125,7 @@ Views::Views(const RayBlock& reference) {
   if (!summary.virtual_focus || !summary.mean_direction)
     throw InputError("no rays with flux to compare with");
   const Vec3 mean = *summary.mean_direction;
-  const Direction axis = length(mean) < kLeastMeanLength ? Direction() : Direction::from(mean);
+  const Direction axis = length(mean) < kMinMeanLength ? Direction() : Direction::from(mean);
   frame_.world_from_view = Frame::from_axis(axis, 0.0, summary.virtual_focus->point_mm);
   view_from_world_ = frame_.world_from_view.inverse();
   const Reach reach = reach_of(reference, view_from_world_);
@@ -142,7 +142,7 @@ Views::Views(const RayBlock& reference) {
   frame_.radius_mm = weighted_quantile(radii, kRadiusShare);
   // Rays that all start at F need some mirror: the beam of a point source does not depend on its size.
   const double size_mm = std::max({farthest, length(frame_.world_from_view.origin_mm()), 1e-3});
-  frame_.focal_mm = std::max({1.25 * frame_.radius_mm, kClearance * reach.focal_mm, kLeastWidth * size_mm});
+  frame_.focal_mm = std::max({1.25 * frame_.radius_mm, kClearance * reach.focal_mm, kMinWidth * size_mm});
 
   for (const ViewKind kind : kViewKinds) {
     ViewWindow& w = windows_[static_cast<std::size_t>(kind)];
@@ -162,11 +162,10 @@ Views::Views(const RayBlock& reference) {
     if (kind == ViewKind::far) {
       fit_cap(points, weights, w);
     } else {
-      const double plane = kLeastWidth * size_mm;
+      const double plane = kMinWidth * size_mm;
       const bool cosines = kind == ViewKind::beam;
-      fit_view_window(
-          points, weights,
-          {cosines ? kLeastWidth : plane, cosines ? kLeastWidth : plane, kLeastWidth, kLeastWidth}, w);
+      fit_view_window(points, weights,
+                      {cosines ? kMinWidth : plane, cosines ? kMinWidth : plane, kMinWidth, kMinWidth}, w);
     }
   }
 }

@@ -36,14 +36,14 @@ double weighted_quantile(std::vector<WeightedValue>& items, double share) {
 }
 
 void fit_view_window(const WindowPoints& points, const std::vector<double>& weights,
-                     const std::array<double, 4>& least, ViewWindow& window) {
+                     const std::array<double, 4>& min, ViewWindow& window) {
   std::array<double, 4> middle{}, half{};
   for (std::size_t k = 0; k < window.dimensions; ++k) {
     auto values = axis_values(points, weights, k);
     middle[k] = weighted_quantile(values, 0.5);
     half[k] = std::max(weighted_quantile(values, 1.0 - kTailShare) - middle[k],
                        middle[k] - weighted_quantile(values, kTailShare));
-    half[k] = std::max(half[k], least[k]);
+    half[k] = std::max(half[k], min[k]);
   }
   std::vector<WeightedValue> scales(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -56,10 +56,10 @@ void fit_view_window(const WindowPoints& points, const std::vector<double>& weig
   // A hair wider, so that the ray that fixes the edge lies inside in spite of rounding.
   const double scale = weighted_quantile(scales, kViewWindowShare) * (1.0 + 1e-9);
   for (std::size_t k = 0; k < window.dimensions; ++k) {
-    const double width = std::max(scale * half[k], least[k]);
+    const double width = std::max(scale * half[k], min[k]);
     window.low[k] = middle[k] - width;
     window.high[k] = middle[k] + width;
-    if (width > least[k]) continue;
+    if (width > min[k]) continue;
     // Nothing to resolve: half a cell aside, so that the one value lies inside a cell and not on a border.
     const double shift = width / static_cast<double>(window.cells[k]);
     window.low[k] -= shift;
@@ -83,8 +83,8 @@ std::size_t cell_of(const ViewWindow& w, const std::array<double, 4>& at) {
   return inside ? index : cells;
 }
 
-std::vector<std::size_t> stratified_choice(std::size_t rays, std::size_t most) {
-  const std::size_t m = std::min(rays, most);
+std::vector<std::size_t> stratified_choice(std::size_t rays, std::size_t max) {
+  const std::size_t m = std::min(rays, max);
   std::vector<std::size_t> chosen(m);
   for (std::size_t i = 0; i < m; ++i) {
     const double u = m == rays ? 0.0 : Rng(0, i).uniform();

@@ -12,7 +12,7 @@ namespace lucerna {
 namespace {
 
 constexpr std::size_t kZemaxHead = 1 << 14;
-constexpr double kMostTextRays = 4294967295.0;
+constexpr double kMaxTextRays = 4294967295.0;
 /// Room that the writer leaves for the count, which it learns last.
 constexpr int kCountWidth = 11;
 
@@ -32,8 +32,8 @@ std::optional<FirstLine> first_line(const InputFile& file) {
   if (!n || n->size() < 2 || n->size() > 8) return std::nullopt;
   n->resize(8, 0.0);
   const auto& v = *n;
-  const auto whole = [](double x, double most) { return x >= 0.0 && x <= most && x == std::floor(x); };
-  if (!whole(v[0], kMostTextRays + 1.0) || !whole(v[1], 4.0) || !whole(v[2], 2.0) || !whole(v[3], 1.0))
+  const auto whole = [](double x, double max) { return x >= 0.0 && x <= max && x == std::floor(x); };
+  if (!whole(v[0], kMaxTextRays + 1.0) || !whole(v[1], 4.0) || !whole(v[2], 2.0) || !whole(v[3], 1.0))
     return std::nullopt;
   for (std::size_t i = 4; i < 8; ++i) {
     if (v[i] != 0.0) return std::nullopt;
@@ -42,7 +42,7 @@ std::optional<FirstLine> first_line(const InputFile& file) {
   // The numbers above are float32, which rounds counts beyond 2^24: read the integer that stands there.
   const std::string_view text = lines[0].substr(std::min(lines[0].find_first_not_of(" \t"), lines[0].size()));
   for (const char c : text) {
-    if (c < '0' || c > '9' || line.rays > static_cast<std::uint64_t>(kMostTextRays)) break;
+    if (c < '0' || c > '9' || line.rays > static_cast<std::uint64_t>(kMaxTextRays)) break;
     line.rays = 10 * line.rays + static_cast<std::uint64_t>(c - '0');
   }
   line.units = static_cast<std::size_t>(v[1]);
@@ -75,7 +75,7 @@ class ZemaxTextWriter final : public RayWriter {
   void write(const RayBlock& block) override { writer_.write_rays(block); }
 
   void finish() override {
-    if (static_cast<double>(writer_.ray_count()) > kMostTextRays)
+    if (static_cast<double>(writer_.ray_count()) > kMaxTextRays)
       throw InputError("zemax-text holds 2^32 - 1 rays at most");
     const std::string count = fmt::format("{:<{}}", writer_.ray_count(), kCountWidth);
     writer_.file().patch(0, std::as_bytes(std::span(count)));

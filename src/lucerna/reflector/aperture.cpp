@@ -49,7 +49,7 @@ bool Aperture::misses(const Rectangle& region) const {
   if (region.x0_mm > half_x_mm_ || region.x1_mm < -half_x_mm_) return true;
   if (region.y0_mm > half_y_mm_ || region.y1_mm < -half_y_mm_) return true;
   const RadiusRange r = radius_range(region);
-  return r.greatest_mm < hole_radius_mm_ || (shape_ == ApertureShape::circle && r.least_mm > half_x_mm_);
+  return r.max_mm < hole_radius_mm_ || (shape_ == ApertureShape::circle && r.min_mm > half_x_mm_);
 }
 
 RadiusRange radius_range(const Rectangle& region) {

@@ -16,7 +16,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kMostTriangles = std::size_t{1} << 22;
+constexpr std::size_t kMaxTriangles = std::size_t{1} << 22;
 static_assert(std::endian::native == std::endian::little, "STL is little-endian");
 
 /// Places of a grid of (nu + 1) x (nv + 1) points over an aperture: spokes from the hole's rim or the axis to
@@ -180,8 +180,8 @@ void check_tolerance(const CadTolerance& tolerance) {
 
 namespace {
 
-/// The grid that keeps a tolerance with `most` triangles at most; nothing if none does.
-std::optional<Grid> grid_for(const Reflector& reflector, const CadTolerance& tolerance, std::size_t most) {
+/// The grid that keeps a tolerance with `max` triangles at most; nothing if none does.
+std::optional<Grid> grid_for(const Reflector& reflector, const CadTolerance& tolerance, std::size_t max) {
   const bool spokes =
       reflector.aperture.shape() == ApertureShape::circle || reflector.aperture.hole_radius_mm() > 0.0;
   Grid grid{reflector, 8, spokes ? std::size_t{32} : std::size_t{8}, spokes};
@@ -190,7 +190,7 @@ std::optional<Grid> grid_for(const Reflector& reflector, const CadTolerance& tol
     if (u <= 1.0 && v <= 1.0) return grid;
     grid.nu = finer(grid.nu, u);
     grid.nv = finer(grid.nv, v);
-    if (2 * grid.nu * grid.nv > most) return std::nullopt;
+    if (2 * grid.nu * grid.nv > max) return std::nullopt;
   }
 }
 
@@ -221,11 +221,11 @@ Mesh mesh_of(const Grid& grid) {
 
 Mesh cad_mesh(const Reflector& reflector, const CadTolerance& tolerance) {
   check_tolerance(tolerance);
-  const auto grid = grid_for(reflector, tolerance, kMostTriangles);
+  const auto grid = grid_for(reflector, tolerance, kMaxTriangles);
   if (!grid) {
     throw InputError(
         fmt::format("CAD: {} mm and {} degrees need more than {} triangles; expected coarser tolerances",
-                    tolerance.chord_mm, tolerance.slope_deg, kMostTriangles));
+                    tolerance.chord_mm, tolerance.slope_deg, kMaxTriangles));
   }
   return mesh_of(*grid);
 }
@@ -284,9 +284,9 @@ std::vector<std::array<double, 2>> cad_profile(const Reflector& reflector, const
            off_slope(sample_at(reflector, a), sample_at(reflector, b)) / radians(tolerance.slope_deg)});
     }
     if (worst <= 1.0) return points;
-    if (n >= kMostTriangles) {
+    if (n >= kMaxTriangles) {
       throw InputError(fmt::format("CAD: {} mm needs more than {} points; expected a coarser tolerance",
-                                   tolerance.chord_mm, kMostTriangles));
+                                   tolerance.chord_mm, kMaxTriangles));
     }
   }
 }

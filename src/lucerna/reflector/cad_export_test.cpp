@@ -79,15 +79,15 @@ TEST(CadExport, PiecesKeepTheSlopeTolerance) {
 
 TEST(CadExport, RimsKeepTheChordTolerance) {
   const Mesh mesh = cad_mesh(wavy(Aperture::circle(50, 10)), {.chord_mm = 0.01, .slope_deg = 80.0});
-  double least = 1e9, widest = 0.0;
+  double min = 1e9, widest = 0.0;
   for (const auto& t : mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 middle = 0.5 * (mesh.vertices_mm[t[k]] + mesh.vertices_mm[t[(k + 1) % 3]]);
-      least = std::min(least, std::hypot(middle.x, middle.y));
+      min = std::min(min, std::hypot(middle.x, middle.y));
       widest = std::max(widest, std::hypot(middle.x, middle.y));
     }
   }
-  EXPECT_GT(least, 4.99);
+  EXPECT_GT(min, 4.99);
   EXPECT_GT(widest, 24.99);
 }
 

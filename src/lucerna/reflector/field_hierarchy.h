@@ -40,8 +40,8 @@ struct FieldLeaf {
 inline constexpr int kFieldBlock = 8;
 
 namespace detail {
-LUCERNA_HD inline float least(float a, float b) { return b < a ? b : a; }
-LUCERNA_HD inline float greatest(float a, float b) { return a < b ? b : a; }
+LUCERNA_HD inline float min(float a, float b) { return b < a ? b : a; }
+LUCERNA_HD inline float max(float a, float b) { return a < b ? b : a; }
 
 /// The vertices of one row of a leaf square: heights, and slopes times the cell's size.
 struct FieldRow {
@@ -56,9 +56,9 @@ struct FieldRow {
   }
 };
 
-/// The greatest of n, moved to the front.
-LUCERNA_HD inline void greatest_first(float* x, std::size_t n) {
-  for (std::size_t i = 1; i < n; ++i) x[0] = greatest(x[0], x[i]);
+/// The maximum of n, moved to the front.
+LUCERNA_HD inline void max_first(float* x, std::size_t n) {
+  for (std::size_t i = 1; i < n; ++i) x[0] = max(x[0], x[i]);
 }
 }  // namespace detail
 
@@ -72,7 +72,7 @@ LUCERNA_HD inline void greatest_first(float* x, std::size_t n) {
 /// Leaf square (bx, by) of a grid of `cells` a side.
 LUCERNA_HD inline FieldLeaf field_leaf(const FieldVertex* vertices, int cells, float step_x_mm,
                                        float step_y_mm, std::size_t bx, std::size_t by) {
-  using detail::greatest, detail::least;
+  using detail::max, detail::min;
   constexpr std::size_t k = kFieldBlock;
   const std::size_t n = static_cast<std::size_t>(cells) + 1;
   const FieldVertex* const base = vertices + (by * k * n + bx * k);
@@ -80,7 +80,7 @@ LUCERNA_HD inline FieldLeaf field_leaf(const FieldVertex* vertices, int cells, f
   const float dx = 0.5F * (v10.z_mm - v00.z_mm + v11.z_mm - v01.z_mm) / static_cast<float>(k);
   const float dy = 0.5F * (v01.z_mm - v00.z_mm + v11.z_mm - v10.z_mm) / static_cast<float>(k);
   // Heights over that plane, and how far a cell's edges can bend away from their chords: at most a quarter of
-  // the greatest difference between a slope and the chord's, in each direction. By column, so that compilers
+  // the maximum difference between a slope and the chord's, in each direction. By column, so that compilers
   // see vectors.
   float low[k + 1], high[k + 1], bend_x[k], bend_y[k + 1], slope_x[k + 1], slope_y[k + 1];
   for (std::size_t i = 0; i <= k; ++i) {
@@ -96,35 +96,35 @@ LUCERNA_HD inline FieldLeaf field_leaf(const FieldVertex* vertices, int cells, f
     LUCERNA_KEEP_LOOP
     for (std::size_t i = 0; i <= k; ++i) {
       const float r = row.z[i] - dx * static_cast<float>(i) - dy * static_cast<float>(j);
-      low[i] = least(low[i], r);
-      high[i] = greatest(high[i], r);
-      slope_x[i] = greatest(slope_x[i], std::abs(row.p[i]));
-      slope_y[i] = greatest(slope_y[i], std::abs(row.q[i]));
+      low[i] = min(low[i], r);
+      high[i] = max(high[i], r);
+      slope_x[i] = max(slope_x[i], std::abs(row.p[i]));
+      slope_y[i] = max(slope_y[i], std::abs(row.q[i]));
     }
     LUCERNA_KEEP_LOOP
     for (std::size_t i = 0; i < k; ++i) {
       const float chord = row.z[i + 1] - row.z[i];
-      bend_x[i] = greatest(bend_x[i], greatest(std::abs(row.p[i] - chord), std::abs(row.p[i + 1] - chord)));
+      bend_x[i] = max(bend_x[i], max(std::abs(row.p[i] - chord), std::abs(row.p[i + 1] - chord)));
     }
     if (j == 0) continue;
     const detail::FieldRow& before = rows[1 - j % 2];
     LUCERNA_KEEP_LOOP
     for (std::size_t i = 0; i <= k; ++i) {
       const float chord = row.z[i] - before.z[i];
-      bend_y[i] = greatest(bend_y[i], greatest(std::abs(before.q[i] - chord), std::abs(row.q[i] - chord)));
+      bend_y[i] = max(bend_y[i], max(std::abs(before.q[i] - chord), std::abs(row.q[i] - chord)));
     }
   }
-  for (std::size_t i = 1; i <= k; ++i) low[0] = least(low[0], low[i]);
-  detail::greatest_first(high, k + 1);
-  detail::greatest_first(bend_x, k);
-  detail::greatest_first(bend_y, k + 1);
-  detail::greatest_first(slope_x, k + 1);
-  detail::greatest_first(slope_y, k + 1);
+  for (std::size_t i = 1; i <= k; ++i) low[0] = min(low[0], low[i]);
+  detail::max_first(high, k + 1);
+  detail::max_first(bend_x, k);
+  detail::max_first(bend_y, k + 1);
+  detail::max_first(slope_x, k + 1);
+  detail::max_first(slope_y, k + 1);
   const float half = 0.5F * static_cast<float>(k);
   // A hair more for the rounding of these sums.
   const float slack = 1e-6F * (std::abs(low[0]) + std::abs(high[0])) + FLT_MIN;
   // An edge is a cubic: its slope is within that of its ends and 3 chord - (both), which is at most thrice
-  // the greatest bend steeper than an end. Across, the other edges' bends add their difference.
+  // the maximum bend steeper than an end. Across, the other edges' bends add their difference.
   const float steep_x = (slope_x[0] + 3.0F * bend_x[0] + 0.5F * bend_y[0]) / step_x_mm;
   const float steep_y = (slope_y[0] + 3.0F * bend_y[0] + 0.5F * bend_x[0]) / step_y_mm;
   return {{0.5F * (low[0] + high[0]) + half * (dx + dy), dx / step_x_mm, dy / step_y_mm,
@@ -162,8 +162,8 @@ LUCERNA_HD inline FieldNode field_parent(const FieldNode* children, std::size_t 
     if (c[i]->e < 0.0F) continue;
     const float at_centre = c[i]->a - p.a - p.b * (i % 2 == 0 ? -hx : hx) - p.c * (i / 2 == 0 ? -hy : hy);
     const float tilt = std::abs(c[i]->b - p.b) * hx + std::abs(c[i]->c - p.c) * hy;
-    low = detail::least(low, at_centre - tilt - c[i]->e);
-    high = detail::greatest(high, at_centre + tilt + c[i]->e);
+    low = detail::min(low, at_centre - tilt - c[i]->e);
+    high = detail::max(high, at_centre + tilt + c[i]->e);
   }
   p.a += 0.5F * (low + high);
   p.e = 0.5F * (high - low) * (1.0F + 1e-6F) + 1e-6F * std::abs(p.a);

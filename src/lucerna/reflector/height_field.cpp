@@ -63,9 +63,9 @@ HeightField::HeightField(const Reflector& reflector, int cells)
       const double x = region_.x0_mm + bx * static_cast<double>(ix),
                    y = region_.y0_mm + by * static_cast<double>(iy);
       const Rectangle square{x, x + bx, y, y + by};
-      leaf_kinds_[iy * blocks + ix] = !aperture_.misses(square)                   ? LeafKind::mirror
-                                      : radius_range(square).least_mm <= rim_mm() ? LeafKind::bare
-                                                                                  : LeafKind::beyond;
+      leaf_kinds_[iy * blocks + ix] = !aperture_.misses(square)                 ? LeafKind::mirror
+                                      : radius_range(square).min_mm <= rim_mm() ? LeafKind::bare
+                                                                                : LeafKind::beyond;
     }
   }
   fit_quadric(*reflector.surface);

@@ -57,14 +57,14 @@ TEST(HeightField, AQuadricIsExactToRounding) {
 /// The longest gradient over the quadric at random places within the rim.
 double steepest(const HeightField& field) {
   Rng rng(3, 0);
-  double most = 0.0;
+  double max = 0.0;
   for (int i = 0; i < 50000; ++i) {
     const double x = 80.0 * rng.uniform() - 40.0, y = 80.0 * rng.uniform() - 40.0;
     if (std::hypot(x, y) > field.rim_mm()) continue;
     const SurfacePoint a = field.at(x, y), q = field.quadric().at(x, y);
-    most = std::max(most, std::hypot(a.dzdx - q.dzdx, a.dzdy - q.dzdy));
+    max = std::max(max, std::hypot(a.dzdx - q.dzdx, a.dzdy - q.dzdy));
   }
-  return most;
+  return max;
 }
 
 // Of a smooth mirror with a hole, and of one whose heights and slopes have nothing to do with each other.

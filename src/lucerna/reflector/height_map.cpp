@@ -21,8 +21,8 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kMostMapBytes = std::uint64_t{2} << 30;
-constexpr std::size_t kMostHeights = std::size_t{1} << 24;
+constexpr std::uint64_t kMaxMapBytes = std::uint64_t{2} << 30;
+constexpr std::size_t kMaxHeights = std::size_t{1} << 24;
 
 /// What a NumPy header says: {'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }.
 struct NpyHeader {
@@ -35,12 +35,12 @@ struct NpyHeader {
 class NpyReader {
  public:
   explicit NpyReader(const std::filesystem::path& path)
-      : file_(path.string()), bytes_(read_file(path, kMostMapBytes)) {}
+      : file_(path.string()), bytes_(read_file(path, kMaxMapBytes)) {}
 
   HeightMap read() const {
     const NpyHeader h = header();
-    if (h.rows == 0 || h.columns == 0 || h.rows > kMostHeights / h.columns)
-      fail(10, "an array of {} x {}, expected 4 x 4 to {} numbers", h.rows, h.columns, kMostHeights);
+    if (h.rows == 0 || h.columns == 0 || h.rows > kMaxHeights / h.columns)
+      fail(10, "an array of {} x {}, expected 4 x 4 to {} numbers", h.rows, h.columns, kMaxHeights);
     const std::size_t need = h.rows * h.columns * h.bytes;
     if (bytes_.size() - h.data_at != need) {
       fail(h.data_at, "{} bytes of data, expected {} for {} x {}", bytes_.size() - h.data_at, need, h.rows,

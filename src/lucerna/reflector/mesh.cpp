@@ -18,7 +18,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kMostMeshBytes = std::uint64_t{2} << 30;
+constexpr std::uint64_t kMaxMeshBytes = std::uint64_t{2} << 30;
 
 /// Words of a text, line by line.
 class Lines {
@@ -118,7 +118,7 @@ Mesh read_text_stl(const std::string& text, const std::string& file) {
 }  // namespace
 
 Mesh read_stl(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path, kMostMeshBytes);
+  const std::string bytes = read_file(path, kMaxMeshBytes);
   std::uint32_t count = 0;
   if (bytes.size() >= 84) std::memcpy(&count, bytes.data() + 80, sizeof count);
   // A binary file's size follows from its count; many begin with "solid" all the same.
@@ -133,7 +133,7 @@ Mesh read_stl(const std::filesystem::path& path) {
 }
 
 Mesh read_obj(const std::filesystem::path& path) {
-  const std::string text = read_file(path, kMostMeshBytes);
+  const std::string text = read_file(path, kMaxMeshBytes);
   Lines lines(text, path.string());
   Mesh mesh;
   while (lines.next()) {
@@ -175,7 +175,7 @@ Mesh read_mesh(const std::filesystem::path& path) {
 }
 
 std::vector<Vec3> corner_normals(const Mesh& mesh, double crease_deg) {
-  const double least_cosine = std::cos(radians(crease_deg));
+  const double min_cosine = std::cos(radians(crease_deg));
   const std::size_t n = mesh.triangles.size();
   std::vector<Vec3> flat(n);
   std::vector<std::vector<std::size_t>> corners_at(mesh.vertices_mm.size());
@@ -199,7 +199,7 @@ std::vector<Vec3> corner_normals(const Mesh& mesh, double crease_deg) {
     const Vec3& own = flat[c / 3];
     Vec3 sum{};
     for (const std::size_t other : corners_at[mesh.triangles[c / 3][c % 3]]) {
-      if (dot(own, flat[other / 3]) >= least_cosine) sum = sum + angle[other] * flat[other / 3];
+      if (dot(own, flat[other / 3]) >= min_cosine) sum = sum + angle[other] * flat[other / 3];
     }
     normals[c] = length(sum) > 0.0 ? Direction::from(sum).vec() : own;
   }

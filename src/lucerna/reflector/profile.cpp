@@ -166,7 +166,7 @@ SurfacePoint RevolutionSurface::at(double x_mm, double y_mm) const {
 
 HeightRange RevolutionSurface::range(const Rectangle& region) const {
   const RadiusRange r = radius_range(region);
-  return profile_->range(r.least_mm, r.greatest_mm);
+  return profile_->range(r.min_mm, r.max_mm);
 }
 
 }  // namespace lucerna

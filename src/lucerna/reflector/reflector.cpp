@@ -83,18 +83,18 @@ bool is_function(const std::vector<ProfileKnot>& knots) {
 
 Reflector swept_reflector(const std::vector<ProfileKnot>& knots, const Aperture& aperture, Sweep sweep) {
   auto curve = std::make_shared<SweptCurve>(knots, sweep);
-  const double most = curve->r_max_mm(), mouth = curve->last().r_mm, x = aperture.half_x_mm();
+  const double max = curve->r_max_mm(), mouth = curve->last().r_mm, x = aperture.half_x_mm();
   Aperture whole = aperture;
   const bool round = aperture.shape() == ApertureShape::circle;
   if (std::abs(x - mouth) <= 1e-9 * mouth) {
-    whole =
-        round ? Aperture::circle(2.0 * most, 2.0 * aperture.hole_radius_mm())
-              : Aperture::rectangle(2.0 * most, 2.0 * aperture.half_y_mm(), 2.0 * aperture.hole_radius_mm());
-  } else if (round && sweep == Sweep::revolution && x < most * (1.0 - 1e-3)) {
+    whole = round
+                ? Aperture::circle(2.0 * max, 2.0 * aperture.hole_radius_mm())
+                : Aperture::rectangle(2.0 * max, 2.0 * aperture.half_y_mm(), 2.0 * aperture.hole_radius_mm());
+  } else if (round && sweep == Sweep::revolution && x < max * (1.0 - 1e-3)) {
     throw InputError(fmt::format(
         "reflector: the profile reaches radius {:.6g} mm and closes to {:.6g} mm at its last point; an "
         "aperture of diameter {:.6g} mm would cut it twice; expected the mouth's {:.6g} mm",
-        most, mouth, 2.0 * x, 2.0 * mouth));
+        max, mouth, 2.0 * x, 2.0 * mouth));
   }
   return {std::make_shared<CurveSheet>(curve), whole, curve};
 }

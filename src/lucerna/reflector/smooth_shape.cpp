@@ -15,20 +15,20 @@ HeightRange hull(const std::vector<double>& c) {
   return {*low, *high};
 }
 
-/// The greatest of each cell's neighbourhoods, cells x kNearSizes.
-std::vector<double> greatest_near(const std::vector<double>& bends, int nx, int ny) {
+/// The maximum of each cell's neighbourhoods, cells x kNearSizes.
+std::vector<double> max_near(const std::vector<double>& bends, int nx, int ny) {
   std::vector<double> out;
   for (int j = 0; j < ny; ++j) {
     for (int i = 0; i < nx; ++i) {
       for (int k = 0; k < kNearSizes; ++k) {
         const int size = near_cells(k);
-        double most = 0.0;
+        double max = 0.0;
         for (int v = std::max(0, j - size); v <= std::min(ny - 1, j + size); ++v) {
           for (int u = std::max(0, i - size); u <= std::min(nx - 1, i + size); ++u) {
-            most = std::max(most, bends[static_cast<std::size_t>(v * nx + u)]);
+            max = std::max(max, bends[static_cast<std::size_t>(v * nx + u)]);
           }
         }
-        out.push_back(most);
+        out.push_back(max);
       }
     }
   }
@@ -65,7 +65,7 @@ BsplineShape::BsplineShape(double focal_mm, KnotRow row_x, KnotRow row_y, std::v
     for (int i = 0; i < x_.intervals; ++i) bends.push_back(bend_of(i, j));
   }
   bend_bound_ = *std::max_element(bends.begin(), bends.end());
-  near_bends_ = greatest_near(bends, x_.intervals, y_.intervals);
+  near_bends_ = max_near(bends, x_.intervals, y_.intervals);
 }
 
 RevolutionShape::RevolutionShape(double focal_mm, KnotRow row, std::vector<double> coefficients)
@@ -85,7 +85,7 @@ RevolutionShape::RevolutionShape(double focal_mm, KnotRow row, std::vector<doubl
     bends.push_back(inner);
   }
   bend_bound_ = inner;
-  near_bends_ = greatest_near(bends, row_.intervals, 1);
+  near_bends_ = max_near(bends, row_.intervals, 1);
 }
 
 }  // namespace lucerna

@@ -27,7 +27,7 @@ class SplineSurface final : public HeightSurface {
 
   /// O(1): 16 coefficients.
   SurfacePoint at(double x_mm, double y_mm) const override;
-  /// From the coefficients: a spline stays between the least and greatest that reach into a patch.
+  /// From the coefficients: a spline stays between the minimum and maximum that reach into a patch.
   HeightRange range(const Rectangle& region) const override;
 
   std::size_t nx() const { return nx_; }

@@ -58,7 +58,7 @@ struct ClampedRow {
 /// that its middles are within 1e-6 mm.
 StepCurve hermite(double a, double b, const std::function<std::array<Vec3, 2>(double)>& curve) {
   constexpr double kClose_mm = 1e-6;
-  constexpr int kMostPieces = 1 << 14;
+  constexpr int kMaxPieces = 1 << 14;
   for (int n = 8;; n *= 2) {
     StepCurve out;
     const double h = (b - a) / n;
@@ -81,7 +81,7 @@ StepCurve hermite(double a, double b, const std::function<std::array<Vec3, 2>(do
       out.multiplicity.push_back(i == 0 || i == n ? 4 : 2);
     }
     if (worst <= kClose_mm) return out;
-    if (n >= kMostPieces) {
+    if (n >= kMaxPieces) {
       throw InputError("CAD: STEP: the surface bends too sharply at its rim to follow it within 1e-6 mm");
     }
   }

@@ -179,7 +179,7 @@ TEST(StepExport, RimsLieOnTheSurface) {
     const StepFile file(step_text(reflector));
     expect_whole(file);
     EXPECT_EQ(file.of("FACE_BOUND").size(), 1u);
-    double widest = 0.0, least = 1e9, area = 0.0;
+    double widest = 0.0, min = 1e9, area = 0.0;
     for (const int edge : file.of("EDGE_CURVE")) {
       const Curve c = curve_of(file, file.references(edge).at(2));
       Vec3 before = c.at(c.knots.front());
@@ -188,12 +188,12 @@ TEST(StepExport, RimsLieOnTheSurface) {
         const Vec3 p = c.at(t);
         EXPECT_NEAR(p.z, reflector.surface->at(p.x, p.y).z_mm, 2e-6);
         widest = std::max(widest, std::hypot(p.x, p.y));
-        least = std::min(least, std::hypot(p.x, p.y));
+        min = std::min(min, std::hypot(p.x, p.y));
         area += 0.5 * std::abs(before.x * p.y - before.y * p.x);
         before = p;
       }
     }
-    EXPECT_NEAR(least, 4.0, 2e-6);
+    EXPECT_NEAR(min, 4.0, 2e-6);
     EXPECT_NEAR(widest, reflector.aperture.outer_radius_mm(), 2e-6);
     const double outline =
         reflector.aperture.shape() == ApertureShape::circle ? std::numbers::pi * 625.0 : 2400.0;

@@ -13,9 +13,9 @@ namespace {
 
 /// Pieces turn by less than this, radians: then a piece along its steeper coordinate is monotone in it, and a
 /// ray meets it at most twice but for grazing.
-constexpr double kMostTurn = 0.1;
+constexpr double kMaxTurn = 0.1;
 /// Halvings of one interval between points.
-constexpr int kMostHalvings = 10;
+constexpr int kMaxHalvings = 10;
 
 double value(const double (&k)[4], double s) { return k[0] + s * (k[1] + s * (k[2] + s * k[3])); }
 double slope(const double (&k)[4], double s) { return k[1] + s * (2.0 * k[2] + 3.0 * s * k[3]); }
@@ -41,14 +41,14 @@ double turn_of(const CurvePiece& p) {
   const auto leg = [&](const double(&k)[4], int i) {
     return i == 0 ? k[1] : (i == 1 ? k[1] + k[2] : k[1] + 2.0 * k[2] + 3.0 * k[3]);
   };
-  double most = 0.0;
+  double max = 0.0;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < i; ++j) {
       const double ar = leg(p.r, i), az = leg(p.z, i), br = leg(p.r, j), bz = leg(p.z, j);
-      most = std::max(most, std::abs(std::atan2(ar * bz - az * br, ar * br + az * bz)));
+      max = std::max(max, std::abs(std::atan2(ar * bz - az * br, ar * br + az * bz)));
     }
   }
-  return most;
+  return max;
 }
 
 void check_knots(const std::vector<ProfileKnot>& knots) {
@@ -127,12 +127,12 @@ SweptCurve::SweptCurve(const std::vector<ProfileKnot>& knots, Sweep sweep) : swe
 }
 
 void SweptCurve::add_pieces(const CurvePiece& whole, std::size_t knot, int depth) {
-  if (turn_of(whole) < kMostTurn) {
+  if (turn_of(whole) < kMaxTurn) {
     pieces_.push_back(whole);
     knot_of_.push_back(knot);
     return;
   }
-  if (depth == kMostHalvings) {
+  if (depth == kMaxHalvings) {
     throw InputError(
         fmt::format("reflector: the profile turns on the spot between points {} and {}; "
                     "expected a smooth row of points",

@@ -15,7 +15,7 @@ namespace lucerna {
 namespace {
 
 /// A checkpoint takes a few dozen bytes a parameter, a history a hundred a step.
-constexpr std::uint64_t kMostBytes = std::uint64_t{64} << 20;
+constexpr std::uint64_t kMaxBytes = std::uint64_t{64} << 20;
 
 /// The designed project without [target] and [design]: what the mirror does with the light, to be traced.
 std::string traceable(const DesignProblem& problem, const DesignShape& shape) {
@@ -25,15 +25,15 @@ std::string traceable(const DesignProblem& problem, const DesignShape& shape) {
   return project_text(project);
 }
 
-/// The lines of a history that were written before evaluation `most`, and the header.
-std::string history_until(const std::string& history, int most) {
+/// The lines of a history that were written before evaluation `max`, and the header.
+std::string history_until(const std::string& history, int max) {
   std::string out;
   for (std::size_t at = 0; at < history.size();) {
     const std::size_t end = std::min(history.find('\n', at), history.size() - 1) + 1;
     const std::string line = history.substr(at, end - at);
     int evaluations = 0;
     std::from_chars(line.data(), line.data() + line.size(), evaluations);
-    if (at == 0 || evaluations <= most) out += line;
+    if (at == 0 || evaluations <= max) out += line;
     at = end;
   }
   return out;
@@ -51,10 +51,10 @@ void write_design_progress(const std::filesystem::path& folder, const DesignProb
 DesignStart read_design_progress(const std::filesystem::path& folder) {
   DesignStart start;
   if (!std::filesystem::exists(folder / "checkpoint")) return start;
-  start.checkpoint = read_file(folder / "checkpoint", kMostBytes);
+  start.checkpoint = read_file(folder / "checkpoint", kMaxBytes);
   if (std::filesystem::exists(folder / "history.csv")) {
-    start.history = history_until(read_file(folder / "history.csv", kMostBytes),
-                                  checkpoint_evaluations(start.checkpoint));
+    start.history =
+        history_until(read_file(folder / "history.csv", kMaxBytes), checkpoint_evaluations(start.checkpoint));
   }
   return start;
 }

@@ -26,8 +26,8 @@ const Plane* plane_at(const std::vector<Plane>& planes, double c_deg) {
 
 Json plane_json(const PlaneSummary& s) {
   return {{"mean", estimate_json(s.mean)},
-          {"min", estimate_json(s.least)},
-          {"max", estimate_json(s.greatest)},
+          {"min", estimate_json(s.min)},
+          {"max", estimate_json(s.max)},
           {"uniformity", estimate_json(s.uniformity)}};
 }
 
@@ -44,8 +44,8 @@ Json tolerances_json(const ToleranceSweep& sweep) {
     out["spread"][s.figure] = {{"nominal", estimate_json(s.nominal)},
                                {"mean", estimate_json(s.mean)},
                                {"standard_deviation", s.standard_deviation},
-                               {"min", estimate_json(s.least)},
-                               {"max", estimate_json(s.greatest)}};
+                               {"min", estimate_json(s.min)},
+                               {"max", estimate_json(s.max)}};
   }
   out["cases"] = Json::array();
   for (std::size_t i = 0; i < sweep.cases.size(); ++i) {
@@ -109,9 +109,9 @@ void plane_rows(const DesignFigures& f, Table& table) {
   };
   const PlaneSummary &want = *f.target_plane, &have = *f.result_plane;
   table.row("mean illuminance", amount(want.mean), amount(have.mean));
-  table.row("least", amount(want.least), amount(have.least));
-  table.row("greatest", amount(want.greatest), amount(have.greatest));
-  table.row("uniformity (least / mean)", share(want.uniformity), share(have.uniformity));
+  table.row("min", amount(want.min), amount(have.min));
+  table.row("max", amount(want.max), amount(have.max));
+  table.row("uniformity (min / mean)", share(want.uniformity), share(have.uniformity));
 }
 
 void tolerance_rows(const ToleranceSweep& sweep, std::vector<std::string>& lines) {
@@ -120,11 +120,10 @@ void tolerance_rows(const ToleranceSweep& sweep, std::vector<std::string>& lines
       fmt::format("  tolerances: source +-{:g} mm, +-{:g} deg; slope error to {:g} mrad; reflectance +-{:g}; "
                   "{} combined cases",
                   r.source_shift_mm, r.source_tilt_deg, r.slope_error_mrad, r.reflectance, r.samples));
-  lines.push_back(
-      fmt::format("  {:<16}{:>24}{:>24}{:>24}{:>12}", "", "nominal", "least", "greatest", "std. dev."));
+  lines.push_back(fmt::format("  {:<16}{:>24}{:>24}{:>24}{:>12}", "", "nominal", "min", "max", "std. dev."));
   for (const ToleranceSpread& s : sweep.spread) {
     lines.push_back(fmt::format("  {:<16}{:>24}{:>24}{:>24}{:>12.3g}", s.figure, estimate_text(s.nominal),
-                                estimate_text(s.least), estimate_text(s.greatest), s.standard_deviation));
+                                estimate_text(s.min), estimate_text(s.max), s.standard_deviation));
   }
 }
 

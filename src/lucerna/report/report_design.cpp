@@ -22,7 +22,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kMostHistoryBytes = std::uint64_t{64} << 20;
+constexpr std::uint64_t kMaxHistoryBytes = std::uint64_t{64} << 20;
 
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
@@ -217,7 +217,7 @@ bool is_design_folder(const std::filesystem::path& folder) {
 void write_design_report(const std::filesystem::path& folder, const std::filesystem::path& output) {
   const TraceFolder read = read_trace_folder(folder);
   const std::filesystem::path csv = folder / "history.csv", project = folder / "project.toml";
-  const auto history = read_history(read_file(csv, kMostHistoryBytes), csv.string());
+  const auto history = read_history(read_file(csv, kMaxHistoryBytes), csv.string());
   std::optional<DesignProblem> problem;
   DesignReportOptions options;
   try {

@@ -25,7 +25,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// 2.5 by 1 degree, whole.
-constexpr std::size_t kMostCells = 27'000;
+constexpr std::size_t kMaxCells = 27'000;
 /// Where cone and isolux diagrams are drawn to.
 constexpr double kConeDistance_m = 5.0, kPlaneDistance_m = 3.0;
 
@@ -74,12 +74,12 @@ std::string plane_table(const ResultFigures& result, const std::string& detector
                      html_table(table));
 }
 
-/// The values for the page's script, thinned to kMostCells.
+/// The values for the page's script, thinned to kMaxCells.
 Json far_field_json(const FarFieldTable& field) {
   const IntensityDistribution& d = field.distribution;
   std::size_t skip_c = 1, skip_g = 1;
   const auto kept = [](std::size_t n, std::size_t skip) { return (n + skip - 1) / skip; };
-  while (kept(d.c_deg.size(), skip_c) * kept(d.gamma_deg.size(), skip_g) > kMostCells) {
+  while (kept(d.c_deg.size(), skip_c) * kept(d.gamma_deg.size(), skip_g) > kMaxCells) {
     // The denser axis is thinned first; gamma keeps its last angle only when the steps divide it.
     (kept(d.c_deg.size(), skip_c) > kept(d.gamma_deg.size(), skip_g) ? skip_c : skip_g) *= 2;
   }

@@ -29,11 +29,11 @@ std::string isolux_figure(const PlaneTable& t, std::size_t grid) {
       .plane = {.size_x_mm = x1 - x0, .size_y_mm = y1 - y0, .nx = t.x_mm.size(), .ny = t.y_mm.size()},
       .lx = t.value};
   if (e.plane.nx < 2 || e.plane.ny < 2) return "";
-  const auto [least, most] = std::ranges::minmax_element(t.value);
-  if (!(*most > 0.0)) return "";
-  e.min_lx = *least, e.max_lx = *most;
+  const auto [min, max] = std::ranges::minmax_element(t.value);
+  if (!(*max > 0.0)) return "";
+  e.min_lx = *min, e.max_lx = *max;
   for (const double lx : e.lx) e.mean_lx += lx / static_cast<double>(e.lx.size());
-  const auto best = static_cast<std::size_t>(most - t.value.begin());
+  const auto best = static_cast<std::size_t>(max - t.value.begin());
   e.max_x_mm = t.x_mm[best % e.plane.nx], e.max_y_mm = t.y_mm[best / e.plane.nx];
   // The mean of the cells about the middle: one, two or four.
   const std::size_t ix = (e.plane.nx - 1) / 2, jx = e.plane.nx / 2, iy = (e.plane.ny - 1) / 2,
@@ -63,9 +63,9 @@ std::string plane_facts(const ResultFigures& result, const std::string& key) {
   out += fact("Mean", estimate("mean"));
   out += fact("Largest", fmt::format("{} at x {}, y {} mm", estimate("peak"),
                                      result.figure(key + "/peak/x_mm"), result.figure(key + "/peak/y_mm")));
-  out += fact("Least", estimate("least"));
+  out += fact("Minimum", estimate("min"));
   if (result.has(key + "/uniformity/value"))
-    out += fact("Uniformity", result.figure(key + "/uniformity") + " (least over mean)");
+    out += fact("Uniformity", result.figure(key + "/uniformity") + " (minimum over mean)");
   out += fact("Flux", result.figure(key + "/flux") + " " + result.text("/ledger/unit"));
   out += fact("Noise of the image",
               fmt::format("{:.2g} % (relative RMS)", 100.0 * result.number(key + "/noise")));

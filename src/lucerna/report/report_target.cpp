@@ -21,7 +21,7 @@ namespace lucerna {
 namespace {
 
 constexpr std::uint64_t kPlaneRays = std::uint64_t{1} << 20;
-constexpr std::size_t kMostPlaneCells = 128;
+constexpr std::size_t kMaxPlaneCells = 128;
 
 /// The factor that fits `wanted` to `found` best: least squares, with weights.
 double best_scale(const std::vector<double>& wanted, const std::vector<double>& found,
@@ -128,8 +128,8 @@ void plane_section(HtmlPage& page, const DesignProblem& problem) {
   const PlaneTarget& wanted = *problem.target.plane;
   Scene scene = problem.project.scene;
   PlaneDetector detector{"target", {wanted.world_from_plane, wanted.size_x_mm, wanted.size_y_mm}};
-  detector.grid.nx = std::min(kMostPlaneCells, std::max<std::size_t>(wanted.map.nx, 16));
-  detector.grid.ny = std::min(kMostPlaneCells, std::max<std::size_t>(wanted.map.ny, 16));
+  detector.grid.nx = std::min(kMaxPlaneCells, std::max<std::size_t>(wanted.map.nx, 16));
+  detector.grid.ny = std::min(kMaxPlaneCells, std::max<std::size_t>(wanted.map.ny, 16));
   scene.planes = {detector};
   scene.luminances.clear();
   scene.ray_detectors.clear();

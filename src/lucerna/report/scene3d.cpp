@@ -181,7 +181,7 @@ Mesh joined(const Mesh& mesh, double cells) {
 Json body_json(const Body& body, Extent& extent) {
   const Mesh* mesh = body.mesh.get();
   Mesh coarse;
-  for (double cells = 256.0; mesh->triangles.size() > kMostBodyTriangles; cells *= 0.7) {
+  for (double cells = 256.0; mesh->triangles.size() > kMaxBodyTriangles; cells *= 0.7) {
     coarse = joined(*body.mesh, cells);
     mesh = &coarse;
   }

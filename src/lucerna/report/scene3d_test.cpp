@@ -126,7 +126,7 @@ TEST(Scene3d, BodiesAreTheirTrianglesAndFineOnesAreJoined) {
   EXPECT_FALSE(bodies[0]["thinned"].get<bool>());
   const auto index = test::unpacked<std::uint32_t>(bodies[1]["index"]);
   EXPECT_TRUE(bodies[1]["thinned"].get<bool>());
-  EXPECT_LE(index.size(), 3 * kMostBodyTriangles);
+  EXPECT_LE(index.size(), 3 * kMaxBodyTriangles);
   // Still the whole sheet: the triangles' areas sum to it.
   const auto p = floats(bodies[1]["position"]);
   double area = 0.0;

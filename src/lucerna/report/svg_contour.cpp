@@ -150,12 +150,12 @@ std::vector<SvgPoint> thinned(const std::vector<SvgPoint>& line, double toleranc
     const SvgPoint p = line[a], q = line[b];
     const double length = distance(p, q);
     std::size_t farthest = a;
-    double most = tolerance;
+    double max = tolerance;
     for (std::size_t i = a + 1; i < b; ++i) {
       const double off =
           length > 0.0 ? std::abs((q.x - p.x) * (line[i].y - p.y) - (q.y - p.y) * (line[i].x - p.x)) / length
                        : distance(p, line[i]);
-      if (off > most) most = off, farthest = i;
+      if (off > max) max = off, farthest = i;
     }
     if (farthest == a) continue;
     kept[farthest] = true;
@@ -175,11 +175,11 @@ std::vector<std::vector<SvgPoint>> thinned(std::vector<std::vector<SvgPoint>> ri
 }
 
 void LineLabels::write(SvgCanvas& canvas, const std::vector<SvgPoint>& line, const std::string& text,
-                       double along, double least_length) {
+                       double along, double min_length) {
   constexpr double kHeight = 13.0, kGap = 3.0;
   std::vector<double> gone{0.0};
   for (std::size_t i = 1; i < line.size(); ++i) gone.push_back(gone.back() + distance(line[i - 1], line[i]));
-  if (gone.back() < least_length) return;
+  if (gone.back() < min_length) return;
   const double width = 6.2 * static_cast<double>(text.size()) + 4.0;
   const auto free = [&](SvgPoint p) {
     return std::ranges::none_of(taken_, [&](const Box& b) {

@@ -36,9 +36,9 @@ class LineLabels {
  public:
   /// Writes `text` on the line, on a white ground, at the share `along` of its length or as near to it as no
   /// other label is in the way; nothing if there is no such place, or if the line is shorter than
-  /// `least_length`.
+  /// `min_length`.
   void write(SvgCanvas& canvas, const std::vector<SvgPoint>& line, const std::string& text,
-             double along = 0.5, double least_length = 60.0);
+             double along = 0.5, double min_length = 60.0);
 
  private:
   struct Box {

@@ -27,10 +27,10 @@ void for_each_point(const CurvePlot& plot, const Curve& curve, const See& see) {
   }
 }
 
-/// From the least to the greatest value, to round numbers; linear axes from 0 if all is above it.
-PlotAxis axis_of(const CurveAxis& axis, double least, double most, double at_first, double at_last) {
-  double first = axis.first.value_or(axis.log ? std::pow(10.0, std::floor(std::log10(least))) : least);
-  double last = axis.last.value_or(axis.log ? std::pow(10.0, std::ceil(std::log10(most))) : most);
+/// From the least to the maximum value, to round numbers; linear axes from 0 if all is above it.
+PlotAxis axis_of(const CurveAxis& axis, double min, double max, double at_first, double at_last) {
+  double first = axis.first.value_or(axis.log ? std::pow(10.0, std::floor(std::log10(min))) : min);
+  double last = axis.last.value_or(axis.log ? std::pow(10.0, std::ceil(std::log10(max))) : max);
   if (!axis.log) {
     if (!axis.first && first > 0.0) first = 0.0;
     const double step = nice_step(std::max(last - first, 1e-300), 6);

@@ -85,7 +85,7 @@ std::string isolux_svg(const PlaneIlluminance& e, FluxUnit flux_unit, const std:
   canvas.text({kLeft, kTop - 8.0}, "y, m", {.size = 12.0, .fill = "#555"});
   const double text_y = kTop + std::max(height, 220.0) + 56.0;
   canvas.text({kLeft, text_y},
-              fmt::format("E at the centre {} · mean {} · least {} {} · U0 {}", label_number(e.centre_lx),
+              fmt::format("E at the centre {} · mean {} · min {} {} · U0 {}", label_number(e.centre_lx),
                           label_number(e.mean_lx), label_number(e.min_lx), unit, label_number(e.uniformity)));
   canvas.text({kLeft, text_y + 19.0},
               fmt::format("Largest {} {} at x {}, y {} m", label_number(e.max_lx), unit,

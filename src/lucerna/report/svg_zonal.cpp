@@ -19,10 +19,10 @@ std::string zonal_svg(const IntensityDistribution& d, const DiagramOptions& opti
   std::array<double, kZones> flux{};
   for (std::size_t i = 0; i < kZones; ++i)
     flux[i] = zonal_flux(d, 10.0 * static_cast<double>(i), 10.0 * static_cast<double>(i + 1));
-  const double all = total_flux(d), most = *std::max_element(flux.begin(), flux.end());
-  const double step = nice_step(most, 5);
+  const double all = total_flux(d), max = *std::max_element(flux.begin(), flux.end());
+  const double step = nice_step(max, 5);
   const double bottom = kTop + kRow * kZones;
-  const PlotAxis x{0.0, most > 0.0 ? step * std::ceil(most / step - 1e-9) : 1.0, kLeft, kRight};
+  const PlotAxis x{0.0, max > 0.0 ? step * std::ceil(max / step - 1e-9) : 1.0, kLeft, kRight};
   const PlotAxis y{0.0, 180.0, kTop, bottom};
 
   SvgCanvas canvas(660.0, bottom + 60.0);

@@ -69,13 +69,13 @@ std::string plane_csv(const PlaneFigures& figures) {
 PlanePicture plane_picture(const PlaneImage& image) {
   const std::size_t nx = image.grid.nx, ny = image.grid.ny;
   const std::size_t side = std::clamp<std::size_t>((511 + std::max(nx, ny)) / std::max(nx, ny), 1, 64);
-  const double most = *std::max_element(image.value.begin(), image.value.end());
+  const double max = *std::max_element(image.value.begin(), image.value.end());
   PlanePicture p{nx * side, ny * side, {}};
   p.rgb.reserve(3 * p.width * p.height);
   for (std::size_t row = 0; row < p.height; ++row) {
     for (std::size_t column = 0; column < p.width; ++column) {
       const double value = image.value[(ny - 1 - row / side) * nx + column / side];
-      for (const int c : viridis_rgb(most > 0.0 ? value / most : 0.0))
+      for (const int c : viridis_rgb(max > 0.0 ? value / max : 0.0))
         p.rgb.push_back(static_cast<std::uint8_t>(c));
     }
   }

@@ -18,8 +18,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t kMostTextBytes = std::uint64_t{1} << 24;   // result.json, project.toml
-constexpr std::uint64_t kMostTableBytes = std::uint64_t{1} << 30;  // 16 M cells of 60 bytes
+constexpr std::uint64_t kMaxTextBytes = std::uint64_t{1} << 24;   // result.json, project.toml
+constexpr std::uint64_t kMaxTableBytes = std::uint64_t{1} << 30;  // 16 M cells of 60 bytes
 
 /// Takes the part of `text` before the next `end`, which goes too.
 std::string_view take_until(std::string_view& text, char end) {
@@ -83,7 +83,7 @@ class TableReader {
 };
 
 Json read_result(const std::filesystem::path& path) {
-  const std::string text = read_file(path, kMostTextBytes);
+  const std::string text = read_file(path, kMaxTextBytes);
   Json result = Json::parse(text, nullptr, false);
   const std::string file = path.string();
   if (result.is_discarded()) throw_input_error(file, "", "is no JSON");
@@ -189,17 +189,17 @@ TraceFolder read_trace_folder(const std::filesystem::path& folder) {
   TraceFolder read;
   read.path = folder;
   read.result = read_result(folder / "result.json");
-  read.project = read_file(folder / "project.toml", kMostTextBytes);
+  read.project = read_file(folder / "project.toml", kMaxTextBytes);
   const std::string result_file = (folder / "result.json").string();
   for (const Json& detector : read.result["detectors"]) {
     const std::string name = detector_name(detector, result_file);
     const Json kind = detector.value("kind", Json());
     const std::filesystem::path csv = folder / (name + ".csv");
     if (kind == "far-field") {
-      read.far_fields.push_back(far_field_table(read_file(csv, kMostTableBytes), csv.string()));
+      read.far_fields.push_back(far_field_table(read_file(csv, kMaxTableBytes), csv.string()));
       read.far_fields.back().name = name;
     } else if (kind == "plane" || kind == "luminance") {
-      read.planes.push_back(plane_table(read_file(csv, kMostTableBytes), csv.string()));
+      read.planes.push_back(plane_table(read_file(csv, kMaxTableBytes), csv.string()));
       read.planes.back().name = name;
     } else if (kind != "rays") {
       throw_input_error(result_file, fmt::format("detector '{}'", name),

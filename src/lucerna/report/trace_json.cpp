@@ -117,7 +117,7 @@ Json vector_json(const Vec3& v) { return {v.x, v.y, v.z}; }
 Json plane_json(const PlaneFigures& f) {
   const PlaneGrid& grid = f.image.grid;
   const Frame& frame = grid.world_from_plane;
-  Json peak = estimate_json(f.extremes.greatest);
+  Json peak = estimate_json(f.extremes.max);
   peak["x_mm"] = f.peak_x_mm;
   peak["y_mm"] = f.peak_y_mm;
   Json json{{"name", f.image.name},
@@ -136,7 +136,7 @@ Json plane_json(const PlaneFigures& f) {
   }
   json["flux"] = estimate_json(f.image.flux);
   json["mean"] = estimate_json(f.extremes.mean);
-  json["least"] = estimate_json(f.extremes.least);
+  json["min"] = estimate_json(f.extremes.min);
   json["uniformity"] = estimate_json(f.extremes.uniformity);
   json["peak"] = peak;
   json["noise"] = number_json(f.noise);

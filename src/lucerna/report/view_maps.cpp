@@ -79,13 +79,13 @@ std::string view_figures(HtmlPage& page, ViewKind kind, const ViewCounts& refere
   const std::string word(to_string(kind)), name = text_of(kind).name;
   GridMap map = axes_of(kind, reference.views().window(kind));
   const std::vector<double> p = shares(kind, reference, map), q = shares(kind, test, map);
-  const double most = std::max(*std::ranges::max_element(p), *std::ranges::max_element(q));
+  const double max = std::max(*std::ranges::max_element(p), *std::ranges::max_element(q));
   std::string out = fmt::format("<h3>{}</h3>\n<div class=\"trio\">\n", name);
   const auto add = [&](const std::string& what) {
     map.title = what;
     out += grid_figure(page, map, word + "-" + what, fmt::format("{}: {}", name, what));
   };
-  map.range = {0.0, most};
+  map.range = {0.0, max};
   map.value = p;
   add("rays");
   map.value = q;

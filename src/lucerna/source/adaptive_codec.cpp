@@ -13,19 +13,19 @@ namespace {
 
 constexpr NflTag kLayerTag{'L', 'A', 'Y', 'R'}, kTreeTag{'T', 'R', 'E', 'E'},
     kSpectrumTag{'S', 'P', 'E', 'C'}, kWaveTag{'W', 'A', 'V', 'E'};
-constexpr std::uint64_t kMostLayers = 64, kMostTrees = 64, kMostSpectra = 4096, kMostText = 4096;
-constexpr std::size_t kMostNodes = std::size_t{1} << 24;
-constexpr double kLargestLength = 1e9, kMostRays = 1e18;
+constexpr std::uint64_t kMaxLayers = 64, kMaxTrees = 64, kMaxSpectra = 4096, kMaxText = 4096;
+constexpr std::size_t kMaxNodes = std::size_t{1} << 24;
+constexpr double kLargestLength = 1e9, kMaxRays = 1e18;
 
 void put_text(NflWriter& w, const std::string& text) {
-  const std::size_t n = std::min<std::size_t>(text.size(), kMostText);
+  const std::size_t n = std::min<std::size_t>(text.size(), kMaxText);
   w.varint(n);
   for (std::size_t i = 0; i < n; ++i) w.u8(static_cast<std::uint8_t>(text[i]));
 }
 
 std::string get_text(NflReader& r) {
   const std::uint64_t n = r.varint();
-  r.expect(n <= kMostText && n <= r.left(), "a text that does not fit");
+  r.expect(n <= kMaxText && n <= r.left(), "a text that does not fit");
   std::string text;
   for (std::uint64_t i = 0; i < n; ++i) text.push_back(static_cast<char>(r.u8()));
   return text;
@@ -143,11 +143,11 @@ AdaptiveChart get_chart(NflReader& r, const Support& support) {
     r.expect(c.box.low[d] <= c.box.high[d], "a box turned inside out");
   }
   const std::uint64_t trees = r.u8();
-  r.expect(trees >= 1 && trees <= kMostTrees, "a number of trees out of range");
+  r.expect(trees >= 1 && trees <= kMaxTrees, "a number of trees out of range");
   c.trees.resize(trees);
   for (DensityTree& tree : c.trees) {
     tree.rays = r.f64();
-    r.expect(tree.rays >= 0.0 && tree.rays <= kMostRays, "a number of rays out of range");
+    r.expect(tree.rays >= 0.0 && tree.rays <= kMaxRays, "a number of rays out of range");
   }
   return c;
 }
@@ -176,7 +176,7 @@ std::vector<SpectralTable> get_spectra(const NflFile& file, std::string_view nam
   if (!has_section(file, kSpectrumTag)) return spectra;
   NflReader r(file, kSpectrumTag, name);
   const std::uint64_t tables = r.varint();
-  r.expect(tables <= kMostSpectra, "too many spectra");
+  r.expect(tables <= kMaxSpectra, "too many spectra");
   for (std::uint64_t t = 0; t < tables; ++t) {
     const std::uint64_t n = r.varint();
     r.expect(n <= r.left() / 8, "a spectrum that does not fit");
@@ -212,7 +212,7 @@ void get_wavelengths(const NflFile& file, std::string_view name, AdaptiveData& d
   if (!has_section(file, kWaveTag)) return;
   NflReader r(file, kWaveTag, name);
   const std::uint64_t tables = r.varint();
-  r.expect(tables >= 1 && tables <= kMostLayers, "a number of wavelength tables out of range");
+  r.expect(tables >= 1 && tables <= kMaxLayers, "a number of wavelength tables out of range");
   for (std::uint64_t t = 0; t < tables; ++t) {
     const std::uint64_t n = r.varint();
     r.expect(n >= 2 && n <= r.left() / 8, "a table of wavelengths that does not fit");
@@ -242,7 +242,7 @@ void decode_trees(const NflFile& file, std::string_view name, AdaptiveData& data
   }
   RangeDecoder coder(bytes);
   TreeCodec codec;
-  std::size_t left = kMostNodes;
+  std::size_t left = kMaxNodes;
   for (AdaptiveLayer& layer : data.layers) {
     for (AdaptiveChart& chart : layer.charts) {
       std::uint64_t number = 0;
@@ -319,7 +319,7 @@ AdaptiveData decode_adaptive(const NflFile& file, std::string_view name) {
   NflReader r(file, kLayerTag, name);
   data.surface = get_surface(r);
   const std::uint64_t layers = r.varint();
-  r.expect(layers >= 1 && layers <= kMostLayers, "a number of layers out of range");
+  r.expect(layers >= 1 && layers <= kMaxLayers, "a number of layers out of range");
   for (std::uint64_t i = 0; i < layers; ++i) data.layers.push_back(get_layer(r));
   r.expect(std::abs(total_share(data) - 1.0) < 1e-9, "shares that do not sum to 1");
   r.finish();

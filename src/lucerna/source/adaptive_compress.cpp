@@ -108,8 +108,8 @@ std::uint64_t file_bytes(const AdaptiveData& data) {
 
 /// False where so many leaves surely do not fit: they take 11 to 20 bits each.
 bool fits(const AdaptiveData& data, std::uint64_t max_bytes) {
-  constexpr std::uint64_t kLeastBits = 6;
-  return kLeastBits * data.leaves() <= 8 * max_bytes && file_bytes(data) <= max_bytes;
+  constexpr std::uint64_t kMinBits = 6;
+  return kMinBits * data.leaves() <= 8 * max_bytes && file_bytes(data) <= max_bytes;
 }
 
 /// Prunes until the file fits: first by penalty, then with fewer trees.
@@ -123,12 +123,12 @@ void fit_to_size(AdaptiveData& data, const std::vector<GrownLayer>& grown, const
     // all cuts.
     if (trees > 1 && setting.trees == 2) continue;
     // Rougher trees than this are worse than fewer of them.
-    const double most = trees > 1 ? 3.0 * setting.penalty_nats : 1e9;
+    const double max = trees > 1 ? 3.0 * setting.penalty_nats : 1e9;
     do {
       low = high;
-      high = std::min(most, 2.0 * high);
+      high = std::min(max, 2.0 * high);
       data.layers = pruned(grown, high, trees);
-    } while (!fits(data, max_bytes) && high < most);
+    } while (!fits(data, max_bytes) && high < max);
     if (!fits(data, max_bytes)) {
       if (trees > 1) continue;
       throw InputError(fmt::format("a model of these rays does not fit in {} bytes", max_bytes));
@@ -316,7 +316,8 @@ void check_rays(const RayBlock& rays) {
 
 double model_flux(const RaySetHeader& header, const AdaptiveOptions& options) {
   const auto flux = options.flux ? options.flux : header.flux();
-  if (!flux) throw InputError("the rays' total flux is not stated: it has to be given", "flux");
+  if (!flux)
+    throw InputError("the rays' total flux is not stated: it has to be given", ErrorCause::missing, "flux");
   if (!(*flux > 0.0) || !std::isfinite(*flux)) {
     throw InputError(fmt::format("total flux {}, expected > 0", *flux));
   }
@@ -370,9 +371,9 @@ BoundingSurface starting_surface(const RayBlock& rays) {
   const RaySummary summary = summarize(rays);
   const Vec3 low = *summary.extent_min_mm, high = *summary.extent_max_mm;
   const Vec3 size = high - low;
-  const double least = 1e-6 * (size.x + size.y + size.z);
+  const double min = 1e-6 * (size.x + size.y + size.z);
   BoundingSurface box =
-      BoundingSurface::box({std::max(size.x, least), std::max(size.y, least), std::max(size.z, least)});
+      BoundingSurface::box({std::max(size.x, min), std::max(size.y, min), std::max(size.z, min)});
   box.world_from_surface = Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 0.5 * (low + high));
   return box;
 }
@@ -390,7 +391,7 @@ std::unique_ptr<AdaptiveModel> compress_adaptive(const RaySet& rays, const Adapt
 
 std::unique_ptr<AdaptiveModel> compress_adaptive(RayReader& reader, const AdaptiveOptions& options,
                                                  Progress& progress) {
-  const std::uint64_t count = reader.ray_count(), kept = std::min(count, options.most_rays);
+  const std::uint64_t count = reader.ray_count(), kept = std::min(count, options.max_rays);
   RayBlock rays, block;
   std::vector<float> nm;
   std::uint64_t read = 0, next = 0;

@@ -19,7 +19,7 @@ struct AdaptiveOptions {
   std::optional<double> flux;
   /// Of rays still in their file at most so many are used; more are thinned out evenly, by chance within each
   /// stretch, as they are read. Keeps memory below 1.5 GB for files of any size.
-  std::uint64_t most_rays = 20'000'000;
+  std::uint64_t max_rays = 20'000'000;
   /// For studies only; absent: what the rays say. Trees averaged in each chart, nats a split must gain, and
   /// whether a second support is looked for.
   std::optional<int> trees;

@@ -64,9 +64,9 @@ TEST(AdaptiveCompress, TheRectangleIsFoundAndNearlyExact) {
 TEST(AdaptiveCompressSlow, EveryFileHasRoomForItsModel) {
   const RaySet rays = drawn(EmitterKind::filament, 20000);
   const auto free = compress_adaptive(rays, {});
-  for (const std::uint64_t most : {4000u, 1500u, 1000u}) {
-    const auto model = compress_adaptive(rays, {.max_bytes = most});
-    EXPECT_LE(encode_nfl(model->to_nfl()).size(), most);
+  for (const std::uint64_t max : {4000u, 1500u, 1000u}) {
+    const auto model = compress_adaptive(rays, {.max_bytes = max});
+    EXPECT_LE(encode_nfl(model->to_nfl()).size(), max);
     EXPECT_LE(model->leaves(), free->leaves());
   }
   EXPECT_THROW(compress_adaptive(rays, {.max_bytes = 50}), InputError);
@@ -115,7 +115,7 @@ TEST(AdaptiveCompress, FilesOfMoreRaysThanAreWantedAreThinnedOutEvenly) {
     for (const float x : block.x_mm) n += x > 2.5f ? 1 : 0;
     return static_cast<double>(n) / static_cast<double>(block.size());
   };
-  const auto model = compress_adaptive(*open_ray_file(path), {.most_rays = 10'000});
+  const auto model = compress_adaptive(*open_ray_file(path), {.max_rays = 10'000});
   EXPECT_EQ(model->training_rays(), 40'000u);
   EXPECT_DOUBLE_EQ(model->flux(), *rays.header.flux());
   EXPECT_NEAR(right(from_model(*model, 100'000)), 0.5, 0.01);

@@ -81,7 +81,7 @@ class Grids {
   }
   /// The smallest p-value of the grids. The integrals' own variance counts beside that of the samples.
   double p(double rays, double points) const {
-    double least = 1.0;
+    double min = 1.0;
     const double scale = rays * box_.volume() / points;
     for (const Grid& g : grids_) {
       double chi2 = 0.0, thin_found = 0.0, thin = 0.0, thin_noise = 0.0;
@@ -96,9 +96,9 @@ class Grids {
       }
       if (thin > 0.0) chi2 += (thin_found - thin) * (thin_found - thin) / (thin + thin_noise), ++cells;
       EXPECT_GT(cells, 8);
-      least = std::min(least, test::gamma_q(0.5 * cells, 0.5 * chi2));
+      min = std::min(min, test::gamma_q(0.5 * cells, 0.5 * chi2));
     }
-    return least;
+    return min;
   }
 
  private:

@@ -113,7 +113,7 @@ struct TreeGrower {
     const double weight = below[kTreeCuts][0];
     const std::uint32_t stride = all ? 1 : kOfferStride;
     CutList cuts;
-    std::array<Cut, CutList::kMost> which;
+    std::array<Cut, CutList::kMax> which;
     for (std::uint32_t d = 0; d < 4; ++d) {
       if (!may_cut(box, d)) continue;
       const std::uint32_t offset = all ? 1 : 1 + cut_offset(tree, path, d);
@@ -123,10 +123,10 @@ struct TreeGrower {
       }
     }
     if (cuts.size == 0) return {};
-    const std::size_t most = count_gains(weight, cuts);
-    if (!(cuts.gain[most] > 0.0)) return {};
-    Cut best = which[most];
-    best.gain_nats = cuts.gain[most] * scale;
+    const std::size_t max = count_gains(weight, cuts);
+    if (!(cuts.gain[max] > 0.0)) return {};
+    Cut best = which[max];
+    best.gain_nats = cuts.gain[max] * scale;
     return all ? best : sharper(below, scale, best);
   }
 
@@ -138,10 +138,10 @@ struct TreeGrower {
     for (std::uint32_t cut = first; cut < kTreeCuts && cut <= offered.cut + kBeside; ++cut) {
       cuts.add(below[cut][offered.axis], cut);
     }
-    const std::size_t most = count_gains(below[kTreeCuts][0], cuts);
-    const double gain = cuts.gain[most] * scale;
+    const std::size_t max = count_gains(below[kTreeCuts][0], cuts);
+    const double gain = cuts.gain[max] * scale;
     if (!(gain > offered.gain_nats + kSharpEdge)) return offered;
-    return {gain, offered.axis, first + static_cast<std::uint32_t>(most)};
+    return {gain, offered.axis, first + static_cast<std::uint32_t>(max)};
   }
 
   /// The axis to split in the middle because it is not independent of another; none below 300 rays.
@@ -212,10 +212,10 @@ std::vector<double> coarser(const std::vector<double>& table, std::size_t rows, 
 
 std::uint32_t TreeGrower::dependent_axis(std::span<const TreeItem> items, const TreeBinning& binning,
                                          double scale, double rays, const TreeBox& box) const {
-  constexpr double kFewest = 300.0, kSome = 2000.0, kMany = 20000.0, kSignificant = 6.0;
-  if (rays < kFewest) return kNoAxis;
+  constexpr double kMin = 300.0, kSome = 2000.0, kMany = 20000.0, kSignificant = 6.0;
+  if (rays < kMin) return kNoAxis;
   const std::size_t shift = rays < kSome ? 3 : rays < kMany ? 2 : 1, bins = kTreeCuts >> shift, coarse = 4;
-  double most = kSignificant;
+  double max = kSignificant;
   std::uint32_t axis = kNoAxis;
   for (std::uint32_t a = 0; a < 4; ++a) {
     for (std::uint32_t b = a + 1; b < 4; ++b) {
@@ -226,8 +226,8 @@ std::uint32_t TreeGrower::dependent_axis(std::span<const TreeItem> items, const 
             static_cast<double>(item.weight);
       }
       const double found = dependence(table, bins, bins, scale);
-      if (found <= most) continue;
-      most = found;
+      if (found <= max) continue;
+      max = found;
       for (std::size_t i = 0; i < bins; ++i) {
         for (std::size_t j = 0; j < bins; ++j) turned[j * bins + i] = table[i * bins + j];
       }

@@ -117,12 +117,12 @@ struct OntoCylinder {
     const double angle = azimuth - twist * z;
     const double turned = angle - 2.0 * kPi * batch::nearest_integer(angle * (0.5 / kPi));
     const Pair r = radius_direction(x, y, rho);
-    const double least = std::min(a, std::abs(l.dz));
+    const double min = std::min(a, std::abs(l.dz));
     const double chart = end ? (top ? 1.0 : 2.0) : 0.0;
     const double found = rest >= 0.0 && near <= far ? chart : kMissed;
     return {end ? 0.5 * rho * rho : radius * batch::clamped(turned, -kPi, kPi), end ? azimuth : z,
             end ? l.dx : r.a * l.dy - r.b * l.dx, end ? (top ? l.dy : -l.dy) : l.dz,
-            least > kAlong ? found : kOneByOne};
+            min > kAlong ? found : kOneByOne};
   }
 };
 
@@ -138,7 +138,7 @@ struct OntoBox {
     const bool on_x = fx <= far, on_y = !on_x && fy <= far;
     const double outward = on_x ? l.dx : on_y ? l.dy : l.dz, third = on_x ? l.dz : on_y ? l.dx : l.dy;
     const double chart = (on_x ? 0.0 : on_y ? 2.0 : 4.0) + (outward > 0.0 ? 0.0 : 1.0);
-    const double least = std::min(std::abs(l.dx), std::min(std::abs(l.dy), std::abs(l.dz)));
+    const double min = std::min(std::abs(l.dx), std::min(std::abs(l.dy), std::abs(l.dz)));
     return {on_x   ? y
             : on_y ? z
                    : x,
@@ -148,7 +148,7 @@ struct OntoBox {
             on_x   ? l.dy
             : on_y ? l.dz
                    : l.dx,
-            outward > 0.0 ? third : -third, least > kAlong ? (near <= far ? chart : kMissed) : kOneByOne};
+            outward > 0.0 ? third : -third, min > kAlong ? (near <= far ? chart : kMissed) : kOneByOne};
   }
 };
 
@@ -263,7 +263,7 @@ LUCERNA_VECTOR_CLONES void enter_dome(const RefractingSphere& dome, const RayBat
                                       BatchColumn& missed) {
   const Vec3 o = dome.centre_mm;
   const double radius = dome.radius_mm, inverse = 1.0 / radius, weaker = 1.0 / dome.index;
-  constexpr double kMost = RefractingSphere::kLeaves * RefractingSphere::kLeaves;
+  constexpr double kMax = RefractingSphere::kLeaves * RefractingSphere::kLeaves;
   RayBatch rays;
   BatchColumn beside;
   for (std::size_t i = 0; i < kSupportBatch; ++i) {
@@ -279,7 +279,7 @@ LUCERNA_VECTOR_CLONES void enter_dome(const RefractingSphere& dome, const RayBat
     const double dx = weaker * kx + turn * nx, dy = weaker * ky + turn * ny, dz = weaker * kz + turn * nz;
     const double unit = 1.0 / std::sqrt(dx * dx + dy * dy + dz * dz);
     rays.kx[i] = dx * unit, rays.ky[i] = dy * unit, rays.kz[i] = dz * unit;
-    beside[i] = sine2 > kMost ? 1.0 : 0.0;
+    beside[i] = sine2 > kMax ? 1.0 : 0.0;
   }
   to = rays;
   missed = beside;

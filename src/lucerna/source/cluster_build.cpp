@@ -331,9 +331,9 @@ void fit_densities(ClusterData& data, const std::vector<double>& energy, std::ve
       if (sent[v] > 0.0) density[v] *= energy[v] / sent[v];
     }
   }
-  const double most = *std::max_element(density.begin(), density.end());
+  const double max = *std::max_element(density.begin(), density.end());
   data.density.resize(data.clusters());
-  for (std::size_t v = 0; v < data.clusters(); ++v) data.density[v] = density_level(density[v] / most);
+  for (std::size_t v = 0; v < data.clusters(); ++v) data.density[v] = density_level(density[v] / max);
 }
 
 }  // namespace
@@ -392,8 +392,8 @@ namespace {
 std::uint8_t stepped_level(double relative, int step) {
   const int below = 255 - weight_level(relative);
   if (below == 255) return 0;
-  const int most = 254 / step * step;
-  return static_cast<std::uint8_t>(255 - std::min(most, (below + step / 2) / step * step));
+  const int max = 254 / step * step;
+  return static_cast<std::uint8_t>(255 - std::min(max, (below + step / 2) / step * step));
 }
 
 }  // namespace
@@ -404,12 +404,12 @@ void set_directions(const AssignedRays& assigned, double penalty_nats, int level
     const auto samples =
         std::span(assigned.samples).subspan(assigned.begin[v], assigned.begin[v + 1] - assigned.begin[v]);
     const std::vector<DirectionLeaf> leaves = direction_tree(samples, penalty_nats);
-    double most = 0.0;
-    for (const DirectionLeaf& leaf : leaves) most = std::max(most, leaf.weight);
+    double max = 0.0;
+    for (const DirectionLeaf& leaf : leaves) max = std::max(max, leaf.weight);
     std::vector<ClusterLeaf> stored;
     for (const DirectionLeaf& leaf : leaves) {
       stored.push_back(
-          {leaf.code, static_cast<std::uint8_t>(leaf.depth), stepped_level(leaf.weight / most, level_step)});
+          {leaf.code, static_cast<std::uint8_t>(leaf.depth), stepped_level(leaf.weight / max, level_step)});
     }
     return stored;
   });

@@ -13,7 +13,7 @@ namespace {
 
 constexpr NflTag kSurface{'S', 'U', 'R', 'F'}, kPoints{'V', 'E', 'R', 'T'}, kElements{'E', 'L', 'E', 'M'},
     kTrees{'T', 'R', 'E', 'E'}, kLevels{'L', 'E', 'V', 'L'};
-constexpr std::uint64_t kMostClusters = 1u << 20;
+constexpr std::uint64_t kMaxClusters = 1u << 20;
 
 void write_vector(NflWriter& w, const Vec3& v) {
   for (const double x : {v.x, v.y, v.z}) w.f64(x);
@@ -77,7 +77,7 @@ std::string encode_points(const ClusterData& d) {
 
 void decode_points(NflReader r, ClusterData& d) {
   const std::uint64_t n = r.varint();
-  r.expect(n >= 1 && n <= kMostClusters && n == r.left() / 8 && r.left() % 8 == 0,
+  r.expect(n >= 1 && n <= kMaxClusters && n == r.left() / 8 && r.left() % 8 == 0,
            "a number of clusters that the section does not hold");
   d.place.resize(n);
   d.density.resize(n);
@@ -178,8 +178,8 @@ std::string encode_trees(const ClusterData& d) {
   return bits.take();
 }
 
-/// `most` leaves have levels: more are refused before they take memory.
-void decode_trees(NflReader r, std::size_t most, ClusterData& d) {
+/// `max` leaves have levels: more are refused before they take memory.
+void decode_trees(NflReader r, std::size_t max, ClusterData& d) {
   std::uint32_t byte = 0;
   int left = 0;
   const auto bit = [&] {
@@ -199,7 +199,7 @@ void decode_trees(NflReader r, std::size_t most, ClusterData& d) {
       int depth = 0;
       while (code % direction_span(depth) != 0) ++depth;
       while (depth < kDirectionDepth && bit()) ++depth;
-      r.expect(d.leaf.size() < most, "more leaves than levels");
+      r.expect(d.leaf.size() < max, "more leaves than levels");
       d.leaf.push_back({code, static_cast<std::uint8_t>(depth), 0});
       code += direction_span(depth);
     }
@@ -212,12 +212,12 @@ void decode_trees(NflReader r, std::size_t most, ClusterData& d) {
 void decode_levels(NflReader r, ClusterData& d) {
   r.expect(r.left() == d.leaf.size(), "a number of levels that is not that of the leaves");
   for (std::size_t v = 0; v < d.clusters(); ++v) {
-    std::uint8_t most = 0;
+    std::uint8_t max = 0;
     for (std::uint32_t i = d.leaf_begin[v]; i < d.leaf_begin[v + 1]; ++i) {
       d.leaf[i].level = r.u8();
-      most = std::max(most, d.leaf[i].level);
+      max = std::max(max, d.leaf[i].level);
     }
-    r.expect(most > 0, "a cluster without directions");
+    r.expect(max > 0, "a cluster without directions");
   }
   r.finish();
 }

@@ -15,12 +15,12 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kLeastBytes = 2000;
+constexpr std::uint64_t kMinBytes = 2000;
 /// A search for a size ends with at least this share of it used, or when it has tried so many penalties.
 constexpr double kUsedShare = 0.95;
-constexpr int kMostTries = 14;
+constexpr int kMaxTries = 14;
 /// Below, every ray has a triangle of directions of its own; above, there is no split.
-constexpr double kLeastPenalty = 0.02, kLargestPenalty = 1e9;
+constexpr double kMinPenalty = 0.02, kLargestPenalty = 1e9;
 
 class Clock {
  public:
@@ -116,7 +116,7 @@ class Compressor {
     Removal& r = made.removal;
     for (;; made.price *= 1.6) {
       RemovalResult result = remove_clusters(prepared_.surface, prepared_.point_mm, r.rays, std::move(r.kept),
-                                             {made.penalty, made.price, options_.least_clusters}, progress_);
+                                             {made.penalty, made.price, options_.min_clusters}, progress_);
       r.kept = std::move(result.kept);
       statistics_.rounds += result.rounds;
       if (!options_.max_clusters || r.kept.size() <= *options_.max_clusters) break;
@@ -145,17 +145,17 @@ class Compressor {
         best = std::move(made);
         if (over >= kUsedShare) break;
       }
-      if (low >= kLargestPenalty || (high > 0.0 && high <= kLeastPenalty)) break;
-      if (high > 0.0 && (tries >= kMostTries || high < 1.005 * low)) break;
+      if (low >= kLargestPenalty || (high > 0.0 && high <= kMinPenalty)) break;
+      if (high > 0.0 && (tries >= kMaxTries || high < 1.005 * low)) break;
       const double factor = std::pow(over, 0.8);
-      double next = penalty * (over > 1.0 ? std::clamp(factor, tries < kMostTries ? 1.15 : 10.0, 10.0)
+      double next = penalty * (over > 1.0 ? std::clamp(factor, tries < kMaxTries ? 1.15 : 10.0, 10.0)
                                           : std::clamp(factor, 0.1, 0.87));
       if (low > 0.0 && high > 0.0) {
         const double goal = std::log(0.975 * static_cast<double>(limit));
         const double t = (std::log(low_bytes) - goal) / std::max(1e-9, std::log(low_bytes / high_bytes));
         next = low * std::pow(high / low, std::clamp(t, 0.15, 0.85));
       }
-      made = make(std::clamp(next, kLeastPenalty, kLargestPenalty));
+      made = make(std::clamp(next, kMinPenalty, kLargestPenalty));
     }
     return std::move(*best);
   }
@@ -172,18 +172,17 @@ void check(const ClusterOptions& options) {
   if (options.max_bytes && options.target_bytes)
     throw UsageError("a largest size or a size to use up, not both");
   for (const auto& bytes : {options.max_bytes, options.target_bytes}) {
-    if (bytes && *bytes < kLeastBytes) {
-      throw UsageError(
-          fmt::format("a model of at most {} bytes; at least {} are needed", *bytes, kLeastBytes));
+    if (bytes && *bytes < kMinBytes) {
+      throw UsageError(fmt::format("a model of at most {} bytes; at least {} are needed", *bytes, kMinBytes));
     }
   }
-  if (!(options.penalty_nats >= kLeastPenalty) || !(options.cluster_price >= 0.0)) {
+  if (!(options.penalty_nats >= kMinPenalty) || !(options.cluster_price >= 0.0)) {
     throw UsageError(fmt::format("a penalty of {} nats and a price of {}; at least {} and 0 are expected",
-                                 options.penalty_nats, options.cluster_price, kLeastPenalty));
+                                 options.penalty_nats, options.cluster_price, kMinPenalty));
   }
-  if (options.max_clusters && *options.max_clusters < options.least_clusters) {
+  if (options.max_clusters && *options.max_clusters < options.min_clusters) {
     throw UsageError(fmt::format("at most {} clusters; at least {} are kept", *options.max_clusters,
-                                 options.least_clusters));
+                                 options.min_clusters));
   }
   if (options.level_step < 1 || options.level_step > 16) {
     throw UsageError(fmt::format("a step of {} levels; 1 to 16 are expected", options.level_step));

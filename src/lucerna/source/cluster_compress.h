@@ -21,7 +21,7 @@ struct ClusterOptions {
   /// the rays have that much to tell, 95 % of it. A model larger than the default's is nearer to its rays,
   /// not always to their source. Not together with `max_bytes`.
   std::optional<std::uint64_t> target_bytes;
-  /// Most clusters; where more are worth their price, the price is raised. At least `least_clusters`.
+  /// Most clusters; where more are worth their price, the price is raised. At least `min_clusters`.
   std::optional<std::size_t> max_clusters;
   /// Of the choice of rays that decide which clusters are removed.
   std::uint64_t seed = 1;
@@ -37,7 +37,7 @@ struct ClusterOptions {
   std::size_t removal_rays = std::size_t{1} << 22;
   /// Clusters that always stay: with fewer on a closed surface, parts of it lie on triangles that are no part
   /// of it.
-  std::size_t least_clusters = 32;
+  std::size_t min_clusters = 32;
   /// Weights of directions are stored in steps of 2^(level_step / 16): 1 to 16.
   int level_step = 8;
   /// Total flux; absent = the header's.

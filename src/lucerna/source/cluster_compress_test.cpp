@@ -187,9 +187,9 @@ TEST(CompressClusters, AMostNumberOfClustersIsKept) {
   const auto model = compress_clusters(rays, options, no_progress(), &few);
   EXPECT_GT(plain.clusters, 200u);
   EXPECT_LE(model->triangles(), 200u);
-  EXPECT_GE(few.clusters, options.least_clusters);
+  EXPECT_GE(few.clusters, options.min_clusters);
   EXPECT_GT(few.cluster_price, plain.cluster_price);
-  options.max_clusters = options.least_clusters - 1;
+  options.max_clusters = options.min_clusters - 1;
   EXPECT_THROW(compress_clusters(rays, options), UsageError);
 }
 

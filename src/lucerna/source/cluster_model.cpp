@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kFlatEnough = 0.01;
 /// Fine meshes are split less, so that no model takes more memory than this.
-constexpr std::size_t kMostPieces = std::size_t{1} << 22;
+constexpr std::size_t kMaxPieces = std::size_t{1} << 22;
 
 double triangle_area(const std::array<Vec3, 3>& p) { return 0.5 * length(cross(p[1] - p[0], p[2] - p[0])); }
 
@@ -86,7 +86,7 @@ std::vector<MeshPiece> mesh_pieces(const ClusterData& data) {
   std::vector<Vec3> points(data.clusters());
   for (std::size_t v = 0; v < points.size(); ++v) points[v] = data.point_mm(v);
   int splits = kMeshSplits;
-  while (splits > 0 && data.elements.size() << (2 * splits) > kMostPieces) --splits;
+  while (splits > 0 && data.elements.size() << (2 * splits) > kMaxPieces) --splits;
   std::vector<MeshPiece> pieces;
   for (std::uint32_t e = 0; e < data.elements.size(); ++e) {
     MeshPiece piece;

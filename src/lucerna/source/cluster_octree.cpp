@@ -82,7 +82,7 @@ void split(const std::vector<Keyed>& keyed, std::size_t first, std::size_t last,
 }
 
 /// The least number of rays that a leaf may be filled with so that there are at most `max_leaves`.
-std::size_t least_fill(std::vector<Split> splits, std::size_t max_leaves) {
+std::size_t min_fill(std::vector<Split> splits, std::size_t max_leaves) {
   std::sort(splits.begin(), splits.end(), [](const Split& a, const Split& b) { return a.rays > b.rays; });
   std::size_t leaves = 1;
   for (const Split& s : splits) {
@@ -121,11 +121,11 @@ PositionOctree build_position_octree(const RayBlock& rays, std::size_t min_rays,
 
   PositionOctree tree;
   std::vector<Split> splits;
-  const std::size_t most = std::max<std::size_t>(1, max_leaves);
+  const std::size_t max = std::max<std::size_t>(1, max_leaves);
   // Fuller leaves than the mean leaf there must be.
-  const std::size_t fewest = std::max({std::size_t{1}, min_rays, keyed.size() / most});
-  split(keyed, 0, keyed.size(), 0, fewest, tree.begin, splits);
-  if (const std::size_t fill = least_fill(splits, most); fill > fewest) {
+  const std::size_t min = std::max({std::size_t{1}, min_rays, keyed.size() / max});
+  split(keyed, 0, keyed.size(), 0, min, tree.begin, splits);
+  if (const std::size_t fill = min_fill(splits, max); fill > min) {
     tree.begin.clear();
     split(keyed, 0, keyed.size(), 0, fill, tree.begin, splits);
   }

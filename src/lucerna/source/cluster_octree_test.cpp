@@ -66,10 +66,10 @@ TEST(PositionOctree, AMostNumberOfLeavesIsKeptAndUsed) {
     rays.set(i, {{x * x, y, 0.0}, Direction()});
     rays.weight[i] = 1.0f;
   }
-  for (const std::size_t most : {1u, 7u, 200u, 1000u}) {
-    const PositionOctree tree = build_position_octree(rays, 1, most);
-    EXPECT_LE(tree.leaf_count(), most);
-    EXPECT_GE(tree.leaf_count() + 3, most / 2) << "room is used";
+  for (const std::size_t max : {1u, 7u, 200u, 1000u}) {
+    const PositionOctree tree = build_position_octree(rays, 1, max);
+    EXPECT_LE(tree.leaf_count(), max);
+    EXPECT_GE(tree.leaf_count() + 3, max / 2) << "room is used";
   }
 }
 

@@ -82,8 +82,8 @@ double interpolated_density(const Triangulation& mesh, const MeshDensity& d, con
 
 /// Nats lost when `found` counts are taken for `predicted`, less the 1/2 that noise alone costs.
 double poisson_loss(double found, double predicted) {
-  const double least = 0.5;  // half a ray: keeps the logarithm finite where nothing is expected
-  const double p = std::max(predicted, least), f = std::max(found, 0.0);
+  const double min = 0.5;  // half a ray: keeps the logarithm finite where nothing is expected
+  const double p = std::max(predicted, min), f = std::max(found, 0.0);
   return std::max(0.0, (f > 0.0 ? f * std::log(f / p) : 0.0) - f + p - 0.5);
 }
 
@@ -228,7 +228,7 @@ std::vector<bool> marked(const Round& round, std::vector<Cost> costs, const Remo
   std::vector<bool> gone(round.mesh.points, false), stays(round.mesh.points, false);
   std::size_t left = round.mesh.points;
   for (const Cost& c : costs) {
-    if (stays[c.cluster] || left <= options.least_clusters) continue;
+    if (stays[c.cluster] || left <= options.min_clusters) continue;
     gone[c.cluster] = true;
     --left;
     for (std::uint32_t i = round.near.begin[c.cluster]; i < round.near.begin[c.cluster + 1]; ++i) {
@@ -317,7 +317,7 @@ RemovalResult remove_clusters(const MeshSurface& surface, const std::vector<Vec3
   for (std::uint32_t i = 0; i < kept.size(); ++i) start[kept[i]] = i;
   for (;; ++result.rounds) {
     progress.step("compress: remove clusters", result.rounds, 0);
-    if (kept.size() <= options.least_clusters) break;
+    if (kept.size() <= options.min_clusters) break;
     std::vector<Vec3> left;
     for (const std::uint32_t v : kept) left.push_back(points[v]);
     const Round round = measure(surface, left, rays, start);
@@ -338,7 +338,7 @@ RemovalResult remove_clusters(const MeshSurface& surface, const std::vector<Vec3
     if (done) break;
   }
   // Back to numbers of all points: where the rays ended up.
-  if (result.rounds > 0 || kept.size() > options.least_clusters) {
+  if (result.rounds > 0 || kept.size() > options.min_clusters) {
     for (ClusterRay& ray : rays)
       ray.cluster = kept[std::min<std::size_t>(start[ray.cluster], kept.size() - 1)];
   }

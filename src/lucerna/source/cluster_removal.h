@@ -29,7 +29,7 @@ struct RemovalOptions {
   /// Price of a cluster (its point, density and triangles) in splits.
   double cluster_price = 2.5;
   /// Clusters that always stay.
-  std::size_t least_clusters = 32;
+  std::size_t min_clusters = 32;
 };
 
 /// What is left when nothing more is removed.

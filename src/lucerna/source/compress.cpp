@@ -20,9 +20,9 @@ CompressedFiles compress_stream(const std::filesystem::path& file, const Compres
   if (!options.flux) require_flux(reader->header(), file.string());
   CompressedFiles made;
   made.rays = reader->ray_count();
-  if (made.rays > adaptive.most_rays) {
+  if (made.rays > adaptive.max_rays) {
     made.notes.push_back(fmt::format("{}: of its {} rays {} are used, one of each stretch of equal length",
-                                     file.string(), made.rays, adaptive.most_rays));
+                                     file.string(), made.rays, adaptive.max_rays));
   }
   made.model = compress_adaptive(*reader, adaptive, progress);
   made.warnings = reader->warnings();

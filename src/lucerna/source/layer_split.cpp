@@ -21,7 +21,7 @@ constexpr int kFirstSteps = 8, kSteps = 6;
 /// Share of the plain density in every mixture, as in SupportJudge.
 constexpr double kSplitPlainShare = 0.02;
 /// Less light than this is left to the background.
-constexpr double kLeastLayerShare = 0.004;
+constexpr double kMinLayerShare = 0.004;
 /// The mixture must gain so many standard errors; and as much for each leaf that it has more than the first
 /// support alone as a split of a tree must: some gain is had wherever two different trees are mixed.
 constexpr double kClear = 4.0;
@@ -204,7 +204,7 @@ struct LayerSplitter {
     const auto [nats, error] = gain(halves, logs(halves, alone, two, 0.0), logs(halves, one, two, its_share));
     const auto rays = static_cast<double>(halves.rays[0].size() + halves.rays[1].size());
     const bool worth = nats * rays > kQuickPenaltyNats * more_leaves;
-    if (its_share < kLeastLayerShare || nats < kClear * error || !worth) return std::nullopt;
+    if (its_share < kMinLayerShare || nats < kClear * error || !worth) return std::nullopt;
     split.gain_nats_ = nats, split.gain_error_ = error, split.second_share_ = its_share;
     return split;
   }
@@ -220,7 +220,7 @@ std::optional<LayerSplit> split_layers(const RayBlock& rays, const SearchResult&
   const double tolerance_mm = rounding_mm(some, focus_mm);
   const SplitHalves halves = halves_of(some, focus_mm, tolerance_mm);
   const LayerSplitter splitter(halves, first.best.on, tolerance_mm);
-  if (splitter.share < kLeastLayerShare) return std::nullopt;
+  if (splitter.share < kMinLayerShare) return std::nullopt;
   const RayBlock odd = splitter.odd_rays();
   SearchResult found = search_support(odd, surface, seed + 1, progress);
   // Most of what is odd is no second source: that shows before the support is exact.

@@ -18,7 +18,7 @@ namespace {
 constexpr std::array<std::string_view, 7> kSurfaceNames{"point",    "line", "plane", "sphere",
                                                         "cylinder", "box",  "hull"};
 /// Share of the flux that must start on a surface; strays are put back on it.
-constexpr double kLeastShare = 0.99;
+constexpr double kMinShare = 0.99;
 /// The facets of a hull of some thousand points lie below the surface that they sample by up to about this
 /// share.
 constexpr double kHullTolerance = 1e-2;
@@ -118,7 +118,7 @@ FoundSurface enclosing_sphere(const RayBlock& rays, const Vec3& centre_mm) {
 
 FoundSurface find_mesh_surface(const RayBlock& rays) {
   LUCERNA_CHECK(!rays.empty(), "no rays");
-  const SurfaceGuess guess = guess_surface(rays, kLeastShare);
+  const SurfaceGuess guess = guess_surface(rays, kMinShare);
   const Points points = look_at(rays);
   const Frame& placed = guess.surface.world_from_surface;
   switch (guess.shape) {

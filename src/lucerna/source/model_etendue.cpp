@@ -69,10 +69,10 @@ EtendueCurve etendue_curve(const SourceModel& model, std::uint64_t rays, std::ui
 }
 
 EtendueCurve searched_etendue_curve(const RayBlock& rays) {
-  constexpr std::uint64_t kMostRays = std::uint64_t{1} << 18;
+  constexpr std::uint64_t kMaxRays = std::uint64_t{1} << 18;
   RayBlock some, judges;
   some.resize(0, rays.extra.size());
-  RaySubset(rays.size(), std::min<std::uint64_t>(kMostRays, rays.size()), 1).select(rays, 0, some);
+  RaySubset(rays.size(), std::min<std::uint64_t>(kMaxRays, rays.size()), 1).select(rays, 0, some);
   RaySet train;
   train.header.set_flux(1.0);
   for (RayBlock* half : {&train.rays, &judges}) half->resize(0, rays.extra.size());

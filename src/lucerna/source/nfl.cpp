@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t kNewestVersion = 2;
 constexpr std::size_t kHeader = 56, kTableEntry = 24, kDigest = 32;
-constexpr std::uint32_t kMostSections = 1024;
+constexpr std::uint32_t kMaxSections = 1024;
 constexpr int kZstdLevel = 19;
 
 std::string sha256(std::string_view bytes) {
@@ -141,7 +141,7 @@ NflFile decode_nfl(std::string_view bytes, std::string_view name) {
   if (unit > 1) throw_input_error(name, "byte 40", "flux unit {}; expected 0 (lm) or 1 (W)", unit);
   file.flux_unit = unit == 0 ? FluxUnit::lumen : FluxUnit::watt;
   const std::size_t end = bytes.size() - kDigest;
-  if (count > kMostSections || kHeader + count * kTableEntry > end) {
+  if (count > kMaxSections || kHeader + count * kTableEntry > end) {
     throw_input_error(name, "byte 44", "{} sections do not fit in {} bytes", count, bytes.size());
   }
   std::size_t at = kHeader + static_cast<std::size_t>(count) * kTableEntry;

@@ -41,8 +41,8 @@ LUCERNA_HD inline Ray RefractingSphere::outside(const Ray& inside) const {
   const Vec3& d = inside.direction.vec();
   const Vec3 o = inside.origin_mm - centre_mm;
   Vec3 q = o - dot(o, d) * d;
-  const double most = kLeaves * radius_mm / index;
-  q = std::min(1.0, most / std::max(length(q), 1e-300)) * q;
+  const double max = kLeaves * radius_mm / index;
+  q = std::min(1.0, max / std::max(length(q), 1e-300)) * q;
   const double sine2 = dot(q, q) / (radius_mm * radius_mm);
   const double in = std::sqrt(1.0 - sine2), out = std::sqrt(std::max(0.0, 1.0 - index * index * sine2));
   const Vec3 normal = (1.0 / radius_mm) * q + in * d;

@@ -53,9 +53,9 @@ LUCERNA_VECTOR_CLONES void to_box(const BoundingSurface& s, const RayBatch& r, D
     const double far = std::min(mx + wx, std::min(my + wy, mz + wz));
     const double near = std::max(mx - wx, std::max(my - wy, mz - wz));
     // Along a face the distances to it are infinite or have no value: those rays are made one by one.
-    const double least = std::min(std::abs(l.dx), std::min(std::abs(l.dy), std::abs(l.dz)));
+    const double min = std::min(std::abs(l.dx), std::min(std::abs(l.dy), std::abs(l.dz)));
     d.t[i] = far;
-    d.good[i] = least > 1e-12 ? far - near : -1.0;
+    d.good[i] = min > 1e-12 ? far - near : -1.0;
   }
   to = d;
 }
@@ -72,9 +72,9 @@ LUCERNA_VECTOR_CLONES void to_cylinder(const BoundingSurface& s, const RayBatch&
     const double w = std::sqrt(std::max(0.0, rest) * inverse), iz = 1.0 / l.dz;
     const double mz = -l.oz * iz, wz = std::abs(half * iz);
     const double far = std::min(w - along, mz + wz), near = std::max(-along - w, mz - wz);
-    const double least = std::min(a, std::abs(l.dz));
+    const double min = std::min(a, std::abs(l.dz));
     d.t[i] = far;
-    d.good[i] = least > 1e-12 && rest >= 0.0 ? far - near : -1.0;
+    d.good[i] = min > 1e-12 && rest >= 0.0 ? far - near : -1.0;
   }
   to = d;
 }

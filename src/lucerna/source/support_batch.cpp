@@ -227,7 +227,7 @@ LUCERNA_VECTOR_CLONES void fill_axis(const Support& s, const Columns& c, RayBatc
 LUCERNA_VECTOR_CLONES void leave_dome(const RefractingSphere dome, const RayBatch& r, RayBatch& to) {
   const Vec3 o = dome.centre_mm;
   const double index = dome.index, radius = dome.radius_mm, inverse = 1.0 / radius;
-  const double most = (1.0 - 1e-9) / index;
+  const double max = (1.0 - 1e-9) / index;
   RayBatch rays;
   for (std::size_t i = 0; i < kSupportBatch; ++i) {
     const double kx = r.kx[i], ky = r.ky[i], kz = r.kz[i];
@@ -235,7 +235,7 @@ LUCERNA_VECTOR_CLONES void leave_dome(const RefractingSphere dome, const RayBatc
     const double along = x * kx + y * ky + z * kz;
     double qx = x - along * kx, qy = y - along * ky, qz = z - along * kz;
     const double q = std::sqrt(qx * qx + qy * qy + qz * qz);
-    const double scale = std::min(1.0, most / std::max(q, 1e-300));
+    const double scale = std::min(1.0, max / std::max(q, 1e-300));
     qx *= scale, qy *= scale, qz *= scale;
     const double sine = q * scale, in = std::sqrt(1.0 - sine * sine);
     const double out = std::sqrt(std::max(0.0, 1.0 - index * index * sine * sine)), turn = out - index * in;

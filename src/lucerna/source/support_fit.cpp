@@ -120,18 +120,18 @@ Projection project(const RayBlock& rays, std::span<const float> weight, const Bo
   project_all(rays, weight, on, items, chart);
   std::array<std::size_t, 256> count{};
   for (const std::uint8_t c : chart) ++count[c];
-  const auto most = static_cast<std::uint32_t>(
+  const auto max = static_cast<std::uint32_t>(
       std::max_element(count.begin(), count.begin() + on.support.charts()) - count.begin());
   Projection result;
   std::vector<ChartItems> charts(on.support.charts());
   for (std::uint32_t c = 0; c < charts.size(); ++c) {
     charts[c].chart = c;
-    if (c != most) charts[c].items.reserve(count[c]);
+    if (c != max) charts[c].items.reserve(count[c]);
   }
   // The fullest chart keeps the array; the others' rays are taken out of it.
   std::size_t kept = 0;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    if (chart[i] == most)
+    if (chart[i] == max)
       items[kept++] = items[i];
     else if (chart[i] < charts.size())
       charts[chart[i]].items.push_back(items[i]);
@@ -141,7 +141,7 @@ Projection project(const RayBlock& rays, std::span<const float> weight, const Bo
     }
   }
   items.resize(kept);
-  charts[most].items = std::move(items);
+  charts[max].items = std::move(items);
   for (ChartItems& c : charts) {
     if (c.items.empty()) continue;
     close_box(c, on.support, tolerance_mm);

@@ -10,7 +10,7 @@ namespace {
 /// One step of a support's dome: moved by `length_mm`, stronger or weaker, of another index but as strong.
 std::optional<Support> moved_dome(const Support& s, int move, double length_mm, double angle) {
   if (!s.dome.exists()) return std::nullopt;
-  constexpr double kLeast = 1.02, kMost = 4.0;
+  constexpr double kMin = 1.02, kMax = 4.0;
   Support t = s;
   const Frame& f = s.world_from_support;
   if (move < 3) {
@@ -23,7 +23,7 @@ std::optional<Support> moved_dome(const Support& s, int move, double length_mm, 
     return t;
   }
   t.dome.index = 1.0 + (s.dome.index - 1.0) * std::exp(angle);
-  if (t.dome.index < kLeast || t.dome.index > kMost) return std::nullopt;
+  if (t.dome.index < kMin || t.dome.index > kMax) return std::nullopt;
   const auto weakness = [](double index) { return 1.0 - 1.0 / index; };
   t.dome.radius_mm = s.dome.radius_mm * weakness(t.dome.index) / weakness(s.dome.index);
   return t;

@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kSweeps = 2;
 /// The score shall fall by so much to both sides, nats: above the roughness, within the parabola.
-constexpr double kLeastDrop = 0.006, kMostDrop = 0.03;
-constexpr int kMostScalings = 3;
+constexpr double kMinDrop = 0.006, kMaxDrop = 0.03;
+constexpr int kMaxScalings = 3;
 constexpr double kWorthNats = 4.0;
 
 /// a + b t + c t^2.
@@ -61,14 +61,14 @@ struct Polisher {
   bool improve(int move) {
     double& t = step[static_cast<std::size_t>(move)];
     std::optional<std::array<double, 2>> wide, narrow;
-    for (int scaling = 0; scaling <= kMostScalings; ++scaling) {
+    for (int scaling = 0; scaling <= kMaxScalings; ++scaling) {
       if (!wide) wide = sides(move, t);
       if (!wide) return false;
       const double drop = best.nats - 0.5 * ((*wide)[0] + (*wide)[1]);
-      const bool last = scaling == kMostScalings;
-      if (drop < kLeastDrop && !last) {
+      const bool last = scaling == kMaxScalings;
+      if (drop < kMinDrop && !last) {
         narrow = wide, wide.reset(), t *= 2.0;
-      } else if (drop > kMostDrop && !last) {
+      } else if (drop > kMaxDrop && !last) {
         if (narrow) break;  // between the two
         wide = sides(move, 0.5 * t), t *= 0.5;
       } else {

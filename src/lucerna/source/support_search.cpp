@@ -145,8 +145,8 @@ void add_domes(std::vector<Support>& all, const RayBlock& rays, const RayShape& 
       const Vec3 o = rays.origin_mm(i) - centre;
       offset.push_back(length(cross(o, rays.direction(i).vec())));
     }
-    const double least = quantile(std::move(offset), kNearlyAll);
-    if (!(least > 0.0)) continue;
+    const double min = quantile(std::move(offset), kNearlyAll);
+    if (!(min > 0.0)) continue;
     for (const Direction& axis : shape.axes) {
       for (const double size : {1.1, 1.5, 2.2, 3.5}) {
         for (const PolarMap map : {PolarMap::polar, PolarMap::concentric}) {
@@ -154,7 +154,7 @@ void add_domes(std::vector<Support>& all, const RayBlock& rays, const RayShape& 
           s.kind = SupportKind::plane;
           s.map = map;
           s.world_from_support = upright_frame(axis, centre);
-          s.dome = {centre, size * least, kIndex};
+          s.dome = {centre, size * min, kIndex};
           all.push_back(s);
         }
       }
@@ -186,8 +186,8 @@ std::vector<Support> candidates(const RayBlock& rays, const RayShape& shape, con
 /// One round of compass search: the best of all single steps is taken while one gains.
 SupportScore refine_round(const SupportJudge& judge, SupportScore start, double length_mm, double angle,
                           Progress& progress) {
-  constexpr int kMostSteps = 5;
-  for (int step = 0; step < kMostSteps; ++step) {
+  constexpr int kMaxSteps = 5;
+  for (int step = 0; step < kMaxSteps; ++step) {
     if (progress.stop_requested()) throw Interrupted();
     std::vector<Support> tries;
     for (int move = 0; move < kSupportMoves; ++move) {
@@ -224,14 +224,14 @@ std::vector<SupportScore> best_first(std::vector<SupportScore> scores) {
 std::optional<SupportScore> degenerate_support(const RayBlock& rays, const RayShape& shape,
                                                double tolerance_mm, Progress& progress) {
   std::vector<Support> best;
-  int fewest = 4;
+  int min = 4;
   // Where rays start on a line they say so exactly; the virtual focus is only near it.
   const SurfaceGuess starts = guess_surface(rays);
   const bool line = starts.shape == StartShape::line;
   // Lines through a point also meet every axis through it: there an axis must do better than a focus. Lines
   // through an axis have three numbers on both, but only the axis knows where they start.
   for (const SupportKind kind : {SupportKind::focal, SupportKind::axis}) {
-    const int beaten = fewest;
+    const int beaten = min;
     std::vector<Frame> frames;
     if (line) frames.push_back(upright_frame(starts.line, starts.point_mm));
     for (const Direction& axis : shape.axes) frames.push_back(upright_frame(axis, shape.focus_mm));
@@ -244,17 +244,17 @@ std::optional<SupportScore> degenerate_support(const RayBlock& rays, const RaySh
       int dimensions = 0;
       for (std::size_t d = 0; d < 4; ++d) dimensions += p.charts.front().box.width(d) > 0.0 ? 1 : 0;
       const bool wins = kind == SupportKind::focal || dimensions < beaten || dimensions == 3;
-      if (!wins || dimensions > fewest) continue;
-      if (dimensions < fewest || (dimensions == 3 && best.front().kind != kind)) best.clear();
-      fewest = dimensions;
+      if (!wins || dimensions > min) continue;
+      if (dimensions < min || (dimensions == 3 && best.front().kind != kind)) best.clear();
+      min = dimensions;
       best.push_back(s);
     }
   }
-  if (best.empty() || fewest == 4) return std::nullopt;
+  if (best.empty() || min == 4) return std::nullopt;
   const SupportJudge judge(rays, shape.focus_mm, tolerance_mm);
   const SupportScore start = best_first(judge.scores(best)).front();
   // Only turns leave the rays' numbers few; turns of a line's axis do not even that.
-  const bool free = start.on.support.kind == SupportKind::focal && fewest == 2;
+  const bool free = start.on.support.kind == SupportKind::focal && min == 2;
   return free ? refine(judge, start, 0.0, radians(12.0), 8, progress) : start;
 }
 

@@ -99,7 +99,7 @@ void TreeCodec::encode(RangeEncoder& coder, const DensityTree& tree, std::uint64
   }
 }
 
-bool TreeCodec::decode(RangeDecoder& coder, double rays, std::uint64_t tree_number, std::size_t most_nodes,
+bool TreeCodec::decode(RangeDecoder& coder, double rays, std::uint64_t tree_number, std::size_t max_nodes,
                        std::vector<TreeNode>& nodes) {
   Decode side{&coder};
   struct Pending {
@@ -112,7 +112,7 @@ bool TreeCodec::decode(RangeDecoder& coder, double rays, std::uint64_t tree_numb
   while (!stack.empty()) {
     const Pending p = stack.back();
     stack.pop_back();
-    if (nodes.size() >= most_nodes || coder.overrun()) return false;
+    if (nodes.size() >= max_nodes || coder.overrun()) return false;
     const std::size_t self = nodes.size();
     if (p.parent != kNone) nodes[p.parent].right = static_cast<std::uint32_t>(self - p.parent);
     TreeNode& n = nodes.emplace_back();

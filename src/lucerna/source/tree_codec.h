@@ -14,8 +14,8 @@ class TreeCodec {
   /// `tree_number` as the tree was grown with; it foretells the offered cuts.
   void encode(RangeEncoder& coder, const DensityTree& tree, std::uint64_t tree_number);
 
-  /// Fills `nodes` for a tree of `rays`; `most_nodes` bounds them. False if the bytes end or make no tree.
-  bool decode(RangeDecoder& coder, double rays, std::uint64_t tree_number, std::size_t most_nodes,
+  /// Fills `nodes` for a tree of `rays`; `max_nodes` bounds them. False if the bytes end or make no tree.
+  bool decode(RangeDecoder& coder, double rays, std::uint64_t tree_number, std::size_t max_nodes,
               std::vector<TreeNode>& nodes);
 
  private:

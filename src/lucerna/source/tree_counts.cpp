@@ -118,22 +118,21 @@ namespace {
 
 /// Gains of all lanes of whole vectors, and the largest.
 LUCERNA_VECTOR_CLONES double fill_gains(double weight, CutList& cuts) {
-  constexpr double kLeast = 1e-290;
-  const double all = weight * batch::logarithm(std::max(weight, kLeast));
-  std::array<double, kLanes> most;
-  most.fill(-1e300);
+  constexpr double kMin = 1e-290;
+  const double all = weight * batch::logarithm(std::max(weight, kMin));
+  std::array<double, kLanes> max;
+  max.fill(-1e300);
   for (std::size_t first = 0; first < cuts.size; first += kLanes) {
     for (std::size_t k = 0; k < kLanes; ++k) {
       const std::size_t i = first + k;
       const double a = cuts.below[i], b = std::max(0.0, weight - a);
-      const double log_a = batch::logarithm(std::max(a, kLeast)),
-                   log_b = batch::logarithm(std::max(b, kLeast));
+      const double log_a = batch::logarithm(std::max(a, kMin)), log_b = batch::logarithm(std::max(b, kMin));
       const double gain = a * (log_a - cuts.log_below[i]) + b * (log_b - cuts.log_above[i]) - all;
       cuts.gain[i] = gain;
-      most[k] = std::max(most[k], gain);
+      max[k] = std::max(max[k], gain);
     }
   }
-  return *std::max_element(most.begin(), most.end());
+  return *std::max_element(max.begin(), max.end());
 }
 
 }  // namespace
@@ -143,9 +142,9 @@ std::size_t count_gains(double weight, CutList& cuts) {
   constexpr double kNever = 1e6;
   for (std::size_t i = cuts.size; i % kLanes != 0; ++i)
     cuts.below[i] = 0.0, cuts.log_below[i] = 0.0, cuts.log_above[i] = kNever;
-  const double most = fill_gains(weight, cuts);
+  const double max = fill_gains(weight, cuts);
   std::size_t best = 0;
-  while (best + 1 < cuts.size && cuts.gain[best] != most) ++best;
+  while (best + 1 < cuts.size && cuts.gain[best] != max) ++best;
   return best;
 }
 

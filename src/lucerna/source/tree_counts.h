@@ -37,9 +37,9 @@ TreeSums sums_below(const TreeCounts& counts);
 
 /// Cuts of which the gain is wanted, for count_gains: lanes that are not used gain nothing.
 struct CutList {
-  static constexpr std::size_t kMost = std::size_t{4} * kTreeCuts;
+  static constexpr std::size_t kMax = std::size_t{4} * kTreeCuts;
   std::size_t size = 0;
-  alignas(64) std::array<double, kMost> below, log_below, log_above, gain;
+  alignas(64) std::array<double, kMax> below, log_below, log_above, gain;
 
   /// The next lane: the weight below cut `cut`. 0 and kTreeCuts are no cuts and gain nothing.
   void add(double weight_below, std::uint32_t cut);

@@ -13,7 +13,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kMostBands = 6, kMostLines = 64, kParts = 64, kBandRays = 60'000;
+constexpr std::size_t kMaxBands = 6, kMaxLines = 64, kParts = 64, kBandRays = 60'000;
 
 /// Numbers of the values with weight, in ascending order of the values.
 std::vector<std::size_t> ascending(std::span<const float> nm, std::span<const float> weight) {
@@ -25,12 +25,12 @@ std::vector<std::size_t> ascending(std::span<const float> nm, std::span<const fl
   return order;
 }
 
-/// Ends of at most kMostBands bands.
+/// Ends of at most kMaxBands bands.
 std::vector<float> band_ends(const WavelengthTable& all) {
   std::vector<float> ends;
-  const bool lines = all.nm.size() <= 2 * kMostBands;
-  for (std::size_t k = 1; k < kMostBands && !lines; ++k) {
-    ends.push_back(all.at(static_cast<double>(k) / static_cast<double>(kMostBands)));
+  const bool lines = all.nm.size() <= 2 * kMaxBands;
+  for (std::size_t k = 1; k < kMaxBands && !lines; ++k) {
+    ends.push_back(all.at(static_cast<double>(k) / static_cast<double>(kMaxBands)));
   }
   for (std::size_t i = 2; lines && i < all.nm.size(); i += 2) {
     ends.push_back(0.5f * (all.nm[i - 1] + all.nm[i]));
@@ -42,7 +42,7 @@ std::vector<float> band_ends(const WavelengthTable& all) {
 /// Do the lines of rays foretell their bands? Bands `band` of `rays`; every third ray is held out.
 bool foretold(const RayBlock& rays, const std::vector<std::size_t>& band, std::size_t bands,
               const BoundedSupport& on, double tolerance_mm) {
-  constexpr double kClearGain = 4.0, kLeastGain = 0.002, kRatioFloor = 0.05;
+  constexpr double kClearGain = 4.0, kMinGain = 0.002, kRatioFloor = 0.05;
   std::vector<std::vector<double>> density;
   std::vector<double> share(bands, 0.0);
   double total = 0.0;
@@ -67,7 +67,7 @@ bool foretold(const RayBlock& rays, const std::vector<std::size_t>& band, std::s
   }
   if (!(weight > 0.0)) return false;
   const double mean = sum / weight, variance = std::max(0.0, squares / weight - mean * mean);
-  return mean > kLeastGain && mean > kClearGain * std::sqrt(variance * weight2) / weight;
+  return mean > kMinGain && mean > kClearGain * std::sqrt(variance * weight2) / weight;
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ WavelengthTable wavelength_table(std::span<const float> nm, std::span<const floa
     distinct += i == 0 || nm[order[i]] != nm[order[i - 1]] ? 1 : 0;
   }
   WavelengthTable table;
-  const bool lines = distinct <= kMostLines;
+  const bool lines = distinct <= kMaxLines;
   double below = 0.0;
   for (std::size_t i = 0; i < order.size(); ++i) {
     const float value = nm[order[i]];

@@ -7,12 +7,12 @@
 namespace lucerna {
 
 void throw_accelerator_error(const char* name, const char* what) {
-  throw InputError(fmt::format("{}: {}", name, what));
+  throw InputError(fmt::format("{}: {}", name, what), ErrorCause::unsupported);
 }
 
 void require_cuda() {
   if (const std::string why = why_no_cuda(); !why.empty())
-    throw InputError("no CUDA device: " + why, "device");
+    throw InputError("no CUDA device: " + why, ErrorCause::unsupported, "device");
 }
 
 }  // namespace lucerna

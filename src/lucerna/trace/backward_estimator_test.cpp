@@ -23,7 +23,7 @@ namespace lucerna {
 namespace {
 
 constexpr double kC_deg = 5.0, kGamma_deg = 1.0;
-constexpr std::size_t kMostGamma = 120;
+constexpr std::size_t kMaxGamma = 120;
 
 Scene scene_of(EmitterKind kind, const Reflector& mirror) {
   Scene scene;
@@ -73,7 +73,7 @@ DirectionCell grid_cell(std::size_t c, std::size_t gamma) {
 }
 
 /// Both estimates of cells that 400 rays or more reach and that have 2 % of the largest intensity or more
-/// (every `stride`-th of them) below kMostGamma: in darker ones the errors of so few backward rays are not
+/// (every `stride`-th of them) below kMaxGamma: in darker ones the errors of so few backward rays are not
 /// known well, and neither are those of light that leaves upward through the hole after many reflections.
 struct Sampling {
   std::size_t stride = 1;
@@ -86,7 +86,7 @@ std::vector<Pair> both(const Scene& scene, const Sampling& sampling, const Scene
   TraceOptions options;
   options.last_ray = 1 << 22;
   const FarField forward = far_field(trace(scene, options), 0);
-  const double least = 400.0 * scene.sources[0].total_flux() / static_cast<double>(*options.last_ray);
+  const double min = 400.0 * scene.sources[0].total_flux() / static_cast<double>(*options.last_ray);
   const auto solid_angle = [&](std::size_t i) {
     return grid_cell(i / forward.gamma_count, i % forward.gamma_count).solid_angle_sr();
   };
@@ -94,7 +94,7 @@ std::vector<Pair> both(const Scene& scene, const Sampling& sampling, const Scene
   double brightest = 0.0;
   for (std::size_t i = 0; i < forward.flux.size(); ++i) {
     const std::size_t gamma = i % forward.gamma_count;
-    if (gamma == 0 || gamma > kMostGamma || forward.flux[i] < least) continue;
+    if (gamma == 0 || gamma > kMaxGamma || forward.flux[i] < min) continue;
     brightest = std::max(brightest, forward.flux[i] / solid_angle(i));
     cells.push_back(i);
   }
@@ -142,11 +142,11 @@ Agreement agreement(const std::vector<Pair>& pairs, Factor factor = right) {
   return a;
 }
 
-void expect_agreement(const std::vector<Pair>& pairs, double least_cells) {
+void expect_agreement(const std::vector<Pair>& pairs, double min_cells) {
   const Agreement a = agreement(pairs);
   std::cout << a.cells << " cells, worst " << a.worst << " errors, mean square " << a.mean_square << ", bias "
             << a.bias << '\n';
-  EXPECT_GE(a.cells, least_cells);
+  EXPECT_GE(a.cells, min_cells);
   EXPECT_TRUE(a.holds());
   // 5 % too much is seen; a reflectance that is left out would be 11 %.
   EXPECT_FALSE(agreement(pairs, [](const Pair&) { return 1.05; }).holds());

@@ -52,7 +52,7 @@ std::string no_backward_reason(const Scene& scene) {
     if (faceted(r.reflector) != nullptr) return "a mirror is faceted";
   }
   for (const Body& b : scene.bodies) {
-    if (b.reflectance.greatest() > 0.0) return "a body reflects";
+    if (b.reflectance.max() > 0.0) return "a body reflects";
   }
   return scene.glasses.empty() ? "" : "there is a cover glass";
 }

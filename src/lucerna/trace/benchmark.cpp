@@ -29,7 +29,7 @@ class PillowMirror final : public HeightSurface {
   }
   HeightRange range(const Rectangle& r) const override {
     const RadiusRange q = radius_range(r);
-    return {q.least_mm * q.least_mm / f_ - p_, q.greatest_mm * q.greatest_mm / f_ + p_};
+    return {q.min_mm * q.min_mm / f_ - p_, q.max_mm * q.max_mm / f_ + p_};
   }
 
  private:

@@ -7,8 +7,8 @@
 
 namespace lucerna {
 
-/// Adds `n` sums of every thread of a block to `to`: within warps by shuffles, then one atomic addition a warp
-/// and sum that is not zero. All threads of the block must call it.
+/// Adds `n` sums of every thread of a block to `to`: within warps by shuffles, then one atomic addition a
+/// warp and sum that is not zero. All threads of the block must call it.
 __device__ inline void add_block_sums(const std::int64_t* sums, int n, std::int64_t* to) {
   for (int i = 0; i < n; ++i) {
     long long sum = sums[i];

@@ -71,7 +71,7 @@ BodyTracer::BodyTracer(const std::vector<Body>& bodies)
     : count_(bodies.size()), device_(std::make_unique<Device>()) {
   if (bodies.empty()) return;
   device_->device = rtcNewDevice(nullptr);
-  if (device_->device == nullptr) throw Error("Embree gives no device");
+  if (device_->device == nullptr) throw InputError("Embree gives no device", ErrorCause::unsupported);
   device_->direct = rtcNewScene(device_->device);
   device_->returning = rtcNewScene(device_->device);
   for (std::size_t i = 0; i < bodies.size(); ++i) {

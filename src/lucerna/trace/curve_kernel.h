@@ -67,8 +67,8 @@ class CurveWalk {
   static constexpr double kLastStep = 1e-8;
 
   // std::fmin and fmax are calls, for what they do with NaN; there is none here.
-  LUCERNA_HD static double least(double a, double b) { return b < a ? b : a; }
-  LUCERNA_HD static double greatest(double a, double b) { return a < b ? b : a; }
+  LUCERNA_HD static double smaller(double a, double b) { return b < a ? b : a; }
+  LUCERNA_HD static double larger(double a, double b) { return a < b ? b : a; }
 
   LUCERNA_HD double rho2(double t) const {
     const double s = t - turn_;
@@ -84,13 +84,13 @@ class CurveWalk {
       if (o_.z < z0 || o_.z > z1) return true;
     } else {
       const double p = (z0 - o_.z) / d_.z, q = (z1 - o_.z) / d_.z;
-      t0 = greatest(t0, least(p, q));
-      t1 = least(t1, greatest(p, q));
+      t0 = larger(t0, smaller(p, q));
+      t1 = smaller(t1, larger(p, q));
       if (t0 > t1) return true;
     }
     const double r1 = n.r1 + v_.overlap_mm, r0 = n.r0 - v_.overlap_mm;
-    if (rho2(least(greatest(turn_, t0), t1)) > r1 * r1) return true;
-    return r0 > 0.0 && greatest(rho2(t0), rho2(t1)) < r0 * r0;
+    if (rho2(smaller(larger(turn_, t0), t1)) > r1 * r1) return true;
+    return r0 > 0.0 && larger(rho2(t0), rho2(t1)) < r0 * r0;
   }
 
   /// Height of the ray in front of the piece at distance t, its derivative, and the piece's parameter there.
@@ -107,12 +107,12 @@ class CurveWalk {
   LUCERNA_HD static double parameter(const double (&k)[4], double from, double to, double m) {
     double s = (m - from) / (to - from);
     for (int i = 0; i < 8; ++i) {
-      s = least(greatest(s, 0.0), 1.0);
+      s = smaller(larger(s, 0.0), 1.0);
       const double step = (cubic(k, s) - m) / cubic_slope(k, s);
       s -= step;
       if (std::abs(step) < kLastStep) break;
     }
-    return least(greatest(s, 0.0), 1.0);
+    return smaller(larger(s, 0.0), 1.0);
   }
   LUCERNA_HD Value value(const CurvePiece& p, double t) const {
     const double r = rho(t), z = o_.z + t * d_.z;
@@ -141,7 +141,7 @@ class CurveWalk {
       if (n.piece < 0) continue;
       const CurvePiece& p = v_.pieces[n.piece];
       const double m = p.along_z ? o_.z : across;
-      if (m < least(p.from, p.to) - slack || m > greatest(p.from, p.to) + slack) continue;
+      if (m < smaller(p.from, p.to) - slack || m > larger(p.from, p.to) + slack) continue;
       if (!step_in_front(p, slack)) continue;
       step_in_front(p, slack);
       return;
@@ -181,12 +181,12 @@ class CurveWalk {
   /// Looks for hits with one piece: the ray's part beside it is cut where the ray turns, so that rho is
   /// monotone in each part.
   LUCERNA_HD void meet(const CurvePiece& p) {
-    const double low = least(p.from, p.to) - v_.overlap_mm, high = greatest(p.from, p.to) + v_.overlap_mm;
+    const double low = smaller(p.from, p.to) - v_.overlap_mm, high = larger(p.from, p.to) + v_.overlap_mm;
     if (p.along_z) {
       if (d_.z == 0.0) {
         if (o_.z < low || o_.z > high) return;
         // No farther than where it is surely outside the curve.
-        const double far = greatest(std::fabs(cubic(p.r, 0.0)), std::fabs(cubic(p.r, 1.0))) * 2.0 + 1.0;
+        const double far = larger(std::fabs(cubic(p.r, 0.0)), std::fabs(cubic(p.r, 1.0))) * 2.0 + 1.0;
         if (!(a_ > 0.0) || least2_ > far * far) return;
         const double w = std::sqrt((far * far - least2_) / a_);
         part(p, turn_ - w, turn_);
@@ -194,9 +194,9 @@ class CurveWalk {
         return;
       }
       const double t0 = (low - o_.z) / d_.z, t1 = (high - o_.z) / d_.z;
-      const double begin = least(t0, t1), end = greatest(t0, t1);
-      part(p, begin, least(end, greatest(begin, turn_)));
-      part(p, greatest(begin, turn_), end);
+      const double begin = smaller(t0, t1), end = larger(t0, t1);
+      part(p, begin, smaller(end, larger(begin, turn_)));
+      part(p, larger(begin, turn_), end);
       return;
     }
     if (high * high < least2_ || high < 0.0) return;
@@ -219,8 +219,8 @@ class CurveWalk {
   };
 
   LUCERNA_HD LUCERNA_HD_CALL void part(const CurvePiece& p, double t0, double t1) {
-    t0 = greatest(t0, 0.0);
-    t1 = least(t1, best_.t);
+    t0 = larger(t0, 0.0);
+    t1 = smaller(t1, best_.t);
     if (!(t0 < t1)) return;
     const Value a = value(p, t0), b = value(p, t1);
     const bool front = in_front(a);

@@ -59,16 +59,15 @@ class Chunk {
         scene_(scene),
         device_(device),
         numbering_(numbering),
-        most_rays_(accelerator.chunk_blocks() * kBlockRays) {
-    const std::size_t most_blocks = accelerator.chunk_blocks(),
-                      most_runs = most_blocks * scene.sources.size();
+        max_rays_(accelerator.chunk_blocks() * kBlockRays) {
+    const std::size_t max_blocks = accelerator.chunk_blocks(), max_runs = max_blocks * scene.sources.size();
     const auto both = [&](std::size_t bytes) {
       return Pair{AcceleratorBuffer(accelerator, bytes), AcceleratorBuffer(accelerator, bytes, true)};
     };
-    run_begin_ = both((most_blocks + 1) * sizeof(std::uint32_t));
-    runs_ = both(most_runs * sizeof(RunView));
-    if (device.has_sent_sources()) sent_ = both(kSentColumns * most_rays_ * sizeof(float));
-    if (!scene.ray_detectors.empty()) out_ = both(most_rays_ * sizeof(OutRay));
+    run_begin_ = both((max_blocks + 1) * sizeof(std::uint32_t));
+    runs_ = both(max_runs * sizeof(RunView));
+    if (device.has_sent_sources()) sent_ = both(kSentColumns * max_rays_ * sizeof(float));
+    if (!scene.ray_detectors.empty()) out_ = both(max_rays_ * sizeof(OutRay));
   }
 
   /// Draws what the CPU draws of blocks [first, end) and starts the rest on the accelerator.
@@ -83,15 +82,15 @@ class Chunk {
     v.runs = send<RunView>(runs_, run_begin()[blocks_]);
     if (device_.has_sent_sources()) {
       draw(v.sequence);
-      v.sent = sent_view(send<float>(sent_, kSentColumns * most_rays_));
+      v.sent = sent_view(send<float>(sent_, kSentColumns * max_rays_));
     }
     if (keeps_rays()) {
       v.out_rays = out_.device.as<OutRay>();
-      accelerator_.fill(stream_, v.out_rays, 0xff, rays_at_most() * sizeof(OutRay));
+      accelerator_.fill(stream_, v.out_rays, 0xff, rays_at_max() * sizeof(OutRay));
     }
     accelerator_.trace(stream_, v);
     if (keeps_rays()) {
-      accelerator_.download(stream_, out_.host.as<void>(), v.out_rays, rays_at_most() * sizeof(OutRay));
+      accelerator_.download(stream_, out_.host.as<void>(), v.out_rays, rays_at_max() * sizeof(OutRay));
     }
   }
 
@@ -114,7 +113,7 @@ class Chunk {
   std::uint32_t* run_begin() { return run_begin_.host.as<std::uint32_t>(); }
   RunView* runs() { return runs_.host.as<RunView>(); }
   bool keeps_rays() const { return out_.host.bytes() > 0; }
-  std::size_t rays_at_most() const { return blocks_ * kBlockRays; }
+  std::size_t rays_at_max() const { return blocks_ * kBlockRays; }
 
   template <class T>
   const T* send(const Pair& pair, std::size_t n) {
@@ -137,7 +136,7 @@ class Chunk {
   }
 
   SentRays sent_view(const float* base) const {
-    const auto column = [this, base](std::size_t c) { return base + c * most_rays_; };
+    const auto column = [this, base](std::size_t c) { return base + c * max_rays_; };
     return {column(0), column(1), column(2), column(3), column(4), column(5), column(6)};
   }
 
@@ -156,7 +155,7 @@ class Chunk {
             const std::array<const std::vector<float>*, kSentColumns> columns{
                 &rays.x_mm, &rays.y_mm, &rays.z_mm, &rays.kx, &rays.ky, &rays.kz, &rays.weight};
             for (std::size_t c = 0; c < kSentColumns; ++c) {
-              std::copy(columns[c]->begin(), columns[c]->end(), base + c * most_rays_ + place);
+              std::copy(columns[c]->begin(), columns[c]->end(), base + c * max_rays_ + place);
             }
           }
           place += run.count;
@@ -195,7 +194,7 @@ class Chunk {
   const Scene& scene_;
   const DeviceScene& device_;
   const RayNumbering& numbering_;
-  std::size_t most_rays_;
+  std::size_t max_rays_;
   Pair run_begin_, runs_, sent_, out_;
   std::uint64_t first_block_ = 0;
   std::uint32_t blocks_ = 0;

@@ -35,7 +35,7 @@ class DeviceTraceGpu : public testing::Test {
     const RayPairs p = compare_rays(trace(scene, options), device);
     EXPECT_GT(p.rays, 1000000u) << name;
     std::printf("%s: %zu rays, %zu differ, others by at most %.2g mm and %.2g in direction\n", name.c_str(),
-                p.rays, p.differ, p.most_mm, p.most_direction);
+                p.rays, p.differ, p.max_mm, p.max_direction);
     return p;
   }
   Accelerators devices_;

@@ -79,8 +79,8 @@ TEST(DeviceTrace, AgreesRayByRayWithTheFastestInstructionSet) {
     const test::RayPairs p = test::compare_rays(fast, device);
     EXPECT_GT(p.rays, 10000u);
     EXPECT_LE(p.differ, p.rays / 5000);
-    EXPECT_LT(p.most_mm, 1e-4);
-    EXPECT_LT(p.most_direction, 1e-5);
+    EXPECT_LT(p.max_mm, 1e-4);
+    EXPECT_LT(p.max_direction, 1e-5);
     Scene moved = scene;
     moved.reflectors[0].world_from_reflector = Frame::from_axis(Direction{}, 0.0, {0, 0, -12.01});
     EXPECT_GT(test::compare_rays(trace(moved, fastest), device).differ, p.rays / 20);
@@ -137,7 +137,7 @@ TEST(DeviceTrace, BodiesAgreeRayByRayWithEmbree) {
     const TraceResult cpu = trace(scene, options), device = trace_on(emulated(), scene, options);
     const test::RayPairs p = test::compare_rays(cpu, device);
     std::printf("%zu of %zu rays differ, the others by at most %.2g mm and %.2g\n", p.differ, p.rays,
-                p.most_mm, p.most_direction);
+                p.max_mm, p.max_direction);
     EXPECT_GT(p.rays, 3000u);
     EXPECT_LE(p.differ, p.rays / 1000);
     expect_closed(device);
@@ -231,16 +231,16 @@ class OneByOne final : public RaySource {
 
 /// Where two runs differ, in mean rays of one bin or sum.
 double largest_difference(const TraceResult& a, const TraceResult& b) {
-  double most = 0.0;
+  double max = 0.0;
   for (std::size_t r = 0; r < a.replicates.size(); ++r) {
     for (std::size_t d = 0; d < a.replicates[r].bins.size(); ++d) {
       for (std::size_t i = 0; i < a.replicates[r].bins[d].size(); ++i) {
         const auto difference = a.replicates[r].bins[d][i] - b.replicates[r].bins[d][i];
-        most = std::max(most, std::abs(static_cast<double>(difference)) / kUnitsPerRay);
+        max = std::max(max, std::abs(static_cast<double>(difference)) / kUnitsPerRay);
       }
     }
   }
-  return most;
+  return max;
 }
 
 /// A model of every kind of support, map and chart, each with a small tree.

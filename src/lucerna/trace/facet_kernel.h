@@ -53,7 +53,7 @@ LUCERNA_HD inline std::int32_t facet_of(double x, double pitch, std::int32_t fir
 /// Puts a start that lies within `slack` of a facet a hair in front of it, and in front of the neighbours
 /// that are as near: beside an edge it may have been rounded over any of them.
 LUCERNA_HD inline void settle_on_facets(const FacetView& v, double slack, Vec3& o) {
-  double least = 1e300;
+  double min = 1e300;
   for (const double sy : {-slack, slack}) {
     for (const double sx : {-slack, slack}) {
       const std::int32_t ix = facet_of(o.x + sx, v.pitch, v.first_column, v.columns);
@@ -61,10 +61,10 @@ LUCERNA_HD inline void settle_on_facets(const FacetView& v, double slack, Vec3& 
       const Facet& k = v.facets[iy * v.columns + ix];
       const double f = along_ray(v, ix, iy, o, {0.0, 0.0, 0.0}).c;
       const double steep = 1.0 + std::fabs(k.dzdx) + std::fabs(k.dzdy);
-      if (std::fabs(f) <= 4.0 * slack * steep) least = std::fmin(least, f);
+      if (std::fabs(f) <= 4.0 * slack * steep) min = std::fmin(min, f);
     }
   }
-  if (least < 1e300) o.z += v.hair_mm - least;
+  if (min < 1e300) o.z += v.hair_mm - min;
 }
 
 /// `slack_mm` > 0: the ray was just reflected here and its start is rounded by that much. A ray goes through

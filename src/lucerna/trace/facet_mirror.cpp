@@ -10,9 +10,9 @@ namespace lucerna {
 
 FacetMirror::FacetMirror(const FacetedSurface& surface, const Aperture& aperture) {
   const double pitch = surface.pitch_mm(), hx = aperture.half_x_mm(), hy = aperture.half_y_mm();
-  if (!((2.0 * hx / pitch + 2.0) * (2.0 * hy / pitch + 2.0) <= kMostFacets)) {
+  if (!((2.0 * hx / pitch + 2.0) * (2.0 * hy / pitch + 2.0) <= kMaxFacets)) {
     throw InputError(fmt::format(
-        "facets: a pitch of {} mm makes more than {:.0f} of them, expected larger ones", pitch, kMostFacets));
+        "facets: a pitch of {} mm makes more than {:.0f} of them, expected larger ones", pitch, kMaxFacets));
   }
   FacetView& v = view_;
   v.pitch = pitch;

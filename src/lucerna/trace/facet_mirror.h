@@ -13,9 +13,9 @@ namespace lucerna {
 class FacetMirror {
  public:
   /// Facets that the tables may have.
-  static constexpr double kMostFacets = 16e6;
+  static constexpr double kMaxFacets = 16e6;
 
-  /// `surface` within `aperture`. Throws InputError if the pitch makes more than kMostFacets facets.
+  /// `surface` within `aperture`. Throws InputError if the pitch makes more than kMaxFacets facets.
   FacetMirror(const FacetedSurface& surface, const Aperture& aperture);
 
   /// Valid as long as this lives and is not moved.

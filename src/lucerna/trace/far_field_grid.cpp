@@ -9,7 +9,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kMostFarFieldCells = std::size_t{1} << 24;
+constexpr std::size_t kMaxFarFieldCells = std::size_t{1} << 24;
 /// A local fit over a beam of 3 degrees spans nine such gammas. Finer cells in C, 1 degree wide at the
 /// horizon, would cost memory and time that narrow beams so far from the axis are not worth.
 constexpr double kCountedC_deg = 1.0, kCountedGamma_deg = 0.34;
@@ -37,7 +37,7 @@ FarFieldParts counted_parts(const FarFieldDetector& detector) {
   const FarFieldParts parts{grid.c_count() == 1 ? 1 : odd_parts(detector.c_step_deg, kCountedC_deg),
                             odd_parts(detector.gamma_step_deg, kCountedGamma_deg)};
   const std::size_t cells = grid.c_count() * parts.c * ((grid.gamma_count() - 1) * parts.gamma + 1);
-  return cells > kMostFarFieldCells ? FarFieldParts{} : parts;
+  return cells > kMaxFarFieldCells ? FarFieldParts{} : parts;
 }
 
 FarFieldGrid FarFieldGrid::counted(const FarFieldDetector& detector) {
@@ -54,9 +54,9 @@ FarFieldGrid::FarFieldGrid(const FarFieldDetector& detector)
       per_c_rad_(static_cast<double>(c_count_) / (2.0 * std::numbers::pi)),
       per_gamma_rad_(static_cast<double>(gamma_count_ - 1) / std::numbers::pi),
       tent_(detector.tent) {
-  if (size() > kMostFarFieldCells) {
+  if (size() > kMaxFarFieldCells) {
     throw InputError(fmt::format("detector '{}': {} cells, expected at most {}", detector.name, size(),
-                                 kMostFarFieldCells));
+                                 kMaxFarFieldCells));
   }
 }
 

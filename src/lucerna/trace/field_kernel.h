@@ -20,7 +20,7 @@ inline constexpr float kNoDirection = 1e-20f;
 inline constexpr float kSlopeSlack = 1e-4f;
 /// Of a falling ray: guesses by the planes of leaf squares, and the most steps on the surface itself before
 /// it is sent down the tree like any other.
-inline constexpr int kPlaneGuesses = 2, kMostFalls = 6;
+inline constexpr int kPlaneGuesses = 2, kMaxFalls = 6;
 
 /// 1 / d. A ray that runs along a grid line belongs to the cells towards the middle of the grid, `inward` of
 /// it: so it is in the grid on its borders too.
@@ -235,7 +235,7 @@ class Packet {
     Cell k = cell(ix, iy);
     // Lanes stop one by one, each where it would alone: a ray's hit must not depend on its neighbours.
     Mask moving = falling_, met = mask_of(0), none = mask_of(0);
-    for (int i = 0; i < kMostFalls && any(moving); ++i) {
+    for (int i = 0; i < kMaxFalls && any(moving); ++i) {
       const Piece p = piece(k, t, ix, iy);
       const Float f = over(t) - p.z;
       const Mask close = abs(f) <= Float(field_->slack);

@@ -176,7 +176,7 @@ void for_rays(std::uint64_t seed, std::size_t first, std::size_t last, const Int
 double cell_sagitta_mm(const Reflector& mirror, int cells) {
   const Aperture& a = mirror.aperture;
   const double dx = 2.0 * a.half_x_mm() / cells, dy = 2.0 * a.half_y_mm() / cells;
-  double most = 0.0;
+  double max = 0.0;
   Rng rng(29, 0);
   for (int i = 0; i < 20000; ++i) {
     const double x = a.half_x_mm() * (2.0 * rng.uniform() - 1.0),
@@ -187,9 +187,9 @@ double cell_sagitta_mm(const Reflector& mirror, int cells) {
     const double sag = std::abs(h(0, 0) - 0.5 * (h(-0.5, 0) + h(0.5, 0))) +
                        std::abs(h(0, 0) - 0.5 * (h(0, -0.5) + h(0, 0.5))) + 0.25 * std::abs(mixed);
     const SurfacePoint s = mirror.surface->at(x, y);
-    most = std::max(most, sag / std::sqrt(1.0 + s.dzdx * s.dzdx + s.dzdy * s.dzdy));
+    max = std::max(max, sag / std::sqrt(1.0 + s.dzdx * s.dzdx + s.dzdy * s.dzdy));
   }
-  return most;
+  return max;
 }
 
 /// Rounding of heights to float32 at these sizes.

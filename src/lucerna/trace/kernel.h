@@ -105,9 +105,9 @@ struct Kernels {
   int64_t (*enter)(const FrameView& world_from_source, const RayArrays& in, size_t n, double ray_flux,
                    WorldRays& out, bool& all_finite);
   /// Takes off what mirror `mirror` absorbs of the rays that it meets and notes their fates, which stay as
-  /// they are where it meets none. Ray i was reflected reflections[i] times, `most` is all that it may be; a
+  /// they are where it meets none. Ray i was reflected reflections[i] times, `max` is all that it may be; a
   /// front reflects kept[i] of it.
-  MirrorSums (*settle_fates)(const LocalHits& hits, const int32_t* reflections, int32_t most,
+  MirrorSums (*settle_fates)(const LocalHits& hits, const int32_t* reflections, int32_t max,
                              const double* kept, int32_t mirror, size_t n, float* flux, int32_t* fate);
   /// Moves the rays that leave behind the `out_count` of `out`, drops those that are gone, and closes the
   /// gaps; returns how many stay. Reads n fates and no more; whole vectors of the rays.

@@ -79,10 +79,10 @@ void count_nodes(const BinnedIntensity& test, const BinnedIntensity& truth, Node
   }
 }
 
-/// Coverage of `seeds` traces of `rays` rays by one of `truth_rays`. Each figure's must be at least `least`,
+/// Coverage of `seeds` traces of `rays` rays by one of `truth_rays`. Each figure's must be at least `min`,
 /// the mean of all and of the nodes within the bounds.
-void check(const std::string& scene, int seeds, std::uint64_t rays, std::uint64_t truth_rays, double least,
-           double mean_least, double mean_most) {
+void check(const std::string& scene, int seeds, std::uint64_t rays, std::uint64_t truth_rays, double min,
+           double mean_min, double mean_max) {
   SCOPED_TRACE(scene);
   const Project project = read_project(test::source_dir() / "bench" / "figures" / (scene + ".toml"));
   TraceOptions options;
@@ -110,14 +110,14 @@ void check(const std::string& scene, int seeds, std::uint64_t rays, std::uint64_
   for (const auto& [name, c] : coverage) {
     std::cout << scene << ", " << name << ": " << 100.0 * c.share() << " % of " << c.runs << '\n';
     if (c.runs < seeds / 2) continue;  // determined in few runs only
-    EXPECT_GE(c.share(), least) << name;
+    EXPECT_GE(c.share(), min) << name;
     sum += c.share();
     n += 1.0;
   }
   std::cout << scene << ", all figures: " << 100.0 * sum / n << " %; nodes within 2 errors "
             << 100.0 * nodes.within_2.share() << " %, within 3 " << 100.0 * nodes.within_3.share() << " %\n";
-  EXPECT_GE(sum / n, mean_least);
-  EXPECT_LE(sum / n, mean_most);
+  EXPECT_GE(sum / n, mean_min);
+  EXPECT_LE(sum / n, mean_max);
   EXPECT_GE(nodes.within_3.share(), 0.99);
   EXPECT_GE(nodes.within_2.share(), 0.92);
 }

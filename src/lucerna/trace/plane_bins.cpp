@@ -12,16 +12,16 @@ namespace lucerna {
 namespace {
 
 void check_grid(const std::string& name, const PlaneGrid& grid) {
-  constexpr std::size_t kMostPlaneCells = std::size_t{1} << 24;
+  constexpr std::size_t kMaxPlaneCells = std::size_t{1} << 24;
   for (const double size : {grid.size_x_mm, grid.size_y_mm}) {
     if (!(size > 0.0 && std::isfinite(size))) {
       throw InputError(
           fmt::format("detector '{}': a size of {} mm, expected a finite number above 0", name, size));
     }
   }
-  if (grid.nx == 0 || grid.ny == 0 || grid.nx > kMostPlaneCells / grid.ny) {
+  if (grid.nx == 0 || grid.ny == 0 || grid.nx > kMaxPlaneCells / grid.ny) {
     throw InputError(fmt::format("detector '{}': {} x {} cells, expected 1 to {}", name, grid.nx, grid.ny,
-                                 kMostPlaneCells));
+                                 kMaxPlaneCells));
   }
 }
 
@@ -93,7 +93,7 @@ PlaneBins::PlaneBins(const LuminanceDetector& detector)
     : grid_(detector.grid),
       plane_from_world_(detector.grid.world_from_plane.inverse()),
       kind_(detector.distance_mm > 0.0 ? Kind::pupil : Kind::cone),
-      least_cosine_(std::cos(radians(detector.half_angle_deg))),
+      min_cosine_(std::cos(radians(detector.half_angle_deg))),
       distance_mm_(detector.distance_mm),
       pupil_radius_mm_(detector.pupil_radius_mm) {}
 

@@ -24,15 +24,15 @@ class PlaneBins {
 
   PlaneGrid grid_;
   Frame plane_from_world_;
-  /// Plane: what falls on its lit side. Cone: within least_cosine_ of +z. Pupil: through a disk at
+  /// Plane: what falls on its lit side. Cone: within min_cosine_ of +z. Pupil: through a disk at
   /// distance_mm_.
   enum class Kind { plane, cone, pupil } kind_;
-  double least_cosine_ = 0.0, distance_mm_ = 0.0, pupil_radius_mm_ = 0.0;
+  double min_cosine_ = 0.0, distance_mm_ = 0.0, pupil_radius_mm_ = 0.0;
 };
 
 LUCERNA_HD inline bool PlaneBins::counts(const Ray& r, double t) const {
   if (kind_ == Kind::plane) return r.direction.z() < 0.0 && t >= 0.0;
-  if (kind_ == Kind::cone) return r.direction.z() >= least_cosine_;
+  if (kind_ == Kind::cone) return r.direction.z() >= min_cosine_;
   if (!(r.direction.z() > 0.0)) return false;
   const double at_pupil = t + distance_mm_ / r.direction.z();
   const Vec3 p = r.at(at_pupil);

@@ -14,7 +14,7 @@ namespace {
 
 /// Cells that may be the largest of `sign` times the values.
 std::vector<std::size_t> contenders(const PlaneImage& image, double sign) {
-  constexpr std::size_t kMost = 2048;
+  constexpr std::size_t kMax = 2048;
   constexpr double kErrors = 6.0;
   const auto at = [&](std::size_t k) { return sign * image.value[k]; };
   std::size_t best = 0;
@@ -24,12 +24,12 @@ std::vector<std::size_t> contenders(const PlaneImage& image, double sign) {
     const double error = std::fmax(image.standard_error[k], image.standard_error[best]);
     if (k == best || at(k) > at(best) - kErrors * error) cells.push_back(k);
   }
-  if (cells.size() > kMost) {
+  if (cells.size() > kMax) {
     const auto order = [&](std::size_t a, std::size_t b) {
       return at(a) > at(b) || (at(a) == at(b) && a < b);
     };
-    std::nth_element(cells.begin(), cells.begin() + kMost, cells.end(), order);
-    cells.resize(kMost);
+    std::nth_element(cells.begin(), cells.begin() + kMax, cells.end(), order);
+    cells.resize(kMax);
     std::sort(cells.begin(), cells.end());
   }
   return cells;
@@ -56,17 +56,17 @@ LargestFigure extreme(const ImageBins& b, double sign, std::size_t& cell) {
       b.result, cells.size(), [&](const Tally& t, std::size_t k) { return t.bins[b.bins][cells[k]]; });
   std::vector<Jackknife> values;
   for (std::size_t k = 0; k < cells.size(); ++k) values.push_back(b.value(flux, k, cells[k], sign));
-  LargestFigure most = largest(values);
-  cell = cells[most.index];
-  return most;
+  LargestFigure max = largest(values);
+  cell = cells[max.index];
+  return max;
 }
 
 PlaneExtremes extremes(const ImageBins& b) {
   PlaneExtremes out;
-  std::size_t least_cell = 0;
-  out.greatest = extreme(b, 1.0, out.greatest_cell).estimate;
-  const LargestFigure least = extreme(b, -1.0, least_cell);
-  out.least = {-least.estimate.mean, least.estimate.standard_error};
+  std::size_t min_cell = 0;
+  out.max = extreme(b, 1.0, out.max_cell).estimate;
+  const LargestFigure min = extreme(b, -1.0, min_cell);
+  out.min = {-min.estimate.mean, min.estimate.standard_error};
   const auto& value = b.image.value;
   const double mean = std::accumulate(value.begin(), value.end(), 0.0) / static_cast<double>(value.size());
   const JackknifedFlux all = jackknifed_flux(b.result, 1, [&](const Tally& t, std::size_t) {
@@ -77,8 +77,8 @@ PlaneExtremes extremes(const ImageBins& b) {
       Jackknife({all.row(0).begin(), all.row(0).end()}).map([&](double v) { return per_flux * v; });
   out.mean = means.estimate();
   if (!(mean > 0.0)) return out;
-  const Estimate e = ratio(least.values.map([](double v) { return -v; }), means).estimate();
-  out.uniformity = Estimate{e.mean, std::fmax(e.standard_error, out.least.standard_error / mean)};
+  const Estimate e = ratio(min.values.map([](double v) { return -v; }), means).estimate();
+  out.uniformity = Estimate{e.mean, std::fmax(e.standard_error, out.min.standard_error / mean)};
   return out;
 }
 

@@ -41,25 +41,25 @@ PlaneExtremes seen(std::uint64_t seed, PlaneImage* image) {
 TEST(PlaneExtremesStatistical, ArePulledNeitherUpNorDownByNoise) {
   const double peak = 1000.0 / std::numbers::pi / (0.1 * 0.1);  // lx: cd / m^2 of distance squared
   const double corner = peak * std::pow(1.0 / (1.0 + 2 * 0.19 * 0.19), 2.0);
-  double plain = 0.0, greatest = 0.0, least = 0.0, error = 0.0;
+  double plain = 0.0, max = 0.0, min = 0.0, error = 0.0;
   constexpr int kRuns = 12;
   for (int run = 1; run <= kRuns; ++run) {
     PlaneImage image;
     const PlaneExtremes e = seen(static_cast<std::uint64_t>(run), &image);
     plain += *std::max_element(image.value.begin(), image.value.end()) / kRuns;
-    greatest += e.greatest.mean / kRuns;
-    least += e.least.mean / kRuns;
-    error = std::max(error, e.greatest.standard_error);
+    max += e.max.mean / kRuns;
+    min += e.min.mean / kRuns;
+    error = std::max(error, e.max.standard_error);
     EXPECT_NEAR(e.mean.mean, peak * 0.949, 0.05 * peak);
     ASSERT_TRUE(e.uniformity.has_value());
-    EXPECT_NEAR(e.uniformity->mean, e.least.mean / e.mean.mean, 0.05);
+    EXPECT_NEAR(e.uniformity->mean, e.min.mean / e.mean.mean, 0.05);
     EXPECT_GT(e.uniformity->standard_error, 0.0);
   }
   EXPECT_GT(plain, 1.25 * peak);
-  EXPECT_LT(greatest, peak + 0.6 * (plain - peak));
-  EXPECT_NEAR(greatest, peak, 2.0 * error);
-  EXPECT_LT(least, corner);
-  EXPECT_GT(least, 0.5 * corner);
+  EXPECT_LT(max, peak + 0.6 * (plain - peak));
+  EXPECT_NEAR(max, peak, 2.0 * error);
+  EXPECT_LT(min, corner);
+  EXPECT_GT(min, 0.5 * corner);
 }
 
 TEST(PlaneExtremes, OfADarkPlaneAreZero) {
@@ -69,8 +69,8 @@ TEST(PlaneExtremes, OfADarkPlaneAreZero) {
   options.last_ray = 4096;
   const TraceResult result = trace(scene, options);
   const PlaneExtremes e = illuminance_extremes(result, 0, illuminance(result, 0));
-  EXPECT_EQ(e.greatest.mean, 0.0);
-  EXPECT_EQ(e.least.mean, 0.0);
+  EXPECT_EQ(e.max.mean, 0.0);
+  EXPECT_EQ(e.min.mean, 0.0);
   EXPECT_EQ(e.mean.mean, 0.0);
   EXPECT_FALSE(e.uniformity.has_value());
 }

@@ -41,10 +41,10 @@ void check_sources_before_mirrors(Project& project, const std::string& file) {
       const std::string who =
           fmt::format("source[{}]: {:.3g} % of its rays start behind reflector[{}]", s, 100.0 * share, m);
       if (share >= kFew && share <= 1.0 - kFew) {
-        throw_input_error(file, "",
-                          "{}: the source reaches through the mirror; expected a hole_diameter_mm that lets "
-                          "it pass, or another position_mm",
-                          who);
+        throw InputError(fmt::format("{}: {}: the source reaches through the mirror; expected a "
+                                     "hole_diameter_mm that lets it pass, or another position_mm",
+                                     file, who),
+                         ErrorCause::contradiction);
       }
       if (share > 0.0) project.warnings.push_back(fmt::format("{}: {}", file, who));
     }
@@ -87,7 +87,7 @@ Project read_project(const fs::path& path, Progress& progress) {
   try {
     check(project.scene);
   } catch (const InputError& e) {
-    throw InputError(fmt::format("{}: {}", path.string(), e.what()));
+    throw InputError(fmt::format("{}: {}", path.string(), e.what()), e.cause());
   }
   check_sources_before_mirrors(project, path.string());
   make_files_absolute(toml_tables(project), fs::absolute(path).parent_path());

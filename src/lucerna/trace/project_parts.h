@@ -21,7 +21,7 @@ auto at_key(const TomlReader& reader, std::string_view key, Make&& make) {
   try {
     return make();
   } catch (const InputError& e) {
-    reader.fail(key, e.what());
+    reader.fail(key, e.what(), e.cause());
   } catch (const UsageError& e) {
     reader.fail(key, e.what());
   }

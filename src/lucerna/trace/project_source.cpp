@@ -16,7 +16,7 @@ struct GivenFlux {
 };
 
 std::optional<GivenFlux> read_flux(TomlReader& reader) {
-  const auto lm = reader.positive("flux_lm"), w = reader.positive("flux_w");
+  const auto lm = reader.number("flux_lm"), w = reader.number("flux_w");
   if (lm && w) reader.fail("flux_w", "flux_lm and flux_w exclude each other");
   if (lm) return GivenFlux{*lm, FluxUnit::lumen};
   if (w) return GivenFlux{*w, FluxUnit::watt};
@@ -25,20 +25,20 @@ std::optional<GivenFlux> read_flux(TomlReader& reader) {
 
 /// `surface` with `surface_mm`: one number or an array of them.
 std::optional<BoundingSurface> read_surface(TomlReader& reader) {
-  const auto name = reader.text("surface");
+  const auto name = reader.word("surface");
   const auto mm = reader.number_or_numbers("surface_mm");
   if (!name && mm) reader.fail("surface_mm", "needs surface");
   if (!name) return std::nullopt;
-  const SurfaceKind kind = at_key(reader, "surface", [&] { return surface_kind(*name); });
-  return at_key(reader, mm ? "surface_mm" : "surface",
-                [&] { return BoundingSurface::from_sizes(kind, mm.value_or(std::vector<double>())); });
+  return at_key(reader, mm ? "surface_mm" : "surface", [&] {
+    return BoundingSurface::from_sizes(surface_kind(*name), mm.value_or(std::vector<double>()));
+  });
 }
 
 std::shared_ptr<const RaySource> read_emitter(TomlReader& reader, const std::optional<GivenFlux>& flux) {
   EmitterOptions options;
-  options.kind = at_key(reader, "kind", [&] { return emitter_kind(reader.required_text("kind")); });
-  options.radius_mm = reader.positive("radius_mm");
-  options.length_mm = reader.positive("length_mm");
+  options.kind = emitter_kind(reader.required_word("kind"));
+  options.radius_mm = reader.number("radius_mm");
+  options.length_mm = reader.number("length_mm");
   if (const auto size = reader.numbers("size_mm", 2)) options.size_mm = {(*size)[0], (*size)[1]};
   options.ghost_share = reader.number("ghost_share", options.ghost_share);
   options.surface = read_surface(reader);

@@ -348,26 +348,26 @@ TEST(Project, BadBodiesMapsAndDetectorsNameTheirKey) {
   expect(mesh + "slope_error_mrad = -1\n", "slope_error_mrad: found -1, expected 0 to 1000");
   expect("[[body]]\nfile = 't.obj'\nslope_error_mrad = 2\n",
          "belongs to role = \"mirror\"; this is absorber");
-  expect(mesh + "smooth_normals = true\ncrease_deg = 200\n", "expected 0 to 180");
+  expect(mesh + "smooth_normals = true\ncrease_deg = 200\n", "expected > 0 and <= 180");
   const std::string map = "[[reflector]]\nfamily = 'heightmap'\n";
   expect(map + "size_mm = [1, 1]\n", "reflector[0].file: is missing");
   expect(map + "file = 'z.csv'\n", "size_mm: is missing");
   expect(map + "file = 'z.csv'\nsize_mm = [1, 0]\n", "found 0, expected > 0");
   expect(map + "file = 'z.pgm'\nsize_mm = [9, 9]\n", "z_scale_mm: is missing");
-  expect(map + "file = 'z.csv'\nsize_mm = [9, 9]\nfirst_row = 'left'\n", "expected bottom or top");
+  expect(map + "file = 'z.csv'\nsize_mm = [9, 9]\nfirst_row = 'left'\n", "expected top or bottom");
   expect(map + "file = 'z.csv'\nsize_mm = [9, 9]\naperture = 'circle'\ndiameter_mm = 10\n", "reach 9 mm");
   expect(map + "file = 'z.csv'\nsize_mm = [9, 9]\nhole_diameter_mm = 10\n", "hole");
   const std::string detector = "[[detector]]\nkind = ";
   expect(detector + "'eye'\n", "expected far-field, plane, luminance or rays");
   expect(detector + "'plane'\nsize_mm = [1, -1]\n", "found -1, expected > 0");
-  expect(detector + "'plane'\ncells = [1, 1.5]\n", "whole numbers");
+  expect(detector + "'plane'\ncells = [1, 1.5]\n", "expected a whole number");
   expect(detector + "'plane'\ncells = [10000, 10000]\n", "cells");
   expect(detector + "'plane'\nnormal = [0, 0, 0]\n", "zero vector");
   expect(detector + "'luminance'\n", "from: is missing");
   expect(detector + "'luminance'\nfrom = '+x'\nfrom_mm = [1, 0, 0]\n", "a direction (from) or from a point");
   expect(detector + "'luminance'\nfrom_mm = [0, 0, 0]\n", "the observer is at position_mm");
-  expect(detector + "'luminance'\nfrom = '+x'\nhalf_angle_deg = 90\n", "below 90");
-  expect(detector + "'rays'\nformat = 'tm26'\n", "unknown ray format 'tm26'");
+  expect(detector + "'luminance'\nfrom = '+x'\nhalf_angle_deg = 90\n", "expected > 0 and < 90");
+  expect(detector + "'rays'\nformat = 'tm26'\n", "found 'tm26', expected tm25, zemax-binary");
   expect(detector + "'plane'\nname = 'x'\n[[detector]]\nkind = 'rays'\nname = 'x'\n",
          "two detectors are named 'x'");
 }

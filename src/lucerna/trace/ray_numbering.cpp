@@ -73,9 +73,9 @@ RayNumbering::RayNumbering(const std::vector<PlacedSource>& sources, std::uint64
                              static_cast<double>(word_.total());
     // The word deviates by less than 1 + log2(sources) at either end of a block.
     const double spread = 2.0 * (1.0 + std::log2(static_cast<double>(sources.size())));
-    const std::uint64_t most = static_cast<std::uint64_t>(std::ceil(per_block + spread));
+    const std::uint64_t max = static_cast<std::uint64_t>(std::ceil(per_block + spread));
     const double share = per_block / static_cast<double>(kBlockRays);
-    streams_.push_back({sources[s].rays->ray_count().has_value(), std::min(kBlockRays, most),
+    streams_.push_back({sources[s].rays->ray_count().has_value(), std::min(kBlockRays, max),
                         sources[s].total_flux() / flux / share});
   }
 }

@@ -24,10 +24,10 @@ Reflectance::Reflectance(std::vector<Entry> table) : table_(std::move(table)) {
   }
 }
 
-double Reflectance::greatest() const {
-  double most = 0.0;
-  for (const Entry& e : table_) most = std::max(most, e.value);
-  return most;
+double Reflectance::max() const {
+  double max = 0.0;
+  for (const Entry& e : table_) max = std::max(max, e.value);
+  return max;
 }
 
 Reflectance Reflectance::shifted(double change) const {

@@ -78,18 +78,18 @@ Ray tricky(std::size_t i, const Reflector& mirror) {
 /// What becomes of a ray in double.
 struct Fate {
   int reflections = 0;
-  double least_cosine = 1.0, most_cosine = 0.0;  ///< of incidence
-  double least_chord_mm = HUGE_VAL;              ///< between reflections
+  double min_cosine = 1.0, max_cosine = 0.0;  ///< of incidence
+  double min_chord_mm = HUGE_VAL;             ///< between reflections
 };
-Fate follow(const ReferenceTracer& mirror, Ray ray, int most_reflections) {
+Fate follow(const ReferenceTracer& mirror, Ray ray, int max_reflections) {
   Fate f;
-  while (f.reflections < most_reflections) {
+  while (f.reflections < max_reflections) {
     const auto hit = mirror.first_hit(ray);
     if (!hit || !hit->front) break;
-    if (f.reflections++ > 0) f.least_chord_mm = std::min(f.least_chord_mm, hit->t_mm);
+    if (f.reflections++ > 0) f.min_chord_mm = std::min(f.min_chord_mm, hit->t_mm);
     const double cosine = std::abs(dot(ray.direction, hit->normal));
-    f.least_cosine = std::min(f.least_cosine, cosine);
-    f.most_cosine = std::max(f.most_cosine, cosine);
+    f.min_cosine = std::min(f.min_cosine, cosine);
+    f.max_cosine = std::max(f.max_cosine, cosine);
     ray = {hit->point_mm, reflect(ray.direction, hit->normal)};
   }
   return f;
@@ -116,14 +116,14 @@ std::shared_ptr<RaySet> tricky_rays(const Reflector& mirror, std::size_t n, std:
     set->rays.set(kept, tricky(i, mirror));
     set->rays.weight[kept] = 1.0F;
     const Fate f = follow(tracer, set->rays.ray(kept), 500);
-    if (f.reflections < 500 && f.least_cosine > 1e-3 && !runs_along(mirror, set->rays.ray(kept))) {
+    if (f.reflections < 500 && f.min_cosine > 1e-3 && !runs_along(mirror, set->rays.ray(kept))) {
       ++kept;
       continue;
     }
     if (f.reflections < 500) continue;
     ++endless;
-    EXPECT_GT(f.least_chord_mm, 1e-4) << i;
-    EXPECT_TRUE(mirror.curve || f.most_cosine < 3e-3) << i << ": " << f.most_cosine;
+    EXPECT_GT(f.min_chord_mm, 1e-4) << i;
+    EXPECT_TRUE(mirror.curve || f.max_cosine < 3e-3) << i << ": " << f.max_cosine;
     EXPECT_TRUE(i % 10 == 4 || i % 10 == 6) << i << ": it comes from outside";
   }
   set->rays.resize(kept, 0);

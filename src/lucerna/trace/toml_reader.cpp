@@ -56,6 +56,17 @@ std::string_view type_name(const toml::node& node) {
   }
 }
 
+/// "target.zone" of "target.zone[2]".
+std::string without_numbers(std::string_view path) {
+  std::string text;
+  bool inside = false;
+  for (const char c : path) {
+    inside = (inside || c == '[') && c != ']';
+    if (!inside && c != ']') text += c;
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string nearest_word(std::string_view word, const std::set<std::string, std::less<>>& candidates) {
@@ -76,12 +87,31 @@ toml::table parse_toml_file(const std::filesystem::path& path) {
   }
 }
 
-TomlReader::TomlReader(const toml::table& table, std::string file, std::string path)
-    : table_(&table), file_(std::move(file)), path_(std::move(path)) {}
+TomlReader::TomlReader(const toml::table& table, std::string file, std::string path,
+                       std::span<const ProjectKey> keys)
+    : table_(&table),
+      keys_(keys),
+      file_(std::move(file)),
+      path_(std::move(path)),
+      table_path_(without_numbers(path_)) {}
+
+const ProjectKey& TomlReader::key_of(std::string_view key) const {
+  const ProjectKey* found = find_key(keys_, table_path_, key);
+  LUCERNA_CHECK(found != nullptr, "table '{}', key '{}'", table_path_, key);
+  return *found;
+}
 
 const toml::node* TomlReader::find(std::string_view key) {
+  key_of(key);
   known_.emplace(key);
   return table_->get(key);
+}
+
+const toml::node* TomlReader::find(std::string_view key, std::initializer_list<KeyType> types) {
+  const KeyType type = key_of(key).type;
+  LUCERNA_CHECK(std::find(types.begin(), types.end(), type) != types.end(), "table '{}', key '{}', type {}",
+                table_path_, key, static_cast<int>(type));
+  return find(key);
 }
 
 bool TomlReader::has(std::string_view key) { return find(key) != nullptr; }
@@ -105,20 +135,25 @@ std::string TomlReader::misspelt(std::string_view key) const {
 
 void TomlReader::missing(std::string_view key, const std::string& what) const {
   const std::string typed = misspelt(key);
-  if (typed.empty()) fail(key, what.empty() ? "is missing" : "is missing: " + what);
-  fail(typed, fmt::format("unknown key; the nearest known one is '{}', which is missing", key));
+  if (typed.empty()) fail(key, what.empty() ? "is missing" : "is missing: " + what, ErrorCause::missing);
+  fail(typed, fmt::format("unknown key; the nearest known one is '{}', which is missing", key),
+       ErrorCause::unknown_key);
 }
 
-void TomlReader::fail(std::string_view key, const std::string& what) const {
+void TomlReader::fail(std::string_view key, const std::string& what, ErrorCause cause) const {
   const toml::node* node = table_->get(key);
   const auto line = node != nullptr ? node->source().begin.line : table_->source().begin.line;
-  throw_input_error(file_, fmt::format("line {}", line), "{}: {}", full_key(key), what);
+  throw InputError(fmt::format("{}: line {}: {}: {}", file_, line, full_key(key), what), cause);
 }
 
 double TomlReader::to_number(const toml::node& node, std::string_view key) const {
   const auto value = node.value<double>();
   if (!value || node.is_boolean()) fail(key, fmt::format("found {}, expected a number", type_name(node)));
   if (!std::isfinite(*value)) fail(key, fmt::format("found {}, expected a finite number", *value));
+  const KeyRange& range = key_of(key).range;
+  if (!range.contains(*value)) {
+    fail(key, fmt::format("found {}, expected {}", *value, range.text()), ErrorCause::out_of_range);
+  }
   return *value;
 }
 
@@ -129,39 +164,45 @@ const toml::array& TomlReader::to_array(const toml::node& node, std::string_view
 }
 
 std::optional<double> TomlReader::number(std::string_view key) {
-  const toml::node* node = find(key);
+  const toml::node* node = find(key, {KeyType::number, KeyType::number_or_pairs});
   if (node == nullptr) return std::nullopt;
   return to_number(*node, key);
 }
 
-std::optional<double> TomlReader::positive(std::string_view key) {
-  const auto value = number(key);
-  if (value && !(*value > 0.0)) fail(key, fmt::format("found {}, expected > 0", *value));
-  return value;
-}
-
 std::optional<std::string> TomlReader::text(std::string_view key) {
-  const toml::node* node = find(key);
+  const toml::node* node = find(key, {KeyType::text, KeyType::word, KeyType::file});
   if (node == nullptr) return std::nullopt;
   if (!node->is_string()) fail(key, fmt::format("found {}, expected a string", type_name(*node)));
   return node->as_string()->get();
 }
 
-std::string TomlReader::required_text(std::string_view key) {
-  auto value = text(key);
-  if (!value) missing(key);
-  return *value;
+std::optional<std::string> TomlReader::word(std::string_view key) {
+  auto found = text(key);
+  const std::string_view words = key_of(key).words;
+  LUCERNA_CHECK(!words.empty(), "table '{}', key '{}' has no words", table_path_, key);
+  const bool known =
+      !found || (found->find(' ') == std::string::npos && !found->empty() &&
+                 fmt::format(" {} ", words).find(fmt::format(" {} ", *found)) != std::string::npos);
+  if (!known) fail(key, fmt::format("found '{}', expected {}", *found, alternatives(words)));
+  return found;
+}
+
+std::string TomlReader::required_word(std::string_view key) {
+  auto found = word(key);
+  if (!found) missing(key);
+  return *found;
 }
 
 std::optional<bool> TomlReader::flag(std::string_view key) {
-  const toml::node* node = find(key);
+  const toml::node* node = find(key, {KeyType::flag});
   if (node == nullptr) return std::nullopt;
   if (!node->is_boolean()) fail(key, fmt::format("found {}, expected true or false", type_name(*node)));
   return node->as_boolean()->get();
 }
 
 std::optional<std::vector<double>> TomlReader::numbers(std::string_view key) {
-  const toml::node* node = find(key);
+  const toml::node* node =
+      find(key, {KeyType::numbers, KeyType::number_or_numbers, KeyType::vector, KeyType::axis});
   if (node == nullptr) return std::nullopt;
   std::vector<double> values;
   for (const toml::node& item : to_array(*node, key, "an array of numbers"))
@@ -178,7 +219,7 @@ std::optional<std::vector<double>> TomlReader::numbers(std::string_view key, std
 }
 
 std::optional<std::vector<double>> TomlReader::number_or_numbers(std::string_view key) {
-  const toml::node* node = find(key);
+  const toml::node* node = find(key, {KeyType::number_or_numbers});
   if (node != nullptr && !node->is_array()) return std::vector{to_number(*node, key)};
   return numbers(key);
 }
@@ -193,7 +234,7 @@ std::optional<Direction> TomlReader::axis(std::string_view key) {
   static const std::map<std::string, Vec3, std::less<>> kNames{
       {"x", {1, 0, 0}},   {"+x", {1, 0, 0}}, {"-x", {-1, 0, 0}}, {"y", {0, 1, 0}},  {"+y", {0, 1, 0}},
       {"-y", {0, -1, 0}}, {"z", {0, 0, 1}},  {"+z", {0, 0, 1}},  {"-z", {0, 0, -1}}};
-  const toml::node* node = find(key);
+  const toml::node* node = find(key, {KeyType::axis});
   if (node == nullptr) return std::nullopt;
   if (node->is_string()) {
     const auto found = kNames.find(node->as_string()->get());
@@ -210,7 +251,7 @@ std::optional<Direction> TomlReader::axis(std::string_view key) {
 
 std::optional<std::vector<std::array<double, 2>>> TomlReader::pairs(std::string_view key) {
   constexpr std::string_view kExpected = "an array of pairs, [[a, b], ...]";
-  const toml::node* node = find(key);
+  const toml::node* node = find(key, {KeyType::pairs, KeyType::number_or_pairs});
   if (node == nullptr) return std::nullopt;
   std::vector<std::array<double, 2>> all;
   for (const toml::node& item : to_array(*node, key, kExpected)) {
@@ -230,22 +271,23 @@ std::optional<std::filesystem::path> TomlReader::file(std::string_view key) {
 }
 
 std::optional<TomlReader> TomlReader::table(std::string_view key) {
-  const toml::node* node = find(key);
+  const toml::node* node = find(key, {KeyType::table});
   if (node == nullptr) return std::nullopt;
   if (!node->is_table())
     fail(key, fmt::format("found {}, expected a table [{}]", type_name(*node), full_key(key)));
-  return TomlReader(*node->as_table(), file_, full_key(key));
+  return TomlReader(*node->as_table(), file_, full_key(key), keys_);
 }
 
 std::vector<TomlReader> TomlReader::tables(std::string_view key) {
-  const toml::node* node = find(key);
+  const toml::node* node = find(key, {KeyType::tables});
   if (node == nullptr) return {};
   std::vector<TomlReader> all;
   if (!node->is_array_of_tables()) {
     fail(key, fmt::format("found {}, expected tables [[{}]]", type_name(*node), full_key(key)));
   }
   for (const toml::node& item : *node->as_array()) {
-    all.push_back(TomlReader(*item.as_table(), file_, fmt::format("{}[{}]", full_key(key), all.size())));
+    all.push_back(
+        TomlReader(*item.as_table(), file_, fmt::format("{}[{}]", full_key(key), all.size()), keys_));
   }
   return all;
 }
@@ -254,8 +296,9 @@ void TomlReader::finish() const {
   for (const auto& [key, node] : *table_) {
     if (known_.contains(std::string_view(key.str()))) continue;
     const std::string nearest = nearest_word(key.str(), known_);
-    fail(key.str(), nearest.empty() ? "unknown key"
-                                    : fmt::format("unknown key; the nearest known one is '{}'", nearest));
+    fail(key.str(),
+         nearest.empty() ? "unknown key" : fmt::format("unknown key; the nearest known one is '{}'", nearest),
+         ErrorCause::unknown_key);
   }
 }
 

@@ -7,31 +7,36 @@
 #include <filesystem>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "lucerna/error.h"
 #include "lucerna/geometry.h"
+#include "lucerna/trace/project_keys.h"
 
 namespace lucerna {
 
 /// A table of a TOML file being read: every key that is asked for becomes a known one, and `finish` refuses
-/// the rest by naming the nearest known key. All errors are InputErrors with file, line, key path, found and
-/// expected. Not thread safe; the toml::table must outlive it.
+/// the rest by naming the nearest known key. A key must be one of `keys` and of the type that is asked for
+/// (LUCERNA_CHECK); numbers must be in its range, words among its words. All errors are InputErrors with
+/// file, line, key path, found and expected. Not thread safe; the toml::table must outlive it.
 class TomlReader {
  public:
   /// `path` is the table's place for messages, as "reflector[0]"; empty for the root.
-  TomlReader(const toml::table& table, std::string file, std::string path);
+  TomlReader(const toml::table& table, std::string file, std::string path,
+             std::span<const ProjectKey> keys = project_keys());
 
   bool has(std::string_view key);
   /// True if the key is there and holds an array.
   bool has_array(std::string_view key);
   std::optional<double> number(std::string_view key);
   double number(std::string_view key, double otherwise) { return number(key).value_or(otherwise); }
-  /// A number that must be > 0 when it is there.
-  std::optional<double> positive(std::string_view key);
   std::optional<std::string> text(std::string_view key);
-  std::string required_text(std::string_view key);
+  /// One of the key's words.
+  std::optional<std::string> word(std::string_view key);
+  std::string required_word(std::string_view key);
   std::optional<bool> flag(std::string_view key);
   /// Any number of numbers; with `n`, exactly that many.
   std::optional<std::vector<double>> numbers(std::string_view key);
@@ -59,19 +64,26 @@ class TomlReader {
   [[noreturn]] void missing(std::string_view key, const std::string& what = {}) const;
 
   /// An error at `key`: "project.toml: line 7: reflector[0].focal_mm: ...".
-  [[noreturn]] void fail(std::string_view key, const std::string& what) const;
+  [[noreturn]] void fail(std::string_view key, const std::string& what,
+                         ErrorCause cause = ErrorCause::invalid) const;
   const std::string& path() const { return path_; }
 
  private:
   /// A key of the table that was not asked for and looks like `key` misspelt; empty if there is none.
   std::string misspelt(std::string_view key) const;
+  /// What the schema says of a key of this table.
+  const ProjectKey& key_of(std::string_view key) const;
   const toml::node* find(std::string_view key);
+  const toml::node* find(std::string_view key, std::initializer_list<KeyType> types);
   double to_number(const toml::node& node, std::string_view key) const;
   const toml::array& to_array(const toml::node& node, std::string_view key, std::string_view expected) const;
   std::string full_key(std::string_view key) const;
 
   const toml::table* table_;
+  std::span<const ProjectKey> keys_;
   std::string file_, path_;
+  /// `path_` without the numbers of tables.
+  std::string table_path_;
   std::set<std::string, std::less<>> known_;
 };
 

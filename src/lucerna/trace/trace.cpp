@@ -72,9 +72,9 @@ TraceResult empty_result(const Scene& scene, const RayNumbering& numbering, cons
   TraceResult result;
   result.first_ray = options.first_ray;
   result.last_ray = options.last_ray.value_or(numbering.default_count());
-  if (!(result.first_ray < result.last_ray && result.last_ray <= kMostRays)) {
+  if (!(result.first_ray < result.last_ray && result.last_ray <= kMaxRays)) {
     throw UsageError(
-        fmt::format("rays {}:{}: expected first < last <= {}", result.first_ray, result.last_ray, kMostRays));
+        fmt::format("rays {}:{}: expected first < last <= {}", result.first_ray, result.last_ray, kMaxRays));
   }
   if (options.max_bounces < 1)
     throw UsageError(fmt::format("{} bounces: expected at least 1", options.max_bounces));

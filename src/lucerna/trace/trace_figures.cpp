@@ -51,8 +51,8 @@ PlaneFigures plane_figures(PlaneImage image, const PlaneExtremes& extremes,
     noise += image.standard_error[i] * image.standard_error[i];
     signal += image.value[i] * image.value[i];
   }
-  f.peak_x_mm = image.grid.cell_x_mm(extremes.greatest_cell);
-  f.peak_y_mm = image.grid.cell_y_mm(extremes.greatest_cell);
+  f.peak_x_mm = image.grid.cell_x_mm(extremes.max_cell);
+  f.peak_y_mm = image.grid.cell_y_mm(extremes.max_cell);
   f.noise = signal > 0.0 ? std::sqrt(noise / signal) : std::nan("");
   f.image = std::move(image);
   f.extremes = extremes;
@@ -112,9 +112,9 @@ namespace {
 std::string plane_line(const PlaneFigures& f, std::string_view flux_unit) {
   const std::string noise =
       std::isfinite(f.noise) ? fmt::format("; noise {:.2g} %", 100.0 * f.noise) : std::string();
-  return fmt::format("  {}: mean {} {}, peak {} at x {:g}, y {:g} mm, least {}; flux {} {}{}", f.image.name,
-                     estimate_text(f.extremes.mean), plane_unit(f), estimate_text(f.extremes.greatest),
-                     f.peak_x_mm, f.peak_y_mm, estimate_text(f.extremes.least), estimate_text(f.image.flux),
+  return fmt::format("  {}: mean {} {}, peak {} at x {:g}, y {:g} mm, min {}; flux {} {}{}", f.image.name,
+                     estimate_text(f.extremes.mean), plane_unit(f), estimate_text(f.extremes.max),
+                     f.peak_x_mm, f.peak_y_mm, estimate_text(f.extremes.min), estimate_text(f.image.flux),
                      flux_unit, noise);
 }
 

@@ -25,7 +25,7 @@ static_assert(std::endian::native == std::endian::little);
 constexpr std::string_view kMagic = "LUCTRACE";
 constexpr std::uint32_t kVersion = 3;
 /// Sixteen replicates of three detectors of 16 M cells of 8 bytes: more than any project needs.
-constexpr std::uint64_t kMostBytes = std::uint64_t{6} << 30;
+constexpr std::uint64_t kMaxBytes = std::uint64_t{6} << 30;
 
 /// One description of the layout serves both ways: `archive(x)` writes or reads x.
 class Writer {
@@ -210,7 +210,7 @@ void check_rays(const TraceResult& r, const Reader& reader) {
 
 /// What merging and the figures rely on.
 void check_shape(const TraceResult& r, const Reader& reader) {
-  if (!(r.first_ray < r.last_ray && r.last_ray <= kMostRays))
+  if (!(r.first_ray < r.last_ray && r.last_ray <= kMaxRays))
     reader.fail("rays {}:{}", r.first_ray, r.last_ray);
   if (!(r.flux > 0.0 && std::isfinite(r.flux))) reader.fail("flux {}", r.flux);
   if (r.replicates.size() != kReplicates)
@@ -223,7 +223,7 @@ void check_shape(const TraceResult& r, const Reader& reader) {
   std::int64_t emitted = 0;
   for (const Tally& t : r.replicates) {
     bool good = t.absorbed.size() == kMirrorLosses + r.body_names.size() && t.lost.size() == kLostCauses &&
-                t.lost_rays.size() == kLostCauses && t.bins.size() == sizes.size() && t.rays <= kMostRays &&
+                t.lost_rays.size() == kLostCauses && t.bins.size() == sizes.size() && t.rays <= kMaxRays &&
                 t.emitted >= 0 && t.emitted <= INT64_MAX / static_cast<std::int64_t>(2 * kReplicates);
     for (std::size_t d = 0; good && d < sizes.size(); ++d) good = t.bins[d].size() == sizes[d];
     if (!good) reader.fail("sums that do not fit the detectors");
@@ -256,7 +256,7 @@ void write_trace_file(const std::filesystem::path& path, const TraceResult& resu
 }
 
 StoredTrace read_trace_file(const std::filesystem::path& path) {
-  const std::string all = read_file(path, kMostBytes);
+  const std::string all = read_file(path, kMaxBytes);
   constexpr std::size_t kHead = kMagic.size() + sizeof kVersion;
   const std::string_view bytes = all;
   if (bytes.size() < kHead || !bytes.starts_with(kMagic))
@@ -270,7 +270,7 @@ StoredTrace read_trace_file(const std::filesystem::path& path) {
   const std::string_view frame = bytes.substr(kHead);
   const unsigned long long size = ZSTD_getFrameContentSize(frame.data(), frame.size());
   // zstd packs at most about 1 : 2^17 (runs of one byte), so a small file cannot ask for much memory.
-  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > kMostBytes ||
+  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > kMaxBytes ||
       size / (1u << 17) > frame.size()) {
     throw_input_error(path.string(), fmt::format("byte {}", kHead), "the packed part is damaged");
   }

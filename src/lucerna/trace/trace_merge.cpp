@@ -30,13 +30,15 @@ StoredTrace read_part(const fs::path& folder) {
 void check_same_scene(const StoredTrace& a, const fs::path& folder_a, const StoredTrace& b,
                       const fs::path& folder_b) {
   if (a.origin.program_version != b.origin.program_version) {
-    throw InputError(fmt::format("{} was traced by lucerna {}, {} by lucerna {}: they cannot be added",
-                                 folder_a.string(), a.origin.program_version, folder_b.string(),
-                                 b.origin.program_version));
+    throw InputError(
+        fmt::format("{} was traced by lucerna {}, {} by lucerna {}: they cannot be added", folder_a.string(),
+                    a.origin.program_version, folder_b.string(), b.origin.program_version),
+        ErrorCause::mismatch);
   }
   if (a.origin.scene_id != b.origin.scene_id) {
     throw InputError(fmt::format("{} and {} are traces of different projects, or of different input files",
-                                 folder_a.string(), folder_b.string()));
+                                 folder_a.string(), folder_b.string()),
+                     ErrorCause::mismatch);
   }
 }
 
@@ -52,7 +54,7 @@ void check_ranges(const std::vector<Part>& parts) {
     if (a.last < b.first) add(a.last, b.first, "missing between", a, b);
     if (a.last > b.first) add(b.first, std::min(a.last, b.last), "in both", a, b);
   }
-  if (!faults.empty()) throw InputError("the traces cannot be added: " + faults);
+  if (!faults.empty()) throw InputError("the traces cannot be added: " + faults, ErrorCause::mismatch);
 }
 
 }  // namespace
@@ -71,9 +73,10 @@ StoredTrace merge_trace_folders(const std::vector<fs::path>& folders, Progress& 
     }
     check_same_scene(first, folders.front(), part, folder);
     if (first.result.isa != part.result.isa) {
-      throw InputError(fmt::format("{} was traced with {}, {} with {}: they cannot be added to the bit",
-                                   folders.front().string(), first.result.isa, folder.string(),
-                                   part.result.isa));
+      throw InputError(
+          fmt::format("{} was traced with {}, {} with {}: they cannot be added to the bit",
+                      folders.front().string(), first.result.isa, folder.string(), part.result.isa),
+          ErrorCause::mismatch);
     }
   }
   std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {

@@ -226,13 +226,16 @@ std::string range_fault(const TraceResult& a, const TraceResult& b) {
 
 TraceResult merge(const TraceResult& a, const TraceResult& b) {
   const auto need = [](bool same, const char* what) {
-    if (!same) throw InputError(fmt::format("the traces cannot be added: they differ in {}", what));
+    if (!same)
+      throw InputError(fmt::format("the traces cannot be added: they differ in {}", what),
+                       ErrorCause::mismatch);
   };
   need(a.seed == b.seed && a.sequence == b.sequence, "seed or sequence");
   need(a.max_bounces == b.max_bounces, "the limit of bounces");
   if (a.isa != b.isa) {
     throw InputError(
-        fmt::format("the traces cannot be added: one was made with {}, the other with {}", a.isa, b.isa));
+        fmt::format("the traces cannot be added: one was made with {}, the other with {}", a.isa, b.isa),
+        ErrorCause::mismatch);
   }
   need(a.flux == b.flux && a.unit == b.unit, "the sources' flux");
   need(a.body_names == b.body_names, "bodies");
@@ -240,10 +243,11 @@ TraceResult merge(const TraceResult& a, const TraceResult& b) {
            a.ray_detectors == b.ray_detectors && a.replicates.size() == b.replicates.size(),
        "detectors");
   if (const std::string fault = range_fault(a, b); !fault.empty())
-    throw InputError("the traces cannot be added: " + fault);
+    throw InputError("the traces cannot be added: " + fault, ErrorCause::mismatch);
   for (const TraceResult* part : {&a, &b}) {
     if (part->out_runs.empty() && !part->out_rays.empty())
-      throw InputError("the traces cannot be added: an accelerator keeps rays without their numbers");
+      throw InputError("the traces cannot be added: an accelerator keeps rays without their numbers",
+                       ErrorCause::mismatch);
   }
   const bool a_first = a.first_ray < b.first_ray;
   TraceResult sum = a;

@@ -87,7 +87,7 @@ NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const No
         once, scene, run, sum, [] { return false; }, progress);
   } else {
     const auto late = [&] {
-      return std::chrono::duration<double>(Clock::now() - start).count() >= goal.most_seconds;
+      return std::chrono::duration<double>(Clock::now() - start).count() >= goal.max_seconds;
     };
     const auto rays = [&] { return sum ? sum->last_ray - sum->first_ray : 0; };
     for (;;) {
@@ -102,11 +102,11 @@ NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const No
         }
       }
       out.end = NoiseEnd::rays;
-      if (rays() >= std::min(goal.most_rays, kMostRays)) break;
+      if (rays() >= std::min(goal.max_rays, kMaxRays)) break;
       out.end = NoiseEnd::time;
       if (sum && late()) break;
       const std::uint64_t first = sum ? sum->first_ray : run.first_ray;
-      const std::uint64_t last = first + std::min({round, goal.most_rays, kMostRays - first});
+      const std::uint64_t last = first + std::min({round, goal.max_rays, kMaxRays - first});
       trace_on_to(last, scene, run, sum, late, progress);
     }
   }

@@ -35,10 +35,10 @@ TEST(TraceUntil, TracesUntilTheNoiseIsWhatWasAskedFor) {
   }()));
   ASSERT_GT(first, 0.0);
   ASSERT_LT(first, 0.1);
-  const NoiseTrace loose = trace_until(spot(), coarse(), {.noise = 0.5, .most_seconds = 1e6});
+  const NoiseTrace loose = trace_until(spot(), coarse(), {.noise = 0.5, .max_seconds = 1e6});
   EXPECT_EQ(loose.result.last_ray, 1u << 20);
   EXPECT_EQ(loose.end, NoiseEnd::reached);
-  const NoiseTrace fine = trace_until(spot(), coarse(), {.noise = 0.7 * first, .most_seconds = 1e6});
+  const NoiseTrace fine = trace_until(spot(), coarse(), {.noise = 0.7 * first, .max_seconds = 1e6});
   EXPECT_EQ(fine.end, NoiseEnd::reached);
   EXPECT_GT(fine.result.last_ray, 1u << 20);
   EXPECT_LE(fine.noise, 0.7 * first);
@@ -48,22 +48,22 @@ TEST(TraceUntil, TracesUntilTheNoiseIsWhatWasAskedFor) {
 TEST(TraceUntil, SameBitsForAnyThreadsAndAfterAStop) {
   const auto run = [](int threads) {
     const ThreadLimit limit(threads);
-    return trace_until(spot(), coarse(), {.noise = 1e-9, .most_rays = 3 << 19});
+    return trace_until(spot(), coarse(), {.noise = 1e-9, .max_rays = 3 << 19});
   };
   const NoiseTrace one = run(1), two = run(2);
   EXPECT_EQ(one.end, NoiseEnd::rays);
   EXPECT_EQ(one.result.last_ray, 3u << 19);
   EXPECT_EQ(one.result.replicates, two.result.replicates);
   // Stopped in the middle of a round, and gone on with.
-  const NoiseTrace part = trace_until(spot(), coarse(), {.noise = 1e-9, .most_rays = 1'234'567});
+  const NoiseTrace part = trace_until(spot(), coarse(), {.noise = 1e-9, .max_rays = 1'234'567});
   EXPECT_EQ(part.result.last_ray, 1'234'567u);
-  const NoiseTrace rest = trace_until(spot(), coarse(), {.noise = 1e-9, .most_rays = 3 << 19}, part.result);
+  const NoiseTrace rest = trace_until(spot(), coarse(), {.noise = 1e-9, .max_rays = 3 << 19}, part.result);
   EXPECT_EQ(rest.result.replicates, one.result.replicates);
   EXPECT_EQ(rest.result.last_ray, one.result.last_ray);
 }
 
 TEST(TraceUntil, TimeOnlyStops) {
-  const NoiseTrace stopped = trace_until(spot(), coarse(), {.noise = 1e-9, .most_seconds = 0.0});
+  const NoiseTrace stopped = trace_until(spot(), coarse(), {.noise = 1e-9, .max_seconds = 0.0});
   EXPECT_EQ(stopped.end, NoiseEnd::time);
   EXPECT_GE(stopped.result.last_ray, 1u << 20);
   EXPECT_GT(stopped.noise, 1e-9);

@@ -58,17 +58,16 @@ class Builder {
       : triangles_(triangles), nodes_(nodes) {
     Box all;
     for (const TreeTriangle& k : triangles) all.add(box_of(k));
-    float most = 0.0F;
-    for (std::size_t i = 0; i < 3; ++i)
-      most = std::max({most, std::fabs(all.low[i]), std::fabs(all.high[i])});
-    margin_ = 0x1p-21F * most;
+    float max = 0.0F;
+    for (std::size_t i = 0; i < 3; ++i) max = std::max({max, std::fabs(all.low[i]), std::fabs(all.high[i])});
+    margin_ = 0x1p-21F * max;
     nodes.reserve(triangles.size());
     build(0, triangles.size());
   }
 
  private:
-  static constexpr std::size_t kMostInLeaf = 4, kBins = 16;
-  static_assert(kMostInLeaf < kLeafCounts);
+  static constexpr std::size_t kMaxInLeaf = 4, kBins = 16;
+  static_assert(kMaxInLeaf < kLeafCounts);
 
   void build(std::size_t first, std::size_t last) {
     Box box, middles;
@@ -82,7 +81,7 @@ class Builder {
       nodes_[node].low[i] = box.low[i] - margin_;
       nodes_[node].high[i] = box.high[i] + margin_;
     }
-    if (last - first <= kMostInLeaf) {
+    if (last - first <= kMaxInLeaf) {
       nodes_[node].leaf = static_cast<std::uint32_t>(first * kLeafCounts + (last - first));
     } else {
       nodes_[node].leaf = 0;
@@ -152,8 +151,8 @@ TriangleTree::TriangleTree(const std::vector<Body>& bodies, bool returning) {
     check(body);
     if (returning || !body.only_returning_light) count += body.mesh->triangles.size();
   }
-  if (count > kMostTriangles) {
-    throw InputError(fmt::format("the bodies have {} triangles, expected at most {}", count, kMostTriangles));
+  if (count > kMaxTriangles) {
+    throw InputError(fmt::format("the bodies have {} triangles, expected at most {}", count, kMaxTriangles));
   }
   triangles_.reserve(count);
   for (std::size_t b = 0; b < bodies.size(); ++b) {

@@ -16,10 +16,10 @@ namespace lucerna {
 class TriangleTree {
  public:
   /// The bodies' triangles; not those of `only_returning_light` unless `returning`. Throws InputError if
-  /// there are more than kMostTriangles.
+  /// there are more than kMaxTriangles.
   TriangleTree(const std::vector<Body>& bodies, bool returning);
 
-  static constexpr std::size_t kMostTriangles = std::size_t{1} << 28;
+  static constexpr std::size_t kMaxTriangles = std::size_t{1} << 28;
 
   const std::vector<TriangleNode>& nodes() const { return nodes_; }
   const std::vector<TreeTriangle>& triangles() const { return triangles_; }

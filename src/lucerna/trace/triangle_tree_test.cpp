@@ -57,16 +57,16 @@ Ray random_ray(Rng& rng, const Mesh& mesh, std::size_t number) {
 
 /// How near a point is to the nearest edge of any triangle.
 double to_an_edge(const Mesh& mesh, const Vec3& p) {
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   for (const auto& t : mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 a = mesh.vertices_mm[t[k]], way = mesh.vertices_mm[t[(k + 1) % 3]] - a;
       const double whole = dot(way, way);
       const double share = whole > 0.0 ? std::clamp(dot(p - a, way) / whole, 0.0, 1.0) : 0.0;
-      least = std::min(least, length(p - a - share * way));
+      min = std::min(min, length(p - a - share * way));
     }
   }
-  return least;
+  return min;
 }
 
 TEST(TriangleTree, FindsWhatAllTrianglesOneByOneDo) {
@@ -156,27 +156,27 @@ class Comparison {
       at_edge_ += at_edge() ? 1 : 0;
       return;
     }
-    most_mm_ = std::max(most_mm_, off_plane);
+    max_mm_ = std::max(max_mm_, off_plane);
     // On an edge either of two triangles may be met.
     if (length(ours->face.vec() - theirs->face.vec()) > 1e-4) {
       if (++other_face_ % 50 == 1) {
         EXPECT_TRUE(at_edge());
       }
     } else {
-      most_turn_ = std::max(most_turn_, across * length(ours->normal.vec() - theirs->normal.vec()));
+      max_turn_ = std::max(max_turn_, across * length(ours->normal.vec() - theirs->normal.vec()));
     }
   }
 
-  /// All differences are at edges; at most `most` of all rays differ.
-  void expect_agreement(double most, const char* rays) const {
+  /// All differences are at edges; at most `max` of all rays differ.
+  void expect_agreement(double max, const char* rays) const {
     std::printf(
         "%s, rays %s: %zu of %zu hit; %zu differ, %zu of them beside an edge; %zu the other face of an "
         "edge; else within %.2g mm of its plane, smooth normals within %.2g\n",
-        shape_.name.c_str(), rays, hits_, rays_, differ_, at_edge_, other_face_, most_mm_, most_turn_);
+        shape_.name.c_str(), rays, hits_, rays_, differ_, at_edge_, other_face_, max_mm_, max_turn_);
     EXPECT_EQ(differ_, at_edge_) << shape_.name;
     EXPECT_GT(hits_, rays_ / 10);
-    EXPECT_LE(static_cast<double>(differ_), most * static_cast<double>(rays_)) << shape_.name;
-    EXPECT_LT(most_turn_, 1e-4);
+    EXPECT_LE(static_cast<double>(differ_), max * static_cast<double>(rays_)) << shape_.name;
+    EXPECT_LT(max_turn_, 1e-4);
   }
 
  private:
@@ -186,7 +186,7 @@ class Comparison {
   TriangleTree tree_;
   BodyView body_;
   std::size_t rays_ = 0, hits_ = 0, differ_ = 0, at_edge_ = 0, other_face_ = 0;
-  double most_mm_ = 0.0, most_turn_ = 0.0;
+  double max_mm_ = 0.0, max_turn_ = 0.0;
 };
 
 TEST(TriangleTree, MeetsWhatEmbreeMeets) {

@@ -37,12 +37,12 @@ inline int64_t enter(const FrameView& k, const RayArrays& in, size_t n, double r
   return units;
 }
 
-inline MirrorSums settle_fates(const LocalHits& hits, const int32_t* reflections, int32_t most,
+inline MirrorSums settle_fates(const LocalHits& hits, const int32_t* reflections, int32_t max,
                                const double* kept, int32_t mirror, size_t n, float* flux, int32_t* fate) {
   MirrorSums sum{};
   for (size_t i = 0; i < n; ++i) {
     const int32_t front = hits.state[i] == kFront ? 1 : 0, back = hits.state[i] == kBack ? 1 : 0;
-    const int32_t last = reflections[i] == most ? front : 0, goes_on = front - last;
+    const int32_t last = reflections[i] == max ? front : 0, goes_on = front - last;
     const float after = static_cast<float>(static_cast<double>(flux[i]) * kept[i]);
     const int64_t units = units_of(flux[i]);
     flux[i] = goes_on != 0 ? after : flux[i];
