@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The two commands of the README, and the longer suites. Each installs what is missing first (scripts/packages.sh).
 # CUDA=1 compiles the CUDA back end too (needs nvcc).
-.PHONY: demo test check check-quick fuzz bench benchmarks test-report test-slow gallery program packages format clean
+.PHONY: demo test check check-quick fuzz bench benchmarks test-report test-slow gallery docs program packages format clean
 
 BUILD := build/release
 
@@ -52,6 +52,12 @@ test-report: program
 gallery: program
 	scripts/packages.sh scripts/packages-report.txt
 	scripts/gallery.sh $(BUILD)/lucerna
+
+# The site of the documentation, with what the headers say, in build/docs: begin with build/docs/index.html. No network; a link that
+# leads nowhere is an error.
+docs:
+	scripts/packages.sh scripts/packages-docs.txt
+	scripts/docs.sh
 
 program: packages
 	cmake --preset release -DLUCERNA_CUDA=$(if $(CUDA),ON,OFF)
