@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The two commands of the README, and the longer suites. Each installs what is missing first (scripts/packages.sh).
 # CUDA=1 compiles the CUDA back end too (needs nvcc).
-.PHONY: reference demo test check check-quick fuzz bench benchmarks test-report test-slow gallery program packages format clean
+.PHONY: reference demo test check check-quick fuzz bench benchmarks test-report test-slow gallery docs program packages format clean
 
 BUILD := build/release
 
@@ -57,6 +57,12 @@ gallery: program
 reference: program
 	cmake --build --preset release --target write_reference_pages
 	$(BUILD)/tests/write_reference_pages
+
+# The site of the documentation, with what the headers say, in build/docs: begin with build/docs/index.html. No network; a link that
+# leads nowhere is an error.
+docs:
+	scripts/packages.sh scripts/packages-docs.txt
+	scripts/docs.sh
 
 program: packages
 	cmake --preset release -DLUCERNA_CUDA=$(if $(CUDA),ON,OFF)

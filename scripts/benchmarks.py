@@ -11,7 +11,7 @@ A page has blocks between two comments:
 
 The commands are run from build/release/bench, one after another. The rows that they print as a Markdown
 table, with commit and date, become the block. A plot draws the named columns of the table as bars, with
-that unit.
+that unit. `measured: by hand` is a table that no program writes; only its plot is drawn.
 
 Usage: scripts/benchmarks.py [--list | --plots | --check] [--build FOLDER] [--only TEXT] [PAGE...]
   --list   the blocks, one a line        --plots  draws the plots of the tables as they are
@@ -39,6 +39,7 @@ class Block:
         says, _, plot = " ".join(found["says"].split()).partition("; plot: ")
         self.commands = says.split(" && ")
         self.plot = [part.strip() for part in plot.split(",")] if plot else []
+        self.by_hand = self.commands == ["by hand"]
         self.body, self.start, self.end = found["body"], found.start("body"), found.end("body")
 
     def __str__(self):
@@ -77,14 +78,19 @@ def number(cell):
 def bars(rows, unit, columns):
     """A plot of bars, one group a row of the table."""
     at = [rows[0].index(column) for column in columns]
-    groups = [(row[0], [number(row[i]) or 0.0 for i in at]) for row in rows[1:]]
-    most = max((value for _, values in groups for value in values), default=1.0) or 1.0
-    high, left, width, gap = 14, 150, 420, 10
+    groups = [(row[0], [number(row[i]) for i in at]) for row in rows[1:]]
+    most = max((value for _, values in groups for value in values if value), default=1.0)
+    high, width, gap = 14, 400, 10
+    left = 16 + 7 * max(len(name) for name, _ in groups)
+    across = left + width + 60
     y, shapes = 30, []
     for name, values in groups:
         middle = y + high * len(values) / 2
         shapes.append(f'<text x="{left - 8}" y="{middle + 4:.0f}" text-anchor="end">{html.escape(name)}</text>')
         for k, value in enumerate(values):
+            if value is None:
+                y += high
+                continue
             shapes.append(f'<rect x="{left}" y="{y}" width="{width * value / most:.1f}" height="{high - 2}" '
                           f'fill="{COLOURS[k % len(COLOURS)]}"/>')
             shapes.append(f'<text x="{left + width * value / most + 4:.1f}" y="{y + 10}" font-size="10">{value:g}</text>')
@@ -95,9 +101,9 @@ def bars(rows, unit, columns):
         keys.append(f'<rect x="{x}" y="8" width="10" height="10" fill="{COLOURS[k % len(COLOURS)]}"/>'
                     f'<text x="{x + 14}" y="17">{html.escape(column)}</text>')
         x += 30 + 7 * len(column)
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 640 {y + 20}" width="640" height="{y + 20}" '
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {across} {y + 20}" width="{across}" height="{y + 20}" '
             f'font-family="sans-serif" font-size="12" role="img"><title>{html.escape(unit)}</title>\n'
-            f'<rect width="640" height="{y + 20}" fill="#ffffff"/>\n' + "\n".join(keys + shapes) +
+            f'<rect width="{across}" height="{y + 20}" fill="#ffffff"/>\n' + "\n".join(keys + shapes) +
             f'\n<text x="{left}" y="{y + 12}">{html.escape(unit)}</text>\n</svg>\n')
 
 
@@ -122,7 +128,7 @@ def measured(block, build):
 
 
 def faults(page, block):
-    for command in block.commands:
+    for command in [] if block.by_hand else block.commands:
         source = ROOT / "bench" / (command.split()[0].removeprefix("bench_") + ".cpp")
         if not source.exists():
             yield f"{page.name}: {source.relative_to(ROOT)} is not there"
@@ -156,7 +162,7 @@ def main():
             elif options.check:
                 found += faults(page, block)
             else:
-                body = block.body if options.plots else measured(block, options.build)
+                body = block.body if options.plots or block.by_hand else measured(block, options.build)
                 draw(page, block, body)
                 text = text[:block.start] + body + text[block.end:]
         if not (options.list or options.check or options.plots):

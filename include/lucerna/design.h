@@ -72,6 +72,7 @@ struct ZoneBoundCheck {
   bool is_min = true;
   /// In cd or lx, or a multiple of the bound's reference, which `reference` is (1 for absolute bounds).
   double allowed = 0.0;
+  /// What `allowed` is a multiple of.
   double reference = 1.0;
   /// Of the cell that comes nearest to breaking it, in the same unit as `allowed`.
   Estimate found;
@@ -231,13 +232,15 @@ struct DesignFindings {
   /// Shares of the sources' flux: what leaves the luminaire; what the mirror's face, its back and bodies
   /// absorb; rays that were given up.
   Estimate efficiency, absorbed, back, bodies, lost;
-  /// What was asked for by `pareto` and `advise`.
+  /// What was asked for by `pareto`.
   std::vector<ParetoPoint> pareto;
+  /// What was tried for `advise`.
   std::vector<AdviceTrial> advice;
   /// What is known of why the error is not smaller, in one sentence each, with the figure that shows it.
   std::vector<std::string> remarks;
-  /// Evaluations of the objective, and the rays of all of them.
+  /// Evaluations of the objective.
   int evaluations = 0;
+  /// Rays of all of them.
   std::uint64_t rays = 0;
 };
 
@@ -251,6 +254,7 @@ struct DesignedMirror : DesignFindings {
   std::string project_text;
   /// The light of the finished project: raw sums and figures.
   TraceResult traced;
+  /// All figures of `traced`.
   TraceFigures light;
   /// If DesignSettings::tolerances asked for it.
   std::optional<ToleranceSweep> tolerances;

@@ -15,6 +15,7 @@ struct FarFieldDetector {
   std::string name = "far-field";
   /// Must divide 360 and 180 evenly.
   double c_step_deg = 5.0;
+  /// Likewise, along gamma.
   double gamma_step_deg = 1.0;
   /// A ray counts for its four neighbours in proportion to nearness, not for the nearest alone: smooth curves
   /// from few rays, edges a step wider.
@@ -54,6 +55,7 @@ struct PlaneGrid {
 struct PlaneDetector {
   /// The stem of the files that are written of it.
   std::string name = "plane";
+  /// Where it is, and its cells.
   PlaneGrid grid;
   friend bool operator==(const PlaneDetector&, const PlaneDetector&) = default;
 };
@@ -66,6 +68,7 @@ struct PlaneDetector {
 struct LuminanceDetector {
   /// The stem of the files that are written of it.
   std::string name = "luminance";
+  /// Where it is, and its cells.
   PlaneGrid grid;
   /// Half angle of the cone of directions that count, from afar.
   double half_angle_deg = 2.0;

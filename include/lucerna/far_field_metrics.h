@@ -42,17 +42,22 @@ struct FarFieldMetrics {
   double axis_gamma_deg = 0.0;
   /// Intensity on the axis: a quadratic fit within `axis_radius_deg`.
   Estimate axis_cd;
+  /// Radius of that fit about the axis.
   double axis_radius_deg = 0.0;
   /// A pair of planes C and C + 180.
   struct Plane {
+    /// C of the pair, < 180.
     double c_deg = 0.0;
+    /// Full angles at 50 % (beam) and 10 % (field) of either reference, degrees.
     std::optional<Estimate> beam_of_maximum, field_of_maximum, beam_of_centre, field_of_centre;
   };
+  /// Every pair of planes that is quoted.
   std::vector<Plane> planes;
   /// Largest angle from the axis at which 2.5 % of the peak are reached in any of `planes`.
   std::optional<Estimate> cut_off_deg;
   /// Flux in zones of 10 degrees from nadir, and in wider ones.
   std::array<Estimate, 18> zonal{};
+  /// Flux between two angles from nadir.
   Estimate flux_0_30, flux_0_40, flux_0_60, flux_60_90, flux_0_90, flux_90_180;
   /// CIE flux code N1 to N4 in percent.
   std::array<Estimate, 4> cie_flux_code{};
@@ -62,11 +67,13 @@ struct FarFieldMetrics {
   /// Intensity at gamma 45, 55, 65, 75 and 85 in C0 and then in C90 (within `glare_radius_deg`): what UGR
   /// and luminance limits are made of.
   std::array<Estimate, 10> glare_cd{};
+  /// Radius of the fits about these directions.
   double glare_radius_deg = 0.0;
 };
 
 /// Intensities estimated from counted flux.
 struct BinnedIntensity {
+  /// The estimates.
   IntensityDistribution distribution;
   /// Standard error of each value of `distribution.cd`; empty if it is not known.
   std::vector<double> standard_error_cd;

@@ -118,7 +118,9 @@ LUCERNA_HD constexpr double degrees(double radians) { return radians * (180.0 / 
 /// CIE Type C angles of a direction in the luminaire frame of docs/concepts/frames-and-units.md: nadir (gamma
 /// 0) = -z, C 0 = +x, C 90 = +y. `c_rad` in [0, 2 pi), 0 on the axis; `gamma_rad` in [0, pi].
 struct TypeCAngles {
+  /// [0, 2 pi).
   double c_rad = 0.0;
+  /// [0, pi].
   double gamma_rad = 0.0;
 };
 

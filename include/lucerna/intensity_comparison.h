@@ -28,6 +28,7 @@ struct Alignment {
 /// Standard errors of the figures below that the given standard errors of the values make; NaN where none
 /// were given.
 struct ComparisonErrors {
+  /// Each in the unit of its figure.
   double relative_rms, bergen_fit, bergen_fit_unweighted, flux_ratio, peak_ratio, wasserstein_deg, overlap;
 };
 
@@ -37,6 +38,7 @@ struct DistributionComparison {
   double relative_rms = 0.0;  ///< sqrt(sum w (A-B)^2 / sum w A^2)
   double bergen_fit = 0.0;    ///< 100 (1 - sqrt(sum w (A-B)^2 / sum w (A+B)^2)); 100 = equal. Bergen, LR&T 44
                               ///< (2012) 27, weighted by solid angle
+  /// The same with every grid value counted once.
   double bergen_fit_unweighted = 0.0;
   double flux_ratio = 0.0;  ///< B / A, by the trade's quadrature
   double peak_ratio = 0.0;  ///< B / A of the largest values
@@ -45,7 +47,9 @@ struct DistributionComparison {
   double overlap = 0.0;      ///< 1 - 1/2 sum w |a - b| of unit-flux a, b: share of light in the right place
   double noise_floor = 0.0;  ///< relative RMS that the given standard errors alone would give
   double excess = 0.0;       ///< sqrt(max(0, relative_rms^2 - noise_floor^2))
+  /// If CompareOptions::align asked for it.
   std::optional<Alignment> alignment;
+  /// Standard errors of all of these.
   ComparisonErrors errors{};
 
   /// `relative_rms` with its standard error.

@@ -36,8 +36,8 @@ double zonal_flux(const IntensityDistribution& distribution, double from_deg, do
 
 /// The largest value of the grid and where it is (the first in storage order among equals).
 struct PeakIntensity {
-  double cd = 0.0;
-  double c_deg = 0.0, gamma_deg = 0.0;
+  double cd = 0.0;                      ///< cd, or W/sr
+  double c_deg = 0.0, gamma_deg = 0.0;  ///< where
 };
 /// The peak of a distribution, which has at least one value.
 PeakIntensity peak_intensity(const IntensityDistribution& distribution);
@@ -54,6 +54,7 @@ double axis_gamma_deg(const IntensityDistribution& distribution);
 /// One point of the great circle through the planes C and C + 180: angle from nadir (positive in C, 0 to
 /// 360) and intensity.
 struct CirclePoint {
+  /// Angle from nadir, and cd (or W/sr) there.
   double angle_deg, cd;
 };
 
@@ -87,15 +88,20 @@ double cone_mean_error_cd(const IntensityDistribution& distribution,
 /// threshold.
 struct BeamFigures {
   double flux = 0.0;  ///< lm, or W
+  /// The largest intensity.
   PeakIntensity peak;
   double axis_gamma_deg = 0.0;  ///< the axis of "centre", 0 or 180
   double centre_cd = 0.0;       ///< mean over the cone of `centre_cone_deg` half angle about the axis
+  /// Half angle of that cone.
   double centre_cone_deg = 0.0;
   /// Per pair of planes: C of the pair (< 180), and the four angles.
   struct Plane {
+    /// C of the pair, < 180.
     double c_deg = 0.0;
+    /// Full angles at 50 % (beam) and 10 % (field) of either reference, degrees.
     std::optional<double> beam_of_maximum, field_of_maximum, beam_of_centre, field_of_centre;
   };
+  /// Every pair of planes that is quoted.
   std::vector<Plane> planes;
 };
 
@@ -106,9 +112,11 @@ BeamFigures beam_figures(const IntensityDistribution& distribution, double centr
 
 /// The figures of a data sheet, with the definition of each. Fluxes in lm (or W), angles in degrees.
 struct PhotometricFigures {
+  /// Flux, peak, beam and field angles.
   BeamFigures beam;
   std::optional<double> light_output_ratio;  ///< flux over lamp flux; none for absolute photometry
   std::array<double, 18> zonal{};            ///< flux in zones of 10 degrees from nadir
+  /// Flux between two angles from nadir, lm (or W).
   double flux_0_30 = 0.0, flux_0_40 = 0.0, flux_0_60 = 0.0, flux_60_90 = 0.0, flux_0_90 = 0.0,
          flux_90_180 = 0.0;
   /// CIE flux code N1..N5 in percent (CIE 52): flux below 41.4, 60 and 75.5 degrees over that below 90 (cones

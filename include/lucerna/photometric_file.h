@@ -17,6 +17,7 @@ namespace lucerna {
 /// One set of lamps of EULUMDAT lines 26a-26f. Sets are alternatives: their fluxes are not added.
 struct LampSet {
   int count = 1;  ///< lamps in the set, >= 0 (absolute photometry is `LuminaireData::absolute`)
+  /// As in the file.
   std::string type{};
   double flux_lm = 0.0;  ///< of all lamps of the set together; of the luminaire for absolute photometry
   std::string color{};   ///< colour appearance or temperature, as in the file
@@ -29,10 +30,13 @@ struct LampSet {
 /// Lengths in mm in EULUMDAT's sense: length along C90-C270, width along C0-C180; width 0 with a length is a
 /// circle of that diameter.
 struct LuminaireData {
+  /// As the file has them; empty where it says nothing.
   std::string manufacturer, name, catalog_number, report_number, test_lab;
   std::string date_user;  ///< EULUMDAT line 12; ISSUEDATE of LM-63
   std::string file_name;  ///< EULUMDAT line 11
+  /// Size of the luminaire; 0 = not stated.
   double length_mm = 0.0, width_mm = 0.0, height_mm = 0.0;
+  /// Size of the luminous area; 0 = not stated.
   double luminous_length_mm = 0.0, luminous_width_mm = 0.0;
   /// Height of the luminous area in planes C0, C90, C180, C270.
   std::array<double, 4> luminous_height_mm{};
@@ -62,8 +66,11 @@ struct Fault {
     warning,  ///< a rule is broken; the reader repaired it as the text says
     error,    ///< cannot be read
   };
+  /// How bad it is.
   Severity severity = Severity::warning;
+  /// In the file, from 1.
   std::size_t line = 0;
+  /// What is wrong, in words.
   std::string text{};
   friend bool operator==(const Fault&, const Fault&) = default;
 };
@@ -78,6 +85,7 @@ struct PhotometricOrigin {
   double ballast_factor = 1.0;         ///< LM-63, applied
   std::string file_generation;         ///< second value of LM-63's record 2, as in the file
   std::array<double, 3> raw_size{};    ///< LM-63 width, length, height as in the file
+  /// True if that is in feet.
   bool feet = false;
   std::optional<double> stated_flux_lm;  ///< lamp flux times LORL, or a keyword for luminaire lumens
   double nadir_spread = 0.0;             ///< (max - min) / mean of the nadir row before it was evened out
@@ -90,8 +98,11 @@ struct PhotometricOrigin {
 
 /// A light distribution with what is said of it: what readers return and writers take.
 struct PhotometricFile {
+  /// Intensities.
   IntensityDistribution distribution;
+  /// What the file says of the luminaire.
   LuminaireData luminaire;
+  /// What the file looked like.
   PhotometricOrigin origin{};
   std::vector<Fault> repairs{};  ///< every repair that reading needed, in the order of the file
   std::vector<Fault> notes{};    ///< what was assumed or is unusual but legal

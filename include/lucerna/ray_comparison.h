@@ -40,8 +40,11 @@ struct ViewFrame {
 /// A box of `dimensions` axes cut into equal cells, centred on the medians of the reference's flux and scaled
 /// to hold 99 % of it. What lies outside is one more cell.
 struct ViewWindow {
+  /// 2, or 4 for ViewKind::four_d.
   std::size_t dimensions = 2;
+  /// Bounds along each axis.
   std::array<double, 4> low{}, high{};
+  /// Cells along each axis.
   std::array<std::size_t, 4> cells{1, 1, 1, 1};
 };
 
@@ -120,6 +123,7 @@ struct ViewDifference {
 
 /// How far a test is from its reference in all five views.
 struct RaySetComparison {
+  /// By view.
   ViewDifference far, near, focus, beam, four_d;
   /// The difference of one view.
   const ViewDifference& operator[](ViewKind kind) const;

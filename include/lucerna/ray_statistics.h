@@ -12,6 +12,7 @@ namespace lucerna {
 /// The point that all rays pass nearest to: it minimises the flux-weighted sum of squared distances to their
 /// lines.
 struct VirtualFocus {
+  /// Where it is.
   Vec3 point_mm;
   /// False if all rays with flux are parallel to 10 microradian (RMS): then no point along the beam is better
   /// than another and `point_mm` is the one beside the flux-weighted mean start.
@@ -23,13 +24,15 @@ struct VirtualFocus {
 struct RaySummary {
   /// Number of rays.
   std::uint64_t count = 0;
-  /// Sum of the raw weights, and their range (0 without rays).
+  /// Sum of the raw weights.
   double weight_sum = 0.0;
+  /// Range of the raw weights; 0 without rays.
   float weight_min = 0.0F, weight_max = 0.0F;
   /// Corners of the smallest axis-parallel box that holds every start; absent without rays.
   std::optional<Vec3> extent_min_mm, extent_max_mm;
   /// Mean start, mean direction vector (length 1 = collimated, 0 = balanced), virtual focus.
   std::optional<Vec3> mean_start_mm, mean_direction;
+  /// Where the rays' lines meet, as well as they do.
   std::optional<VirtualFocus> virtual_focus;
   /// Share of the flux with kz < 0.
   std::optional<double> backwards_share;

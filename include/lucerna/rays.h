@@ -71,7 +71,9 @@ enum class ColumnKind {
 
 /// One extra column of a ray set: what it holds and what it is called.
 struct ColumnSpec {
+  /// What it holds.
   ColumnKind kind = ColumnKind::additional;
+  /// What it is called.
   std::string label;
   friend bool operator==(const ColumnSpec&, const ColumnSpec&) = default;
 };
@@ -85,12 +87,14 @@ std::optional<std::size_t> find_column(const std::vector<ColumnSpec>& columns, C
 
 /// Relative spectral power over wavelength; wavelengths ascend.
 struct SpectralTable {
+  /// Equally many of both.
   std::vector<float> wavelength_nm, relative_power;
   friend bool operator==(const SpectralTable&, const SpectralTable&) = default;
 };
 
 /// Free text that ray files carry; empty where the file says nothing. Names follow TM-25-13 clause 4.4.
 struct RaySetTexts {
+  /// As the clause names them.
   std::string light_source, manufacturer, model_creator, file_creator, equipment, camera,
       operating_conditions, additional_info, geometry_reference, additional_text, date;
   friend bool operator==(const RaySetTexts&, const RaySetTexts&) = default;
@@ -126,7 +130,9 @@ struct RaySetHeader {
 /// A ray set in memory: header and all rays. Weights are as the file had them; a ray's flux is
 /// `header.flux() * weight / sum of weights`.
 struct RaySet {
+  /// All but the rays.
   RaySetHeader header;
+  /// The rays.
   RayBlock rays;
   friend bool operator==(const RaySet&, const RaySet&) = default;
 };

@@ -11,17 +11,21 @@ namespace lucerna {
 
 /// Height and exact gradient of a surface z = h(x, y) at one place.
 struct SurfacePoint {
+  /// Height.
   double z_mm = 0.0;
+  /// Gradient.
   double dzdx = 0.0, dzdy = 0.0;
 };
 
 /// A closed range of heights.
 struct HeightRange {
+  /// Both belong to it.
   double low_mm = 0.0, high_mm = 0.0;
 };
 
 /// An axis-parallel rectangle in the reflector's xy plane.
 struct Rectangle {
+  /// Its sides; x0_mm <= x1_mm, y0_mm <= y1_mm.
   double x0_mm = 0.0, x1_mm = 0.0, y0_mm = 0.0, y1_mm = 0.0;
 };
 
@@ -84,6 +88,7 @@ class Aperture {
 
 /// Minimum and maximum distance from the origin to points of `region`.
 struct RadiusRange {
+  /// Of the nearest and of the farthest point, mm.
   double min_mm = 0.0, max_mm = 0.0;
 };
 /// The minimum and maximum distance of `region`'s points from the origin.
@@ -91,6 +96,7 @@ RadiusRange radius_range(const Rectangle& region);
 
 /// One given point of a spline profile.
 struct ProfileKnot {
+  /// Distance from the axis, and height.
   double r_mm = 0.0, z_mm = 0.0;
 };
 

@@ -23,6 +23,7 @@ namespace lucerna {
 struct ReflectanceEntry {
   /// From the normal, [0, 90].
   double incidence_deg = 0.0;
+  /// Reflectance there, [0, 1].
   double value = 0.0;
 };
 
@@ -126,6 +127,7 @@ void check(const CoverGlass& glass);
 /// What a plate returns, lets through and keeps of unpolarised light; they sum to 1. `cos_incidence` in
 /// [0, 1], outside the glass.
 struct GlassShares {
+  /// Each in [0, 1].
   double reflected = 0.0, transmitted = 0.0, absorbed = 0.0;
 };
 /// The shares of a plate at one angle of incidence. Thread safe.

@@ -97,6 +97,7 @@ struct EmitterOptions {
   double ghost_share = 0.05;
   /// Total flux in `flux_unit`; > 0.
   double flux = 1000.0;
+  /// lm or W.
   FluxUnit flux_unit = FluxUnit::lumen;
   /// Rays are slid forward to this surface, which must enclose the emitter (or lie above it). Absent: led a
   /// sphere of 3 mm, filament a sphere of 20 mm, else none: rays start where they are emitted.

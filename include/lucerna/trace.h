@@ -34,8 +34,9 @@ inline constexpr std::size_t kLostCauses = 2;
 
 /// The sums of the rays of one replicate, in units.
 struct Tally {
-  /// Rays that were traced, and reflections of all of them.
+  /// Rays that were traced.
   std::uint64_t rays = 0;
+  /// Reflections of all of them.
   std::uint64_t reflections = 0;
   /// Flux of these rays.
   std::int64_t emitted = 0;
@@ -45,6 +46,7 @@ struct Tally {
   std::vector<std::int64_t> absorbed;
   /// By cause: kLostCauses; and how many rays that were.
   std::vector<std::int64_t> lost;
+  /// How many rays that were, by cause.
   std::vector<std::uint64_t> lost_rays;
   /// One array of bins per detector: far fields, planes, luminances.
   std::vector<std::vector<std::int64_t>> bins;
@@ -57,6 +59,7 @@ struct Tally {
 /// The rays of one source in one block of 512 numbers that left; runs ascend by (block, source), so that the
 /// kept rays of two ranges join to the order of one run, also where the cut is within a block.
 struct OutRun {
+  /// Number of the block, of the source in the scene, and how many rays left.
   std::uint64_t block = 0;
   std::uint32_t source = 0, rays = 0;
   friend bool operator==(const OutRun&, const OutRun&) = default;
@@ -66,14 +69,17 @@ struct OutRun {
 struct TraceResult {
   /// The rays traced, [first_ray, last_ray).
   std::uint64_t first_ray = 0, last_ray = 0;
-  /// Of the random numbers, the sequence that they came from, and the limit of reflections.
+  /// Of the random numbers.
   std::uint64_t seed = 0;
+  /// Where the numbers of the rays came from.
   SequenceKind sequence = SequenceKind::sobol;
+  /// Reflections after which a ray was given up.
   int max_bounces = 0;
   /// Which tracer and instruction set made the sums: only equal ones can be merged.
   std::string isa;
   /// Flux of all sources together.
   double flux = 0.0;
+  /// lm or W.
   FluxUnit unit = FluxUnit::lumen;
   /// The detectors of the scene, in its order.
   std::vector<FarFieldDetector> far_fields;
@@ -87,12 +93,14 @@ struct TraceResult {
   /// If the scene has ray detectors: where rays left and where to, in the order of `out_runs`. Together they
   /// carry ledger().out_direct + out_reflected; weights are in mean rays.
   RayBlock out_rays;
+  /// How many of them came from which source and block.
   std::vector<OutRun> out_runs;
 };
 
 /// Where the light went. Every figure in the unit of the sources' flux. A standard error is NaN where it is
 /// not known: fewer than two replicates have rays.
 struct Ledger {
+  /// lm or W.
   FluxUnit unit = FluxUnit::lumen;
   /// Exactly the flux of the sources.
   double emitted = 0.0;
@@ -104,9 +112,11 @@ struct Ledger {
   std::vector<std::pair<std::string, Estimate>> lost;
   /// All causes together.
   Estimate all_lost;
+  /// Rays that were given up.
   std::uint64_t lost_rays = 0;
   /// All rays, and their mean number of reflections.
   std::uint64_t rays = 0;
+  /// Mean number of reflections of a ray.
   Estimate reflections_per_ray;
 };
 
@@ -115,11 +125,15 @@ Ledger ledger(const TraceResult& result);
 
 /// Flux by far-field cell, numbered as in FarFieldGrid: c * gamma_count + g.
 struct FarField {
+  /// Of the detector.
   std::string name;
   /// Steps and numbers of the cells.
   double c_step_deg = 0.0, gamma_step_deg = 0.0;
+  /// How many there are of each.
   std::size_t c_count = 0, gamma_count = 0;
+  /// FarFieldDetector::tent.
   bool tent = false;
+  /// lm or W.
   FluxUnit unit = FluxUnit::lumen;
   /// Flux of each cell.
   std::vector<double> flux;
@@ -129,8 +143,11 @@ struct FarField {
 
 /// A figure by cell of a plane grid, numbered iy * nx + ix.
 struct PlaneImage {
+  /// Of the detector.
   std::string name;
+  /// The cells.
   PlaneGrid grid;
+  /// lm or W.
   FluxUnit unit = FluxUnit::lumen;
   /// Illuminance in lx, or luminance in cd/m2 (W/m2 and W/(m2 sr) when `unit` is watt).
   std::vector<double> value;
@@ -149,6 +166,7 @@ PlaneImage luminance(const TraceResult& result, std::size_t index);
 /// and takes off the least is corrected; of more than 2048 cells within six errors
 /// of the extreme the 2048 best are looked at.
 struct PlaneExtremes {
+  /// In the unit of the image.
   Estimate mean, min, max;
   /// minimum over mean; absent for a dark plane.
   std::optional<Estimate> uniformity;
@@ -176,6 +194,7 @@ struct TraceOptions {
   /// The rays to trace, [first_ray, last_ray); by default all from 0 to the scene's own count
   /// (`default_ray_count`).
   std::uint64_t first_ray = 0;
+  /// One past the last ray; absent: `default_ray_count`.
   std::optional<std::uint64_t> last_ray;
   /// Of the random numbers.
   std::uint64_t seed = 1;

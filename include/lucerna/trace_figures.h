@@ -13,7 +13,9 @@ namespace lucerna {
 
 /// What is quoted of one far field.
 struct FarFieldFigures {
+  /// Flux by cell.
   FarField field;
+  /// Intensity on a CIE Type C grid.
   BinnedIntensity intensity;
   /// Peak, beam angles, zones, estimated from the counted cells and not from the grid's angles.
   FarFieldMetrics metrics;
@@ -27,9 +29,11 @@ struct FarFieldFigures {
 
 /// What is quoted of a plane (illuminance) or luminance image.
 struct PlaneFigures {
+  /// The figure of each cell.
   PlaneImage image;
   /// What makes it a luminance image; absent for a plane.
   std::optional<LuminanceDetector> view;
+  /// Mean, least and greatest, corrected for noise.
   PlaneExtremes extremes;
   /// The middle of the brightest cell in the grid's frame.
   double peak_x_mm = 0.0, peak_y_mm = 0.0;
@@ -40,8 +44,11 @@ struct PlaneFigures {
 
 /// Rays that left, to be written as a file.
 struct RayFigures {
+  /// The detector that keeps them.
   RayDetector detector;
+  /// How many there are.
   std::uint64_t rays = 0;
+  /// What they carry.
   Estimate flux;
 };
 
@@ -49,8 +56,11 @@ struct RayFigures {
 struct TraceFigures {
   /// Where the light went.
   Ledger ledger;
+  /// One for each far-field detector.
   std::vector<FarFieldFigures> far_fields;
+  /// One for each plane, and for each luminance detector.
   std::vector<PlaneFigures> planes, luminances;
+  /// One for each ray detector.
   std::vector<RayFigures> rays;
 };
 

@@ -1,0 +1,10 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# The site of the documentation in build/docs: the pages by Sphinx (docs/conf.py), warnings as errors, then the API by Doxygen.
+set -eu
+cd "$(dirname "$0")/.."
+rm -rf build/docs build/docs-cache
+mkdir -p build
+sphinx-build -q -W --keep-going -b html -c docs -d build/docs-cache . build/docs
+scripts/api.sh
+echo "build/docs/index.html"
