@@ -270,7 +270,7 @@ TEST(ProgramCli, BadProjectsAreOneClearLine) {
   };
   refuse(std::string(kProject) + "focal_mn = 3\n", "nearest known one is 'focal_mm'");
   refuse(std::string(kProject) + "[[detectors]]\n", "nearest known one is 'detector'");
-  refuse("[[source]]\nkind = 'disc'\n", "unknown source kind 'disc'");
+  refuse("[[source]]\nkind = 'disc'\n", "found 'disc', expected point, disk");
   refuse("[[source]]\nfile = 'none.tm25ray'\n", "none.tm25ray");
   refuse("[[source]]\nfile = 's.tm25ray'\nflux_w = 3\n", "never mixed");
   refuse("[[source]]\nkind = 'disk'\nflux_lm = -3\n", "line 3: source[0].flux_lm: found -3, expected > 0");

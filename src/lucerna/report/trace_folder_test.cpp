@@ -8,6 +8,7 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/report/trace_files.h"
+#include "lucerna/version.h"
 #include "tests/support/random_rays.h"
 #include "tests/support/temp_dir.h"
 
@@ -101,13 +102,17 @@ TEST(TraceFolder, SaysWhatIsNoTrace) {
   write_file(dir / "result.json", "{}");
   EXPECT_NE(message().find("expected the result of `lucerna trace`"), std::string::npos);
   write_file(dir / "result.json", R"({"ledger": {}, "detectors": [], "schema_version": 99})");
-  EXPECT_NE(message().find("found 99, expected 3"), std::string::npos);
+  EXPECT_NE(message().find(fmt::format("found 99, expected {}", kJsonSchemaVersion)), std::string::npos);
   write_file(dir / "project.toml", "");
-  write_file(dir / "result.json",
-             R"({"ledger": {}, "detectors": [{"name": "../x", "kind": "far-field"}], "schema_version": 3})");
+  const auto write_detector = [&](const std::string& name, const std::string& kind) {
+    write_file(dir / "result.json",
+               fmt::format(R"({{"ledger": {{}}, "detectors": [{{"name": "{}", "kind": "{}"}}], )"
+                           R"("schema_version": {}}})",
+                           name, kind, kJsonSchemaVersion));
+  };
+  write_detector("../x", "far-field");
   EXPECT_NE(message().find("../x"), std::string::npos);
-  write_file(dir / "result.json",
-             R"({"ledger": {}, "detectors": [{"name": "x", "kind": "eye"}], "schema_version": 3})");
+  write_detector("x", "eye");
   EXPECT_NE(message().find("found the kind \"eye\""), std::string::npos);
 }
 
