@@ -179,6 +179,61 @@ TEST(Layering, TheUmbrellaHasEveryPublicHeader) {
   for (const auto& [header, folder] : kPublicHeaders) EXPECT_TRUE(listed.contains(header)) << header;
 }
 
+/// Which folders may include a header of another library: the library's own folder of headers, or the header.
+/// What is not here is the standard library's, the system's or the tests'.
+const Layers kThirdParty{
+    {"CLI", {"cli"}},
+    {"Eigen", {"rayset", "photometry", "source", "reflector", "design"}},
+    {"cuda_runtime.h", {"trace", "design"}},
+    {"embree3", {"trace", "design"}},
+    {"fmt", {"core", "rayset", "photometry", "source", "reflector", "trace", "design", "report", "cli"}},
+    {"immintrin.h", {"trace", "design"}},
+    {"libqhull_r", {"source"}},
+    {"nlohmann", {"report", "cli"}},
+    {"oneapi", {"core"}},
+    {"openssl", {"core", "source"}},
+    {"pmmintrin.h", {"trace"}},
+    {"toml++", {"trace"}},
+    {"xmmintrin.h", {"trace"}},
+    {"zlib.h", {"core"}},
+    {"zstd.h", {"source", "trace"}},
+};
+const std::set<std::string> kSystemHeaders{"gmock", "gtest",  "stddef.h", "stdint.h",
+                                           "sys",   "time.h", "unistd.h"};
+
+/// The headers of other libraries that `lines` include and `folder` may not.
+std::vector<std::string> forbidden_libraries(const std::string& folder,
+                                             const std::vector<std::string>& lines) {
+  std::vector<std::string> bad;
+  for (const std::string& line : lines) {
+    const std::string header = included(line, '<');
+    const std::string name = header.substr(0, header.find('/'));
+    if (name == header && !header.ends_with(".h")) continue;
+    const auto known = kThirdParty.find(name);
+    const bool allowed =
+        known == kThirdParty.end() ? kSystemHeaders.contains(name) : known->second.contains(folder);
+    if (!allowed) bad.push_back(header);
+  }
+  return bad;
+}
+
+TEST(Layering, OtherLibrariesStayInTheirFolders) {
+  for (const fs::path& file : source_files()) {
+    if (is_public(file)) continue;
+    for (const std::string& header : forbidden_libraries(folder_of(file), lines_of(file)))
+      ADD_FAILURE() << file << " includes <" << header << ">";
+  }
+}
+
+TEST(Layering, CheckSeesOtherLibraries) {
+  const std::vector<std::string> lines{"#include <vector>", "#include <fmt/format.h>",
+                                       "#include <toml++/toml.h>", "#include <boost/any.hpp>",
+                                       "#include <unistd.h>"};
+  EXPECT_EQ(forbidden_libraries("report", lines),
+            (std::vector<std::string>{"toml++/toml.h", "boost/any.hpp"}));
+  EXPECT_EQ(forbidden_libraries("trace", lines), (std::vector<std::string>{"boost/any.hpp"}));
+}
+
 TEST(Tree, FilesAreShortAndLicensed) {
   for (const fs::path& file : source_files()) {
     const auto lines = lines_of(file);
