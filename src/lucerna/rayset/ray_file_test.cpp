@@ -201,6 +201,9 @@ struct RealFile {
   double flux;
 };
 
+// GoogleTest looks for this name. NOLINTNEXTLINE(readability-identifier-naming)
+void PrintTo(const RealFile& file, std::ostream* out) { *out << file.name; }
+
 class RealFileData : public ::testing::TestWithParam<RealFile> {};
 
 TEST_P(RealFileData, HasTheRaysAndFluxThatItsMakerSays) {

@@ -13,6 +13,7 @@
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/draw_rays.h"
 #include "tests/support/data_dir.h"
+#include "tests/support/print_parameters.h"
 #include "tests/support/statistics.h"
 
 namespace lucerna {

@@ -14,6 +14,7 @@
 #include "lucerna/source/cluster_compress.h"
 #include "lucerna/source/draw_rays.h"
 #include "lucerna/source/nfl.h"
+#include "tests/support/print_parameters.h"
 #include "tests/support/statistics.h"
 #include "tests/support/temp_dir.h"
 

@@ -12,6 +12,7 @@
 #include "lucerna/source.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace/far_field_counts.h"
+#include "tests/support/print_parameters.h"
 #include "tests/support/statistics.h"
 
 namespace lucerna {
@@ -45,7 +46,8 @@ class Bodies : public testing::TestWithParam<EngineKind> {
     return trace(scene, {.last_ray = 65536, .engine = GetParam(), .cells = 256});
   }
 };
-INSTANTIATE_TEST_SUITE_P(Engines, Bodies, testing::Values(EngineKind::reference, EngineKind::fast));
+INSTANTIATE_TEST_SUITE_P(Engines, Bodies, testing::Values(EngineKind::reference, EngineKind::fast),
+                         testing::PrintToStringParamName());
 
 // One face of a cube about the source takes a sixth of its light.
 TEST_P(Bodies, AnAbsorberTakesItsSolidAngle) {
@@ -142,8 +144,8 @@ double gaussian_p(const std::vector<std::array<double, 2>>& slopes, double sigma
 }
 
 class BodiesStatistical : public Bodies {};
-INSTANTIATE_TEST_SUITE_P(Engines, BodiesStatistical,
-                         testing::Values(EngineKind::reference, EngineKind::fast));
+INSTANTIATE_TEST_SUITE_P(Engines, BodiesStatistical, testing::Values(EngineKind::reference, EngineKind::fast),
+                         testing::PrintToStringParamName());
 
 // The normal that sent each ray where it went, against the triangle's: two Gaussians of the slope error.
 // False alarms 1e-6; an error of 5 % in it, a tilt about one axis only and a disc of the same variance are
