@@ -34,6 +34,7 @@ DesignOptions design_options(const DesignArguments& a) {
   if (!a.rays.empty()) {
     options.max_rays = parse_count(a.rays);
     options.judge_rays = 4 * options.max_rays;
+    check(options);
   }
   return options;
 }

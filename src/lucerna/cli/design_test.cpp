@@ -268,6 +268,10 @@ TEST(DesignCli, RefusesInOneLine) {
   EXPECT_THAT(run.err, HasSubstr("design.limits.max_diameter_mm: = 50 contradicts the reflector's aperture"));
   EXPECT_FALSE(std::filesystem::exists(dir / "out"));
   write_project(dir);
+  const auto few = run_lucerna(dir.path(), "design p.toml --rays 8191 -o out");
+  EXPECT_EQ(few.exit_code, 1);
+  EXPECT_THAT(few.err, HasSubstr("8191 rays of an evaluation asked for, expected at least 8192; see --rays"));
+  EXPECT_FALSE(std::filesystem::exists(dir / "out"));
   std::filesystem::create_directory(dir / "full");
   write_file(dir / "full" / "checkpoint", "lucerna");
   EXPECT_EQ(run_lucerna(dir.path(), std::string(kFast) + "full").exit_code, 1);

@@ -83,8 +83,17 @@ FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& option
   return fit;
 }
 
+void check(const DesignOptions& options) {
+  constexpr std::uint64_t kFewest = kDesignTasks * kBlockRays;
+  if (options.max_rays >= kFewest) return;
+  throw InputError(
+      fmt::format("{} rays of an evaluation asked for, expected at least {}", options.max_rays, kFewest),
+      ErrorCause::out_of_range, "rays");
+}
+
 DesignResult design(const DesignProblem& problem, const DesignOptions& options, Progress& progress,
                     const DesignObserver& observer) {
+  check(options);
   // A validation's ray, without derivatives, takes about half the time of a fit's.
   TimeBudget time(options.time_s.value_or(problem.time_s), options.judge_rays / 2 + options.rays_after);
   DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);

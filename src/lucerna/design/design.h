@@ -43,6 +43,9 @@ struct DesignOptions {
   std::string checkpoint;
 };
 
+/// Throws InputError for fewer rays than an evaluation needs: one block of every task (8192).
+void check(const DesignOptions& options);
+
 struct DesignResult : DesignFindings {
   explicit DesignResult(DesignShape found) : shape(std::move(found)) {}
 
