@@ -103,7 +103,7 @@ int main(int argc, char** argv) {
       copy = std::min(copy, pass(in, out));
       cpu = std::min(cpu, cpu_seconds() - before);
     }
-    fmt::print("| {} | {:.0f} MB | {:.3g} | {:.3g} | {:.2g} |\n", format,
+    fmt::print("| {} | {:.0f} MB | {:.3g} | {:.3g} | {:.3g} |\n", format,
                static_cast<double>(fs::file_size(in)) * 1e-6, million / read, million / copy, million / cpu);
   }
   fmt::print("peak memory {:.0f} MB\n", peak_mb());
