@@ -15,29 +15,33 @@ void ResidualRows::add_to(NormalEquations& equations) const {
 }
 
 void ResidualRows::add_to(SparseEquations& equations) const {
-  // A row of many parameters would fill the Hessian: it stays a product.
-  const auto many = static_cast<std::size_t>(equations.gradient.size() / 8);
+  // A row of many parameters would fill the Hessian, so it stays a product. Each product costs a step one
+  // more solution, and all of them a dense system: when a limit on the height makes thousands, filling is
+  // cheaper.
+  constexpr std::size_t kMaxProducts = 16;
+  const Eigen::Index n = equations.gradient.size();
+  const auto is_product = [&](std::size_t row) {
+    return end(row) - rows_[row].first > static_cast<std::size_t>(n / 8);
+  };
+  std::size_t joining = 0;
+  for (std::size_t row = 0; row < rows_.size(); ++row) joining += is_product(row) ? 1 : 0;
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t row = 0; row < rows_.size(); ++row) {
-    const std::size_t first = rows_[row].first, last = end(row);
     Eigen::VectorXd dense;
-    if (last - first > many) dense = Eigen::VectorXd::Zero(equations.gradient.size());
-    for (std::size_t i = first; i < last; ++i) {
+    if (joining <= kMaxProducts && is_product(row)) dense = Eigen::VectorXd::Zero(n);
+    for (std::size_t i = rows_[row].first; i < end(row); ++i) {
       equations.gradient[index_[i]] += rows_[row].residual * slope_[i];
       if (dense.size() > 0) {
         dense[index_[i]] += slope_[i];
-        continue;
-      }
-      for (std::size_t k = first; k < last; ++k) {
-        if (index_[k] <= index_[i]) entries.emplace_back(index_[i], index_[k], slope_[i] * slope_[k]);
+      } else {
+        entries.emplace_back(static_cast<int>(row), index_[i], slope_[i]);
       }
     }
     if (dense.size() > 0) equations.products.push_back({std::move(dense), 1.0});
   }
-  if (entries.empty()) return;
-  SparseSymmetric sum(equations.gradient.size(), equations.gradient.size());
-  sum.setFromTriplets(entries.begin(), entries.end());
-  equations.hessian += sum;
+  SparseJacobian jacobian(static_cast<Eigen::Index>(rows_.size()), n);
+  jacobian.setFromTriplets(entries.begin(), entries.end());
+  equations.hessian += squared_rows(jacobian);
 }
 
 }  // namespace lucerna

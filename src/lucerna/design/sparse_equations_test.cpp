@@ -93,30 +93,39 @@ TEST(SparseEquations, AreTheDenseOnesAndTakeTheSameStep) {
   }
 }
 
-TEST(ResidualRows, CountTheSameInBothKindsOfEquations) {
-  constexpr int kParameters = 40;
+/// Residuals of which `joining` reach all parameters, and each one parameter twice.
+ResidualRows random_rows(int parameters, int count, int joining) {
   ResidualRows rows;
   Rng rng(9, 0);
-  for (int r = 0; r < 30; ++r) {
+  for (int r = 0; r < count; ++r) {
     rows.begin(rng.uniform());
-    // Every tenth row reaches all parameters, and one of them twice.
-    const int count = r % 10 == 0 ? kParameters : 3;
-    for (int i = 0; i < count; ++i) rows.add((r + 7 * i) % kParameters, rng.uniform() - 0.5);
-    rows.add(r % kParameters, 0.25);
+    const int entries = r < joining ? parameters : 3;
+    for (int i = 0; i < entries; ++i) rows.add((r + 7 * i) % parameters, rng.uniform() - 0.5);
+    rows.add(r % parameters, 0.25);
   }
-  NormalEquations dense{0.0, Eigen::VectorXd::Zero(kParameters),
-                        Eigen::MatrixXd::Zero(kParameters, kParameters)};
-  SparseEquations sparse;
-  sparse.gradient = Eigen::VectorXd::Zero(kParameters);
-  sparse.hessian.resize(kParameters, kParameters);
-  rows.add_to(dense);
-  rows.add_to(sparse);
-  EXPECT_EQ(sparse.products.size(), 3u);
-  EXPECT_LT((sparse.gradient - dense.gradient).norm(), 1e-12);
-  Eigen::MatrixXd hessian = Eigen::MatrixXd(sparse.hessian).selfadjointView<Eigen::Lower>();
-  for (const SparseEquations::Product& p : sparse.products) hessian += p.weight * p.v * p.v.transpose();
-  const Eigen::MatrixXd full = dense.hessian.selfadjointView<Eigen::Lower>();
-  EXPECT_LT((hessian - full).norm(), 1e-12 * full.norm());
+  return rows;
+}
+
+// Few rows that reach all parameters stay products; thousands of them, as a limit on the height of a mirror
+// makes, must not: each step would solve a dense system of that size.
+TEST(ResidualRows, CountTheSameInBothKindsOfEquations) {
+  constexpr int kParameters = 40;
+  for (const int joining : {0, 3, 16, 17, 500}) {
+    const ResidualRows rows = random_rows(kParameters, joining + 30, joining);
+    NormalEquations dense{0.0, Eigen::VectorXd::Zero(kParameters),
+                          Eigen::MatrixXd::Zero(kParameters, kParameters)};
+    SparseEquations sparse;
+    sparse.gradient = Eigen::VectorXd::Zero(kParameters);
+    sparse.hessian.resize(kParameters, kParameters);
+    rows.add_to(dense);
+    rows.add_to(sparse);
+    EXPECT_EQ(sparse.products.size(), joining <= 16 ? static_cast<std::size_t>(joining) : 0u);
+    EXPECT_LT((sparse.gradient - dense.gradient).norm(), 1e-12 * dense.gradient.norm());
+    Eigen::MatrixXd hessian = Eigen::MatrixXd(sparse.hessian).selfadjointView<Eigen::Lower>();
+    for (const SparseEquations::Product& p : sparse.products) hessian += p.weight * p.v * p.v.transpose();
+    const Eigen::MatrixXd full = dense.hessian.selfadjointView<Eigen::Lower>();
+    EXPECT_LT((hessian - full).norm(), 1e-12 * full.norm());
+  }
 }
 
 }  // namespace
