@@ -36,6 +36,20 @@ Scene lamp(bool disk) {
   return scene;
 }
 
+/// Shares of the flux by cell of the grid, from the finer cells that are counted.
+std::vector<double> grid_shares(const FarFieldDetector& detector, const Tally& tally) {
+  const FarFieldGrid grid(detector), counted = FarFieldGrid::counted(detector);
+  const FarFieldParts parts = counted_parts(detector);
+  std::vector<double> shares(grid.size());
+  for (std::size_t i = 0; i < counted.size(); ++i) {
+    const std::size_t c = (i / counted.gamma_count() + parts.c / 2) / parts.c % grid.c_count();
+    const std::size_t g = (i % counted.gamma_count() + parts.gamma / 2) / parts.gamma;
+    shares[c * grid.gamma_count() + g] +=
+        static_cast<double>(tally.bins[0][i]) / static_cast<double>(tally.emitted);
+  }
+  return shares;
+}
+
 /// Shares of the flux by far-field cell.
 std::vector<double> far_shares(const Scene& scene, Streams streams, std::uint64_t rays, std::uint64_t seed) {
   TraceOptions options;
@@ -53,10 +67,7 @@ std::vector<double> far_shares(const Scene& scene, Streams streams, std::uint64_
       for (const SourceRun& run : numbering.runs(at, at + kRun)) engine->trace_run(run, scratch, tally);
     }
   }
-  std::vector<double> shares;
-  for (const std::int64_t units : tally.bins[0])
-    shares.push_back(static_cast<double>(units) / static_cast<double>(tally.emitted));
-  return shares;
+  return grid_shares(scene.far_fields[0], tally);
 }
 
 void run(const char* name, const Scene& scene) {

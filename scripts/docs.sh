@@ -6,5 +6,8 @@ cd "$(dirname "$0")/.."
 rm -rf build/docs build/docs-cache
 mkdir -p build
 sphinx-build -q -W --keep-going -b html -c docs -d build/docs-cache . build/docs
+# Debian's Furo imports a file from a web server that is not there.
+cp /usr/share/javascript/normalize.css/normalize.css build/docs/_static/
+sed -i 's|/javascript/normalize.css/normalize.css|../normalize.css|' build/docs/_static/styles/furo.css
 scripts/api.sh
 echo "build/docs/index.html"

@@ -9,4 +9,10 @@ std::filesystem::path data_dir() { return LUCERNA_DATA_DIR; }
 
 std::filesystem::path program() { return LUCERNA_PROGRAM; }
 
+std::filesystem::path build_dir() { return LUCERNA_BUILD_DIR; }
+
+std::filesystem::path compiler() { return LUCERNA_COMPILER; }
+
+std::filesystem::path examples() { return build_dir() / "examples"; }
+
 }  // namespace lucerna::test

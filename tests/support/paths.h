@@ -13,5 +13,11 @@ std::filesystem::path source_dir();
 std::filesystem::path data_dir();
 /// The program `lucerna` of this build.
 std::filesystem::path program();
+/// The folder of this build, that `cmake --install` takes.
+std::filesystem::path build_dir();
+/// The compiler of this build.
+std::filesystem::path compiler();
+/// The folder of the programs of examples/.
+std::filesystem::path examples();
 
 }  // namespace lucerna::test

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// The form of the pages in docs/: no line over 100 columns, no sentence over 40 words. The notebook is what
+// was written at the time.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/support/paths.h"
+#include "tests/support/prose.h"
+#include "tests/support/run_program.h"
+
+namespace lucerna::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxColumns = 100, kMaxWords = 40;
+
+std::vector<fs::path> pages_of_docs() {
+  std::vector<fs::path> pages;
+  for (const auto& entry : fs::recursive_directory_iterator(source_dir() / "docs")) {
+    const bool notebook = entry.path().string().find("/development/notebook/") != std::string::npos;
+    if (entry.path().extension() == ".md" && !notebook) pages.push_back(entry.path());
+  }
+  return pages;
+}
+
+TEST(Docs, LinesAndSentencesAreShort) {
+  const auto pages = pages_of_docs();
+  ASSERT_GT(pages.size(), 15u);
+  for (const fs::path& page : pages) {
+    const std::string text = slurp(page);
+    for (const std::size_t line : long_lines(text, kMaxColumns))
+      ADD_FAILURE() << page << ":" << line << ": more than " << kMaxColumns << " columns";
+    for (const std::string& sentence : long_sentences(text, kMaxWords))
+      ADD_FAILURE() << page << ": more than " << kMaxWords << " words: " << sentence;
+  }
+}
+
+TEST(Docs, CheckSeesLongLines) {
+  const std::string line(101, 'x'), words = std::string(96, 'x') + " yy z";
+  EXPECT_EQ(long_lines("short\n" + words + "\n", 100), (std::vector<std::size_t>{2}));
+  EXPECT_EQ(long_lines(std::string(95, 'x') + " yy z", 100).size(), 0u);
+  EXPECT_EQ(long_lines(line, 100).size(), 0u) << "a word cannot be broken";
+  EXPECT_EQ(long_lines("```sh\n" + words + "\n```\n| " + words + " |\n", 100).size(), 0u);
+  EXPECT_EQ(long_lines("\u00b5" + words.substr(1), 100).size(), 1u);
+  EXPECT_EQ(long_lines("\u00b5" + words.substr(2), 100).size(), 0u) << "columns, not bytes";
+}
+
+TEST(Docs, CheckSeesLongSentences) {
+  const auto count = [](const std::string& page) { return long_sentences(page, 4).size(); };
+  EXPECT_EQ(count("One two three four. Five six.\n"), 0u);
+  EXPECT_EQ(count("One two three\nfour five.\n"), 1u) << "over two lines";
+  EXPECT_EQ(count("One two, 3.5 mm, e.g. four five. Six.\n"), 1u) << "a point within a sentence";
+  EXPECT_EQ(count("- One two three four\n- five six\n"), 0u) << "items of a list";
+  EXPECT_EQ(count("- One two three\n  four five\n"), 1u);
+  EXPECT_EQ(count("| one two | three four five |\n"), 0u);
+  EXPECT_EQ(count("| one two three four five | six |\n"), 1u);
+  EXPECT_EQ(count("# One two three\nfour five\n"), 0u) << "a heading";
+  EXPECT_EQ(count("```sh\none two three four five\n```\n    one two three four five\n"), 0u) << "code";
+  EXPECT_EQ(count("One = two - three (four) +- five six.\n"), 1u);
+  EXPECT_EQ(count("One = two - three + (four) +-.\n"), 0u) << "signs are no words";
+}
+
+}  // namespace
+}  // namespace lucerna::test

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// The form of a Markdown page: how long its lines and sentences are.
+namespace lucerna::test {
+
+/// Numbers (from 1) of the lines with more than `max_columns` characters that could be broken: not those of
+/// code blocks and tables, nor a single word.
+std::vector<std::size_t> long_lines(std::string_view page, std::size_t max_columns);
+
+/// The sentences with more than `max_words` words: of paragraphs, items of lists, cells of tables, headings;
+/// not of code blocks. A sentence ends at a point, question or exclamation mark before a blank and a capital
+/// letter, digit or mark. A word has a letter or a digit.
+std::vector<std::string> long_sentences(std::string_view page, std::size_t max_words);
+
+}  // namespace lucerna::test
