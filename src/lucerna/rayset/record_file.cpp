@@ -235,9 +235,10 @@ void require_records(const InputFile& file, std::uint64_t count, std::uint64_t c
                      std::uint64_t first_byte, std::uint64_t record_bytes) {
   const std::uint64_t room = file.size() > first_byte ? (file.size() - first_byte) / record_bytes : 0;
   if (count <= room) return;
-  throw_input_error(file.name(), fmt::format("byte {}", count_byte),
-                    "{} rays of {} bytes expected from byte {}, but the file ends at byte {}: {} whole rays",
-                    count, record_bytes, first_byte, file.size(), room);
+  throw_input_error_for(
+      "salvage", file.name(), fmt::format("byte {}", count_byte),
+      "{} rays of {} bytes expected from byte {}, but the file ends at byte {}: {} whole rays", count,
+      record_bytes, first_byte, file.size(), room);
 }
 
 }  // namespace lucerna
