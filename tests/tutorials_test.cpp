@@ -71,7 +71,14 @@ void expect_true(const std::string& name) {
 
 TEST(TutorialsCli, LedToModel) { expect_true("led-to-model"); }
 TEST(TutorialsCli, ParaboloidToLdt) { expect_true("paraboloid-to-ldt"); }
-TEST(TutorialsCli, DesignAFloodlight) { expect_true("design-a-floodlight"); }
+
+// What a design prints depends on nothing but counts as long as its time (600 s) is not over.
+TEST(TutorialsCli, DesignAFloodlight) {
+#ifdef LUCERNA_SANITIZED
+  GTEST_SKIP() << "with a sanitizer the time may be over first";
+#endif
+  expect_true("design-a-floodlight");
+}
 
 // Compiled against what this build installs, so that nothing but the page and the package is needed.
 TEST(TutorialsCli, AsALibrary) {

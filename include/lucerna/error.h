@@ -43,7 +43,7 @@ class Error : public std::runtime_error {
   /// `option` is a literal: it is not copied.
   Error(const std::string& what, ErrorCause cause, std::string_view option = {})
       : std::runtime_error(what), cause_(cause), option_(option) {}
-
+  /// What kind of thing is wrong.
   ErrorCause cause() const noexcept { return cause_; }
   /// The field of the call's options that would help: "salvage", "flux", "format", "device"; empty where none
   /// is known.
@@ -56,7 +56,7 @@ class Error : public std::runtime_error {
 
 /// The input is bad: a file, a project, a set of rays.
 class InputError : public Error {
- public:
+ public:  /// With the text, what kind of thing is wrong, and the option that would help.
   explicit InputError(const std::string& what, ErrorCause cause = ErrorCause::invalid,
                       std::string_view option = {})
       : Error(what, cause, option) {}
@@ -64,7 +64,7 @@ class InputError : public Error {
 
 /// The call itself is bad: an unknown option, a format that cannot be chosen.
 class UsageError : public Error {
- public:
+ public:  /// With the text, and the option that would help.
   explicit UsageError(const std::string& what, std::string_view option = {})
       : Error(what, ErrorCause::usage, option) {}
 };
