@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # The two commands of the README, and the longer suites. Each installs what is missing first (scripts/packages.sh).
 # CUDA=1 compiles the CUDA back end too (needs nvcc).
-.PHONY: reference demo test check check-quick fuzz bench benchmarks test-report test-slow gallery docs program packages format clean
+.PHONY: reference demo test check check-quick fuzz bench benchmarks test-report test-slow gallery docs program packages \
+        install deb api format clean
 
 BUILD := build/release
 
@@ -70,6 +71,24 @@ program: packages
 
 packages:
 	scripts/packages.sh
+
+# Program, manual pages, libraries and headers: make install PREFIX=/usr/local (as root where the prefix asks for it).
+PREFIX ?= /usr/local
+install: program
+	cmake --build --preset release --target installable
+	cmake --install $(BUILD) --prefix $(PREFIX)
+
+# Debian packages in build/deb/packages; make check STAGES=deb installs, uses and removes them in a bare Debian.
+deb: packages
+	scripts/packages.sh scripts/packages-deb.txt
+	cmake --preset deb
+	cmake --build --preset deb
+	cpack --config build/deb/CPackConfig.cmake
+
+# What the public headers say, as HTML in build/docs/api.
+api:
+	scripts/packages.sh scripts/packages-docs.txt
+	scripts/api.sh
 
 format:
 	git ls-files '*.h' '*.cpp' '*.cu' | xargs clang-format -i

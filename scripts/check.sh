@@ -8,12 +8,14 @@
 #   tree          layers, lengths, licences, one type a name
 #   docs          every link and path of the docs leads somewhere; measured tables have a commit and a benchmark
 #   release       g++, everything with the benchmarks, all tests but the slow ones
-#   install       the program runs from where it was installed; so does a program of another project that finds the library there
+#   install       what is installed works where it was moved to: program, manual, completion; the library by CMake and pkg-config
 #   consumers     the same program with the sources of Lucerna within its project
+#   api           the API pages are made, and no public type or function is without a comment (needs doxygen)
+#   deb           Debian packages, by lintian, and installed, used and removed in a bare Debian 12 (needs root and debootstrap)
 #   clang asan tsan   the same tests under those presets
 set -u
 cd "$(dirname "$0")/.."
-stages="${*:-format tidy tree docs release install consumers clang asan tsan}"
+stages="${*:-format tidy tree docs release install consumers api deb clang asan tsan}"
 # `make` waits for two compilers at once on two cores; the presets' tests run two at a time too.
 jobs=${JOBS:-$(nproc)}
 base=${BASE:-origin/main}
@@ -65,13 +67,26 @@ consume() {  # PROGRAM FOLDER
 }
 
 installs() {
-  place=$PWD/build/check/installed
-  rm -rf "$place" build/check/find_package
-  cmake --preset release >/dev/null && cmake --build --preset release -j "$jobs" --target lucerna_cli &&
-    cmake --install build/release --prefix "$place" && "$place/bin/lucerna" --version &&
-    "$place/bin/lucerna" make-source disk -n 20000 -o "$place/disk.tm25ray" && "$place/bin/lucerna" check "$place/disk.tm25ray" &&
-    cmake -S tests/consumers/find_package -B build/check/find_package -DCMAKE_PREFIX_PATH="$place" &&
-    cmake --build build/check/find_package && consume build/check/find_package/ray_file_to_ldt "$place"
+  cmake --preset release >/dev/null && cmake --build --preset release -j "$jobs" --target installable &&
+    scripts/check_install.sh build/release
+}
+
+# A stage that needs what is not here says so and returns 77.
+needs() {  # PROGRAM...
+  for program in "$@"; do
+    command -v "$program" >/dev/null || { echo "skipped: no $program"; return 77; }
+  done
+}
+
+packages() {
+  needs dpkg-shlibdeps file || return
+  rm -rf build/deb/packages
+  cmake --preset deb >/dev/null && cmake --build --preset deb -j "$jobs" && cpack --config build/deb/CPackConfig.cmake || return 1
+  if command -v lintian >/dev/null; then
+    lintian --allow-root --fail-on error,warning --suppress-tags-from-file packaging/debian/lintian-suppressed \
+      build/deb/packages/*.deb || return 1
+  fi
+  scripts/check_deb.sh build/deb/packages
 }
 
 # Which headers the compiler opens for the umbrella: ours and the standard library's.
@@ -97,6 +112,8 @@ stage() {
     docs) tree_tests 'Docs.*' && { ! command -v python3 >/dev/null || scripts/benchmarks.py --check; } ;;
     release) build_and_test release all benchmarks ;;
     install) installs ;;
+    api) needs doxygen && scripts/api.sh ;;
+    deb) packages ;;
     consumers) within_sources ;;
     clang) build_and_test clang all benchmarks ;;
     asan | tsan) build_and_test "$1" all ;;
@@ -135,6 +152,8 @@ for name in $stages; do
   line=$(printf '%-12s %5s tests %4s failed %3d.%d min  %s' "$name" "$1" "$2" $((seconds / 60)) $((seconds % 60 / 6)) "$commit")
   if [ $result -eq 0 ]; then
     echo "$line" | tee "$done_line"
+  elif [ $result -eq 77 ]; then
+    echo "$line  SKIPPED: $(sed -n 's/^skipped: //p' "$log" | tail -1)"
   else
     echo "$line  FAILED, see $log"
     failed=1

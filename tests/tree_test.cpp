@@ -171,6 +171,31 @@ TEST(Layering, CheckSeesWhatIsNotPublic) {
             (std::vector<std::string>{"Eigen/Core", "zstd.h", "lucerna/core/file.h"}));
 }
 
+/// True if all that a header declares stays visible where names are hidden by default: its namespace is
+/// within
+/// `#pragma GCC visibility push(default)` and `pop`.
+bool shows_its_names(const std::vector<std::string>& lines) {
+  const auto opens = std::find(lines.begin(), lines.end(), "namespace lucerna {");
+  if (opens == lines.end()) return true;
+  return opens != lines.begin() && *(opens - 1) == "#pragma GCC visibility push(default)" &&
+         lines.back() == "#pragma GCC visibility pop";
+}
+
+// The library is compiled with -fvisibility=hidden: what a public header forgets to show cannot be linked.
+TEST(Layering, PublicHeadersShowTheirNames) {
+  for (const fs::path& file : source_files()) {
+    if (!is_public(file)) continue;
+    EXPECT_TRUE(shows_its_names(lines_of(file))) << file;
+  }
+}
+
+TEST(Layering, CheckSeesHiddenNames) {
+  EXPECT_TRUE(shows_its_names(
+      {"#pragma GCC visibility push(default)", "namespace lucerna {", "}", "#pragma GCC visibility pop"}));
+  EXPECT_FALSE(shows_its_names({"#pragma once", "namespace lucerna {", "}", "#pragma GCC visibility pop"}));
+  EXPECT_FALSE(shows_its_names({"#pragma GCC visibility push(default)", "namespace lucerna {", "}"}));
+}
+
 TEST(Layering, TheUmbrellaHasEveryPublicHeader) {
   std::set<std::string> listed{"lucerna.h", "host_device.h"};  // the second holds macros for the others
   for (const std::string& line : lines_of(lucerna::test::source_dir() / "include/lucerna/lucerna.h")) {
