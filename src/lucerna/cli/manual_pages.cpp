@@ -61,7 +61,9 @@ std::string manual_text(std::string_view text) {
 }
 
 /// With a full stop at its end.
-std::string sentence(const std::string& text) { return manual_text(text) + (text.ends_with('.') ? "" : "."); }
+std::string manual_sentence(const std::string& text) {
+  return manual_text(text) + (text.ends_with('.') ? "" : ".");
+}
 
 /// What stands for an option's value: RAYS for --rays.
 std::string value_name(const OptionFacts& option) {
@@ -89,7 +91,7 @@ std::string option_entry(const OptionFacts& option) {
   std::string text = ".TP\n" + (option.positional ? fmt::format("\\fI{}\\fR{}", manual_text(name),
                                                                 option.several ? " ..." : "")
                                                   : option_heading(option));
-  text += "\n" + sentence(option.help) + "\n";
+  text += "\n" + manual_sentence(option.help) + "\n";
   if (!option.choices.empty()) text += fmt::format("One of {}.\n", manual_text(joined(option.choices, ", ")));
   if (!option.range.empty()) text += fmt::format("A whole number, {}.\n", manual_text(option.range));
   if (option.required && !option.positional) text += "Must be given.\n";
@@ -156,7 +158,7 @@ std::string heading(const std::string& name, std::string help) {
 ManualPage command_page(const CommandFacts& command) {
   const std::string name = "lucerna-" + command.name;
   return {name + ".1", heading(name, command.help) + synopsis(command) + ".SH DESCRIPTION\n" +
-                           sentence(command.help) + "\n" + section_of(command, true, "ARGUMENTS") +
+                           manual_sentence(command.help) + "\n" + section_of(command, true, "ARGUMENTS") +
                            section_of(command, false, "OPTIONS") + std::string(kExitStatus) +
                            examples_of(command.name) + ".SH SEE ALSO\n.BR lucerna (1)\n"};
 }
@@ -185,7 +187,7 @@ Print the version and exit.
 ManualPage program_page(const std::vector<CommandFacts>& commands) {
   std::string text = heading("lucerna", "From ray file to reflector") + std::string(kProgramHead), also;
   for (const CommandFacts& c : commands) {
-    text += fmt::format(".TP\n.BR lucerna\\-{} (1)\n{}\n", manual_text(c.name), sentence(c.help));
+    text += fmt::format(".TP\n.BR lucerna\\-{} (1)\n{}\n", manual_text(c.name), manual_sentence(c.help));
     also += fmt::format("{}.BR lucerna\\-{} (1)", also.empty() ? "" : ",\n", manual_text(c.name));
   }
   return {"lucerna.1", text + std::string(kExitStatus) + examples_of("") + ".SH SEE ALSO\n" + also + "\n"};
