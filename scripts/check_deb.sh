@@ -40,7 +40,7 @@ echo "== the program alone"
 $install ./lucerna_*.deb >install.log 2>&1 || { cat install.log; exit 1; }
 lucerna --version
 ! ldd /usr/bin/lucerna | grep 'not found' || exit 1
-lucerna make-source led -n 200000 -o led.tm25ray
+lucerna make-source led -n 50000 -o led.tm25ray
 lucerna compress led.tm25ray -o led.nfl
 lucerna init -o lamp.toml
 lucerna trace lamp.toml -o light --rays 1e5 --report light.html
@@ -71,7 +71,7 @@ test -s /usr/share/doc/lucerna/copyright
 
 echo "== the library, with no other development package"
 $install ./liblucerna*.deb g++ cmake make pkgconf >install.log 2>&1 || { cat install.log; exit 1; }
-! dpkg-query -W libfmt-dev libtbb-dev 2>/dev/null || exit 1
+test ! -e /usr/include/fmt && test ! -e /usr/include/tbb && test ! -e /usr/include/oneapi
 g++ -std=c++20 ray_file_to_ldt.cpp $(pkg-config --cflags --libs lucerna) -o by_pkg_config
 ./by_pkg_config led.tm25ray beam.ldt
 mkdir consumer
