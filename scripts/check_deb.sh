@@ -86,7 +86,7 @@ lucerna check beam.ldt
 echo "== gone again"
 own=$(ls *.deb | sed 's/_.*//')
 apt-get purge -y -qq $own >remove.log 2>&1 || { cat remove.log; exit 1; }
-! command -v lucerna || exit 1
+test ! -e /usr/bin/lucerna
 left=$(find / -xdev -path /proc -prune -o -path /lucerna -prune -o -iname '*lucerna*' -print)
 [ -z "$left" ] || { echo "error: left behind: $left"; exit 1; }
 END
