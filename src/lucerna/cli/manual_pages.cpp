@@ -88,10 +88,10 @@ std::string option_heading(const OptionFacts& option) {
 
 std::string option_entry(const OptionFacts& option) {
   const std::string& name = option.names.front();
-  std::string text = ".TP\n" + (option.positional ? fmt::format("\\fI{}\\fR{}", manual_text(name),
-                                                                option.several ? " ..." : "")
-                                                  : option_heading(option));
-  text += "\n" + manual_sentence(option.help) + "\n";
+  const std::string heading =
+      option.positional ? fmt::format("\\fI{}\\fR{}", manual_text(name), option.several ? " ..." : "")
+                        : option_heading(option);
+  std::string text = fmt::format(".TP\n{}\n{}\n", heading, manual_sentence(option.help));
   if (!option.choices.empty()) text += fmt::format("One of {}.\n", manual_text(joined(option.choices, ", ")));
   if (!option.range.empty()) text += fmt::format("A whole number, {}.\n", manual_text(option.range));
   if (option.required && !option.positional) text += "Must be given.\n";
@@ -114,8 +114,7 @@ std::string synopsis(const CommandFacts& command) {
     if (option.positional) {
       text += fmt::format(" \\fI{}\\fR{}", manual_text(option.names.front()), option.several ? " ..." : "");
     } else if (option.required) {
-      text +=
-          " " + fmt::format("\\fB{}\\fR \\fI{}\\fR", manual_text(option.names.front()), value_name(option));
+      text += fmt::format(" \\fB{}\\fR \\fI{}\\fR", manual_text(option.names.front()), value_name(option));
     }
   }
   return text + "\n";
