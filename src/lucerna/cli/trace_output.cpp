@@ -14,7 +14,7 @@ std::vector<std::string> write_trace_output(const std::string& folder, const Tra
                                             Session& session) {
   Json json = session.json_head(result.seed, result.isa);
   std::vector<std::string> warnings;
-  const auto names = write_trace_results(folder, result, origin, figures, json, warnings);
+  auto names = write_trace_results(folder, result, origin, figures, json, warnings);
   for (const std::string& warning : warnings) session.note(warning);
   session.print_json(json);
   return names;
