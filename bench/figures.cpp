@@ -9,14 +9,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lucerna/core/parallel.h"
-#include "lucerna/photometry/far_field_metrics.h"
 #include "lucerna/project.h"
 #include "lucerna/trace.h"
-#include "lucerna/trace/far_field_counts.h"
-#include "lucerna/trace/node_noise.h"
+#include "lucerna/trace_figures.h"
 
 namespace {
 
@@ -33,11 +32,9 @@ struct Look {
   FarFieldMetrics metrics;
 };
 
-Look look_at(const TraceResult& result) {
-  Look l;
-  l.nodes = node_intensity(far_field(result, 0));
-  l.metrics = far_field_metrics(counted_far_field(result, 0), l.nodes.distribution.c_deg);
-  return l;
+Look look_at(const TraceResult& result, const Scene& scene) {
+  FarFieldFigures f = trace_figures(result, scene).far_fields.at(0);
+  return {std::move(f.intensity), std::move(f.metrics)};
 }
 
 /// Shares of the grid's angles (all; above 1 % of the peak) within k stated errors, the truth's own error
@@ -85,11 +82,11 @@ void run(const std::string& file, std::uint64_t truth_rays, double noise) {
   const double trace_s =
       seconds_of([&] { traced = trace_until(project.scene, {.seed = 1}, {.noise = noise}); });
   Look test, truth;
-  const double look_s = seconds_of([&] { test = look_at(traced.result); });
+  const double look_s = seconds_of([&] { test = look_at(traced.result, project.scene); });
   fmt::print("{}: {:.1f} M rays, node noise {:.2f} %, trace {:.2f} s, figures {:.2f} s, {} threads {}\n",
              file, 1e-6 * static_cast<double>(traced.result.last_ray), 100.0 * traced.noise, trace_s, look_s,
              ThreadLimit::current(), to_string(traced.end));
-  truth = look_at(trace(project.scene, {.last_ray = truth_rays, .seed = 4242}));
+  truth = look_at(trace(project.scene, {.last_ray = truth_rays, .seed = 4242}), project.scene);
   if (test.metrics.peak && truth.metrics.peak) {
     print("peak", test.metrics.peak->cd, truth.metrics.peak->cd);
     fmt::print(

@@ -26,7 +26,8 @@ struct PeakEstimate {
   /// Half width of the lobe at half its peak, to its nearest side that falls that far and on the average of
   /// the two sides in the narrowest section; at most 180.
   double half_width_deg = 0.0, nearest_side_deg = 0.0;
-  /// Radii of the kernel of the fit, along gamma and along C.
+  /// Radii of the kernel of the fit, along gamma and along C; 0 where the intensity is that of the direction
+  /// alone.
   double radius_deg = 0.0, c_radius_deg = 0.0;
 };
 
@@ -40,9 +41,9 @@ struct FarFieldMetrics {
   std::optional<PeakEstimate> peak;
   /// The axis of "centre", 0 or 180: where more flux goes.
   double axis_gamma_deg = 0.0;
-  /// Intensity on the axis: a quadratic fit within `axis_radius_deg`.
+  /// Intensity on the axis.
   Estimate axis_cd;
-  /// Radius of that fit about the axis.
+  /// Radius of the fit about the axis; 0 where the intensity is that of the direction alone.
   double axis_radius_deg = 0.0;
   /// A pair of planes C and C + 180.
   struct Plane {

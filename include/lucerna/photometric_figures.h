@@ -58,8 +58,17 @@ struct CirclePoint {
   double angle_deg, cd;
 };
 
+/// A part of such a circle, from an angle to a larger one that may be beyond 360.
+struct CircleArc {
+  /// Ends of the arc, degrees.
+  double from_deg = 0.0, to_deg = 360.0;
+};
+
 /// The smallest arc of a circle of ascending points, linear between them, that holds all that reaches
-/// `threshold`; nothing if no point does, 360 if all do.
+/// `threshold`; nothing if no point does, the whole circle if all do.
+std::optional<CircleArc> smallest_arc(const std::vector<CirclePoint>& circle, double threshold);
+
+/// Its size.
 std::optional<double> smallest_arc_deg(const std::vector<CirclePoint>& circle, double threshold);
 
 /// Largest angle from nadir (from zenith if `up`) at which such a circle reaches `threshold`, 0 to 180.

@@ -101,7 +101,7 @@ void run_trace(const TraceArguments& a, Session& session) {
   const NoiseTrace traced =
       session.timed("trace", [&] { return run_rays(a, project.scene, options, origin, session); });
   const TraceResult& result = traced.result;
-  const TraceFigures figures = session.timed("figures", [&] { return trace_figures(result); });
+  const TraceFigures figures = session.timed("figures", [&] { return trace_figures(result, project.scene); });
   const auto names = write_trace_output(a.output, result, origin, figures, session);
   const double seconds = session.seconds("trace");
   session.say(fmt::format(

@@ -25,9 +25,9 @@ PlaneSummary summary_of(const std::vector<double>& values, double factor) {
 }  // namespace
 
 DesignFigures design_figures(const DesignProblem& problem, const DesignResult& result,
-                             const TraceResult& traced) {
+                             const TraceResult& traced, const Scene& scene) {
   DesignFigures f;
-  f.trace = trace_figures(traced);
+  f.trace = trace_figures(traced, scene);
   const DesignTarget& target = problem.target;
   if (target.zones_only) return f;  // a guide is nothing to compare with
   if (target.mode == TargetMode::shape && result.error.scale > 0.0) {

@@ -32,8 +32,9 @@ struct DesignFigures {
   std::optional<ToleranceSweep> tolerances;
 };
 
-/// `traced` is a trace of `with_shape(problem, result.shape)`. About a second for a far-field target.
+/// `traced` is a trace of `scene`, that of `with_shape(problem, result.shape)`. About two seconds for a
+/// far-field target.
 DesignFigures design_figures(const DesignProblem& problem, const DesignResult& result,
-                             const TraceResult& traced);
+                             const TraceResult& traced, const Scene& scene);
 
 }  // namespace lucerna

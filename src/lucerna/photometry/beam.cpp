@@ -63,11 +63,15 @@ void for_cone(const Direction& axis, double half_angle_deg, F&& visit) {
 }  // namespace
 
 /// 360 less the widest run of the circle below the threshold.
-std::optional<double> smallest_arc_deg(const std::vector<CirclePoint>& circle, double threshold) {
+std::optional<CircleArc> smallest_arc(const std::vector<CirclePoint>& circle, double threshold) {
   const std::size_t n = circle.size();
   std::optional<double> first_rise, last_fall;
-  double widest = 0.0;
+  CircleArc arc;
   bool any_above = false;
+  // The arc is what the widest gap leaves.
+  const auto gap = [&](double fall, double rise) {
+    if (rise - fall > 360.0 - (arc.to_deg - arc.from_deg)) arc = {rise, fall + 360.0};
+  };
   for (std::size_t i = 0; i < n; ++i) {
     const CirclePoint a = circle[i];
     CirclePoint b = circle[(i + 1) % n];
@@ -79,14 +83,19 @@ std::optional<double> smallest_arc_deg(const std::vector<CirclePoint>& circle, d
     if (above_a) {
       last_fall = crossing;
     } else if (last_fall) {
-      widest = std::max(widest, crossing - *last_fall);
+      gap(*last_fall, crossing);
     } else {
       first_rise = crossing;
     }
   }
   if (!any_above) return std::nullopt;
-  if (first_rise && last_fall) widest = std::max(widest, *first_rise + 360.0 - *last_fall);
-  return 360.0 - widest;
+  if (first_rise && last_fall) gap(*last_fall, *first_rise + 360.0);
+  return arc;
+}
+
+std::optional<double> smallest_arc_deg(const std::vector<CirclePoint>& circle, double threshold) {
+  const std::optional<CircleArc> arc = smallest_arc(circle, threshold);
+  return arc ? std::optional(arc->to_deg - arc->from_deg) : std::nullopt;
 }
 
 std::optional<double> farthest_from_axis_deg(const std::vector<CirclePoint>& circle, double threshold,

@@ -110,6 +110,11 @@ CountedSphere::CountedSphere(std::size_t planes, std::size_t gammas, FluxUnit un
 
 double CountedSphere::resolution_deg() const { return degrees(1.5 * gamma_step_rad_); }
 
+double CountedSphere::resolution_along_c_deg(const Direction& direction) const {
+  return degrees(std::min(kMeanPlanes * c_step_rad_, kWidestC_rad) *
+                 std::sin(type_c_angles(direction).gamma_rad));
+}
+
 CountedSphere::Window CountedSphere::window(const Direction& direction, const Kernel& kernel,
                                             double planes) const {
   const TypeCAngles at = type_c_angles(direction);

@@ -58,6 +58,8 @@ class CountedSphere {
   /// The smallest radius of a kernel that the steps of gamma allow. A kernel that spans too few planes is
   /// widened along C alone.
   double resolution_deg() const;
+  /// The radius below which the kernel of `mean_cd` is widened along C at a direction.
+  double resolution_along_c_deg(const Direction& direction) const;
 
   /// Mean intensity by the kernel 1 - (angle / radius)^2; its bias is radius^2 / 12 times the Laplacian of
   /// the intensity. O(cells within the radius). 0 where there are none.

@@ -136,7 +136,7 @@ TEST(FarFieldMetrics, SaysWhatIsNotDetermined) {
   ASSERT_TRUE(around.peak->gamma_deg);
   EXPECT_NEAR(around.peak->gamma_deg->mean, 30.0, 0.3);
   EXPECT_NEAR(around.peak->cd.mean, 1000.0, 3.0 * around.peak->cd.standard_error);
-  EXPECT_LT(around.peak->cd.standard_error, 20.0) << "a kernel along the ring is long";
+  EXPECT_LT(around.peak->cd.standard_error, 60.0) << "a kernel along the ring is long";
   const FarFieldMetrics axis = far_field_metrics(sphere(lobe(0.0, 0.0, 6.0), 1e6), {});
   ASSERT_TRUE(axis.peak);
   EXPECT_FALSE(axis.peak->c_deg) << "on the axis C means nothing";
@@ -166,7 +166,8 @@ TEST(FarFieldMetricsStatistical, IntervalsHoldTheTruth) {
     field += holds(plane(m, 90.0).field_of_maximum, plane(truth, 90.0).field_of_maximum);
   }
   // Of 60 intervals of 95 % 47 or fewer hold with a chance of 3e-6; ones of 68 % would hold 41.
-  for (const int held : {peak, axis, beam, field}) EXPECT_GT(held, 47);
+  for (const int held : {peak, axis, beam, field})
+    EXPECT_GT(held, 47) << peak << ' ' << axis << ' ' << beam << ' ' << field;
 }
 
 }  // namespace

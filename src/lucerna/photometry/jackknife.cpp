@@ -38,6 +38,21 @@ Jackknife Jackknife::from_draws(std::vector<double> values) {
   return out;
 }
 
+Jackknife Jackknife::with_error(double error) const {
+  Jackknife out(*this);
+  const auto n = static_cast<double>(replicates());
+  const double before = estimate().standard_error;
+  for (std::size_t r = 1; r < values_.size(); ++r) {
+    double& v = out.values_[r];
+    if (before > 0.0) {
+      v = all() + (v - all()) * error / before;
+    } else {
+      v = all() + (r % 2 == 0 ? 1.0 : -1.0) * error / std::sqrt(n - 1.0);
+    }
+  }
+  return out;
+}
+
 Jackknife ratio(const Jackknife& numerator, const Jackknife& denominator) {
   Jackknife out(numerator);
   for (std::size_t i = 0; i < out.values().size(); ++i) {

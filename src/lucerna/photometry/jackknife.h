@@ -43,6 +43,9 @@ class Jackknife {
   /// What a function of such draws is as a jackknife: `estimate` gives their scatter.
   static Jackknife from_draws(std::vector<double> values);
 
+  /// The same with its scatter scaled so that `estimate` gives `error`; spread evenly where there is none.
+  Jackknife with_error(double error) const;
+
   /// `f` of each value: f(x) -> double.
   template <class F>
   Jackknife map(const F& f) const {

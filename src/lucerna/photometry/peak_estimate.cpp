@@ -5,10 +5,12 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "lucerna/core/parallel.h"
+#include "lucerna/photometry/radius_choice.h"
 
 namespace lucerna {
 
@@ -29,6 +31,8 @@ constexpr std::size_t kMaxCandidates = 400;
 constexpr double kDarkShare = 0.1;
 /// Each candidate's quadratic is looked at on a stencil of this many points a side within its spacing.
 constexpr int kStencil = 5;
+/// Directions that are offered as starts of a finer search.
+constexpr std::size_t kMaxBright = 12;
 
 /// Directions in rows of gamma that cover the sphere, the poles among them.
 class Covering {
@@ -281,6 +285,52 @@ void place_peak(const Candidates& c, const LargestFigure& max, PeakEstimate& p) 
   if (!other_c && !on_axis && !(c_error > 90.0)) p.c_deg = Estimate{degrees(at.c_rad), c_error};
 }
 
+/// The kernel at the peak: `widest` or one of half its radius, a quarter, ... Structure below the cells'
+/// resolution shows in the mean about the peak, which is too noisy to be taken otherwise.
+void choose_radius(const CountedSphere& sphere, const LargestFigure& max, const Kernel& widest,
+                   FoundPeak& p) {
+  RadiusChoice choice;
+  choice.add(max.values, max.estimate.standard_error);
+  std::vector<double> shrinks{1.0};
+  const double finest = sphere.resolution_deg() / widest.radius_deg;
+  while (!choice.complete() && 0.5 * shrinks.back() >= finest) {
+    const double shrink = shrinks.emplace_back(0.5 * shrinks.back());
+    const Kernel kernel(shrink * widest.radius_deg, shrink * widest.c_radius_deg);
+    const Jackknife value = sphere.fit(p.direction, kernel).coefficients[0];
+    choice.add(value, value.estimate().standard_error);
+  }
+  const double below_deg = 0.5 * sphere.resolution_deg();
+  if (choice.size() == 1 && !choice.complete() && sphere.resolution_along_c_deg(p.direction) <= below_deg) {
+    const Jackknife value = sphere.mean_cd(p.direction, Kernel(below_deg));
+    choice.add(value, value.estimate().standard_error);
+    shrinks.push_back(0.5 * finest);
+  }
+  const RadiusChoice::Choice best = choice.best();
+  p.radius_deg = shrinks[best.index] * widest.radius_deg;
+  p.c_radius_deg = shrinks[best.index] * widest.c_radius_deg;
+  p.cd = best.estimate();
+  p.values = best.values;
+  p.noise_cd = best.noise;
+}
+
+/// The peak, then candidates in the order of their brightness, as far apart as a radius.
+std::vector<Direction> bright_directions(const Candidates& c, const FoundPeak& p) {
+  std::vector<std::size_t> order(c.cd.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(-c.cd[a].all(), a) < std::pair(-c.cd[b].all(), b);
+  });
+  std::vector<Direction> out{p.direction};
+  for (const std::size_t i : order) {
+    const Direction d = c.direction(i);
+    const bool apart = std::all_of(out.begin(), out.end(),
+                                   [&](const Direction& o) { return apart_deg(o, d) > p.radius_deg; });
+    if (apart) out.push_back(d);
+    if (out.size() == kMaxBright) break;
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<FoundPeak> peak_estimate(const CountedSphere& sphere) {
@@ -306,9 +356,9 @@ std::optional<FoundPeak> peak_estimate(const CountedSphere& sphere) {
   s = scan(sphere, kernel, &*s);
   const Candidates c = candidates(sphere, *s, kernel);
   const LargestFigure max = largest(c.cd);
-  p.cd = max.estimate;
-  p.values = max.values;
   place_peak(c, max, p);
+  p.bright = bright_directions(c, p);
+  choose_radius(sphere, max, kernel, p);
   return p;
 }
 

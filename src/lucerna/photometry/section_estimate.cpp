@@ -29,22 +29,6 @@ double error_about_value(const Jackknife& x) {
   return std::sqrt(squares * (n - 1.0) / n);
 }
 
-/// `x` with its draws moved so that `error` is its error.
-Jackknife with_error(const Jackknife& x, double error) {
-  Jackknife out(x);
-  const auto n = static_cast<double>(x.replicates());
-  const double before = x.estimate().standard_error;
-  for (std::size_t r = 1; r < out.values().size(); ++r) {
-    double& v = out.values()[r];
-    if (before > 0.0) {
-      v = x.all() + (v - x.all()) * error / before;
-    } else {
-      v = x.all() + (r % 2 == 0 ? 1.0 : -1.0) * error / std::sqrt(n - 1.0);
-    }
-  }
-  return out;
-}
-
 }  // namespace
 
 Section::Section(const CountedSphere& sphere, double c_deg, double widest_deg, double dark_cd)
@@ -120,7 +104,7 @@ std::optional<Jackknife> Section::best(const Jackknife& threshold, const Measure
     smaller.push_back({here->all(), error});
     error = std::sqrt(error * error + moved);
     if (!found || error < min) {
-      found = with_error(*here, error);
+      found = here->with_error(error);
       min = error;
     }
     if (error <= std::max(kGood_deg, kGoodShare * here->all())) break;
@@ -136,6 +120,12 @@ std::optional<Estimate> Section::arc_deg(const Jackknife& threshold) {
   });
   return angle ? std::optional(angle->estimate()) : std::nullopt;
 }
+
+std::optional<CircleArc> Section::narrowest_arc(double threshold) {
+  return smallest_arc(smoothed(0).circles[0], threshold);
+}
+
+Direction Section::direction(double angle_deg) const { return on_circle(c_deg_, angle_deg); }
 
 std::optional<Jackknife> Section::reach_deg(const Jackknife& threshold, bool up) {
   if (!(threshold.all() > 0.0)) return std::nullopt;

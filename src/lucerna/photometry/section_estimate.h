@@ -25,6 +25,11 @@ class Section {
   /// or some draw of the noise leaves no crossing.
   std::optional<Estimate> arc_deg(const Jackknife& threshold);
 
+  /// Where that arc lies, as the narrowest kernel sees the whole run.
+  std::optional<CircleArc> narrowest_arc(double threshold);
+  /// The direction of an angle of the circle.
+  Direction direction(double angle_deg) const;
+
   /// Largest angle from the axis (gamma 0, or 180 if `up`) at which the threshold is reached, to either side,
   /// in the same way; with its values without each replicate.
   std::optional<Jackknife> reach_deg(const Jackknife& threshold, bool up);

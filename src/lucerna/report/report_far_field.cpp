@@ -230,9 +230,11 @@ std::string far_field_cards(const ResultFigures& result, const std::string& d) {
               "flux that leaves over flux of the sources");
   const std::string cd = result.text(d + "/unit");
   out += peak_card(result, d);
+  const std::string fit = result.number(d + "/centre/fit_radius_deg") > 0.0
+                              ? fmt::format("a fit within {}°", result.figure(d + "/centre/fit_radius_deg"))
+                              : std::string("exactly there, by light followed backward");
   out += card("Intensity on the axis", result.figure(d + "/centre/intensity"), cd,
-              fmt::format("at γ {}°, a fit within {}°", result.figure(d + "/centre/gamma_deg"),
-                          result.figure(d + "/centre/fit_radius_deg")));
+              fmt::format("at γ {}°, {}", result.figure(d + "/centre/gamma_deg"), fit));
   out += angle_cards(result, d);
   out += card("Noise of the distribution", fmt::format("{:.2g}", 100.0 * result.number(d + "/noise")), "%",
               fmt::format("relative RMS, from the spread of 16 independent parts of the run; {:.2g} % of the "

@@ -137,7 +137,8 @@ Json design_file_json(const std::filesystem::path& folder, const std::string& ta
   ToleranceRanges ranges;
   ranges.samples = 2;
   ranges.rays = 1 << 14;
-  DesignFigures figures = design_figures(problem, result, trace(problem.project.scene, options));
+  DesignFigures figures =
+      design_figures(problem, result, trace(problem.project.scene, options), problem.project.scene);
   figures.tolerances = tolerance_sweep(problem.project.scene, ranges, 1);
   return design_json(problem, result, figures);
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "lucerna/core/error.h"
+#include "lucerna/core/parallel.h"
 #include "lucerna/ray_statistics.h"
 
 namespace lucerna {
@@ -172,14 +173,16 @@ Estimate BackwardEstimator::intensity_cd(const Direction& direction, std::uint64
   const TypeCAngles a = type_c_angles(direction);
   const DirectionCell cell{a.c_rad, a.c_rad, a.gamma_rad, a.gamma_rad};
   const CellGuide guide = guide_.for_cell(cell);
+  std::vector<double> cd(replicates, 0.0);
+  parallel_blocks(replicates, 1, [&](std::size_t r, std::size_t) {
+    sample_cell(cell, guide, samples, detail::mix_bits(seed * replicates + r),
+                [&](double, const TypeCAngles&, double part) { cd[r] += part; });
+  });
   const auto n = static_cast<double>(replicates);
   double sum = 0.0, squares = 0.0;
-  for (std::uint64_t r = 0; r < replicates; ++r) {
-    double cd_of_replicate = 0.0;
-    sample_cell(cell, guide, samples, detail::mix_bits(seed * replicates + r),
-                [&](double, const TypeCAngles&, double cd) { cd_of_replicate += cd; });
-    sum += cd_of_replicate;
-    squares += cd_of_replicate * cd_of_replicate;
+  for (const double v : cd) {
+    sum += v;
+    squares += v * v;
   }
   const double mean = sum / n;
   return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1.0))};

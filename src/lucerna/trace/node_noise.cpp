@@ -51,8 +51,8 @@ double node_noise(const TraceResult& result) {
 double peak_noise(const TraceResult& result) {
   double worst = std::nan("");
   for (std::size_t i = 0; i < result.far_fields.size(); ++i) {
-    const std::optional<PeakEstimate> peak = peak_estimate(counted_far_field(result, i));
-    if (peak) worst = std::fmax(worst, peak->cd.standard_error / peak->cd.mean);
+    const std::optional<FoundPeak> peak = peak_estimate(counted_far_field(result, i));
+    if (peak) worst = std::fmax(worst, peak->noise_cd / peak->cd.mean);
   }
   return worst;
 }

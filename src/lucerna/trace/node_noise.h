@@ -16,7 +16,7 @@ double node_noise(const BinnedIntensity& intensity);
 /// The largest of those of all far fields; NaN if there are none.
 double node_noise(const TraceResult& result);
 
-/// The largest relative standard error of the far fields' peaks (peak_estimate.h); NaN where none is known.
+/// The largest relative noise of the far fields' peaks (peak_estimate.h); NaN where none is known.
 double peak_noise(const TraceResult& result);
 
 }  // namespace lucerna

@@ -10,6 +10,7 @@
 #include "lucerna/photometry/binned_intensity.h"
 #include "lucerna/photometry/far_field_metrics.h"
 #include "lucerna/ray_file.h"
+#include "lucerna/trace/backward_intensity.h"
 #include "lucerna/trace/far_field_counts.h"
 #include "lucerna/trace/node_noise.h"
 #include "lucerna/trace/plane_extremes.h"
@@ -28,12 +29,14 @@ double relative_noise(const BinnedIntensity& intensity, const IntensityBins& bin
   return signal > 0.0 ? std::sqrt(noise / signal) : std::nan("");
 }
 
-FarFieldFigures far_field_figures(const TraceResult& result, std::size_t index) {
+FarFieldFigures far_field_figures(const TraceResult& result, std::size_t index, const Scene* scene) {
   FarFieldFigures f;
   CountedFarField field = far_field(result, index);
   f.intensity = node_intensity(field);
+  const PointIntensity exact =
+      scene != nullptr ? backward_intensity(*scene, result.max_bounces, result.seed, field) : PointIntensity();
   f.field = std::move(field);
-  f.metrics = far_field_metrics(counted_far_field(result, index), f.intensity.distribution.c_deg);
+  f.metrics = far_field_metrics(counted_far_field(result, index), f.intensity.distribution.c_deg, exact);
   f.noise = f.node_noise = std::nan("");
   if (!f.intensity.standard_error_cd.empty()) {
     const IntensityDistribution& d = f.intensity.distribution;
@@ -88,12 +91,14 @@ std::string peak_place_text(const PeakEstimate& p) {
   return "not determined";
 }
 
-TraceFigures trace_figures(const TraceResult& result) {
+namespace {
+
+TraceFigures figures_of(const TraceResult& result, const Scene* scene) {
   TraceFigures figures{ledger(result), {}, {}, {}, {}};
   // Everything that leaves is in the far field, in every direction.
   const Estimate out = out_flux(result).estimate();
   for (std::size_t i = 0; i < result.far_fields.size(); ++i)
-    figures.far_fields.push_back(far_field_figures(result, i));
+    figures.far_fields.push_back(far_field_figures(result, i, scene));
   for (std::size_t i = 0; i < result.planes.size(); ++i) {
     const PlaneImage image = illuminance(result, i);
     figures.planes.push_back(plane_figures(image, illuminance_extremes(result, i, image), std::nullopt));
@@ -106,8 +111,6 @@ TraceFigures trace_figures(const TraceResult& result) {
   for (const RayDetector& d : result.ray_detectors) figures.rays.push_back({d, result.out_rays.size(), out});
   return figures;
 }
-
-namespace {
 
 std::string plane_line(const PlaneFigures& f, std::string_view flux_unit) {
   const std::string noise =
@@ -140,6 +143,12 @@ void far_field_lines(const FarFieldFigures& f, std::vector<std::string>& lines) 
 }
 
 }  // namespace
+
+TraceFigures trace_figures(const TraceResult& result) { return figures_of(result, nullptr); }
+
+TraceFigures trace_figures(const TraceResult& result, const Scene& scene) {
+  return figures_of(result, &scene);
+}
 
 std::vector<std::string> trace_summary(const TraceFigures& figures) {
   const Ledger& l = figures.ledger;

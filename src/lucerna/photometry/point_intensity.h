@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+
+#include "lucerna/estimate.h"
+#include "lucerna/geometry.h"
+#include "lucerna/photometric_figures.h"
+
+namespace lucerna {
+
+/// Intensity in one direction, known without cells and kernels: (direction, samples, seed) to an unbiased
+/// estimate whose error falls with `samples`. Thread safe. Empty: not known.
+using PointIntensity =
+    std::function<Estimate(const Direction& direction, std::uint64_t samples, std::uint64_t seed)>;
+
+/// The intensity to a relative error of 0.2 %, or as near to it as 2^14 samples bring it.
+Estimate precise_intensity(const PointIntensity& intensity, const Direction& direction);
+
+/// A local maximum.
+struct PointPeak {
+  Direction direction;
+  Estimate cd;
+};
+
+/// The brightest direction by pattern search about the brightest of `starts`, within about `radius_deg` of
+/// them. The value is from samples that the search has not seen. At least one start. Some 100 short
+/// estimates.
+PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direction> starts,
+                          double radius_deg);
+
+/// A line of directions, by angle.
+using DirectionAt = std::function<Direction(double angle_deg)>;
+
+/// The size of an arc on which the intensity is `threshold` or more, and falls below it at both ends. The
+/// ends are looked for within `window_deg` of `near`; nothing where they are not there. Some 40 short
+/// estimates.
+std::optional<Estimate> exact_arc_deg(const PointIntensity& intensity, const DirectionAt& at,
+                                      const CircleArc& near, double window_deg, const Estimate& threshold);
+
+}  // namespace lucerna
