@@ -37,7 +37,7 @@ void report(const ReportArguments& a, Session& session) {
         fmt::format("{}: is neither a source model (.nfl) nor the folder of a trace or design", a.input));
   }
   write_report(a.input, a.output);
-  session.say(fmt::format("{} written, {:.2f} MB: opens in any browser, asks nothing of any network",
+  session.say(fmt::format("{} written, {:.2f} MB: opens in any browser, without a network",
                           a.output, 1e-6 * static_cast<double>(std::filesystem::file_size(a.output))));
 }
 
