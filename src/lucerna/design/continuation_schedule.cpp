@@ -57,10 +57,8 @@ std::vector<FitStage> stages_of_revolution(int n, int ny, int k, double smoothin
   // A ring is one number: fewer rings than parameters would leave the shape open.
   const int few = std::min(n, 4), coarse = std::min(k, std::max(k / 2, n + 6));
   Stages stages(o.rays);
-  if (o.far) {
-    stages.add({few, ny, k / 2, 1.2, two_to(14), 30, 0.03, smoothing});
-    stages.add({n, ny, coarse, 1.1, two_to(15), 30, 0.03, 0.1 * smoothing});
-  }
+  stages.add({few, ny, k / 2, 1.2, two_to(14), 30, 0.03, smoothing});
+  stages.add({n, ny, coarse, 1.1, two_to(15), 30, 0.03, 0.1 * smoothing});
   stages.add({n, ny, k, 1.0, two_to(16), 40, 0.02});
   stages.add({n, ny, k, 1.0, two_to(18), 30, 0.01, 0.0, true});
   stages.add({n, ny, k, 1.0, two_to(20), 30, 0.02});
@@ -129,23 +127,20 @@ ContinuationSchedule continuation_schedule(const DesignShape& shape, const TentB
   if (shape.is_revolution()) return ContinuationSchedule(stages_of_revolution(nx, ny, k, smoothing, o));
   // Knots halved until few are left.
   std::vector<std::array<int, 2>> knots{{nx, ny}};
-  while (o.far && std::max(knots.back()[0], knots.back()[1]) > 3) {
+  while (std::max(knots.back()[0], knots.back()[1]) > 3) {
     const int y = shape.is_trough() ? ny : (knots.back()[1] + 1) / 2;
     knots.push_back({(knots.back()[0] + 1) / 2, y});
   }
   std::reverse(knots.begin(), knots.end());
   Stages stages(o.rays);
-  if (o.far) {
-    add_search({nx, ny}, k, smoothing, stages);
-    for (const auto& [x, y] : knots) {
-      const int max = std::max(x, y);
-      if (max > 6) break;
-      stages.add({x, y, k / 4, 1.2, two_to(15), 30, 0.03, smoothing});
-    }
+  add_search({nx, ny}, k, smoothing, stages);
+  for (const auto& [x, y] : knots) {
+    if (std::max(x, y) > 6) break;
+    stages.add({x, y, k / 4, 1.2, two_to(15), 30, 0.03, smoothing});
   }
   for (const auto& [x, y] : knots) {
     const int max = std::max(x, y);
-    if (o.far && max <= 3 && knots.size() > 1) continue;
+    if (max <= 3 && knots.size() > 1) continue;
     const bool own = x == nx && y == ny;
     // Twice as many bins across as knots, and more: three bins for each parameter.
     if (max <= 6) stages.add({x, y, k / 3, 1.0, two_to(15), 30, 0.02, own ? 0.0 : 0.1 * smoothing});
@@ -162,13 +157,8 @@ ContinuationSchedule continuation_schedule(const DesignShape& shape, const TentB
   };
   for (int g = 1; g <= o.growth; ++g) fine(g, two_to(18), 0.03);
   fine(o.growth, two_to(20), 0.01);
-  // Many knots take up the noise of a million rays (400 parameters in 48 x 48 bins a sixth of its square),
-  // and a start that is near gets there at once.
-  if (many) {
-    fine(o.growth, two_to(22), 0.01);
-  } else if (!o.far) {
-    fine(o.growth, two_to(21), 0.01);
-  }
+  // Many knots take up the noise of a million rays (400 parameters in 48 x 48 bins a sixth of its square).
+  if (many) fine(o.growth, two_to(22), 0.01);
   return ContinuationSchedule(stages.take());
 }
 

@@ -65,8 +65,6 @@ class ContinuationSchedule {
 struct ScheduleOptions {
   /// Rays of the last stage at most.
   std::uint64_t rays = std::uint64_t{1} << 22;
-  /// Begins with few knots in coarse bins; else the start is known to be near.
-  bool far = true;
   /// How often the knots may be doubled beyond the shape's own where the light asks for it.
   int growth = 0;
 };

@@ -38,8 +38,7 @@ std::vector<ScheduleCase> make_schedules() {
       for (const int growth : {0, 1, 2}) {
         cases.push_back({fmt::format("{} x {} intervals, 2^{} rays, growth {}", shape.intervals_x(),
                                      shape.intervals_y(), rays, growth),
-                         continuation_schedule(shape, bins, {std::uint64_t{1} << rays, true, growth}),
-                         shape});
+                         continuation_schedule(shape, bins, {std::uint64_t{1} << rays, growth}), shape});
       }
     }
   }

@@ -65,7 +65,7 @@ void search_free_form(const SearchRun& run, const FitProblem& fit, DesignResult&
 void search_coarse_to_fine(const SearchRun& run, FitProblem& fit_data, DesignResult& result) {
   const DesignProblem& problem = run.problem;
   const ContinuationSchedule schedule =
-      continuation_schedule(problem.start, fit_data.bins, {run.options.max_rays, true, problem.growth});
+      continuation_schedule(problem.start, fit_data.bins, {run.options.max_rays, problem.growth});
   FitState state;
   if (!run.options.checkpoint.empty()) state = parse_checkpoint(run.options.checkpoint, run.key);
   Stop stop(run, state.total_rays, result);
