@@ -140,7 +140,8 @@ void add_design(CLI::App& app, Session& session, int& exit_code) {
   command.required("PROJECT", a.project, "Project file with [target] and [design]");
   command.required("-o,--output", a.output, "Folder for the results");
   command.option("--time", a.time, "Seconds after which to have stopped with the best so far");
-  command.option("--rays", a.rays, "Rays of the finest evaluations (default 2^23); four times as many validate");
+  command.option("--rays", a.rays,
+                 "Rays of the finest evaluations (default 2^23); four times as many validate");
   command.option("--seed", a.seed, "Seed of the random numbers");
   command.option("--device", a.device, "cpu, cuda or auto");
   command.option("--report", a.report, "Also write the report as one HTML file");
