@@ -71,6 +71,57 @@ void expect_same(const RestartState& a, const RestartState& b) {
   EXPECT_EQ(bits_of({a.incumbent_cost}), bits_of({b.incumbent_cost}));
 }
 
+FreeFormMark any_candidate(Rng& rng) {
+  return {static_cast<int>(1e9 * rng.uniform()),
+          static_cast<int>(kFreeFormLevels * rng.uniform()),
+          {any_double(rng), any_double(rng)},
+          any_double(rng),
+          any_double(rng),
+          1 + static_cast<int>(100 * rng.uniform()),
+          1 + static_cast<int>(100 * rng.uniform()),
+          any_doubles(rng)};
+}
+
+void expect_same(const FreeFormMark& a, const FreeFormMark& b) {
+  EXPECT_EQ(a.candidate, b.candidate);
+  EXPECT_EQ(a.level, b.level);
+  EXPECT_EQ(bits_of({a.transport.sign, a.transport.vertex_distance_mm, a.cost, a.over_noise}),
+            bits_of({b.transport.sign, b.transport.vertex_distance_mm, b.cost, b.over_noise}));
+  EXPECT_EQ(a.intervals_x, b.intervals_x);
+  EXPECT_EQ(a.intervals_y, b.intervals_y);
+  EXPECT_EQ(bits_of(a.parameters), bits_of(b.parameters));
+}
+
+TEST(Checkpoint, AFreeFormStateSurvivesToTheBit) {
+  Rng rng(12, 0);
+  const auto count = [&] { return static_cast<int>(1e9 * rng.uniform()); };
+  for (int k = 0; k < 50; ++k) {
+    FreeFormState s;
+    s.now = any_candidate(rng);
+    s.step = count();
+    s.refused = count();
+    s.lambda = any_double(rng);
+    s.costs = any_doubles(rng);
+    s.begun = count();
+    s.failed = count();
+    s.evaluations = count();
+    s.total_rays = static_cast<std::uint64_t>(rng.uniform() * 0x1p63);
+    for (int i = 0; i < k % 5; ++i) s.done.push_back(any_candidate(rng));
+    const FreeFormState t = parse_search_checkpoint(checkpoint_text(s, "key"), "key");
+    expect_same(t.now, s.now);
+    EXPECT_EQ(t.step, s.step);
+    EXPECT_EQ(t.refused, s.refused);
+    EXPECT_EQ(bits_of({t.lambda}), bits_of({s.lambda}));
+    EXPECT_EQ(bits_of(t.costs), bits_of(s.costs));
+    EXPECT_EQ(t.begun, s.begun);
+    EXPECT_EQ(t.failed, s.failed);
+    EXPECT_EQ(t.evaluations, s.evaluations);
+    EXPECT_EQ(t.total_rays, s.total_rays);
+    ASSERT_EQ(t.done.size(), s.done.size());
+    for (std::size_t i = 0; i < s.done.size(); ++i) expect_same(t.done[i], s.done[i]);
+  }
+}
+
 /// All that a step depends on comes back to the bit.
 TEST(Checkpoint, AStateSurvivesToTheBit) {
   Rng rng(11, 0);
