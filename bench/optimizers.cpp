@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each way to look for a mirror reaches in the same processor time, on targets of the trade:
+// What each way to look for a mirror reaches in the same processor time, on targets of the trade; the
+// optimizers of a project through design(), searches alone by themselves:
 //   bench_optimizers PHOTOMETRY_DIR [--seconds S] [--source led|filament|FILE] [case ...]
 // Each row: relative RMS in 48 x 48 tent bins (48 rings) and efficiency, re-traced with 1 M other rays.
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 
 #include "lucerna/core/file.h"
 #include "lucerna/core/parallel.h"
+#include "lucerna/design/continuation_schedule.h"
 #include "lucerna/design/design.h"
 #include "lucerna/design/optimizer.h"
 #include "lucerna/design/starts.h"
@@ -50,14 +52,24 @@ double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC
 
 struct OutOfTime {};
 
-/// One way's shape after `seconds` of processor time.
-using Way = std::function<DesignShape(FitProblem, const DesignShape&, const std::vector<FitStage>&, double)>;
+constexpr double kNoLimit = 1e9;
 
-DesignShape by_search(GlobalMethod method, FitProblem problem, const DesignShape& shape,
-                      const std::vector<FitStage>& stages, double seconds) {
+/// What a way begins with.
+struct Task {
+  const DesignProblem& problem;
+  FitProblem fit;
+  double seconds;
+};
+
+/// One way's shape after the task's seconds of processor time.
+using Way = std::function<DesignShape(const Task&)>;
+
+DesignShape by_search(GlobalMethod method, const Task& task) {
   const double from = cpu_seconds();
+  const FitProblem& problem = task.fit;
   // As the thesis would: about the given mirror, all knots that the search can take, to the end of the time.
-  const SearchSpace space = search_space(shape, stages);
+  const DesignShape& given = task.problem.start;
+  const SearchSpace space = search_space(given, continuation_schedule(given, problem.bins, {}));
   const TentBins bins = rebinned(problem.bins, 1.0, problem.bins.count() / 3);
   const Eigen::VectorXd target = problem.target(bins);
   constexpr std::uint64_t kRays = std::uint64_t{1} << 15;
@@ -67,7 +79,7 @@ DesignShape by_search(GlobalMethod method, FitProblem problem, const DesignShape
   try {
     global_search(method, space.box, {problem.seed, 1000000},
                   [&](const std::vector<Eigen::VectorXd>& points) {
-                    if (cpu_seconds() - from > seconds) throw OutOfTime();
+                    if (cpu_seconds() - from > task.seconds) throw OutOfTime();
                     std::vector<double> costs(points.size());
                     parallel_blocks(points.size(), 1, [&](std::size_t i, std::size_t) {
                       costs[i] = fit_cost(problem, space.shape.with(points[i]), bins, target, kRays);
@@ -84,39 +96,42 @@ DesignShape by_search(GlobalMethod method, FitProblem problem, const DesignShape
   return space.shape.with(best);
 }
 
-DesignShape by_fit(const char* name, FitProblem problem, const DesignShape& shape,
-                   const std::vector<FitStage>& stages, double seconds) {
-  const double from = cpu_seconds();
-  std::vector<double> costs;
-  prepare_starts(problem, shape, stages, optimizer(name), costs,
-                 [&](const FitRecord&, const DesignShape&) { return cpu_seconds() - from < 0.5 * seconds; });
-  Fit fit(problem, stages, shape);
-  while (!fit.done() && cpu_seconds() - from < seconds) fit.step();
-  return fit.best();
+/// Asks to stop when a design has had its processor seconds.
+class ProcessorTime final : public Progress {
+ public:
+  explicit ProcessorTime(double seconds) : end_(cpu_seconds() + seconds) {}
+  void update(std::string_view, std::uint64_t, std::uint64_t) override {}
+  bool stop_requested() const override { return cpu_seconds() > end_; }
+
+ private:
+  double end_;
+};
+
+/// What a user gets who names this optimizer.
+DesignShape by_design(const char* name, DesignProblem problem, double seconds) {
+  problem.optimizer = optimizer(name);
+  DesignOptions options;
+  options.time_s = kNoLimit;
+  options.judge_rays = std::uint64_t{1} << 18;  // judged below
+  ProcessorTime time(seconds);
+  return design(problem, options, time).shape;
 }
 
 std::vector<std::pair<std::string, Way>> ways() {
   std::vector<std::pair<std::string, Way>> out;
-  out.emplace_back("given mirror", [](const FitProblem&, const DesignShape& s, const std::vector<FitStage>&,
-                                      double) { return s; });
-  out.emplace_back("zero-etendue",
-                   [](const FitProblem& p, const DesignShape& s, const std::vector<FitStage>&, double) {
-                     for (const FitStart& start : fit_starts(p, s)) {
-                       if (start.entry == FitEntry::own_knots)
-                         return start.shape;  // the cheapest of a point source's
-                     }
-                     return s;
-                   });
+  out.emplace_back("given mirror", [](const Task& t) { return t.problem.start; });
+  out.emplace_back("zero-etendue", [](const Task& t) {
+    for (const FitStart& start : fit_starts(t.fit, t.problem.start)) {
+      if (start.entry == FitEntry::own_knots) return start.shape;  // the cheapest of a point source's
+    }
+    return t.problem.start;
+  });
   for (const GlobalMethod m :
        {GlobalMethod::tree, GlobalMethod::annealing, GlobalMethod::direct, GlobalMethod::cma_es}) {
-    out.emplace_back(fmt::format("{} alone", to_string(m)),
-                     [m](const FitProblem& p, const DesignShape& s, const std::vector<FitStage>& stages,
-                         double t) { return by_search(m, p, s, stages, t); });
+    out.emplace_back(fmt::format("{} alone", to_string(m)), [m](const Task& t) { return by_search(m, t); });
   }
   for (const char* name : {"least-squares", "tree", "cma-es", "auto"}) {
-    out.emplace_back(name,
-                     [name](const FitProblem& p, const DesignShape& s, const std::vector<FitStage>& stages,
-                            double t) { return by_fit(name, p, s, stages, t); });
+    out.emplace_back(name, [name](const Task& t) { return by_design(name, t.problem, t.seconds); });
   }
   return out;
 }
@@ -133,10 +148,8 @@ void run(const Case& c, const std::string& source, double seconds, const std::fi
   for (const auto& [name, way] : ways()) {
     DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
     const FitProblem fit = fit_problem(problem, options, rays);
-    const std::vector<FitStage> stages =
-        ladder(problem.start, fit.bins, {options.max_rays, true, problem.growth});
     const double from = cpu_seconds();
-    const DesignShape shape = way(fit, problem.start, stages, seconds);
+    const DesignShape shape = way({problem, fit, seconds});
     const double took = cpu_seconds() - from;
     EvaluationOptions plain;
     plain.rays = 1 << 20;

@@ -8,7 +8,7 @@ build=${1:-build/cuda}
 cmake --preset release -B "$build" -DLUCERNA_CUDA=ON
 build=$(cd "$build" && pwd)
 start=$(date +%s)
-cmake --build "$build" --target trace_tests design_tests bench_gpu bench_design lucerna_cli
+cmake --build "$build" --target trace_tests design_tests bench_gpu bench_real_targets lucerna_cli
 echo "build: $(($(date +%s) - start)) s on $(nproc) cores"
 
 echo "== device"
@@ -38,8 +38,8 @@ echo "== bench_gpu"
 "$build/bench/bench_gpu" "${RAYS_M:-1000}"
 
 echo "== a design with 400 coefficients, on the CPU and on the device"
-"$build/bench/bench_design" n400 -n1
-"$build/bench/bench_design" n400 -n1 --device cuda
+"$build/bench/bench_real_targets" hidden n400 --targets 1 --device cpu
+"$build/bench/bench_real_targets" hidden n400 --targets 1 --device cuda
 
 echo "== the same through the program"
 work=$(mktemp -d)

@@ -65,6 +65,7 @@ const std::map<std::string, std::string> kPublicHeaders{
     {"trace.h", "trace"},
     {"trace_figures.h", "trace"},
     {"design.h", "design"},
+    {"comparison.h", "report"},
     {"report.h", "report"},
     {"lucerna.h", "cli"},  // all of them
 };

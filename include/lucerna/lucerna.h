@@ -4,6 +4,7 @@
 /// All of the library. Each header can be included by itself.
 #include "lucerna/bounding_surface.h"
 #include "lucerna/cad.h"
+#include "lucerna/comparison.h"
 #include "lucerna/design.h"
 #include "lucerna/detectors.h"
 #include "lucerna/error.h"

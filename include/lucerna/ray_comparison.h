@@ -142,5 +142,35 @@ RaySetComparison compare_view_counts(const ViewCounts& reference, const ViewCoun
 RaySetComparison compare_ray_sets(const RayBlock& reference, const RayBlock& test,
                                   const RayBlock* training = nullptr);
 
+/// Illuminance where the lines cross the focus plane, in square cells, all of them however far out.
+struct PlaneDifference {
+  /// Side of the cells.
+  double cell_um = 0.0;
+  /// Sum of |q - p| over all cells, with shares p of the reference's and q of the test's flux: 0 equal, 2
+  /// nothing in common.
+  double l1 = 0.0;
+  /// The same for all rays of both, dealt out anew at random to two sets of these sizes: what counting noise
+  /// alone gives.
+  double floor = 0.0;
+};
+
+/// Normalised cross-correlation of two pictures (Pearson's coefficient of their cells' shares): 1 where they
+/// have the same pattern, whatever its scale.
+struct CrossCorrelation {
+  /// The coefficient.
+  double value = 0.0;
+  /// What counting noise leaves of 1 between two sets of the same source.
+  double noise_limit = 1.0;
+};
+
+/// Of the near plane (32 x 32), a middle plane (64 x 64: as far beyond the near plane as three radii of the
+/// source, at least 3 mm) and the far field (48 x 96): the set of measures of Rotscholl et al., Opt. Express
+/// 24, A1597 (2016). Absent where the reference has nothing to see there.
+struct FieldCorrelations {
+  /// By plane.
+  std::optional<CrossCorrelation> near, mid, far;
+  /// z of the middle plane in the view frame.
+  double mid_plane_mm = 0.0;
+};
 }  // namespace lucerna
 #pragma GCC visibility pop

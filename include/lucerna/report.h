@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lucerna/progress.h"
 #include "lucerna/project.h"
 #include "lucerna/trace.h"
 
@@ -20,11 +21,16 @@ namespace lucerna {
 std::vector<std::string> write_trace(const std::filesystem::path& folder, const Project& project,
                                      const TraceResult& result, std::vector<std::string>* warnings = nullptr);
 
-/// Writes the report of a folder that `write_trace`, `lucerna trace` or `lucerna design` has filled, as one
-/// self-contained HTML file: figures with their errors, energy balance, diagrams, a 3D view; for a design
-/// also target against result, limits, convergence. Throws InputError with file, place, found and expected
-/// where the folder is neither. Where its project cannot be read any more the report says so. Cost: seconds.
-void write_report(const std::filesystem::path& folder, const std::filesystem::path& html);
+/// Writes the report of `input` as one self-contained HTML file. Of a folder that `write_trace`, `lucerna
+/// trace` or `lucerna design` has filled: figures with their errors, energy balance, diagrams, a 3D view; for
+/// a design also target against result, limits, convergence; where its project cannot be read any more the
+/// report says so. Of a source model (.nfl): its figures, its luminance from any direction, and, with
+/// `ray_files`, how far it is from their rays (4 M of them at most). Progress phase "report: rays". Cost:
+/// seconds. Throws InputError with file, place, found and expected where `input` is none of these, and
+/// UsageError for `ray_files` with a folder.
+void write_report(const std::filesystem::path& input, const std::filesystem::path& html,
+                  const std::vector<std::filesystem::path>& ray_files = {},
+                  Progress& progress = no_progress());
 
 }  // namespace lucerna
 #pragma GCC visibility pop

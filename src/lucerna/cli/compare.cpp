@@ -5,39 +5,16 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "lucerna/cli/arguments.h"
 #include "lucerna/cli/commands.h"
 #include "lucerna/cli/compare_parts.h"
-#include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
-#include "lucerna/design/box_error.h"
-#include "lucerna/intensity_comparison.h"
 #include "lucerna/report/error_json.h"
-#include "lucerna/report/svg_polar.h"
-#include "lucerna/report/trace_folder.h"
 #include "lucerna/report/trace_json.h"
 
 namespace lucerna::cli {
 
-void write_comparison(const CompareArguments& a, const Json& json, Session& session) {
-  session.print_json(json);
-  if (a.output.empty()) return;
-  write_file(std::filesystem::path(a.output) / "result.json",
-             json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-}
-
 namespace {
-
-/// A light distribution to compare, with the standard errors of its values where they are known.
-FarFieldTable read_distribution(const std::string& path, const CompareArguments& a, Session& session) {
-  if (!std::filesystem::is_directory(path)) {
-    session.add_input(path);
-    return {path, read_photometric_file(path, a.photometric.read_options(session.strict)).distribution, {}};
-  }
-  session.add_input(std::filesystem::path(path) / "result.json");
-  TraceFolder folder = read_trace_folder(path);
-  if (folder.far_fields.empty()) throw InputError(fmt::format("{}: the trace has no far field", path));
-  return std::move(folder.far_fields.front());
-}
 
 void say_comparison(const DesignError& boxes, const DistributionComparison& c, Session& session) {
   session.say(fmt::format(
@@ -67,19 +44,9 @@ void say_comparison(const DesignError& boxes, const DistributionComparison& c, S
   }
 }
 
-void compare_photometry(const CompareArguments& a, Session& session) {
-  const FarFieldTable reference =
-      session.timed("read", [&] { return read_distribution(a.reference, a, session); });
-  const FarFieldTable test = session.timed("read", [&] { return read_distribution(a.test, a, session); });
-  const DistributionComparison c = session.timed("compare", [&] {
-    return compare_distributions(
-        reference.distribution, test.distribution,
-        {.reference_error_cd = reference.standard_error, .test_error_cd = test.standard_error});
-  });
-  const DesignError boxes = session.timed("boxes", [&] {
-    return box_error(reference.distribution, test.distribution, TargetMode::shape, test.standard_error);
-  });
-  Json json = session.json_head(std::nullopt);
+Json light_json(const LightFileComparison& light) {
+  const DistributionComparison& c = light.distributions;
+  Json json;
   json["relative_rms"] = estimate_json(c.rms());
   json["bergen_fit"] = estimate_json(c.bergen());
   json["bergen_fit_unweighted"] = estimate_json(c.bergen_unweighted());
@@ -89,42 +56,57 @@ void compare_photometry(const CompareArguments& a, Session& session) {
   json["overlap"] = estimate_json(c.overlapping());
   json["floor"] = c.noise_floor;
   json["excess"] = c.excess;
-  json["error"] = error_json(boxes);
-  json["outside"] = outside_json(boxes);
-  json["worst_cell"] = estimate_json(boxes.worst_cell);
+  json["error"] = error_json(light.boxes);
+  json["outside"] = outside_json(light.boxes);
+  json["worst_cell"] = estimate_json(light.boxes.worst_cell);
   if (c.alignment) {
     json["alignment"] = {{"tilt_deg", c.alignment->tilt_deg},
                          {"tilt_toward_c_deg", c.alignment->tilt_toward_c_deg},
                          {"turn_deg", c.alignment->turn_deg},
                          {"relative_rms", c.alignment->relative_rms}};
   }
-  if (!a.output.empty()) {
-    write_file(std::filesystem::path(a.output) / "polar.svg",
-               polar_svg(test.distribution,
-                         {.title = std::filesystem::path(a.test).filename().string(),
-                          .reference = &reference.distribution,
-                          .reference_name = std::filesystem::path(a.reference).filename().string()}));
-  }
-  write_comparison(a, json, session);
-  session.say(fmt::format("{} against {}", a.test, a.reference));
-  say_comparison(boxes, c, session);
+  return json;
 }
 
-void compare(const CompareArguments& a, Session& session) {
+/// Notes a file of the comparison; of a trace's folder what it is read from.
+void add_input(const std::filesystem::path& path, Session& session) {
+  session.add_input(std::filesystem::is_directory(path) ? path / "result.json" : path);
+}
+
+FileComparisonOptions options_of(const CompareArguments& a, const Session& session) {
+  FileComparisonOptions options;
+  options.rays = parse_count(a.rays);
+  options.seed = parse_count(a.seed);
+  options.cells_um = parse_numbers(a.cells_um);
+  options.photometric = a.photometric.read_options(session.strict);
+  options.pictures = a.output;
+  return options;
+}
+
+void print_json(const CompareArguments& a, const FileComparison& found, Session& session) {
+  Json json = session.json_head(found.rays ? std::optional(parse_count(a.seed)) : std::nullopt);
+  json.update(found.rays ? rays_json(*found.rays) : light_json(*found.light));
+  session.print_json(json);
+  if (a.output.empty()) return;
+  write_file(std::filesystem::path(a.output) / "result.json",
+             json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+void compare_files(const CompareArguments& a, Session& session) {
   session.start();
-  const auto is_distribution = [](const std::string& path) {
-    return std::filesystem::is_directory(path) || is_photometric_file(path);
-  };
-  const bool photometric = is_distribution(a.reference);
-  if (photometric != is_distribution(a.test)) {
-    throw InputError(fmt::format("{}: a photometric file and a ray file or model cannot be compared",
-                                 photometric ? a.reference : a.test));
-  }
+  const FileComparisonOptions options = options_of(a, session);
   if (!a.output.empty()) prepare_folder(a.output, session.force);
-  if (photometric) {
-    compare_photometry(a, session);
+  const FileComparison found =
+      session.timed("compare", [&] { return compare(a.reference, a.test, options, session.progress()); });
+  for (const std::string& warning : found.warnings) session.note(warning);
+  add_input(a.reference, session);
+  add_input(a.test, session);
+  print_json(a, found, session);
+  if (found.rays) {
+    say_rays(a, *found.rays, session);
   } else {
-    compare_rays(a, session);
+    session.say(fmt::format("{} against {}", a.test, a.reference));
+    say_comparison(found.light->boxes, found.light->distributions, session);
   }
 }
 
@@ -146,7 +128,7 @@ void add_compare(CLI::App& app, Session& session, int&) {
   session.add_json(command);
   session.add_strict(command);
   session.add_common(command);
-  command.on_run([arguments, &session] { compare(*arguments, session); });
+  command.on_run([arguments, &session] { compare_files(*arguments, session); });
 }
 
 }  // namespace lucerna::cli

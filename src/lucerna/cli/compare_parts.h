@@ -5,6 +5,7 @@
 
 #include "lucerna/cli/photometric_arguments.h"
 #include "lucerna/cli/session.h"
+#include "lucerna/comparison.h"
 
 namespace lucerna::cli {
 
@@ -13,10 +14,8 @@ struct CompareArguments {
   PhotometricArguments photometric;
 };
 
-/// Two ray sets or models: the five views, focus-plane illuminance, correlations, étendue, pictures.
-void compare_rays(const CompareArguments& a, Session& session);
-
-/// Prints `json` and, with a folder asked for, writes it there as result.json.
-void write_comparison(const CompareArguments& a, const Json& json, Session& session);
+/// Of two ray sets or models, the result's keys; and what is said of it.
+Json rays_json(const RayFileComparison& r);
+void say_rays(const CompareArguments& a, const RayFileComparison& r, Session& session);
 
 }  // namespace lucerna::cli

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "lucerna/cli/arguments.h"
 #include "lucerna/cli/commands.h"
-#include "lucerna/cli/model_report.h"
 #include "lucerna/core/error.h"
+#include "lucerna/report/write_model_report.h"
 #include "lucerna/source_model.h"
 
 namespace lucerna::cli {
@@ -63,7 +64,11 @@ void run_compress(const CompressArguments& a, Session& session) {
       "{}: {} rays to {} bytes ({:.3g} times smaller), method {}, {} layer(s), {} leaves, {:g} {}; {:.3g} s",
       a.output, rays, bytes, ratio, model->method(), model->layers(), model->leaves(), model->flux(),
       symbol(model->flux_unit()), session.seconds("compress")));
-  if (!a.report.empty()) write_model_report(*model, a.output, a.inputs, std::move(json), a.report, session);
+  if (a.report.empty()) return;
+  write_model_report(*model, a.output, {a.inputs.begin(), a.inputs.end()}, std::move(json), a.report,
+                     session.progress());
+  session.say(fmt::format("  report: {}, {:.2f} MB", a.report,
+                          1e-6 * static_cast<double>(std::filesystem::file_size(a.report))));
 }
 
 }  // namespace

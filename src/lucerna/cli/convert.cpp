@@ -94,7 +94,8 @@ void add_convert(CLI::App& app, Session& session, int&) {
   command.required("OUT", a.output, "The file to write");
   command.option("--from", a.from, "Read IN as this ray-file format, whatever its content says");
   command.option("--to", a.to, "Format of OUT (default: by its ending)");
-  command.option("--rays", a.rays, "Keep so many rays, spread over the file; their flux stays that of all");
+  command.option("--rays", a.rays,
+                 "Keep this number of rays, spread over the file; their flux stays that of all");
   command.option("--seed", a.seed, "Seed of that choice");
   command.option("--flux", a.flux, "Total flux to state, in the rays' unit");
   command.option("--length-unit", a.length_unit, "Unit of lengths in OUT, where its format has a choice");

@@ -76,7 +76,7 @@ DesignRun run(const DesignProblem& problem, const DesignOptions& options, Design
   session.add_seconds("figures", made.figures_s);
   if (made.figures.tolerances) session.add_seconds("tolerances", made.tolerances_s);
   if (made.trace.end == NoiseEnd::time) {
-    session.note(fmt::format("the trace of the result has {:.2g} % noise, {:.2g} % wanted: {}",
+    session.note(fmt::format("the trace of the result has {:.2g} % noise, {:.2g} % requested: {}",
                              100.0 * made.trace.noise, 100.0 * made.wanted_noise, to_string(made.trace.end)));
   }
   return made;
@@ -140,7 +140,8 @@ void add_design(CLI::App& app, Session& session, int& exit_code) {
   command.required("PROJECT", a.project, "Project file with [target] and [design]");
   command.required("-o,--output", a.output, "Folder for the results");
   command.option("--time", a.time, "Seconds after which to have stopped with the best so far");
-  command.option("--rays", a.rays, "Rays of the finest evaluations (default 2^23); four times as many judge");
+  command.option("--rays", a.rays,
+                 "Rays of the finest evaluations (default 2^23); four times as many validate");
   command.option("--seed", a.seed, "Seed of the random numbers");
   command.option("--device", a.device, "cpu, cuda or auto");
   command.option("--report", a.report, "Also write the report as one HTML file");

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/report.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
 
 #include "lucerna/cli/commands.h"
-#include "lucerna/cli/describe.h"
-#include "lucerna/cli/model_report.h"
 #include "lucerna/core/error.h"
+#include "lucerna/report/run_json.h"
+#include "lucerna/source_model.h"
 
 namespace lucerna::cli {
 
@@ -19,26 +17,14 @@ struct ReportArguments {
   std::vector<std::string> rays;
 };
 
-void model_report(const ReportArguments& a, Session& session) {
-  const auto model = session.timed("read", [&] { return load_source_model(a.input); });
-  session.add_input(a.input);
-  for (const std::string& path : a.rays) session.add_input(path);
-  Json json = session.json_head(std::nullopt);
-  json.update(describe_model(a.input).json);
-  write_model_report(*model, a.input, a.rays, std::move(json), a.output, session);
-}
-
 void report(const ReportArguments& a, Session& session) {
   session.start();
-  if (is_source_model(a.input)) return model_report(a, session);
-  if (!a.rays.empty()) throw UsageError(fmt::format("--rays goes with a model, and {} is none", a.input));
-  if (std::filesystem::exists(a.input) && !std::filesystem::is_directory(a.input)) {
-    throw InputError(
-        fmt::format("{}: is neither a source model (.nfl) nor the folder of a trace or design", a.input));
+  if (!a.rays.empty() && !is_source_model(a.input)) {
+    throw UsageError(fmt::format("--rays goes with a model, and {} is none", a.input));
   }
-  write_report(a.input, a.output);
-  session.say(fmt::format("{} written, {:.2f} MB: opens in any browser, asks nothing of any network",
-                          a.output, 1e-6 * static_cast<double>(std::filesystem::file_size(a.output))));
+  write_report(a.input, a.output, {a.rays.begin(), a.rays.end()}, session.record(), session.progress());
+  session.say(fmt::format("{} written, {:.2f} MB: opens in any browser, without a network", a.output,
+                          1e-6 * static_cast<double>(std::filesystem::file_size(a.output))));
 }
 
 }  // namespace

@@ -72,6 +72,8 @@ class Session {
   /// Notes the words of the command line, for the record.
   void set_command(int argc, char** argv);
 
+  /// What the run was made of, so far.
+  const RunRecord& record() const { return run_; }
   /// Notes a file that the result depends on.
   void add_input(const std::filesystem::path& path) { run_.inputs.push_back(path); }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "lucerna/core/error.h"
+#include "lucerna/design/fit.h"
 #include "lucerna/design/perturbed.h"
 
 namespace lucerna {
@@ -14,14 +15,6 @@ namespace {
 constexpr std::uint64_t kMaxApproachRays = std::uint64_t{1} << 23, kMaxEvaluations = 64;
 /// Random streams of perturbed starts begin here.
 constexpr std::uint64_t kStream = std::uint64_t{1} << 34;
-
-/// The stages up to the gate, where an approach ends.
-std::vector<FitStage> stages_to_gate(const DesignShape& shape, const TentBins& bins, std::uint64_t max_rays) {
-  std::vector<FitStage> stages = ladder(shape, bins, {.rays = max_rays});
-  const auto gate = std::find_if(stages.begin(), stages.end(), [](const FitStage& s) { return s.gate; });
-  if (gate != stages.end()) stages.erase(gate + 1, stages.end());
-  return stages;
-}
 
 }  // namespace
 
@@ -39,11 +32,13 @@ Approached approach(const FitProblem& problem, const DesignShape& given, int res
   }
   FitProblem coarse = problem;
   coarse.starts.clear();
-  if (coarse.flux_weight > 0.0) coarse.flux_weight = kLadderFluxWeight;
-  Fit fit(coarse, stages_to_gate(start, problem.bins, max_rays), start);
+  if (coarse.flux_weight > 0.0) coarse.flux_weight = kFitFluxWeight;
+  const ContinuationSchedule schedule =
+      continuation_schedule(start, problem.bins, {.rays = max_rays}).up_to_screening();
+  Fit fit(coarse, schedule, start);
   const std::uint64_t enough = std::min(kMaxApproachRays, kMaxEvaluations * max_rays);
   while (!fit.done() && fit.state().total_rays < enough) fit.step();
-  // The cap on rays may end the ladder before it has come to the mirror's own knots.
+  // The cap on rays may end the fit before it has come to the mirror's own knots.
   return {fit.best().refined(given.intervals_x(), given.intervals_y()), fit.state().evaluations,
           fit.state().total_rays};
 }

@@ -83,7 +83,7 @@ TEST(Approach, DependsOnItsArgumentsAlone) {
   }
 }
 
-// With the fewest rays, which end the ladder soonest.
+// With the fewest rays, which end the fit soonest.
 TEST(Approach, HasTheGivenKnots) {
   Hidden hidden(perturbed(square(2), 1.5, Rng(4, 0)));
   const DesignShape given = DesignShape::bspline(15, Aperture::rectangle(100, 100), 20, 14);

@@ -164,18 +164,19 @@ FreeFormState parse_search_checkpoint(const std::string& text, const std::string
 }
 
 std::string checkpoint_text(const FitState& s, const std::string& key) {
+  const RestartState& r = s.restart;
   std::string text = fmt::format(
       "{}\nkey {}\nintervals_x {}\nintervals_y {}\nstage {}\nstep {}\nlambda {}\nevaluations {}\n"
       "total_rays {}\nover_noise {}\nstarts {}\nfailed_restarts {}\nrefused {}\nsearch_restarts {}\n"
       "search_restarts_left {}\ntwin {}\nincumbent_cost {}\n",
       kMagic, key, s.intervals_x, s.intervals_y, s.stage, s.step, s.lambda, s.evaluations, s.total_rays,
-      s.over_noise, s.starts, s.failed_restarts, s.refused, s.search_restarts, s.search_restarts_left,
-      s.twin ? 1 : 0, s.incumbent_cost);
+      s.over_noise, r.begun, r.failed, s.refused, r.searches, r.searches_left, r.conjugate ? 1 : 0,
+      r.incumbent_cost);
   put(text, "parameters", s.parameters);
   put(text, "costs", s.costs);
-  put(text, "gate", s.gate);
-  put(text, "best", s.best);
-  put(text, "found", s.found);
+  put(text, "gate", r.screened);
+  put(text, "best", r.best);
+  put(text, "found", r.found);
   put(text, "search_costs", s.search_costs);
   return text + "end\n";
 }
@@ -192,18 +193,18 @@ FitState parse_checkpoint(const std::string& text, const std::string& key) {
   s.evaluations = in.count("evaluations");
   s.total_rays = in.number<std::uint64_t>("total_rays");
   s.over_noise = in.number<double>("over_noise");
-  s.starts = in.count("starts");
-  s.failed_restarts = in.count("failed_restarts");
+  s.restart.begun = in.count("starts");
+  s.restart.failed = in.count("failed_restarts");
   s.refused = in.count("refused");
-  s.search_restarts = in.count("search_restarts");
-  s.search_restarts_left = in.count("search_restarts_left");
-  s.twin = in.count("twin", 0, 1) != 0;
-  s.incumbent_cost = in.number<double>("incumbent_cost");
+  s.restart.searches = in.count("search_restarts");
+  s.restart.searches_left = in.count("search_restarts_left");
+  s.restart.conjugate = in.count("twin", 0, 1) != 0;
+  s.restart.incumbent_cost = in.number<double>("incumbent_cost");
   s.parameters = in.numbers("parameters");
   s.costs = in.numbers("costs");
-  s.gate = in.mark("gate");
-  s.best = in.mark("best");
-  s.found = in.mark("found");
+  s.restart.screened = in.mark("gate");
+  s.restart.best = in.mark("best");
+  s.restart.found = in.mark("found");
   s.search_costs = in.numbers("search_costs");
   in.expect("end");
   return s;

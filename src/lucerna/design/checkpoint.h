@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "lucerna/design/fit.h"
+#include "lucerna/design/fit_state.h"
 #include "lucerna/design/free_form_search.h"
 
 namespace lucerna {

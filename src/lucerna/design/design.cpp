@@ -71,7 +71,7 @@ FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& option
     plain.rays = kFluxRays;
     plain.derivatives = false;
     const Evaluation start = evaluate(problem.start, problem.reflectance, rays, fit.bins, plain);
-    fit.flux_weight = uses_free_form_search(problem) ? problem.light_weight : kLadderFluxWeight;
+    fit.flux_weight = uses_free_form_search(problem) ? problem.light_weight : kFitFluxWeight;
     fit.flux_reference = start.reflected + start.direct;
   }
   LightLimits(problem.limits, problem.reflectance).check(problem.start, rays);

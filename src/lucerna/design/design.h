@@ -67,7 +67,7 @@ FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& option
 
 /// Shapes the problem's mirror until its far field is the target's, as well as it can be: Levenberg-Marquardt
 /// with exact path derivatives on smooth bins. Free forms are searched among candidates
-/// (docs/theory/free-form-search.md), other families on a ladder from coarse to fine with restarts
+/// (docs/theory/free-form-search.md), other families on a schedule from coarse to fine with restarts
 /// (docs/theory/design.md). The result is validated, and never worse than the given mirror by that.
 /// Progress phases "rays", "design" (in steps of unknown number). Stops early at `time_s` or when progress
 /// asks; the result is then the best so far, whole, with `end` saying so. Throws InputError on a checkpoint

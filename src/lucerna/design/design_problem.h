@@ -6,7 +6,6 @@
 #include <string>
 
 #include "lucerna/design/design_limits.h"
-#include "lucerna/design/fit.h"
 #include "lucerna/design/optimizer.h"
 #include "lucerna/design/target.h"
 #include "lucerna/design/tolerances.h"
@@ -28,7 +27,7 @@ struct DesignProblem {
   /// After how many restarts in a row that gain nothing (of a search among candidates: after how many
   /// neighbours of the best) a design ends above the noise before its time: `restarts` of [design].
   int max_failed_restarts = 1'000'000;
-  /// On the ladder (fit.h): how often the knots may be doubled beyond those of `start`.
+  /// Of the continuation schedule: how often the knots may be doubled beyond those of `start`.
   int growth = 0;
   /// The project says how many knots there are to be. A search among candidates keeps to them while they
   /// bring the mirror near the target.

@@ -130,7 +130,7 @@ TEST(Design, ResumesToTheSameBits) {
       p, tiny(), no_progress(),
       [&](const FitRecord&, const DesignShape&, const std::string& state) { states.push_back(state); });
   ASSERT_GT(states.size(), 8u);
-  EXPECT_LE(parse_checkpoint(whole.checkpoint, whole.checkpoint.substr(32, 16)).failed_restarts, 1);
+  EXPECT_LE(parse_checkpoint(whole.checkpoint, whole.checkpoint.substr(32, 16)).restart.failed, 1);
   for (const std::size_t at : {states.size() / 4, states.size() - 4}) {
     DesignOptions options = tiny();
     options.checkpoint = states[at];
@@ -184,8 +184,8 @@ TEST(Design, ResumesInTheMiddleOfASearchRestartToTheSameBits) {
   const DesignProblem p =
       problem(folder.path(), "intervals = [1, 1]\nrestarts = 2\noptimizer = \"least-squares\"\n", kFreeForm);
   const auto within = [](const FitState& s) {
-    if (s.search_restarts < 2 || s.step < 1) return -1;
-    return s.twin ? 1 : 0;
+    if (s.restart.searches < 2 || s.step < 1) return -1;
+    return s.restart.conjugate ? 1 : 0;
   };
   expect_same_end(p, within, 2);
 }

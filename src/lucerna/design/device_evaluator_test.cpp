@@ -122,7 +122,7 @@ Eigen::VectorXd fitted(std::shared_ptr<Accelerator> accelerator, double& error) 
                      },
                      bins, TargetMode::absolute};
   problem.max_failed_restarts = 0;
-  Fit fit(problem, ladder(start, bins, {1 << 14, true, {}}), start);
+  Fit fit(problem, continuation_schedule(start, bins, {1 << 14, 0}), start);
   FitRecord last;
   while (!fit.done()) last = fit.step();
   error = last.error;

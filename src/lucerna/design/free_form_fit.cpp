@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lucerna/design/approach.h"
+#include "lucerna/design/levenberg_marquardt.h"
 #include "lucerna/design/roughness.h"
 
 namespace lucerna {
@@ -71,22 +72,13 @@ FreeFormPoint FreeFormFit::at(DesignShape shape) const {
 }
 
 bool FreeFormFit::step(FreeFormPoint& now, double& lambda) const {
-  const SparseSymmetric metric = sparse_step_metric(now.shape, now.equations);
+  const Eigen::VectorXd from = now.shape.parameters();
   const double longest = kMaxMove * now.shape.aperture().outer_radius_mm();
-  Eigen::VectorXd move = damped_step(now.equations, metric, lambda);
-  while (!(move.cwiseAbs().maxCoeff() <= longest)) {
-    if (lambda > kMaxLambda) return false;  // no light tells of any parameter
-    lambda *= 4.0;
-    move = damped_step(now.equations, metric, lambda);
-  }
-  FreeFormPoint trial = at(now.shape.with(now.shape.parameters() + move));
-  if (!(trial.equations.cost < now.equations.cost)) {
-    lambda *= 5.0;
-    return false;
-  }
-  lambda = next_lambda(lambda, now.equations, move, trial.equations.cost);
-  now = std::move(trial);
-  return true;
+  const LevenbergMarquardtStep step =
+      levenberg_marquardt_step(now, sparse_step_metric(now.shape, now.equations), lambda, longest,
+                               [&](const Eigen::VectorXd& move) { return at(now.shape.with(from + move)); });
+  lambda = step.next_lambda;
+  return step.accepted;
 }
 
 BinError FreeFormFit::error(const FreeFormPoint& point) const {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "lucerna/design/fit.h"
+#include "lucerna/design/fit_problem.h"
 #include "lucerna/design/graded_bins.h"
 #include "lucerna/design/sparse_equations.h"
 #include "lucerna/progress.h"

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lucerna/design/fit_record.h"
 #include "lucerna/design/free_form_fit.h"
 #include "lucerna/design/transport_start.h"
 

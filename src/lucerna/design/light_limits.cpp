@@ -104,7 +104,7 @@ void LightLimits::check(const DesignShape& start, const DesignRays& rays) const 
   throw InputError(
       fmt::format("design.limits: min_efficiency = {} and the reflector's reflectance, at most {}, "
                   "contradict each other: "
-                  "at least {:.0f} % of the light meets the mirror, so that no more than {:.3f} leaves",
+                  "at least {:.0f} % of the light hits the mirror, so that no more than {:.3f} leaves",
                   *min_efficiency_, reflectance_.max(), 100.0 * meets / all, max),
       ErrorCause::contradiction);
 }

@@ -32,7 +32,7 @@ constexpr std::uint64_t kSearchRays = std::uint64_t{1} << 15;
 constexpr double kReach = 0.06;
 /// Error of a start (with what light it loses) from which profiles are not searched.
 constexpr double kGoodStart = 0.05;
-/// Profiles that are compared at the gate before the best of them goes on.
+/// Profiles that are compared at the screening stage before the best of them goes on.
 constexpr std::size_t kProfilesCompared = 3;
 
 struct Stopped {};
@@ -83,10 +83,10 @@ Optimizer optimizer(std::string_view name) {
   throw InputError(fmt::format("optimizer: found '{}', expected one of {}", name, optimizer_names()));
 }
 
-SearchSpace search_space(const DesignShape& about, const std::vector<FitStage>& stages) {
+SearchSpace search_space(const DesignShape& about, const ContinuationSchedule& schedule) {
   // Enough knots for a shape, few enough for methods that learn from costs alone.
   const int max = about.is_revolution() ? 8 : 3;
-  const int nx = std::min(max, stages.back().intervals_x), ny = std::min(max, stages.back().intervals_y);
+  const int nx = std::min(max, schedule.last().intervals_x), ny = std::min(max, schedule.last().intervals_y);
   const DesignShape shape = about.refined(nx, about.is_revolution() ? about.intervals_y() : ny);
   const double half = kReach * shape.aperture().outer_radius_mm();
   return {shape, {shape.parameters(), Eigen::VectorXd::Constant(shape.parameters().size(), half)}};
@@ -94,7 +94,7 @@ SearchSpace search_space(const DesignShape& about, const std::vector<FitStage>& 
 
 int search_evaluations(std::size_t parameters) { return 60 * static_cast<int>(parameters); }
 
-bool prepare_starts(FitProblem& problem, const DesignShape& shape, const std::vector<FitStage>& stages,
+bool prepare_starts(FitProblem& problem, const DesignShape& shape, const ContinuationSchedule& schedule,
                     const Optimizer& optimizer, std::vector<double>& costs, const SearchWatch& watch,
                     Progress& progress) {
   problem.starts.clear();
@@ -103,11 +103,11 @@ bool prepare_starts(FitProblem& problem, const DesignShape& shape, const std::ve
   if (!optimizer.global) {
     // A start as good as this is in its basin already.
     return !can_search_profiles(problem, shape) || problem.starts[0].cost < kGoodStart * kGoodStart ||
-           add_profiles(problem, shape, stages.back().rays, costs, watch, progress);
+           add_profiles(problem, shape, schedule.last().rays, costs, watch, progress);
   }
 
-  const SearchSpace space = search_space(problem.starts[0].shape, stages);
-  const std::uint64_t rays = std::min(kSearchRays, stages.back().rays);
+  const SearchSpace space = search_space(problem.starts[0].shape, schedule);
+  const std::uint64_t rays = std::min(kSearchRays, schedule.last().rays);
   problem.rays->grow(rays, progress);
   const TentBins bins = rebinned(problem.bins, 1.0, problem.bins.count() / 3);
   const Eigen::VectorXd target = problem.target(bins);

@@ -7,7 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "lucerna/design/fit.h"
+#include "lucerna/design/continuation_schedule.h"
+#include "lucerna/design/fit_record.h"
 #include "lucerna/design/global_search.h"
 
 namespace lucerna {
@@ -38,7 +39,7 @@ struct SearchSpace {
   DesignShape shape;
   SearchBox box;
 };
-SearchSpace search_space(const DesignShape& about, const std::vector<FitStage>& stages);
+SearchSpace search_space(const DesignShape& about, const ContinuationSchedule& schedule);
 
 /// Evaluations that a search over n parameters gets: 60 n.
 int search_evaluations(std::size_t parameters);
@@ -50,7 +51,7 @@ using SearchWatch = std::function<bool(const FitRecord&, const DesignShape& best
 /// paid for already (a checkpoint) and is extended with every batch: a search that is taken up again with
 /// them ends at the same bits. Candidates of a batch are evaluated in parallel. Returns false if `watch`
 /// ended the search; the first start is then the best so far. Progress phases "rays", "starts", "search".
-bool prepare_starts(FitProblem& problem, const DesignShape& shape, const std::vector<FitStage>& stages,
+bool prepare_starts(FitProblem& problem, const DesignShape& shape, const ContinuationSchedule& schedule,
                     const Optimizer& optimizer, std::vector<double>& costs, const SearchWatch& watch,
                     Progress& progress = no_progress());
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "lucerna/design/fit.h"
+#include "lucerna/design/fit_problem.h"
 
 namespace lucerna {
 

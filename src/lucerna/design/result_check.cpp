@@ -106,7 +106,7 @@ void add_remarks(const DesignProblem& problem, DesignResult& result) {
   const BoxErrorEstimate& e = result.error.c48;
   if (!problem.target.zones_only && e.excess <= 2.0 * e.standard_error) {
     result.remarks.push_back(fmt::format(
-        "no error is left that {:.3g} M rays can tell from noise: {:.2f} +- {:.2f} %",
+        "no error is left that {:.3g} M rays can distinguish from noise: {:.2f} +- {:.2f} %",
         1e-6 * static_cast<double>(result.error.rays), 100.0 * e.excess, 100.0 * e.standard_error));
   } else if (const std::string binding = binding_limits(result.limits); !binding.empty()) {
     result.remarks.push_back(binding);

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "lucerna/design/checkpoint.h"
+#include "lucerna/design/fit.h"
 #include "lucerna/design/free_form_search.h"
 
 namespace lucerna {
@@ -61,10 +62,10 @@ void search_free_form(const SearchRun& run, const FitProblem& fit, DesignResult&
   step_until_done(run, search, stop, result);
 }
 
-void search_on_ladder(const SearchRun& run, FitProblem& fit_data, DesignResult& result) {
+void search_coarse_to_fine(const SearchRun& run, FitProblem& fit_data, DesignResult& result) {
   const DesignProblem& problem = run.problem;
-  const std::vector<FitStage> stages =
-      ladder(problem.start, fit_data.bins, {run.options.max_rays, true, problem.growth});
+  const ContinuationSchedule schedule =
+      continuation_schedule(problem.start, fit_data.bins, {run.options.max_rays, problem.growth});
   FitState state;
   if (!run.options.checkpoint.empty()) state = parse_checkpoint(run.options.checkpoint, run.key);
   Stop stop(run, state.total_rays, result);
@@ -74,20 +75,20 @@ void search_on_ladder(const SearchRun& run, FitProblem& fit_data, DesignResult& 
     if (run.observer) run.observer(record, best, checkpoint_text(state, run.key));
     return !stop(record.total_rays, record.rays);
   };
-  if (!prepare_starts(fit_data, problem.start, stages, problem.optimizer, state.search_costs, watch,
+  if (!prepare_starts(fit_data, problem.start, schedule, problem.optimizer, state.search_costs, watch,
                       run.progress)) {
     result.shape = fit_data.starts[0].shape;
     result.checkpoint = checkpoint_text(state, run.key);
     result.evaluations = static_cast<int>(state.search_costs.size());
     return;
   }
-  Fit fit = begun ? Fit(fit_data, stages, problem.start, state)
-                  : Fit(fit_data, stages, problem.start, state.search_costs);
+  Fit fit = begun ? Fit(fit_data, schedule, problem.start, state)
+                  : Fit(fit_data, schedule, problem.start, state.search_costs);
   step_until_done(run, fit, stop, result);
   if (result.end == DesignEnd::converged && !fit.at_noise()) {
     result.remarks.push_back(
         fmt::format("ended before its time: {} further restarts in a row brought nothing better",
-                    fit.state().failed_restarts));
+                    fit.state().restart.failed));
   }
 }
 
@@ -102,7 +103,7 @@ void search_mirror(const SearchRun& run, FitProblem& fit, DesignResult& result) 
   if (uses_free_form_search(run.problem)) {
     search_free_form(run, fit, result);
   } else {
-    search_on_ladder(run, fit, result);
+    search_coarse_to_fine(run, fit, result);
   }
 }
 

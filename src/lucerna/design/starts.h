@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "lucerna/design/fit.h"
+#include "lucerna/design/fit_problem.h"
 #include "lucerna/design/window.h"
 
 namespace lucerna {

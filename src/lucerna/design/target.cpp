@@ -78,7 +78,7 @@ void check_places(const TomlReader& reader, const PlaneTarget& plane, const std:
     const bool in = std::max(std::abs(z.column.low), std::abs(z.column.high)) <= 0.5 * plane.size_x_mm &&
                     std::max(std::abs(z.row.low), std::abs(z.row.high)) <= 0.5 * plane.size_y_mm;
     if (in || !z.asks_for_light()) continue;
-    reader.fail("zone", fmt::format("'{}' reaches beyond size_mm, and asks for light there", z.name));
+    reader.fail("zone", fmt::format("'{}' reaches beyond size_mm, and has a minimum there", z.name));
   }
 }
 
@@ -89,7 +89,7 @@ std::shared_ptr<const ZoneCells> read_cells(TomlReader& reader, double source_fl
   const bool h_v = std::any_of(zones.begin(), zones.end(),
                                [](const TargetZone& z) { return z.coordinates == ZoneCoordinates::h_v; });
   if (axis && !h_v) reader.fail("axis", "is what zones with h_deg and v_deg are about; there are none");
-  if (h_v && !axis) reader.missing("axis", "the direction that h_deg = 0 and v_deg = 0 stand for");
+  if (h_v && !axis) reader.missing("axis", "the direction of h_deg = 0 and v_deg = 0");
   if (zones.empty()) return nullptr;
   if (plane) check_places(reader, *plane, zones);
   const auto frame = plane ? std::optional<Frame>(plane->world_from_plane) : std::nullopt;
@@ -104,14 +104,14 @@ bool ask_for_light(const ZoneCells& cells) {
 /// A target is a file, or zones that ask for light.
 void require_file_or_zones(TomlReader& reader, bool plane) {
   if (reader.has("file") || reader.has("zone")) return;
-  reader.fail("file", plane ? "is missing: a CSV or PNG file with the illuminance that is wanted"
-                            : "is missing: an IES or EULUMDAT file with the light that is wanted");
+  reader.fail("file", plane ? "is missing: a CSV or PNG file with the target illuminance"
+                            : "is missing: an IES or EULUMDAT file with the target distribution");
 }
 
 /// What zones without a file are begun with.
 void set_guide(TomlReader& reader, FluxUnit unit, DesignTarget& target) {
   if (!ask_for_light(*target.zones)) {
-    reader.fail("file", "is missing, and no zone asks for light: expected a file or a zone with a minimum");
+    reader.fail("file", "is missing, and no zone has a minimum: expected a file or a zone with a minimum");
   }
   if (reader.has("mode")) {
     reader.fail("mode", "belongs to a target with a file; zones count as their bounds say");

@@ -36,7 +36,8 @@ void read_region(TomlReader& zone, bool plane, TargetZone& out) {
   const bool mm = zone.has("x_mm") || zone.has("y_mm");
   if (plane && (h_v || gamma_c)) zone.fail(h_v ? "h_deg" : "gamma_deg", "belongs to a target of directions");
   if (!plane && mm) zone.fail("x_mm", "belongs to a target with kind = \"plane\"");
-  if (h_v && gamma_c) zone.fail("gamma_deg", "stands beside h_deg or v_deg; expected one kind of angles");
+  if (h_v && gamma_c)
+    zone.fail("gamma_deg", "is given together with h_deg or v_deg; expected one kind of angles");
   if (plane) {
     out.coordinates = ZoneCoordinates::plane;
     out.column = read_range(zone, "x_mm");
@@ -96,7 +97,8 @@ void read_absolute(TomlReader& zone, double source_flux, TargetZone& out) {
                              : "belongs to a plane; zones of directions have min_cd and max_cd");
       }
       for (const ZoneBound& b : out.bounds) {
-        if (b.is_min == is_min) zone.fail(key, fmt::format("stands beside {}; expected one of them", b.key));
+        if (b.is_min == is_min)
+          zone.fail(key, fmt::format("is given together with {}; expected one of them", b.key));
       }
       out.bounds.push_back({key, is_min, *value * k.unit});
     }
@@ -127,7 +129,7 @@ void read_relative(TomlReader& zone, std::size_t number, TargetZone& out) {
 
 void check_band(const TomlReader& reader, const TargetZone& zone) {
   if (zone.bounds.empty()) {
-    reader.fail("name", fmt::format("zone '{}' asks for nothing: expected min_{}, max_{} or another bound",
+    reader.fail("name", fmt::format("zone '{}' has no bounds: expected min_{}, max_{} or another bound",
                                     zone.name, zone.coordinates == ZoneCoordinates::plane ? "lx" : "cd",
                                     zone.coordinates == ZoneCoordinates::plane ? "lx" : "cd"));
   }
@@ -147,7 +149,7 @@ void join_means(std::vector<TomlReader>& readers, std::vector<TargetZone>& zones
     bool used = false;
     for (ZoneBound& b : zones[i].bounds) {
       if (b.key != "min_of_mean" && b.key != "max_of_mean") continue;
-      if (!name) readers[i].fail(b.key, "needs mean_of, the name of the zone whose mean is meant");
+      if (!name) readers[i].fail(b.key, "needs mean_of, the name of the zone that the mean is of");
       const auto found =
           std::find_if(zones.begin(), zones.end(), [&](const TargetZone& z) { return z.name == *name; });
       if (found == zones.end()) {

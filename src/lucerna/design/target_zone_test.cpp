@@ -121,17 +121,17 @@ TEST(TargetZone, NamesEveryFault) {
   const auto zone = [&](const std::string& more) { return error_of(at + more); };
   EXPECT_THAT(zone("min_cdx = 5\n"),
               HasSubstr("target.zone[0].min_cdx: unknown key; the nearest known one is 'min_cd'"));
-  EXPECT_THAT(zone(""), HasSubstr("asks for nothing"));
+  EXPECT_THAT(zone(""), HasSubstr("has no bounds"));
   EXPECT_THAT(zone("min_cd = -5\n"), HasSubstr("min_cd: found -5, expected > 0"));
   EXPECT_THAT(zone("min_cd = 50\nmax_cd = 40\n"), HasSubstr("min_cd is not below max_cd: found 50 and 40"));
-  EXPECT_THAT(zone("min_cd = 50\nmin_cd_per_klm = 40\n"), HasSubstr("stands beside min_cd"));
+  EXPECT_THAT(zone("min_cd = 50\nmin_cd_per_klm = 40\n"), HasSubstr("is given together with min_cd"));
   EXPECT_THAT(zone("min_lx = 50\n"), HasSubstr("belongs to a plane"));
   EXPECT_THAT(zone("min_uo = 0.5\n"), HasSubstr("expected a target with kind = \"plane\""));
   EXPECT_THAT(zone("min_of_mean = 0.5\n"), HasSubstr("needs mean_of"));
   EXPECT_THAT(zone("min_of_mean = 0.5\nmean_of = \"a\"\n"),
               HasSubstr("found 'a', expected the name of a zone"));
   EXPECT_THAT(zone("min_cd = 5\nmean_of = \"a\"\n"), HasSubstr("belongs to min_of_mean"));
-  EXPECT_THAT(zone("max_cd = 5\n"), HasSubstr("no zone asks for light"));
+  EXPECT_THAT(zone("max_cd = 5\n"), HasSubstr("no zone has a minimum"));
   EXPECT_THAT(zone("min_cd = 5\ncell_deg = 0.01\n"), HasSubstr("measuring cells"));
   EXPECT_THAT(zone("min_cd = 5\nh_deg = 3\n"), HasSubstr("expected one kind of angles"));
   EXPECT_THAT(zone("min_cd = 5\nx_mm = 3\n"), HasSubstr("kind = \"plane\""));

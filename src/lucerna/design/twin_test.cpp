@@ -82,8 +82,8 @@ TEST(TwinSlow, IsWhereAFitLooksForABetterBasin) {
   problem.starts = {{twin(truth, kSourceZ), FitEntry::own_knots}};
   const auto end = [&](int restarts) {
     problem.max_failed_restarts = restarts;
-    Fit fit(problem, ladder(square(), bins, {1 << 17, true, 0}), square());
-    while (!fit.done() && fit.state().search_restarts < 2) fit.step();
+    Fit fit(problem, continuation_schedule(square(), bins, {1 << 17, 0}), square());
+    while (!fit.done() && fit.state().restart.searches < 2) fit.step();
     const Evaluation e = light(fit.best(), known, coarse);
     return bin_error(e, problem.target(coarse), coarse, TargetMode::absolute).relative_rms;
   };

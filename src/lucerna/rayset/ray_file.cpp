@@ -65,7 +65,7 @@ std::optional<std::string> detect(const InputFile& file) {
   }
   if (candidates.size() > 1) {
     throw InputError(
-        fmt::format("{}: could be {}: expected to be told which", file.name(), fmt::join(candidates, " or ")),
+        fmt::format("{}: could be {}: the format must be given", file.name(), fmt::join(candidates, " or ")),
         ErrorCause::missing, "format");
   }
   if (candidates.empty()) return std::nullopt;

@@ -419,7 +419,7 @@ std::string describe(const SurfaceGuess& guess) {
                          2.0 * guess.surface.half_size_mm.x, 2.0 * guess.surface.half_size_mm.y,
                          2.0 * guess.surface.half_size_mm.z, centre);
   }
-  return "the starts lie on no plane, sphere, cylinder or box";
+  return "the ray origins lie on no plane, sphere, cylinder or box";
 }
 
 }  // namespace lucerna

@@ -52,7 +52,7 @@ ConicProfile ConicProfile::ellipse(double focal_mm, double focal2_mm, double r_m
   const double equator_mm = std::sqrt(focal_mm * focal2_mm);
   if (!(r_max_mm < equator_mm)) {
     throw InputError(fmt::format(
-        "reflector: the ellipse reaches radius {} mm at its equator, the aperture asks for {} mm; "
+        "reflector: the ellipse reaches radius {} mm at its equator, the aperture needs {} mm; "
         "expected an aperture inside the equator, or mouth_diameter_mm for a mirror that goes past it",
         equator_mm, r_max_mm));
   }

@@ -199,7 +199,7 @@ void SweptCurve::check_crossings() const {
       const double c = side(q, qr, qz, p.r[0], p.z[0]), d = side(q, qr, qz, pr, pz);
       if ((a > 0.0) == (b > 0.0) || (c > 0.0) == (d > 0.0)) continue;
       throw InputError(
-          fmt::format("reflector: the profile crosses itself: between points {} and {} it meets "
+          fmt::format("reflector: the profile crosses itself: between points {} and {} it intersects "
                       "what lies between points {} and {}, near [{:.6g}, {:.6g}]",
                       knot_of_[i] + 1, knot_of_[i] + 2, knot_of_[k] + 1, knot_of_[k] + 2, p.r[0], p.z[0]));
     }

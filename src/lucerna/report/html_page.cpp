@@ -79,7 +79,7 @@ std::string HtmlPage::str() const {
       "<button type=\"button\" id=\"print\">Print</button></div>\n</header>\n"
       "<nav aria-label=\"Contents\">\n{}</nav>\n<main id=\"main\">\n{}</main>\n<footer>Made by Lucerna {}. "
       "This file "
-      "is complete: it asks nothing of any network.</footer>\n",
+      "is complete and works without a network.</footer>\n",
       html_escaped(kind_), html_escaped(title_), contents_, body_, version());
   out += data_;
   for (const auto& [id, list] : lists_) out += data_element(id, list);

@@ -2,12 +2,17 @@
 #include "lucerna/report.h"
 
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/report/model_json.h"
 #include "lucerna/report/report_design.h"
 #include "lucerna/report/report_trace.h"
 #include "lucerna/report/run_json.h"
 #include "lucerna/report/trace_results.h"
+#include "lucerna/report/write_model_report.h"
+#include "lucerna/source_model.h"
 
 namespace lucerna {
 
@@ -22,14 +27,34 @@ std::vector<std::string> write_trace(const std::filesystem::path& folder, const 
                              warnings != nullptr ? *warnings : lost);
 }
 
-void write_report(const std::filesystem::path& folder, const std::filesystem::path& html) {
-  if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder)) {
-    throw_input_error(folder.string(), "", "is a file, expected the folder of a trace or a design");
+void write_report(const std::filesystem::path& input, const std::filesystem::path& html,
+                  const std::vector<std::filesystem::path>& ray_files, Progress& progress) {
+  write_report(input, html, ray_files, RunRecord(), progress);
+}
+
+void write_report(const std::filesystem::path& input, const std::filesystem::path& html,
+                  const std::vector<std::filesystem::path>& ray_files, RunRecord run, Progress& progress) {
+  if (is_source_model(input)) {
+    const auto model = load_source_model(input);
+    run.inputs = ray_files;
+    run.inputs.insert(run.inputs.begin(), input);
+    nlohmann::ordered_json json = run_json(run, std::nullopt);
+    json.update(model_json(*model, input));
+    write_model_report(*model, input, ray_files, std::move(json), html, progress);
+    return;
   }
-  if (is_design_folder(folder)) {
-    write_design_report(folder, html);
+  if (!ray_files.empty()) {
+    throw UsageError(
+        fmt::format("rays to compare with go with a source model, and {} is none", input.string()));
+  }
+  if (std::filesystem::exists(input) && !std::filesystem::is_directory(input)) {
+    throw_input_error(input.string(), "",
+                      "is neither a source model (.nfl) nor the folder of a trace or design");
+  }
+  if (is_design_folder(input)) {
+    write_design_report(input, html);
   } else {
-    write_trace_report(folder, html);
+    write_trace_report(input, html);
   }
 }
 

@@ -205,7 +205,7 @@ std::string model_report_html(const SourceModel& model, Json json, const ModelRe
                                              options.rays_in_files);
     page.section(
         "views", "Rays and model in five views",
-        fmt::format("<p>Left {}, in the middle {} rays drawn from the model.</p>\n", of, options.model_rays) +
+        fmt::format("<p>Left {}, at the centre {} rays drawn from the model.</p>\n", of, options.model_rays) +
             view_table(result, all) + compared.view_plots);
   } else {
     page.section("views", "Rays and model in five views",

@@ -159,7 +159,7 @@ void plane_section(HtmlPage& page, const DesignProblem& problem) {
       kPlaneRays);
   map.title = "target";
   map.value = target;
-  out += grid_figure(page, map, "plane-target", "Illuminance wanted");
+  out += grid_figure(page, map, "plane-target", "Target illuminance");
   map.title = "result";
   map.value = found.value;
   map.standard_error = found.standard_error;
@@ -169,7 +169,7 @@ void plane_section(HtmlPage& page, const DesignProblem& problem) {
   for (std::size_t i = 0; i < target.size(); ++i) map.value[i] = found.value[i] - target[i];
   map.range.reset();
   map.diverging = true;
-  out += grid_figure(page, map, "plane-difference", "Illuminance found less wanted");
+  out += grid_figure(page, map, "plane-difference", "Illuminance found less target");
   page.section("target", "Target and result", out + "</div>\n");
 }
 

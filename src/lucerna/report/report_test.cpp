@@ -8,6 +8,9 @@
 #include "lucerna/error.h"
 #include "lucerna/photometric_figures.h"
 #include "lucerna/photometric_file.h"
+#include "lucerna/ray_file.h"
+#include "lucerna/source.h"
+#include "lucerna/source_model.h"
 #include "lucerna/trace_figures.h"
 #include "tests/support/temp_dir.h"
 
@@ -29,6 +32,23 @@ TEST(Report, AFolderIsWrittenAndReported) {
   EXPECT_NEAR(total_flux(ldt.distribution), ledger(result).out_direct.mean, 1e-4 * 1000.0);
   write_report(dir / "new/folder", dir / "report.html");
   EXPECT_THAT(read_file(dir / "report.html", 1 << 26), testing::HasSubstr("<html"));
+}
+
+TEST(Report, AModelIsReportedAgainstItsRays) {
+  const test::TempDir dir;
+  RaySet set;
+  set.header.set_flux(100.0);
+  set.rays.resize(20'000);
+  make_emitter({.kind = EmitterKind::disk})->emit(Sequence(SequenceKind::random, 1), 0, set.rays);
+  write_ray_set(dir / "d.tm25ray", set, "tm25");
+  save_source_model(dir / "d.nfl", *compress(set));
+  write_report(dir / "d.nfl", dir / "alone.html");
+  write_report(dir / "d.nfl", dir / "compared.html", {dir / "d.tm25ray"});
+  const std::string compared = read_file(dir / "compared.html", 1 << 26);
+  EXPECT_THAT(compared, testing::HasSubstr("/views/far/excess"));
+  EXPECT_THAT(compared, testing::HasSubstr("d.tm25ray"));
+  EXPECT_THAT(read_file(dir / "alone.html", 1 << 26), testing::Not(testing::HasSubstr("/views/far/excess")));
+  EXPECT_THROW(write_report(dir.path(), dir / "r.html", {dir / "d.tm25ray"}), UsageError);
 }
 
 TEST(Report, RefusesWhatIsNoFolderOfATrace) {

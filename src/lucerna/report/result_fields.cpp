@@ -91,13 +91,13 @@ constexpr std::array kFields{
     ResultField{"detectors[].peak.y_mm", "trace", "number", "mm", "Its place."},
     ResultField{"detectors[].format", "trace", "text", "", "Rays: format of the file."},
     ResultField{"detectors[].file", "trace", "text", "", "Rays: name of the file."},
-    ResultField{"detectors[].rays", "trace", "count", "", "Rays: how many were kept."},
+    ResultField{"detectors[].rays", "trace", "count", "", "Rays: how many were stored."},
 
     ResultField{"error.c12", "design", "box error", "", "Relative error in 12 x 12 boxes over the target's rectangle, root mean square. `excess` has the noise of counting (`floor`) taken out."},
     ResultField{"error.c24", "design", "box error", "", "The same in 24 x 24 boxes."},
     ResultField{"error.c48", "design", "box error", "", "The same in 48 x 48 boxes: the headline."},
     ResultField{"outside.share", "design", "estimate", "", "Share of the sources' light outside the target's rectangle."},
-    ResultField{"outside.direct", "design", "estimate", "", "The part of it that met no mirror."},
+    ResultField{"outside.direct", "design", "estimate", "", "The part of it that hit no mirror."},
     ResultField{"outside.error", "design", "box error", "", "Error outside the rectangle."},
     ResultField{"worst_cell", "design", "estimate", "", "Largest deviation of a box as a share of the brightest box of the target. Noise raises it."},
     ResultField{"bound.error", "design", "number", "", "No mirror of this aperture and height has a smaller error at this share of light."},
@@ -114,17 +114,17 @@ constexpr std::array kFields{
     ResultField{"zones[].cell_deg", "design", "number", "degrees", "Side of a cell."},
     ResultField{"zones[].cell_mm", "design", "number", "mm", "Side of a cell on a plane."},
     ResultField{"zones[].bounds[].bound", "design", "text", "", "Key of the bound."},
-    ResultField{"zones[].bounds[].allowed", "design", "number", "", "What the project asks for."},
+    ResultField{"zones[].bounds[].allowed", "design", "number", "", "What the project allows."},
     ResultField{"zones[].bounds[].found", "design", "estimate", "", "The cell that is nearest to it."},
     ResultField{"zones[].bounds[].reference", "design", "number", "", "What a relative bound is a multiple of."},
     ResultField{"zones[].bounds[].place", "design", "text", "", "Where that cell is."},
     ResultField{"zones[].bounds[].missing", "design", "number", "", "What the cell is short of the bound, over the bound; negative where there is some to spare."},
     ResultField{"zones[].bounds[].verdict", "design", "text", "", "`met`, `missed` or `undetermined` at this noise."},
-    ResultField{"pareto[].light_weight", "design", "number", "", "`--pareto`: weight of light that a mirror of the trade was fitted with."},
+    ResultField{"pareto[].light_weight", "design", "number", "", "Of a trade-off: the weight of light that the mirror was fitted with."},
     ResultField{"pareto[].vertex_moved_mm", "design", "number", "mm", "How far its vertex is from the given mirror's."},
     ResultField{"pareto[].error.**", "design", "group", "", "Its error, as above."},
     ResultField{"pareto[].in_rectangle", "design", "estimate", "", "Its light."},
-    ResultField{"advice[].change", "design", "text", "", "`--advise`: what was changed."},
+    ResultField{"advice[].change", "design", "text", "", "Of advice: what was changed."},
     ResultField{"advice[].error.**", "design", "group", "", "What a design with it came to."},
     ResultField{"advice[].in_rectangle", "design", "estimate", "", "Its light."},
     ResultField{"advice[].helps", "design", "flag", "", "Whether it is better by more than three standard errors without loss of light."},
@@ -158,7 +158,7 @@ constexpr std::array kFields{
     ResultField{"limits[].allowed", "design", "number", "", "What is allowed."},
     ResultField{"limits[].found", "design", "number", "", "What the exported mesh and its light have."},
     ResultField{"limits[].held", "design", "flag", "", "Whether it is held."},
-    ResultField{"tolerances.source_shift_mm", "design", "number", "mm", "`--tolerances`: the ranges of the project."},
+    ResultField{"tolerances.source_shift_mm", "design", "number", "mm", "Of a tolerance sweep: the ranges of the project."},
     ResultField{"tolerances.source_tilt_deg", "design", "number", "degrees", "The same."},
     ResultField{"tolerances.slope_error_mrad", "design", "number", "mrad", "The same."},
     ResultField{"tolerances.reflectance", "design", "number", "", "The same."},
@@ -183,7 +183,7 @@ constexpr std::string_view kHead = R"(# result.json
 - A *box error* has `value`, `floor` (the noise of counting), `excess` (the value without the floor)
   and `standard_error` of the excess.
 - A figure that is not determined is `null`.
-- `[]` stands for each item of an array, `*` for a name that follows from the input, `**` for all
+- `[]` means each item of an array, `*` for a name that follows from the input, `**` for all
   fields below.
 - The unit "light" is that of the sources' flux, lm or W. With watts, cd is W/sr and lx is W/m2.
 - A design's file has the fields of a trace as well, except `sequence` and `rays`: they are of the

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "lucerna/progress.h"
+
 namespace lucerna {
 
 /// What a run was made of, for the record.
@@ -26,5 +28,9 @@ struct RunRecord {
 /// throws InputError where one cannot be read.
 nlohmann::ordered_json run_json(const RunRecord& run, std::optional<std::uint64_t> seed,
                                 const std::string& isa = "scalar");
+
+/// write_report (report.h) with what a model's page says of its run; the inputs are added.
+void write_report(const std::filesystem::path& input, const std::filesystem::path& html,
+                  const std::vector<std::filesystem::path>& ray_files, RunRecord run, Progress& progress);
 
 }  // namespace lucerna

@@ -124,7 +124,7 @@ void draw_hemisphere(SvgCanvas& canvas, const IntensityDistribution& d, SvgPoint
   canvas.text({centre.x, centre.y + radius + 17.0}, "C270", middle);
   canvas.text({centre.x + radius + 5.0, centre.y + 4.0}, "C0", {.size = 12.0, .fill = "#444"});
   canvas.text({centre.x, centre.y + radius + 37.0},
-              up ? "upper hemisphere, γ 180° in the middle" : "lower hemisphere, γ 0° in the middle",
+              up ? "upper hemisphere, γ 180° at the centre" : "lower hemisphere, γ 0° at the centre",
               {.size = 12.5, .anchor = "middle"});
 }
 

@@ -88,7 +88,7 @@ Json read_result(const std::filesystem::path& path) {
   const std::string file = path.string();
   if (result.is_discarded()) throw_input_error(file, "", "is no JSON");
   if (!result.is_object() || !result.contains("ledger") || !result.contains("detectors")) {
-    throw_input_error(file, "", "found no ledger and detectors, expected the result of `lucerna trace`");
+    throw_input_error(file, "", "found no ledger and detectors, expected the result of a trace");
   }
   const Json schema = result.value("schema_version", Json());
   if (schema != Json(kJsonSchemaVersion)) {

@@ -317,7 +317,7 @@ double AdaptiveModel::radiance_at(const Vec3& point_mm, const Direction& d) cons
 
 double AdaptiveModel::pdf_area(const Vec3& point_mm) const {
   if (!has_etendue_ || data_.surface.kind == SurfaceKind::none) {
-    throw InputError("this source's starts fill no area: it has no density per mm^2");
+    throw InputError("this source's ray origins fill no area: it has no density per mm^2");
   }
   const double size = length(point_mm) + 1.0;
   if (std::abs(data_.surface.outside_mm(point_mm)) > 1e-5 * size) return 0.0;

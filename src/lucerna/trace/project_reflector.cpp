@@ -169,7 +169,7 @@ Reflector read_heightmap(TomlReader& reader, Project& project) {
   project.inputs.push_back(*file);
   HeightMap map = read_height_map(*file, from_top ? FirstRow::top : FirstRow::bottom);
   const auto scale = reader.number("z_scale_mm");
-  if (map.white && !scale) reader.missing("z_scale_mm", "the mm that one level of grey stands for");
+  if (map.white && !scale) reader.missing("z_scale_mm", "the mm that one grey level represents");
   if (map.white && *map.white < 256.0) {
     project.warnings.push_back(
         fmt::format("{}: {} levels of grey make steps of {} mm; a mirror wants 16 bits", file->string(),

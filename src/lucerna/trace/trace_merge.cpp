@@ -21,8 +21,7 @@ StoredTrace read_part(const fs::path& folder) {
   const fs::path file = folder / kTraceFileName;
   std::error_code none;
   if (!fs::exists(file, none)) {
-    throw_input_error(folder.string(), "", "holds no {}; expected a folder that lucerna trace has written",
-                      kTraceFileName);
+    throw_input_error(folder.string(), "", "holds no {}; expected a folder with a trace", kTraceFileName);
   }
   return read_trace_file(file);
 }

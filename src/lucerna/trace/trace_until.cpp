@@ -61,7 +61,7 @@ std::string_view to_string(NoiseEnd end) {
     case NoiseEnd::rays:
       return "the rays were used up first";
     case NoiseEnd::finite_source:
-      return "a ray file has given all its rays; a model of it (lucerna compress) has more";
+      return "a ray file has given all its rays; a model of it would have more";
     case NoiseEnd::no_goal:
       return "no noise to go by without a far field, or with rays to keep";
   }

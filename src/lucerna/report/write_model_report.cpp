@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/cli/model_report.h"
-
-#include <fmt/format.h>
+#include "lucerna/report/write_model_report.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
+#include <utility>
 
-#include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/ray_file.h"
 #include "lucerna/rayset/subset.h"
 #include "lucerna/report/report_model.h"
 
-namespace lucerna::cli {
+namespace lucerna {
 
 namespace {
 
@@ -40,12 +39,12 @@ void append_choice(RayBlock& out, RayReader& reader, std::uint64_t wanted, std::
 
 }  // namespace
 
-void write_model_report(const SourceModel& model, const std::string& model_path,
-                        const std::vector<std::string>& ray_paths, Json json, const std::string& output,
-                        Session& session) {
+void write_model_report(const SourceModel& model, const std::filesystem::path& model_path,
+                        const std::vector<std::filesystem::path>& ray_files, nlohmann::ordered_json json,
+                        const std::filesystem::path& html, Progress& progress) {
   std::vector<std::unique_ptr<RayReader>> readers;
   std::uint64_t all = 0;
-  for (const std::string& path : ray_paths) {
+  for (const std::filesystem::path& path : ray_files) {
     readers.push_back(open_ray_file(path));
     all += readers.back()->ray_count();
   }
@@ -56,15 +55,13 @@ void write_model_report(const SourceModel& model, const std::string& model_path,
     const auto wanted = static_cast<std::uint64_t>(part * static_cast<double>(reader->ray_count()));
     // Only several files need their fluxes: within one the weights are enough.
     const std::optional<double> flux = readers.size() > 1 ? reader->header().flux() : std::nullopt;
-    append_choice(rays, *reader, wanted, flux, session.progress());
+    append_choice(rays, *reader, wanted, flux, progress);
   }
   ModelReportOptions options;
-  options.title = std::filesystem::path(model_path).filename().string();
-  options.rays = ray_paths.empty() ? nullptr : &rays;
+  options.title = model_path.filename().string();
+  options.rays = ray_files.empty() ? nullptr : &rays;
   options.rays_in_files = all;
-  write_file(output, model_report_html(model, std::move(json), options, session.progress()));
-  session.say(fmt::format("  report: {}, {:.2f} MB", output,
-                          1e-6 * static_cast<double>(std::filesystem::file_size(output))));
+  write_file(html, model_report_html(model, std::move(json), options, progress));
 }
 
-}  // namespace lucerna::cli
+}  // namespace lucerna
