@@ -65,7 +65,7 @@ struct TraceFigures {
 };
 
 /// The figures of a trace. Thread safe. Cost: a few passes over the bins.
-TraceFigures trace_figures(const TraceResult& result);
+[[nodiscard]] TraceFigures trace_figures(const TraceResult& result);
 
 /// "C 12.3 +- 0.4, gamma 30.2 +- 0.1 deg", or what is known of it: "on the axis within 0.3 deg", "gamma 30.2
 /// +- 0.1 deg, C not determined", "not determined".
