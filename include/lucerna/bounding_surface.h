@@ -34,17 +34,17 @@ struct BoundingSurface {
   Vec3 half_size_mm;
 
   /// The plane z = `z_mm`.
-  static BoundingSurface plane(double z_mm);
+  [[nodiscard]] static BoundingSurface plane(double z_mm);
   /// A sphere about the origin; `radius_mm` > 0.
-  static BoundingSurface sphere(double radius_mm);
+  [[nodiscard]] static BoundingSurface sphere(double radius_mm);
   /// A closed cylinder about the z axis, centred at the origin; both sizes > 0.
-  static BoundingSurface cylinder(double radius_mm, double length_mm);
+  [[nodiscard]] static BoundingSurface cylinder(double radius_mm, double length_mm);
   /// A box about the origin with these edges, each > 0.
-  static BoundingSurface box(const Vec3& size_mm);
+  [[nodiscard]] static BoundingSurface box(const Vec3& size_mm);
 
   /// The same from the numbers that users give: plane Z, sphere RADIUS, cylinder RADIUS LENGTH, box X Y Z,
   /// none nothing. Throws InputError for another count of numbers or sizes that are not > 0.
-  static BoundingSurface from_sizes(SurfaceKind kind, std::span<const double> mm);
+  [[nodiscard]] static BoundingSurface from_sizes(SurfaceKind kind, std::span<const double> mm);
 
   /// Signed distance-like measure of a point in mm: < 0 inside (below the plane), 0 on it, > 0 outside; exact
   /// distance on faces. 0 everywhere for `none`.

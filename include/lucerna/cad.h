@@ -29,25 +29,25 @@ inline constexpr CadTolerance kOpticalTolerance{.chord_mm = 0.01, .slope_deg = 0
 /// there is one, and over circles; else of rows and columns), counter-clockwise seen from the reflecting
 /// side, fine enough for the tolerance everywhere. Vertices are on the exact surface. Throws InputError if a
 /// tolerance is not above 0, or would need more than 4 M triangles; says what would do.
-Mesh cad_mesh(const Reflector& reflector, const CadTolerance& tolerance = {});
+[[nodiscard]] Mesh cad_mesh(const Reflector& reflector, const CadTolerance& tolerance = {});
 
 /// The same with a tolerance that is doubled until 1 M triangles do; it then says what is kept. For a surface
 /// that bends too sharply for any, the InputError of `cad_mesh`.
-Mesh cad_mesh_within(const Reflector& reflector, CadTolerance& tolerance);
+[[nodiscard]] Mesh cad_mesh_within(const Reflector& reflector, CadTolerance& tolerance);
 
 /// Binary STL (Stereolithography Interface Specification, 3D Systems 1989), normals towards the light.
-std::string stl_bytes(const Mesh& mesh);
+[[nodiscard]] std::string stl_bytes(const Mesh& mesh);
 /// Wavefront OBJ, mm.
-std::string obj_text(const Mesh& mesh);
+[[nodiscard]] std::string obj_text(const Mesh& mesh);
 
 /// The meridian at y = 0, x >= 0, from the hole's rim to the outline: points (r, z) such that the chords keep
 /// the tolerance.
-std::vector<std::array<double, 2>> cad_profile(const Reflector& reflector,
-                                               const CadTolerance& tolerance = {});
+[[nodiscard]] std::vector<std::array<double, 2>> cad_profile(const Reflector& reflector,
+                                                             const CadTolerance& tolerance = {});
 /// The profile as one polyline of a DXF R12 file ($ACADVER AC1009), r along x and z along y, mm.
-std::string dxf_profile(const std::vector<std::array<double, 2>>& profile);
+[[nodiscard]] std::string dxf_profile(const std::vector<std::array<double, 2>>& profile);
 /// The profile as CSV: r_mm,z_mm.
-std::string csv_profile(const std::vector<std::array<double, 2>>& profile);
+[[nodiscard]] std::string csv_profile(const std::vector<std::array<double, 2>>& profile);
 
 /// A reflector as a STEP file (ISO 10303-21, application protocol 214), mm, in the mirror's own frame, as an
 /// open shell whose normal looks towards the light. Free forms are one bicubic B-spline surface, the very
@@ -55,7 +55,7 @@ std::string csv_profile(const std::vector<std::array<double, 2>>& profile);
 /// spline where they are `RevolutionShape`s, else of a cubic that is within 1e-6 mm of the profile. Outlines
 /// and holes are exact for revolution and along rectangles, else curves within 1e-6 mm of the surface. The
 /// text depends on nothing but the reflector. Throws InputError for a surface that is neither, and names it.
-std::string step_text(const Reflector& reflector, const std::string& name = "reflector");
+[[nodiscard]] std::string step_text(const Reflector& reflector, const std::string& name = "reflector");
 
 }  // namespace lucerna
 #pragma GCC visibility pop

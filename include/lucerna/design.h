@@ -100,7 +100,7 @@ struct ZoneCheck {
   std::vector<ZoneBoundCheck> bounds;
 
   /// Missed where any bound is, else undetermined where any is.
-  ZoneVerdict verdict() const;
+  [[nodiscard]] ZoneVerdict verdict() const;
 };
 
 /// One limit and what was found.

@@ -81,7 +81,7 @@ struct LuminanceDetector {
 
 /// A frame for a grid that faces along `normal`: its y axis is `up` as it is seen from there, so that x runs
 /// to the right for who looks at the lit side. `up` parallel to `normal`: +y takes its place.
-Frame facing_frame(const Direction& normal, const Vec3& up, const Vec3& position_mm);
+[[nodiscard]] Frame facing_frame(const Direction& normal, const Vec3& up, const Vec3& position_mm);
 
 /// Throws InputError on a size that is not above 0, no cells or more than 16 M.
 void check(const PlaneDetector& detector);

@@ -18,7 +18,7 @@ struct Estimate {
 
 /// The mean of independent values of one distribution, with its standard error: NaN for fewer than two.
 /// `values` is not empty.
-Estimate mean_estimate(std::span<const double> values);
+[[nodiscard]] Estimate mean_estimate(std::span<const double> values);
 
 /// Standard errors to either side that make the 95 % interval of an estimate: Student's t for the 15 degrees
 /// of freedom that 16 replicates leave.

@@ -100,7 +100,7 @@ struct Ray {
 };
 
 /// Mirror image of `incident` about the plane with `normal` (either sign). Unit to a few ulp.
-LUCERNA_HD inline Direction reflect(const Direction& incident, const Direction& normal) {
+[[nodiscard]] LUCERNA_HD inline Direction reflect(const Direction& incident, const Direction& normal) {
   return Direction::from_unit(incident.vec() - (2.0 * dot(incident, normal)) * normal.vec());
 }
 
@@ -153,13 +153,13 @@ class Frame {
 
   /// The placement of the project file: the inner +z goes to `axis` by the shortest turn (for -z a half turn
   /// about +x), then everything turns about that axis by `turn_rad`, then moves to `position_mm`.
-  static Frame from_axis(const Direction& axis, double turn_rad, const Vec3& position_mm);
+  [[nodiscard]] static Frame from_axis(const Direction& axis, double turn_rad, const Vec3& position_mm);
 
   /// Right-hand rotation by `angle_rad` about `axis` through the origin.
-  static Frame rotation(const Direction& axis, double angle_rad);
+  [[nodiscard]] static Frame rotation(const Direction& axis, double angle_rad);
 
   /// Any frame whose +z is `z`, without discontinuity but at z = -e_z (Duff et al. 2017, JCGT 6(1)).
-  LUCERNA_HD static Frame from_z(const Direction& z, const Vec3& origin_mm = {}) {
+  [[nodiscard]] LUCERNA_HD static Frame from_z(const Direction& z, const Vec3& origin_mm = {}) {
     const double sign = std::copysign(1.0, z.z());
     const double a = -1.0 / (sign + z.z());
     const double b = z.x() * z.y() * a;
@@ -179,7 +179,7 @@ class Frame {
   LUCERNA_HD Ray ray(const Ray& r) const { return {point(r.origin_mm), direction(r.direction)}; }
 
   /// The way back.
-  LUCERNA_HD Frame inverse() const {
+  [[nodiscard]] LUCERNA_HD Frame inverse() const {
     const Frame transposed{{ex_.x, ey_.x, ez_.x}, {ex_.y, ey_.y, ez_.y}, {ex_.z, ey_.z, ez_.z}, {}};
     return {transposed.ex_, transposed.ey_, transposed.ez_, -transposed.vector(origin_mm_)};
   }

@@ -33,17 +33,18 @@ struct IntensityDistribution {
 };
 
 /// What breaks the rules written at the fields above, as one sentence; empty if nothing does. O(values).
-std::string grid_fault(const IntensityDistribution& distribution);
+[[nodiscard]] std::string grid_fault(const IntensityDistribution& distribution);
 
 /// A distribution of zeros on the given angles. Throws InputError naming the fault if the angles break the
 /// rules.
-IntensityDistribution zero_distribution(std::vector<double> c_deg, std::vector<double> gamma_deg,
-                                        FluxUnit unit = FluxUnit::lumen);
+[[nodiscard]] IntensityDistribution zero_distribution(std::vector<double> c_deg,
+                                                      std::vector<double> gamma_deg,
+                                                      FluxUnit unit = FluxUnit::lumen);
 
 /// Equally spaced planes 0, step, ... < 360 and gammas 0, step, ..., 180. A step must divide 360 (or 180)
 /// within 1e-9; otherwise InputError. c_step 0 or 360 gives one plane (rotational).
-IntensityDistribution uniform_distribution(double c_step_deg, double gamma_step_deg,
-                                           FluxUnit unit = FluxUnit::lumen);
+[[nodiscard]] IntensityDistribution uniform_distribution(double c_step_deg, double gamma_step_deg,
+                                                         FluxUnit unit = FluxUnit::lumen);
 
 /// Intensity at any C (any real number of degrees) and gamma in [0, 180]: bilinear, periodic in C, 0 beyond
 /// the first and last gamma. O(log planes + log gammas), no allocation.

@@ -72,9 +72,9 @@ struct DistributionComparison {
 /// exact for up to 600 differing angles a side and merges nearest ones beyond. Errors are the scatter of
 /// eight comparisons of values moved by their standard errors at random (a parametric bootstrap; each error
 /// is good to a quarter). Deterministic; thread safe; about 1 s.
-DistributionComparison compare_distributions(const IntensityDistribution& reference,
-                                             const IntensityDistribution& test,
-                                             const CompareOptions& options = {});
+[[nodiscard]] DistributionComparison compare_distributions(const IntensityDistribution& reference,
+                                                           const IntensityDistribution& test,
+                                                           const CompareOptions& options = {});
 
 /// Wasserstein-1 distance in degrees between the shapes (unit flux each) alone.
 double wasserstein_deg(const IntensityDistribution& a, const IntensityDistribution& b);

@@ -22,20 +22,20 @@ struct Mesh {
 /// Reads a binary or text STL file (which one is told from the content; equal corners become one vertex).
 /// Throws InputError with the byte or line on a damaged file, a coordinate that is not finite, or no
 /// triangle.
-Mesh read_stl(const std::filesystem::path& path);
+[[nodiscard]] Mesh read_stl(const std::filesystem::path& path);
 
 /// Reads the `v` and `f` lines of a Wavefront OBJ file; polygons become fans, negative indices count from the
 /// end, equal corners become one vertex, all else is passed over. Throws InputError with the line.
-Mesh read_obj(const std::filesystem::path& path);
+[[nodiscard]] Mesh read_obj(const std::filesystem::path& path);
 
 /// By the file's ending, .stl or .obj; InputError on another.
-Mesh read_mesh(const std::filesystem::path& path);
+[[nodiscard]] Mesh read_mesh(const std::filesystem::path& path);
 
 /// Normals at the corners of all triangles, three a triangle, unit: means of the normals of the triangles
 /// about the vertex, weighted by their angles there (G. Thürmer, C. Wüthrich, "Computing vertex normals from
 /// polygonal facets", J. Graphics Tools 3, 1998), of those that make less than `crease_deg` with the corner's
 /// own, so that edges stay sharp. Triangles without area keep +z. Vertices must be shared. O(triangles).
-std::vector<Vec3> corner_normals(const Mesh& mesh, double crease_deg);
+[[nodiscard]] std::vector<Vec3> corner_normals(const Mesh& mesh, double crease_deg);
 
 /// Edges that do not belong to exactly two triangles: 0 for a closed body.
 std::size_t open_edges(const Mesh& mesh);

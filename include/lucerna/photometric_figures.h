@@ -66,7 +66,7 @@ struct CircleArc {
 
 /// The smallest arc of a circle of ascending points, linear between them, that holds all that reaches
 /// `threshold`; nothing if no point does, the whole circle if all do.
-std::optional<CircleArc> smallest_arc(const std::vector<CirclePoint>& circle, double threshold);
+[[nodiscard]] std::optional<CircleArc> smallest_arc(const std::vector<CirclePoint>& circle, double threshold);
 
 /// Its size.
 std::optional<double> smallest_arc_deg(const std::vector<CirclePoint>& circle, double threshold);
@@ -117,7 +117,8 @@ struct BeamFigures {
 /// All of them, for the pairs C0-C180, C90-C270 and every further grid plane below 180. `centre_cone_deg` is
 /// the half angle for the centre intensity; the default is small against any beam and holds many bins of a 1
 /// degree grid.
-BeamFigures beam_figures(const IntensityDistribution& distribution, double centre_cone_deg = 1.0);
+[[nodiscard]] BeamFigures beam_figures(const IntensityDistribution& distribution,
+                                       double centre_cone_deg = 1.0);
 
 /// The figures of a data sheet, with the definition of each. Fluxes in lm (or W), angles in degrees.
 struct PhotometricFigures {
@@ -141,7 +142,7 @@ struct PhotometricFigures {
 };
 
 /// Computes all of them. Throws InputError if the grid breaks its rules. Thread safe; O(values).
-PhotometricFigures photometric_figures(const PhotometricFile& file);
+[[nodiscard]] PhotometricFigures photometric_figures(const PhotometricFile& file);
 
 /// NEMA type of a field angle: 0 to 7.
 int nema_type(std::optional<double> field_angle_deg);

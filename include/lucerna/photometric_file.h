@@ -144,13 +144,13 @@ struct PhotometricWriteOptions {
 /// of the two IES formats. Radiometric distributions carry [_INTENSITYUNITS] W/sr. Throws InputError if the
 /// grid breaks its rules, or starts at neither 0 nor 90 or ends at neither 90 nor 180, which LM-63 cannot
 /// say. Thread safe, O(values).
-std::string ies_text(const PhotometricFile& file, PhotometricFormat format,
-                     const PhotometricWriteOptions& options = {});
+[[nodiscard]] std::string ies_text(const PhotometricFile& file, PhotometricFormat format,
+                                   const PhotometricWriteOptions& options = {});
 
 /// The text of a EULUMDAT file (Stockmar 1990), CR LF, UTF-8, symmetry found at the printed precision, planes
 /// of Isym 3 from C270 over C0 to C90. Absolute photometry as lamp count -1, luminaire flux, LORL 100.
 /// Radiometric distributions are refused with InputError: the format has no unit. Thread safe, O(values).
-std::string ldt_text(const PhotometricFile& file, const PhotometricWriteOptions& options = {});
+[[nodiscard]] std::string ldt_text(const PhotometricFile& file, const PhotometricWriteOptions& options = {});
 
 /// The order in which EULUMDAT files with Isym 3 store their planes.
 enum class Isym3Order {
@@ -169,11 +169,11 @@ struct PhotometricReadOptions {
 /// What the first bytes of a file (64 KiB are plenty) say it is: `ies_2019` for every IES version, `ldt`, or
 /// nothing. IES is known by its header or TILT line, EULUMDAT by the numbers on its lines 2 to 7 and 13
 /// to 26. Never throws.
-std::optional<PhotometricFormat> detect_photometric_format(std::string_view head);
+[[nodiscard]] std::optional<PhotometricFormat> detect_photometric_format(std::string_view head);
 
 /// True if the file's content looks like IES or EULUMDAT. False for anything else, also for a file that
 /// cannot be read.
-bool is_photometric_file(const std::filesystem::path& path);
+[[nodiscard]] bool is_photometric_file(const std::filesystem::path& path);
 
 /// Reads the text of an IES LM-63 file of any version (1986 to 2019), types A, B and C. Candela are value x
 /// multiplier x ballast factor (x photometric factor in 1986 and 1991 only). Types A and B are turned so that
@@ -181,17 +181,17 @@ bool is_photometric_file(const std::filesystem::path& path);
 /// degrees with the flux of their own quadrature. TILT factors are kept, not applied. Intensities in mW/sr or
 /// W/sr ([_INTENSITYUNITS]) become W/sr. `name` is for messages. Throws InputError with the line where
 /// reading is not possible, or, if strict, at the first repair. Thread safe. O(bytes).
-PhotometricFile read_ies(std::string_view bytes, std::string_view name,
-                         const PhotometricReadOptions& options = {});
+[[nodiscard]] PhotometricFile read_ies(std::string_view bytes, std::string_view name,
+                                       const PhotometricReadOptions& options = {});
 
 /// Reads the text of a EULUMDAT file, Isym 0 to 4. cd = value x conversion factor x flux of the first lamp
 /// set / 1000.
-PhotometricFile read_ldt(std::string_view bytes, std::string_view name,
-                         const PhotometricReadOptions& options = {});
+[[nodiscard]] PhotometricFile read_ldt(std::string_view bytes, std::string_view name,
+                                       const PhotometricReadOptions& options = {});
 
 /// Reads either, by content. Throws InputError if it is neither, larger than 64 MiB, or as above.
-PhotometricFile read_photometric_file(const std::filesystem::path& path,
-                                      const PhotometricReadOptions& options = {});
+[[nodiscard]] PhotometricFile read_photometric_file(const std::filesystem::path& path,
+                                                    const PhotometricReadOptions& options = {});
 
 /// Writes a whole file, or none. Throws InputError if the place cannot be written or the format cannot say
 /// it.
@@ -203,8 +203,8 @@ void write_photometric_file(const std::filesystem::path& path, const Photometric
 /// ratio outside 1 to 105 %, a little uplight (under 7 % of the flux, as stray light in the laboratory
 /// gives), missing sizes, an Isym 3 file that looks reversed. Strict: warnings become errors. Throws only if
 /// the file cannot be opened.
-std::vector<Fault> check_photometric_file(const std::filesystem::path& path,
-                                          const PhotometricReadOptions& options = {});
+[[nodiscard]] std::vector<Fault> check_photometric_file(const std::filesystem::path& path,
+                                                        const PhotometricReadOptions& options = {});
 
 }  // namespace lucerna
 #pragma GCC visibility pop

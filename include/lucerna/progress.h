@@ -20,7 +20,7 @@ class Progress {
 
   /// True once the caller wants the work to end; the long call then throws `Interrupted` at its next safe
   /// place.
-  virtual bool stop_requested() const = 0;
+  [[nodiscard]] virtual bool stop_requested() const = 0;
 
   /// Reports and stops if asked: what a loop calls between its blocks.
   void step(std::string_view phase, std::uint64_t done, std::uint64_t total) {
@@ -33,7 +33,7 @@ class Progress {
 class NoProgress final : public Progress {
  public:
   void update(std::string_view, std::uint64_t, std::uint64_t) override {}
-  bool stop_requested() const override { return false; }
+  [[nodiscard]] bool stop_requested() const override { return false; }
 };
 
 /// A NoProgress that default arguments may refer to.

@@ -53,15 +53,15 @@ struct Project {
 /// Reads a project: [[source]], [[reflector]], [[body]], [[detector]]; [target] and [design] are left to
 /// `design`. Ray files are read whole. Throws InputError with file, line, key, found and expected: unknown
 /// keys name the nearest known one. Thread safe.
-Project read_project(const std::filesystem::path& path, Progress& progress = no_progress());
+[[nodiscard]] Project read_project(const std::filesystem::path& path, Progress& progress = no_progress());
 
 /// The text of the project's tables.
-std::string project_text(const Project& project);
+[[nodiscard]] std::string project_text(const Project& project);
 
 /// A commented project file with every kind of table: what `lucerna init` writes. It reads as it is; what it
 /// has beside one source, one reflector and one detector is commented out with '#' straight before the key
 /// (prose has a blank after it), in blocks that each read once they are uncommented.
-std::string project_template();
+[[nodiscard]] std::string project_template();
 
 }  // namespace lucerna
 #pragma GCC visibility pop

@@ -134,13 +134,13 @@ struct RaySetComparison {
 /// Compares what was counted in one set of views. `training` (the rays that a model was made from) gives
 /// `raw`; without it the reference is taken to be what the test was made from. Throws InputError when
 /// reference or test has no flux.
-RaySetComparison compare_view_counts(const ViewCounts& reference, const ViewCounts& test,
-                                     const ViewCounts* training = nullptr);
+[[nodiscard]] RaySetComparison compare_view_counts(const ViewCounts& reference, const ViewCounts& test,
+                                                   const ViewCounts* training = nullptr);
 
 /// The whole of it for rays in memory: views from `reference`, then all counts. Symmetric in nothing but the
 /// noise.
-RaySetComparison compare_ray_sets(const RayBlock& reference, const RayBlock& test,
-                                  const RayBlock* training = nullptr);
+[[nodiscard]] RaySetComparison compare_ray_sets(const RayBlock& reference, const RayBlock& test,
+                                                const RayBlock* training = nullptr);
 
 /// Illuminance where the lines cross the focus plane, in square cells, all of them however far out.
 struct PlaneDifference {

@@ -66,7 +66,7 @@ class RayReader {
   /// (directions that are unit to 1e-6, which is what float32 can hold, keep their bits), every weight >= 0;
   /// else InputError with the ray's number (from 0) and its byte or line. Extra columns are finite but for
   /// Stokes and additional ones.
-  virtual std::size_t read(RayBlock& block, std::size_t max_rays) = 0;
+  [[nodiscard]] virtual std::size_t read(RayBlock& block, std::size_t max_rays) = 0;
 
  protected:
   RaySetHeader header_;
@@ -101,25 +101,28 @@ std::string_view ray_file_ending(std::string_view format);
 /// The format that the file's content says, never its name; absent if it is no ray file. InputError if it
 /// cannot be read, is empty, or its content fits several formats (the text names them and the option that
 /// decides).
-std::optional<std::string> detect_ray_format(const std::filesystem::path& path);
+[[nodiscard]] std::optional<std::string> detect_ray_format(const std::filesystem::path& path);
 
 /// Opens a ray file for streaming. Throws InputError if it cannot be read, is no ray file, or its header does
 /// not add up; UsageError if `options.format` is no format.
-std::unique_ptr<RayReader> open_ray_file(const std::filesystem::path& path, const ReadOptions& options = {});
+[[nodiscard]] std::unique_ptr<RayReader> open_ray_file(const std::filesystem::path& path,
+                                                       const ReadOptions& options = {});
 
 /// Starts a ray file. `ray_count` is what the caller means to write; the count in the file is what was
 /// written. Throws UsageError if `format` is no format, InputError if the place cannot be written.
-std::unique_ptr<RayWriter> create_ray_file(const std::filesystem::path& path, std::string_view format,
-                                           const RaySetHeader& header, std::uint64_t ray_count,
-                                           const WriteOptions& options = {});
+[[nodiscard]] std::unique_ptr<RayWriter> create_ray_file(const std::filesystem::path& path,
+                                                         std::string_view format, const RaySetHeader& header,
+                                                         std::uint64_t ray_count,
+                                                         const WriteOptions& options = {});
 
 /// The format to write `path` in: `to` if not empty, else what the ending says ("tm25ray", "sdf", "dis").
 /// Throws UsageError if it is no format, or if the ending could mean several or none.
-std::string ray_format_for(const std::filesystem::path& path, std::string_view to = {});
+[[nodiscard]] std::string ray_format_for(const std::filesystem::path& path, std::string_view to = {});
 
 /// The whole file in memory. `warnings`, if given, gets the reader's.
-RaySet read_ray_set(const std::filesystem::path& path, const ReadOptions& options = {},
-                    Progress& progress = no_progress(), std::vector<std::string>* warnings = nullptr);
+[[nodiscard]] RaySet read_ray_set(const std::filesystem::path& path, const ReadOptions& options = {},
+                                  Progress& progress = no_progress(),
+                                  std::vector<std::string>* warnings = nullptr);
 
 /// Writes all of `set`; returns the writer's warnings.
 std::vector<std::string> write_ray_set(const std::filesystem::path& path, const RaySet& set,

@@ -51,7 +51,7 @@ class RayStatistics {
   /// Adds the rays of a block.
   void add(const RayBlock& block);
   /// The summary of all blocks added so far.
-  RaySummary result() const;
+  [[nodiscard]] RaySummary result() const;
 
  private:
   /// Plain sums; starts are taken relative to the first ray's so that far-off sources lose no digits.
@@ -72,7 +72,7 @@ class RayStatistics {
 };
 
 /// The summary of rays in memory.
-RaySummary summarize(const RayBlock& rays);
+[[nodiscard]] RaySummary summarize(const RayBlock& rays);
 
 /// Added in double, in order.
 double sum_of_weights(const RayBlock& rays);

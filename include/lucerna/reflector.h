@@ -52,9 +52,9 @@ enum class ApertureShape { circle, rectangle };
 class Aperture {
  public:
   /// Throws InputError unless diameter > 0 and 0 <= hole < diameter.
-  static Aperture circle(double diameter_mm, double hole_diameter_mm = 0.0);
+  [[nodiscard]] static Aperture circle(double diameter_mm, double hole_diameter_mm = 0.0);
   /// Throws InputError unless both sizes are > 0 and 0 <= hole < the smaller of them.
-  static Aperture rectangle(double size_x_mm, double size_y_mm, double hole_diameter_mm = 0.0);
+  [[nodiscard]] static Aperture rectangle(double size_x_mm, double size_y_mm, double hole_diameter_mm = 0.0);
 
   /// True if (x, y) is on the mirror; outer rims belong to it, the hole's rim does too.
   bool contains(double x_mm, double y_mm) const {
@@ -118,7 +118,8 @@ struct Reflector {
 enum class ConicPreset { parabola, ellipse, hyperbola };
 
 /// A conic of revolution. `focal2_mm` counts for ellipse and hyperbola only. Errors as in ConicProfile.
-Reflector conic_reflector(ConicPreset preset, double focal_mm, double focal2_mm, const Aperture& aperture);
+[[nodiscard]] Reflector conic_reflector(ConicPreset preset, double focal_mm, double focal2_mm,
+                                        const Aperture& aperture);
 
 /// A surface of revolution from a spline profile. Points with ascending r, none of their chords
 /// steeper than 10 : 1, make a SplineProfile; errors as there, and where the aperture is wider than the
@@ -126,20 +127,21 @@ Reflector conic_reflector(ConicPreset preset, double focal_mm, double focal2_mm,
 /// outer size of the aperture is either that of the last point (the mouth; the bulge behind it belongs to the
 /// mirror) or holds the whole curve; a rectangle cuts it. A row of points from the rim to the axis (r
 /// strictly descending) is refused.
-Reflector profile_reflector(const std::vector<ProfileKnot>& knots, const Aperture& aperture);
+[[nodiscard]] Reflector profile_reflector(const std::vector<ProfileKnot>& knots, const Aperture& aperture);
 
 /// A trough along y with a conic as its profile. The aperture's half width along x counts as its radius;
 /// errors as `conic_reflector`.
-Reflector conic_trough(ConicPreset preset, double focal_mm, double focal2_mm, const Aperture& aperture);
+[[nodiscard]] Reflector conic_trough(ConicPreset preset, double focal_mm, double focal2_mm,
+                                     const Aperture& aperture);
 /// A trough along y with a spline profile over |x|; errors as `profile_reflector`.
-Reflector profile_trough(const std::vector<ProfileKnot>& knots, const Aperture& aperture);
+[[nodiscard]] Reflector profile_trough(const std::vector<ProfileKnot>& knots, const Aperture& aperture);
 
 /// An ellipsoid of revolution past its equator: from the hole about its vertex to the mouth beyond the
 /// equator. Light from z = focal_mm meets at z = focal2_mm; equal focal lengths make a sphere. As a
 /// SweptCurve through 256 points or more: right to 1e-9 of its size. Throws InputError unless the focal
 /// lengths are > 0 and the mouth is smaller than the equator.
-Reflector deep_ellipse_reflector(double focal_mm, double focal2_mm, double mouth_diameter_mm,
-                                 double hole_diameter_mm = 0.0);
+[[nodiscard]] Reflector deep_ellipse_reflector(double focal_mm, double focal2_mm, double mouth_diameter_mm,
+                                               double hole_diameter_mm = 0.0);
 
 }  // namespace lucerna
 #pragma GCC visibility pop

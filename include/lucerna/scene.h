@@ -60,7 +60,7 @@ class Reflectance {
   /// The largest value at any angle.
   double max() const;
   /// The same over the angle with `change` added to every value, within [0, 1].
-  Reflectance shifted(double change) const;
+  [[nodiscard]] Reflectance shifted(double change) const;
   /// True if it does not depend on the angle.
   bool is_constant() const { return table_.size() == 1; }
   /// Its entries; one for a constant.

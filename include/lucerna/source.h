@@ -107,10 +107,10 @@ struct EmitterOptions {
 /// The emitter. Throws InputError for sizes or fluxes out of range, or a surface that the emitter does not
 /// fit in. A ray takes five numbers of the sequence: 0, 1 direction; 2, 3 position; 4 which part. Cost: about
 /// 0.1 us a ray.
-std::unique_ptr<RaySource> make_emitter(const EmitterOptions& options);
+[[nodiscard]] std::unique_ptr<RaySource> make_emitter(const EmitterOptions& options);
 
 /// The surface that `options` asks for or its kind has by default.
-BoundingSurface emission_surface(const EmitterOptions& options);
+[[nodiscard]] BoundingSurface emission_surface(const EmitterOptions& options);
 
 /// The rays of a file as a source. Ray j of the stream is a ray of the file: blocks of 64 neighbours are
 /// visited in golden-ratio steps from a start that the sequence's seed fixes, so any first part of the visit

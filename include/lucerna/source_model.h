@@ -46,18 +46,18 @@ class SourceModel : public RaySource {
   virtual double pdf_etendue(const Ray& ray) const = 0;
 
   /// What its file holds.
-  virtual NflFile to_nfl() const = 0;
+  [[nodiscard]] virtual NflFile to_nfl() const = 0;
 };
 
 /// Reads a model file of any version and method. Throws InputError, one line that names the file, the place
 /// and what is wrong, on anything that is not a whole, undamaged model.
-std::unique_ptr<SourceModel> load_source_model(const std::filesystem::path& path);
+[[nodiscard]] std::unique_ptr<SourceModel> load_source_model(const std::filesystem::path& path);
 
 /// Writes `model`; returns the bytes of the file.
 std::uint64_t save_source_model(const std::filesystem::path& path, const SourceModel& model);
 
 /// Does the file begin as a model file does? False for files that are missing or too short; reads 8 bytes.
-bool is_source_model(const std::filesystem::path& path);
+[[nodiscard]] bool is_source_model(const std::filesystem::path& path);
 
 /// The adaptive trees of docs/theory/source-model.md, or Mas-Martin-Patow clusters
 /// (docs/theory/clusters.md).

@@ -121,7 +121,7 @@ struct Ledger {
 };
 
 /// The figures of the energy ledger. emitted = out + absorbed + lost to rounding of the last digit.
-Ledger ledger(const TraceResult& result);
+[[nodiscard]] Ledger ledger(const TraceResult& result);
 
 /// Flux by far-field cell, numbered as in FarFieldGrid: c * gamma_count + g.
 struct FarField {
@@ -158,9 +158,9 @@ struct PlaneImage {
 };
 
 /// Illuminance on TraceResult::planes[index].
-PlaneImage illuminance(const TraceResult& result, std::size_t index);
+[[nodiscard]] PlaneImage illuminance(const TraceResult& result, std::size_t index);
 /// Luminance in TraceResult::luminances[index]: flux over `etendue_mm2sr` of the cell.
-PlaneImage luminance(const TraceResult& result, std::size_t index);
+[[nodiscard]] PlaneImage luminance(const TraceResult& result, std::size_t index);
 
 /// Figures over all cells of a plane or luminance image. What choosing among noisy cells adds to the maximum
 /// and takes off the least is corrected; of more than 2048 cells within six errors
@@ -177,7 +177,7 @@ struct PlaneExtremes {
 /// Adds two traces of the same scene over different rays: the result is, to the bit, that of one run over
 /// both, whatever the order. Throws InputError if they differ in seed, sequence, bounces, instruction set,
 /// flux or detectors, or if their rays do not meet end to end (it says which rays are missing or double).
-TraceResult merge(const TraceResult& a, const TraceResult& b);
+[[nodiscard]] TraceResult merge(const TraceResult& a, const TraceResult& b);
 
 /// `fast`: height fields sampled on a grid and traced in vectors of float32. `reference`: the exact surfaces,
 /// one ray at a time in double; what the fast one is checked against.
@@ -221,7 +221,8 @@ std::uint64_t default_ray_count(const Scene& scene);
 /// same bits for any number of threads. Rays are dealt as RayNumbering says. Progress phase: "trace", in
 /// rays. Throws InputError on a bad scene (`check`), UsageError on a bad range of rays, Interrupted when
 /// asked to stop. Memory: 17 times the bins of all detectors, and that once more per thread and 16.
-TraceResult trace(const Scene& scene, const TraceOptions& options, Progress& progress = no_progress());
+[[nodiscard]] TraceResult trace(const Scene& scene, const TraceOptions& options,
+                                Progress& progress = no_progress());
 
 /// When `trace_until` has enough.
 struct NoiseGoal {
@@ -261,8 +262,9 @@ struct NoiseTrace {
 /// on with (`from`) is the run that was never stopped. Finite sources are traced once; scenes without a far
 /// field, and those that keep rays, are traced as `trace` does by default. `options.last_ray` is ignored, and
 /// with `from` so is `first_ray`, `seed` and `sequence`. Throws as `trace`; what Interrupted stops is lost.
-NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const NoiseGoal& goal,
-                       std::optional<TraceResult> from = std::nullopt, Progress& progress = no_progress());
+[[nodiscard]] NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const NoiseGoal& goal,
+                                     std::optional<TraceResult> from = std::nullopt,
+                                     Progress& progress = no_progress());
 
 }  // namespace lucerna
 #pragma GCC visibility pop

@@ -65,11 +65,11 @@ struct TraceFigures {
 };
 
 /// The figures of a trace. Thread safe. Cost: a few passes over the bins.
-TraceFigures trace_figures(const TraceResult& result);
+[[nodiscard]] TraceFigures trace_figures(const TraceResult& result);
 /// The same with the scene that was traced: the far fields' peaks and axes are then exact, without bins and
 /// kernels, where all sources know their luminance (models, simple emitters) and light can be followed
 /// backward through the scene. About 0.5 s a far field.
-TraceFigures trace_figures(const TraceResult& result, const Scene& scene);
+[[nodiscard]] TraceFigures trace_figures(const TraceResult& result, const Scene& scene);
 
 /// "C 12.3 +- 0.4, gamma 30.2 +- 0.1 deg", or what is known of it: "on the axis within 0.3 deg", "gamma 30.2
 /// +- 0.1 deg, C not determined", "not determined".

@@ -47,7 +47,7 @@ std::vector<FileFault> check_file(const std::string& path, const PhotometricArgu
                                   Session& session) {
   try {
     if (is_source_model(path)) {
-      load_source_model(path);
+      static_cast<void>(load_source_model(path));  // throws where the file is damaged
       return {};
     }
     if (is_photometric_file(path)) return check_photometry(path, photometric.read_options(session.strict));

@@ -24,7 +24,7 @@ struct RestartRules {
   int max_failed = 6;
   double perturbation = 0.02;
   /// Bins of the last stage.
-  std::size_t bins = 48 * 48;
+  std::size_t bins = std::size_t{48} * 48;
 };
 RestartRules restart_rules(const FitProblem& problem);
 

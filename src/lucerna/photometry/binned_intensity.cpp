@@ -187,7 +187,8 @@ void close_flux(std::span<const double> flux, PooledRings rings, const std::vect
 }  // namespace
 
 IntensityBins intensity_bins(std::span<const double> c_deg, std::span<const double> gamma_deg) {
-  zero_distribution({c_deg.begin(), c_deg.end()}, {gamma_deg.begin(), gamma_deg.end()});  // checks the angles
+  static_cast<void>(zero_distribution({c_deg.begin(), c_deg.end()},
+                                      {gamma_deg.begin(), gamma_deg.end()}));  // checks the angles
   IntensityBins bins;
   const std::size_t planes = c_deg.size(), gammas = gamma_deg.size();
   bins.c_edge_deg.resize(planes, 0.0);

@@ -33,8 +33,9 @@ FarFieldFigures far_field_figures(const TraceResult& result, std::size_t index, 
   FarFieldFigures f;
   CountedFarField field = far_field(result, index);
   f.intensity = node_intensity(field);
-  const PointIntensity exact =
-      scene != nullptr ? backward_intensity(*scene, result.max_bounces, result.seed, field) : PointIntensity();
+  const PointIntensity exact = scene != nullptr
+                                   ? backward_intensity(*scene, result.max_bounces, result.seed, field)
+                                   : PointIntensity();
   f.field = std::move(field);
   f.metrics = far_field_metrics(counted_far_field(result, index), f.intensity.distribution.c_deg, exact);
   f.noise = f.node_noise = std::nan("");
