@@ -102,8 +102,8 @@ double rays_per_second(const Scene& scene, const TraceOptions& options, std::uin
   TraceOptions all = options, none = options;
   all.last_ray = rays;
   none.last_ray = 1;
-  const double setup = best_of(2, clock, [&] { trace(scene, none); });
   TraceResult traced;
+  const double setup = best_of(2, clock, [&] { traced = trace(scene, none); });
   const double t = best_of(2, clock, [&] { traced = trace(scene, all); }) - setup;
   if (result != nullptr) *result = std::move(traced);
   return static_cast<double>(rays) / std::max(t, 1e-9);
