@@ -15,7 +15,7 @@
 #include "lucerna/core/parallel.h"
 #include "lucerna/project.h"
 #include "lucerna/trace.h"
-#include "lucerna/trace_figures.h"
+#include "lucerna/trace_metrics.h"
 
 namespace {
 
@@ -33,7 +33,7 @@ struct Look {
 };
 
 Look look_at(const TraceResult& result, const Scene& scene) {
-  FarFieldFigures f = trace_figures(result, scene).far_fields.at(0);
+  FarFieldResult f = trace_metrics(result, scene).far_fields.at(0);
   return {std::move(f.intensity), std::move(f.metrics)};
 }
 

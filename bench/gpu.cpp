@@ -122,7 +122,7 @@ int main(int argc, char** argv) {
   if (sizes.empty()) sizes = {1024, 2048};
   Accelerators devices = cuda_accelerators();
   if (devices.empty()) {
-    fmt::print("{}\n", why_no_cuda());
+    fmt::print("{}\n", cuda_unavailable_reason());
     return 0;
   }
   devices.resize(1);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plain rival of a source model: a uniform four-dimensional table of radiance over the bounding surface.
+// The plain baseline of a source model: a uniform four-dimensional table of radiance over the bounding
+// surface.
 #pragma once
 
 #include <algorithm>

@@ -18,8 +18,8 @@
 #include "lucerna/core/parallel.h"
 #include "lucerna/design/continuation_schedule.h"
 #include "lucerna/design/design.h"
+#include "lucerna/design/initial_guesses.h"
 #include "lucerna/design/optimizer.h"
-#include "lucerna/design/starts.h"
 
 using namespace lucerna;
 
@@ -112,7 +112,7 @@ DesignShape by_design(const char* name, DesignProblem problem, double seconds) {
   problem.optimizer = optimizer(name);
   DesignOptions options;
   options.time_s = kNoLimit;
-  options.judge_rays = std::uint64_t{1} << 18;  // judged below
+  options.validation_rays = std::uint64_t{1} << 18;  // judged below
   ProcessorTime time(seconds);
   return design(problem, options, time).shape;
 }
@@ -121,8 +121,8 @@ std::vector<std::pair<std::string, Way>> ways() {
   std::vector<std::pair<std::string, Way>> out;
   out.emplace_back("given mirror", [](const Task& t) { return t.problem.start; });
   out.emplace_back("zero-etendue", [](const Task& t) {
-    for (const FitStart& start : fit_starts(t.fit, t.problem.start)) {
-      if (start.entry == FitEntry::own_knots) return start.shape;  // the cheapest of a point source's
+    for (const InitialGuess& start : initial_guesses(t.fit, t.problem.start)) {
+      if (start.entry == InitialKnots::own_knots) return start.shape;  // the cheapest of a point source's
     }
     return t.problem.start;
   });
@@ -143,8 +143,8 @@ void run(const Case& c, const std::string& source, double seconds, const std::fi
                                source, c.mirror, c.target));
   const DesignProblem problem = design_problem(read_project(path), path);
   const DesignOptions options;
-  DesignRays judge(problem.project.scene.sources, problem.world_from_mirror.inverse(), 4711);
-  judge.grow(1 << 20);
+  DesignRays validation(problem.project.scene.sources, problem.world_from_mirror.inverse(), 4711);
+  validation.grow(1 << 20);
   for (const auto& [name, way] : ways()) {
     DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
     const FitProblem fit = fit_problem(problem, options, rays);
@@ -154,7 +154,7 @@ void run(const Case& c, const std::string& source, double seconds, const std::fi
     EvaluationOptions plain;
     plain.rays = 1 << 20;
     plain.derivatives = false;
-    const Evaluation e = evaluate(shape, problem.reflectance, judge, fit.bins, plain);
+    const Evaluation e = evaluate(shape, problem.reflectance, validation, fit.bins, plain);
     const BinError error = bin_error(e, fit.target(fit.bins), fit.bins, fit.mode);
     fmt::print(
         "{:12} {:16} error {:6.2f} %  noise {:5.2f} %  efficiency {:.3f}  in window {:.3f}  {:6.1f} s\n",

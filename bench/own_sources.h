@@ -41,7 +41,7 @@ inline WeightedRay dome_ray(const OwnNumbers& u) {
 /// What a dome in the model cannot copy: a die off the axis and below the centre of an ellipsoid of
 /// revolution (1.3 mm across, 1.8 mm high) of index 1.41, with a dim phosphor about it. Fresnel transmission
 /// as weight; caught on a sphere of 4 mm.
-inline WeightedRay egg_ray(const OwnNumbers& u) {
+inline WeightedRay ellipsoidal_dome_ray(const OwnNumbers& u) {
   constexpr double kIndex = 1.41, kAcross = 1.3, kUp = 1.8, kDepth = -0.3;
   const bool die = u[4] < 0.8;
   const double x = die ? 0.15 + 0.8 * (u[2] - 0.5) : 1.6 * (u[2] - 0.5);
@@ -145,7 +145,7 @@ inline std::unique_ptr<RaySource> own_source(std::string_view name) {
   if (name == "dome") return std::make_unique<OwnSource>(dome_ray);
   if (name == "ghost") return std::make_unique<OwnSource>(ghost_ray);
   if (name == "remote") return std::make_unique<OwnSource>(remote_ray);
-  if (name == "egg") return std::make_unique<OwnSource>(egg_ray);
+  if (name == "egg") return std::make_unique<OwnSource>(ellipsoidal_dome_ray);
   if (name == "tilted") return std::make_unique<OwnSource>(tilted_ray);
   if (name == "strip") return std::make_unique<OwnSource>(strip_ray);
   if (name == "arc") return std::make_unique<OwnSource>(arc_ray);

@@ -26,7 +26,7 @@
 #include "lucerna/core/file.h"
 #include "lucerna/design/bounds.h"
 #include "lucerna/design/design.h"
-#include "lucerna/design/design_figures.h"
+#include "lucerna/design/design_metrics.h"
 #include "lucerna/design/design_run.h"
 #include "lucerna/design/validation.h"
 #include "lucerna/design/window.h"
@@ -97,12 +97,12 @@ DesignProblem problem(const Run& run, const std::string& scene, const fs::path& 
 }
 
 /// What independent rays say of a shape.
-struct Judged {
+struct Validated {
   Validation validation;
   DesignBound bound;
 };
 
-Judged judged(const Run& run, const DesignProblem& p, const DesignShape& shape) {
+Validated validated(const Run& run, const DesignProblem& p, const DesignShape& shape) {
   Scene scene = p.project.scene;
   scene.reflectors.front().reflector = shape.reflector();
   const ErrorBoxes boxes(target_rectangle(p.target));
@@ -112,14 +112,14 @@ Judged judged(const Run& run, const DesignProblem& p, const DesignShape& shape) 
   ValidationOptions options;
   options.seed = run.seed + 1000;
   options.max_rays = run.rays;
-  Judged out{validate(scene, boxes, target, p.target.mode, options), {}};
+  Validated out{validate(scene, boxes, target, p.target.mode, options), {}};
   SourceEtendue etendue(rays);
   out.bound = design_bound(boxes, target, p.target.mode, out.validation.error.in_rectangle.mean, etendue,
                            shape, p.world_from_mirror.ez());
   return out;
 }
 
-void print_line(const std::string& name, const Judged& j, const std::string& end) {
+void print_line(const std::string& name, const Validated& j, const std::string& end) {
   const DesignError& e = j.validation.error;
   const auto of = [](const BoxErrorEstimate& x) {
     return fmt::format("{:6.2f}+-{:.2f}", 100.0 * x.excess, 100.0 * x.standard_error);
@@ -136,11 +136,11 @@ void print_line(const std::string& name, const Judged& j, const std::string& end
 
 /// Designs, validates and prints; the shape that was found.
 DesignShape solve(const Run& run, const std::string& name, const DesignProblem& p, double time_s,
-                  Judged& out) {
+                  Validated& out) {
   DesignOptions options;
   options.time_s = time_s;
   options.seed = run.seed;
-  options.judge_rays = std::uint64_t{1} << 18;  // the validation below has more
+  options.validation_rays = std::uint64_t{1} << 18;  // the validation below has more
   options.accelerator = run.device;
   const auto clock = std::chrono::steady_clock::now();
   DesignResult result(p.start);
@@ -154,7 +154,7 @@ DesignShape solve(const Run& run, const std::string& name, const DesignProblem& 
   };
   if (!run.start_only) result = design(p, options, no_progress(), observer);
   const double seconds = seconds_since(clock);
-  out = judged(run, p, result.shape);
+  out = validated(run, p, result.shape);
   print_line(name, out,
              fmt::format("designed in {:.1f} s, {} evaluations, {:.1f} M rays ({})", seconds,
                          result.evaluations, 1e-6 * static_cast<double>(result.rays), to_string(result.end)));
@@ -172,7 +172,7 @@ IntensityDistribution traced_table(Scene scene, double c_step_deg, double gamma_
   TraceOptions options;
   options.last_ray = rays;
   options.seed = 31;
-  return trace_figures(trace(scene, options)).far_fields.front().intensity.distribution;
+  return trace_metrics(trace(scene, options)).far_fields.front().intensity.distribution;
 }
 
 fs::path written(const Run& run, const std::string& name, const IntensityDistribution& table) {
@@ -185,7 +185,7 @@ fs::path written(const Run& run, const std::string& name, const IntensityDistrib
 
 void files(const Run& run) {
   for (const std::string& file : run.names) {
-    Judged j;
+    Validated j;
     solve(run, fs::path(file).filename().string().substr(0, 28),
           problem(run, luminaire(run, run.source), file, "shape"), run.time_s, j);
   }
@@ -195,7 +195,7 @@ void synthetic(const Run& run) {
   for (const auto& target : bench::synthetic_targets()) {
     if (!wanted(run, target.name)) continue;
     const fs::path file = written(run, target.name, bench::table_of(target, 2.5, 1.0));
-    Judged j;
+    Validated j;
     solve(run, target.name, problem(run, luminaire(run, run.source), file, "shape"), run.time_s, j);
   }
 }
@@ -209,13 +209,13 @@ void attainable(const Run& run) {
       const std::string scene = luminaire(run, source), name = target.name + "-" + source;
       const DesignProblem first =
           problem(run, scene, written(run, name, bench::table_of(target, 2.5, 1.0)), "shape");
-      Judged j, exact, again;
+      Validated j, exact, again;
       const DesignShape maker = solve(run, name + " maker", first, run.time_s, j);
       Scene made = first.project.scene;
       made.reflectors.front().reflector = maker.reflector();
       const fs::path table = written(run, name + ".att", traced_table(made, 2.5, 1.0, run.target_rays));
       const DesignProblem second = problem(run, scene, table, "shape");
-      exact = judged(run, second, maker);
+      exact = validated(run, second, maker);
       print_line(name + " exact", exact, "not designed");
       solve(run, name + " again", second, run.time_s, again);
       const double above = again.validation.error.c48.excess - exact.validation.error.c48.excess;
@@ -309,7 +309,7 @@ DesignProblem hidden_problem(const Run& run, const Suite& s, const DesignShape& 
   const fs::path any = written(run, "any", bench::table_of(bench::synthetic_targets().front(), 30.0, 5.0));
   DesignProblem p = problem(run, scene, any, "absolute");
   p.start = plain(s);
-  p.growth = 0;
+  p.knot_doublings = 0;
   p.fixed_knots = run.fixed_knots;
   Scene scene_of_truth = p.project.scene;
   scene_of_truth.reflectors.front().reflector = truth.reflector();
@@ -326,8 +326,8 @@ void hidden(const Run& run) {
     for (const DesignShape& truth : hidden_shapes(s, run.targets)) {
       ++k;
       const DesignProblem p = hidden_problem(run, s, truth);
-      print_line(fmt::format("{} {} exact", s.name, k), judged(run, p, truth), "not designed");
-      Judged j;
+      print_line(fmt::format("{} {} exact", s.name, k), validated(run, p, truth), "not designed");
+      Validated j;
       solve(run, fmt::format("{} {}", s.name, k), p, s.seconds, j);
       worst = std::max(worst, j.validation.error.c48.excess);
     }

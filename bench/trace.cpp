@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays per second through a mirror of 100 x 100 mm, three scenes: para (f 15), wavy
 // (with pillows of 0.4 mm and 8 mm pitch), deep (f 5 with pillows). Cylinder source r 1, length 6, isotropic
-// from its mantle; reflectance 0.9, at most 4 reflections; Type C bins of one degree. Rays are in memory, in
-// random order. Beside it Embree on the same grid as triangles, in packets of 16 rays; all but its search are
-// our kernels.
-// Usage: bench_trace [rays in millions = 4] [cells ... = 256 1024 2048]
+// from its lateral surface; reflectance 0.9, at most 4 reflections; Type C bins of one degree. Rays are in
+// memory, in random order. Beside it Embree on the same grid as triangles, in packets of 16 rays; all but its
+// search are our kernels. Usage: bench_trace [rays in millions = 4] [cells ... = 256 1024 2048]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -106,8 +105,8 @@ Measured run(const BenchmarkScene& c, int cells, const std::shared_ptr<const Ray
   }
   m.all_threads = rate({}, wall_seconds);
   fmt::print("            all threads / one: {:.2f}\n", m.all_threads / m.fastest());
-  if (!EmbreeYardstick::available()) return m;
-  const EmbreeYardstick embree(*field);
+  if (!EmbreeBaseline::available()) return m;
+  const EmbreeBaseline embree(*field);
   std::vector<double> bins(std::size_t{360} * 181);
   const double t =
       best_of(2, cpu_seconds, [&] { embree.trace(rays->rays, c.focal_mm, kBenchmarkBounces, bins); });

@@ -21,8 +21,8 @@ int main(int argc, char** argv) {
     scene.far_fields.push_back({.name = "beam", .c_step_deg = 5.0, .gamma_step_deg = 1.0});
 
     const lucerna::NoiseTrace traced = lucerna::trace_until(scene, {}, {.noise = 0.01});
-    const lucerna::TraceFigures figures = lucerna::trace_figures(traced.result, scene);
-    const lucerna::FarFieldFigures& beam = figures.far_fields.front();
+    const lucerna::TraceMetrics figures = lucerna::trace_metrics(traced.result, scene);
+    const lucerna::FarFieldResult& beam = figures.far_fields.front();
     std::printf("flux %s\n", lucerna::estimate_text(beam.metrics.flux, "lm").c_str());
     std::printf("axis %s\n", lucerna::estimate_text(beam.metrics.axis_cd, "cd").c_str());
     std::printf("beam %s\n", lucerna::angle_text(beam.metrics.planes[0].beam_of_maximum).c_str());

@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
     for (const lucerna::Fault& repair : file.repairs)
       std::printf("line %zu: %s\n", repair.line, repair.text.c_str());
 
-    const lucerna::PhotometricFigures figures = lucerna::photometric_figures(file);
+    const lucerna::PhotometricMetrics figures = lucerna::photometric_metrics(file);
     std::printf("%s, %zu planes\n", file.origin.format.c_str(), file.distribution.c_deg.size());
     std::printf("flux %.1f lm, within 30 degrees %.1f lm\n", figures.beam.flux,
                 figures.flux_0_30);

@@ -13,7 +13,7 @@
 #include "lucerna/design/design.h"
 #include "lucerna/source.h"
 #include "lucerna/source_model.h"
-#include "lucerna/trace_figures.h"
+#include "lucerna/trace_metrics.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {
@@ -80,7 +80,7 @@ TEST_F(OutputHashes, OfModelsAndTheirRays) {
 }
 
 TEST_F(OutputHashes, OfATrace) {
-  const auto cd = trace_figures(traced_).far_fields.at(0).intensity.distribution.cd;
+  const auto cd = trace_metrics(traced_).far_fields.at(0).intensity.distribution.cd;
   expect("trace", hash_of(std::span<const double>(cd)));
 }
 
@@ -112,7 +112,7 @@ TEST_F(OutputHashes, OfADesign) {
   DesignOptions options;
   options.time_s = 1e6;
   options.max_rays = 1 << 13;
-  options.judge_rays = 1 << 14;
+  options.validation_rays = 1 << 14;
   const DesignResult result = design(design_problem(read_project(dir / "p.toml"), dir / "p.toml"), options);
   const Eigen::VectorXd& heights = result.shape.parameters();
   expect("design",

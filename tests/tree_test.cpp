@@ -51,7 +51,7 @@ const std::map<std::string, std::string> kPublicHeaders{
     {"intensity.h", "photometry"},
     {"intensity_comparison.h", "photometry"},
     {"far_field_metrics.h", "photometry"},
-    {"photometric_figures.h", "photometry"},
+    {"photometric_metrics.h", "photometry"},
     {"photometric_file.h", "photometry"},
     {"bounding_surface.h", "rayset"},
     {"source.h", "source"},
@@ -63,7 +63,7 @@ const std::map<std::string, std::string> kPublicHeaders{
     {"project.h", "trace"},
     {"scene.h", "trace"},
     {"trace.h", "trace"},
-    {"trace_figures.h", "trace"},
+    {"trace_metrics.h", "trace"},
     {"design.h", "design"},
     {"comparison.h", "report"},
     {"report.h", "report"},
@@ -288,7 +288,7 @@ std::vector<std::string> types_of(const std::vector<std::string>& lines) {
 // Two classes of one name in one library: the linker takes one's functions for the other's, and says nothing.
 TEST(Tree, NoTwoHeadersDefineTypesOfOneName) {
   // Two sides of an #if, never in one program.
-  const std::set<std::string> kTwoSides{"Float", "Int", "Mask", "Wide"};
+  const std::set<std::string> kTwoSides{"Float", "Int", "Mask", "SimdDouble"};
   std::map<std::string, fs::path> owner;
   for (const fs::path& file : source_files()) {
     if (file.extension() != ".h") continue;

@@ -65,7 +65,7 @@ struct RayFileComparison {
 struct LightFileComparison {
   /// Relative RMS, Bergen fit, Wasserstein distance and more.
   DistributionComparison distributions;
-  /// As a design is judged: the first file as target, by shape.
+  /// As a design is evaluated: the first file as target, by shape.
   DesignError boxes;
 };
 

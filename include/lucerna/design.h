@@ -12,7 +12,7 @@
 #include "lucerna/progress.h"
 #include "lucerna/reflector.h"
 #include "lucerna/trace.h"
-#include "lucerna/trace_figures.h"
+#include "lucerna/trace_metrics.h"
 
 #pragma GCC visibility push(default)
 namespace lucerna {
@@ -45,7 +45,7 @@ struct DesignError {
   /// Largest deviation of one of the 48 x 48 boxes as a share of the target's brightest box, with the
   /// standard error of that box. Noise raises it: the largest of 2304 deviations.
   Estimate worst_cell;
-  /// Rays that it was judged by.
+  /// Rays that it was evaluated by.
   std::uint64_t rays = 0;
 };
 
@@ -141,7 +141,7 @@ struct ToleranceCase {
 };
 
 /// What is watched: of the whole luminaire, all light in the far field.
-struct ToleranceFigures {
+struct ToleranceMetrics {
   /// Of the sources' flux, that leaves.
   Estimate efficiency;
   /// Largest intensity (cd or W/sr), and on the axis.
@@ -154,7 +154,7 @@ struct ToleranceFigures {
 /// cases, so that differences between cases are better known than either. A case whose figure is not
 /// determined is left out.
 struct ToleranceSpread {
-  /// Which of ToleranceFigures.
+  /// Which of ToleranceMetrics.
   std::string figure;
   /// Of the design itself, and the mean over the cases.
   Estimate nominal, mean;
@@ -169,7 +169,7 @@ struct ToleranceSweep {
   /// What was varied.
   ToleranceRanges ranges;
   std::vector<ToleranceCase> cases;       ///< the first is the design itself, then one change a case
-  std::vector<ToleranceFigures> figures;  ///< of each case
+  std::vector<ToleranceMetrics> figures;  ///< of each case
   std::vector<ToleranceSpread> spread;    ///< over the combined cases, figure by figure
 };
 
@@ -185,10 +185,10 @@ struct AdviceTrial {
 };
 
 /// Why a design ended.
-enum class DesignEnd { converged, time, interrupted };
+enum class DesignTermination { converged, time, interrupted };
 
 /// "converged", "time" or "interrupted".
-std::string_view to_string(DesignEnd end);
+std::string_view to_string(DesignTermination end);
 
 /// A mirror of the trade between error and light.
 struct ParetoPoint {
@@ -205,7 +205,7 @@ struct DesignSettings {
   /// Seconds after which to have stopped with the best so far, validated and traced; absent: `time_s` of
   /// [design]. Time only stops: every decision depends on counts.
   std::optional<double> time_s;
-  /// Rays of an evaluation at the end, at most, and at least 8192; four times as many judge the result.
+  /// Rays of an evaluation at the end, at most, and at least 8192; four times as many validate the result.
   std::uint64_t max_rays = std::uint64_t{1} << 23;
   /// Where evaluations are traced. `cuda` throws InputError where there is no device.
   TraceDevice device = TraceDevice::automatic;
@@ -219,7 +219,7 @@ struct DesignSettings {
 /// What was found of a design's mirror.
 struct DesignFindings {
   /// Why it ended.
-  DesignEnd end = DesignEnd::converged;
+  DesignTermination end = DesignTermination::converged;
   /// Against the target, by fresh rays through the exported mesh; and of the given mirror.
   DesignError error, start_error;
   /// The target's zones in the light of the result and of the start, by the same rays.
@@ -255,7 +255,7 @@ struct DesignedMirror : DesignFindings {
   /// The light of the finished project: raw sums and figures.
   TraceResult traced;
   /// All figures of `traced`.
-  TraceFigures light;
+  TraceMetrics light;
   /// If DesignSettings::tolerances asked for it.
   std::optional<ToleranceSweep> tolerances;
 };

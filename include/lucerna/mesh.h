@@ -19,7 +19,7 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Reads a binary or text STL file (which one is told from the content; equal corners become one vertex).
+/// Reads a binary or text STL file (which one follows from the content; equal corners become one vertex).
 /// Throws InputError with the byte or line on a damaged file, a coordinate that is not finite, or no
 /// triangle.
 [[nodiscard]] Mesh read_stl(const std::filesystem::path& path);

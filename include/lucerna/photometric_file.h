@@ -87,8 +87,8 @@ struct PhotometricOrigin {
   std::array<double, 3> raw_size{};    ///< LM-63 width, length, height as in the file
   /// True if that is in feet.
   bool feet = false;
-  std::optional<double> stated_flux_lm;  ///< lamp flux times LORL, or a keyword for luminaire lumens
-  double nadir_spread = 0.0;             ///< (max - min) / mean of the nadir row before it was evened out
+  std::optional<double> declared_flux_lm;  ///< lamp flux times LORL, or a keyword for luminaire lumens
+  double nadir_spread = 0.0;               ///< (max - min) / mean of the nadir row before it was evened out
   /// LM-63 TILT=INCLUDE: angle of the lamp's tilt in degrees and what all intensities are multiplied by
   /// there. Not applied: they depend on the installation. See `tilt_factor`.
   std::vector<std::pair<double, double>> tilt_factors{};

@@ -162,7 +162,7 @@ struct PlacedReflector {
   double slope_error_mrad = 0.0;
 };
 
-/// All that light can meet, and what looks at it. Plain data; `trace` checks it.
+/// All that light can hit, and what looks at it. Plain data; `trace` checks it.
 struct Scene {
   /// At least one; all in lm or all in W.
   std::vector<PlacedSource> sources;

@@ -48,7 +48,7 @@ class RaySource {
 ///
 /// - point: the origin; isotropic.
 /// - disk (radius), rectangle (size): in z = 0; Lambertian to +z.
-/// - cylinder (radius, length; mantle about z, no ends), sphere (radius): Lambertian outward.
+/// - cylinder (radius, length; lateral surface about z, no ends), sphere (radius): Lambertian outward.
 /// - filament: wire of radius 0.06 mm coiled 12 times about x, coil radius and length; Lambertian, windings
 ///   do not shade each other. A share of `ghost_share` leaves from the coil's inverted image, as a concentric
 ///   bulb reflects it.

@@ -20,8 +20,8 @@ int main(int argc, char** argv) {
     scene.far_fields.push_back({.name = "beam", .c_step_deg = 15.0, .gamma_step_deg = 1.0});
 
     const lucerna::NoiseTrace traced = lucerna::trace_until(scene, {}, {.noise = 0.02});
-    const lucerna::TraceFigures figures = lucerna::trace_figures(traced.result, scene);
-    const lucerna::FarFieldFigures& beam = figures.far_fields.front();
+    const lucerna::TraceMetrics figures = lucerna::trace_metrics(traced.result, scene);
+    const lucerna::FarFieldResult& beam = figures.far_fields.front();
     lucerna::write_photometric_file(argv[2], {.distribution = beam.intensity.distribution, .luminaire = {}},
                                     lucerna::PhotometricFormat::ldt);
     std::printf("flux %s\n", lucerna::estimate_text(beam.metrics.flux, "lm").c_str());

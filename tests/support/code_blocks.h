@@ -24,7 +24,7 @@ struct CodeBlock {
 /// Fences of three backquotes at the left margin; a block that does not end is left out.
 std::vector<CodeBlock> code_blocks(std::string_view page);
 
-/// True if `printed` is what `expected` says. `...` stands for any text of a line, alone on a line for any
+/// True if `printed` is what `expected` says. `...` represents any text of a line, alone on a line for any
 /// number of lines. A number that stands by itself may differ by 5 % or one in its last decimal, one after
 /// "+- " by a factor of 2, since other instruction sets and processors end in other digits. Everything
 /// else, digits in words among it (C90, LM-63-2002), is exact but for blanks at the ends of lines.

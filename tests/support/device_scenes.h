@@ -121,12 +121,13 @@ inline Scene with_glasses(Scene scene) {
 
 /// The lamp's own body about the source, a shield, an open mirror that scatters a little, and a smooth one.
 inline Scene with_bodies(Scene scene) {
-  const auto add = [&](const char* name, std::shared_ptr<const Mesh> mesh, const Frame& frame, double kept) {
+  const auto add = [&](const char* name, std::shared_ptr<const Mesh> mesh, const Frame& frame,
+                       double reflected) {
     Body body;
     body.name = name;
     body.mesh = std::move(mesh);
     body.world_from_body = frame;
-    body.reflectance = Reflectance(kept);
+    body.reflectance = Reflectance(reflected);
     scene.bodies.push_back(body);
   };
   add("lamp", globe(24, 5.0), {}, 0.0);

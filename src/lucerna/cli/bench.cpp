@@ -28,7 +28,7 @@ std::vector<int> parse_cells(const std::string& word) {
   return all;
 }
 
-Json figures_json(const BenchmarkFigures& f) {
+Json metrics_json(const BenchmarkMetrics& f) {
   Json json{{"scene", f.scene},
             {"cells", f.cells},
             {"rays", f.rays},
@@ -51,7 +51,7 @@ Json figures_json(const BenchmarkFigures& f) {
 void run_bench(const BenchArguments& a, Session& session) {
   session.start();
   if (trace_device(a.device) == TraceDevice::cuda) {
-    const std::string why = why_no_cuda();
+    const std::string why = cuda_unavailable_reason();
     throw InputError("--device cuda: " + (why.empty() ? "bench_gpu measures the card" : why));
   }
   const std::vector<int> sizes = parse_cells(a.cells);
@@ -61,14 +61,14 @@ void run_bench(const BenchArguments& a, Session& session) {
   const auto rays = benchmark_rays(count);
   Json results = Json::array();
   std::string isa;
-  session.say(fmt::format("{} rays in random order, {} threads; one = processor time of one thread", count,
-                          ThreadLimit::current()));
-  session.say(
+  session.print_line(fmt::format("{} rays in random order, {} threads; one = processor time of one thread",
+                                 count, ThreadLimit::current()));
+  session.print_line(
       "scene cells  M rays/s  M rays/s one  casts/ray  build ms  update ms  heights MB  tree MB  Embree one  "
       "ratio");
   for (const int cells : sizes) {
     for (const BenchmarkScene& scene : benchmark_scenes()) {
-      const BenchmarkFigures f =
+      const BenchmarkMetrics f =
           session.timed("bench", [&] { return run_benchmark(scene, cells, rays, session.progress()); });
       isa = f.isa;
       std::string embree = "         -      -";
@@ -76,14 +76,14 @@ void run_bench(const BenchArguments& a, Session& session) {
         embree = fmt::format("{:10.2f} {:6.1f}", 1e-6 * *f.embree_rays_per_cpu_s,
                              f.rays_per_cpu_s / *f.embree_rays_per_cpu_s);
       }
-      session.say(
+      session.print_line(
           fmt::format("{:5} {:5}  {:8.2f}  {:12.2f}  {:9.3f}  {:8.1f}  {:9.2f}  {:10.2f}  {:7.2f}  {}",
                       f.scene, f.cells, 1e-6 * f.rays_per_s, 1e-6 * f.rays_per_cpu_s, f.casts_per_ray,
                       f.build_ms, f.update_ms, f.heights_mb, f.hierarchy_mb, embree));
-      results.push_back(figures_json(f));
+      results.push_back(metrics_json(f));
     }
   }
-  session.say(fmt::format("instruction set: {}", isa));
+  session.print_line(fmt::format("instruction set: {}", isa));
   Json json = session.json_head(std::nullopt, isa);
   json["device"] = "cpu";
   json["results"] = results;

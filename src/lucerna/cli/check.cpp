@@ -57,7 +57,7 @@ std::vector<FileFault> check_file(const std::string& path, const PhotometricArgu
   }
 }
 
-/// Files as given; a folder stands for every regular file below it, by name.
+/// Files as given; a folder represents every regular file below it, by name.
 std::vector<std::string> expand(const std::vector<std::string>& paths) {
   std::vector<std::string> files;
   for (const std::string& path : paths) {
@@ -93,10 +93,10 @@ void check(const std::vector<std::string>& paths, const PhotometricArguments& ph
     Json entries = Json::array();
     for (const FileFault& f : faults) entries.push_back({{"severity", f.severity}, {"text", f.text}});
     list.push_back({{"path", path}, {"errors", errors}, {"warnings", warnings}, {"faults", entries}});
-    session.say(fmt::format("{}: {}", path, errors > 0 ? "error" : warnings > 0 ? "warning" : "ok"));
-    for (const FileFault& f : faults) session.say(fmt::format("  {}: {}", f.severity, f.text));
+    session.print_line(fmt::format("{}: {}", path, errors > 0 ? "error" : warnings > 0 ? "warning" : "ok"));
+    for (const FileFault& f : faults) session.print_line(fmt::format("  {}: {}", f.severity, f.text));
   }
-  session.say(
+  session.print_line(
       fmt::format("{} files: {} ok, {} with warnings, {} with errors", files.size(), clean, warned, failed));
   if (session.json) {
     Json result = session.json_head(std::nullopt);

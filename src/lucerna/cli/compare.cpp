@@ -16,8 +16,8 @@ namespace lucerna::cli {
 
 namespace {
 
-void say_comparison(const DesignError& boxes, const DistributionComparison& c, Session& session) {
-  session.say(fmt::format(
+void print_comparison(const DesignError& boxes, const DistributionComparison& c, Session& session) {
+  session.print_line(fmt::format(
       "  error as a design   {:.4g} % in 48 x 48 boxes over A's rectangle{} (24: {:.4g}, 12: {:.4g}), by "
       "shape",
       100.0 * boxes.c48.excess,
@@ -27,17 +27,17 @@ void say_comparison(const DesignError& boxes, const DistributionComparison& c, S
   const auto percent = [](const Estimate& e) {
     return estimate_text({100.0 * e.mean, 100.0 * e.standard_error}, "%");
   };
-  session.say(fmt::format("  relative RMS        {} (noise floor {:.4g} %, excess {:.4g} %)",
-                          percent(c.rms()), 100.0 * c.noise_floor, 100.0 * c.excess));
-  session.say(fmt::format("  Bergen fit          {} (100 = equal; by solid angle), {} unweighted",
-                          estimate_text(c.bergen()), estimate_text(c.bergen_unweighted())));
-  session.say(
+  session.print_line(fmt::format("  relative RMS        {} (noise floor {:.4g} %, excess {:.4g} %)",
+                                 percent(c.rms()), 100.0 * c.noise_floor, 100.0 * c.excess));
+  session.print_line(fmt::format("  Bergen fit          {} (100 = equal; by solid angle), {} unweighted",
+                                 estimate_text(c.bergen()), estimate_text(c.bergen_unweighted())));
+  session.print_line(
       fmt::format("  flux, peak          {}, {} times", estimate_text(c.flux()), estimate_text(c.peak())));
-  session.say(fmt::format("  Wasserstein-1       {}", estimate_text(c.wasserstein(), "deg")));
-  session.say(
+  session.print_line(fmt::format("  Wasserstein-1       {}", estimate_text(c.wasserstein(), "deg")));
+  session.print_line(
       fmt::format("  overlap             {} of the flux in the right place", percent(c.overlapping())));
   if (c.alignment) {
-    session.say(fmt::format(
+    session.print_line(fmt::format(
         "  best alignment      tilt {:.3g} deg toward C {:.0f}, turn {:.3g} deg; then relative RMS {:.4g} %",
         c.alignment->tilt_deg, c.alignment->tilt_toward_c_deg, c.alignment->turn_deg,
         100.0 * c.alignment->relative_rms));
@@ -105,8 +105,8 @@ void compare_files(const CompareArguments& a, Session& session) {
   if (found.rays) {
     say_rays(a, *found.rays, session);
   } else {
-    session.say(fmt::format("{} against {}", a.test, a.reference));
-    say_comparison(found.light->boxes, found.light->distributions, session);
+    session.print_line(fmt::format("{} against {}", a.test, a.reference));
+    print_comparison(found.light->boxes, found.light->distributions, session);
   }
 }
 

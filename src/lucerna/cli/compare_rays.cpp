@@ -19,25 +19,26 @@ Json correlation_json(const std::optional<CrossCorrelation>& c) {
   return {{"value", to_json(c->value)}, {"noise_limit", to_json(c->noise_limit)}};
 }
 
-void say_fields(const RayFileComparison& r, Session& session) {
-  session.say("  illuminance on the focus plane: sum of |differences| of the cells' shares (noise alone)");
+void print_fields(const RayFileComparison& r, Session& session) {
+  session.print_line(
+      "  illuminance on the focus plane: sum of |differences| of the cells' shares (noise alone)");
   for (const PlaneDifference& d : r.focus_plane) {
-    session.say(fmt::format("  {:>6g} um {:>9.4f} ({:.4f})", d.cell_um, d.l1, d.floor));
+    session.print_line(fmt::format("  {:>6g} um {:>9.4f} ({:.4f})", d.cell_um, d.l1, d.floor));
   }
-  session.say("  normalised cross-correlation (what noise leaves of 1)");
+  session.print_line("  normalised cross-correlation (what noise leaves of 1)");
   const auto line = [&](const char* name, const std::optional<CrossCorrelation>& c) {
-    if (c) session.say(fmt::format("  {:<8}{:>10.5f} ({:.5f})", name, c->value, c->noise_limit));
+    if (c) session.print_line(fmt::format("  {:<8}{:>10.5f} ({:.5f})", name, c->value, c->noise_limit));
   };
   line("near", r.fields.near);
   line("mid", r.fields.mid);
   line("far", r.fields.far);
-  session.say("  etendue of the brightest 50 / 90 / 99 % of the flux, mm2 sr");
+  session.print_line("  etendue of the brightest 50 / 90 / 99 % of the flux, mm2 sr");
   for (const auto& [name, e] : {std::pair{"A", r.reference_etendue}, std::pair{"B", r.test_etendue}}) {
-    session.say(
+    session.print_line(
         fmt::format("  {:<8}{:>10.4g}{:>10.4g}{:>10.4g}", name, e.p50_mm2sr, e.p90_mm2sr, e.p99_mm2sr));
   }
   for (const LuminancePicture& p : r.pictures) {
-    session.say(
+    session.print_line(
         fmt::format("  {}: A, B, B - A; {:.4g} mm wide, white = {:.4g} of the flux a mm2 sr, full red or "
                     "blue = {:.4g} more or less",
                     p.file, 2.0 * p.half_width_mm, p.white_per_mm2sr, p.full_colour_per_mm2sr));
@@ -78,17 +79,17 @@ Json rays_json(const RayFileComparison& r) {
 }
 
 void say_rays(const CompareArguments& a, const RayFileComparison& r, Session& session) {
-  session.say(fmt::format("{} ({} rays) against {} ({} rays); shares of the l2 norm, in per cent", a.test,
-                          r.test_rays, a.reference, r.reference_rays));
-  session.say(
+  session.print_line(fmt::format("{} ({} rays) against {} ({} rays); shares of the l2 norm, in per cent",
+                                 a.test, r.test_rays, a.reference, r.reference_rays));
+  session.print_line(
       fmt::format("  {:<8}{:>10}{:>10}{:>10}{:>10}{:>10}", "view", "error", "floor", "excess", "+-", "raw"));
   for (const ViewKind kind : kViewKinds) {
     const ViewDifference& d = r.views[kind];
-    session.say(fmt::format("  {:<8}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}", to_string(kind),
-                            100.0 * d.error, 100.0 * d.floor, 100.0 * d.excess, 100.0 * d.standard_error,
-                            100.0 * d.raw));
+    session.print_line(fmt::format("  {:<8}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}", to_string(kind),
+                                   100.0 * d.error, 100.0 * d.floor, 100.0 * d.excess,
+                                   100.0 * d.standard_error, 100.0 * d.raw));
   }
-  say_fields(r, session);
+  print_fields(r, session);
 }
 
 }  // namespace lucerna::cli

@@ -60,15 +60,15 @@ void run_compress(const CompressArguments& a, Session& session) {
   json[model->flux_unit() == FluxUnit::lumen ? "flux_lm" : "flux_w"] = model->flux();
   session.print_json(json);
   const double ratio = 28.0 * static_cast<double>(rays) / static_cast<double>(bytes);
-  session.say(fmt::format(
+  session.print_line(fmt::format(
       "{}: {} rays to {} bytes ({:.3g} times smaller), method {}, {} layer(s), {} leaves, {:g} {}; {:.3g} s",
       a.output, rays, bytes, ratio, model->method(), model->layers(), model->leaves(), model->flux(),
       symbol(model->flux_unit()), session.seconds("compress")));
   if (a.report.empty()) return;
   write_model_report(*model, a.output, {a.inputs.begin(), a.inputs.end()}, std::move(json), a.report,
                      session.progress());
-  session.say(fmt::format("  report: {}, {:.2f} MB", a.report,
-                          1e-6 * static_cast<double>(std::filesystem::file_size(a.report))));
+  session.print_line(fmt::format("  report: {}, {:.2f} MB", a.report,
+                                 1e-6 * static_cast<double>(std::filesystem::file_size(a.report))));
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ void convert_photometry(const ConvertArguments& a, Session& session) {
     session.note(fmt::format("{}: line {}: {}", a.input, repair.line, repair.text));
   for (const Fault& note : file.notes) session.note(fmt::format("{}: {}", a.input, note.text));
   write_photometric_file(a.output, file, *format, a.photometric.write_options());
-  session.say(fmt::format(
+  session.print_line(fmt::format(
       "{}: written; IES angles taken as {}", a.output,
       a.photometric.ies_turn == "90" ? "H = C - 90, sizes kept" : "H = C, width and length swapped"));
 }
@@ -70,7 +70,7 @@ void convert_rays(const ConvertArguments& a, Session& session) {
                             session.progress());
   });
   for (const std::string& warning : result.warnings) session.note(warning);
-  session.say(fmt::format(
+  session.print_line(fmt::format(
       "{}: {} rays{} as {}", a.output, result.rays,
       result.flux ? fmt::format(" of {:.6g} {}", *result.flux, symbol(result.flux_unit)) : "", format));
 }

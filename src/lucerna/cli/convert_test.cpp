@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "lucerna/core/file.h"
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/ray_file.h"
 #include "tests/support/random_rays.h"
 #include "tests/support/run_program.h"

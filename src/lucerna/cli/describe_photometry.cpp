@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "lucerna/cli/describe.h"
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/photometry/street.h"
 #include "lucerna/report/trace_json.h"
 
@@ -17,7 +17,7 @@ std::string fault_text(const Fault& fault) {
 std::string angle(const std::optional<double>& deg) { return deg ? fmt::format("{:.1f}", *deg) : "-"; }
 
 /// BUG rating and G* class, for luminous intensities only.
-void add_street_figures(Description& d, const PhotometricFile& file, const PhotometricReadOptions& options) {
+void add_street_metrics(Description& d, const PhotometricFile& file, const PhotometricReadOptions& options) {
   if (file.distribution.unit != FluxUnit::lumen) return;
   const double side = street_side_c_deg(file.origin, options.ies_turn);
   const BugRating bug = bug_rating(file.distribution, {.street_side_c_deg = side});
@@ -35,8 +35,8 @@ void add_street_figures(Description& d, const PhotometricFile& file, const Photo
 
 Description describe_photometry(const std::string& path, const PhotometricReadOptions& options) {
   const PhotometricFile file = read_photometric_file(path, options);
-  const PhotometricFigures figures = photometric_figures(file);
-  const BeamFigures& beam = figures.beam;
+  const PhotometricMetrics figures = photometric_metrics(file);
+  const BeamMetrics& beam = figures.beam;
   const PhotometricOrigin& origin = file.origin;
   const bool lumen = file.distribution.unit == FluxUnit::lumen;
   Description d;
@@ -89,7 +89,7 @@ Description describe_photometry(const std::string& path, const PhotometricReadOp
                   "the peak); NEMA {}H x {}V",
                   code[0], code[1], code[2], code[3], code[4], figures.cut_off_deg, figures.nema_horizontal,
                   figures.nema_vertical));
-  add_street_figures(d, file, options);
+  add_street_metrics(d, file, options);
   for (const std::string& note : notes) d.lines.push_back("  note: " + note);
   return d;
 }

@@ -33,7 +33,7 @@ DesignOptions design_options(const DesignArguments& a) {
   if (!a.time.empty()) options.time_s = parse_number(a.time);
   if (!a.rays.empty()) {
     options.max_rays = parse_count(a.rays);
-    options.judge_rays = 4 * options.max_rays;
+    options.validation_rays = 4 * options.max_rays;
     check(options);
   }
   return options;
@@ -93,7 +93,7 @@ void design_mirror(const DesignArguments& a, Session& session, int& exit_code) {
   prepare_folder(a.output, session.force || a.resume);
   for (const std::string& warning : problem.project.warnings) session.note(warning);
   for (const auto& input : problem.project.inputs) session.add_input(input);
-  DesignStart start;
+  DesignProgress start;
   if (a.resume) {
     start = read_design_progress(a.output);
     if (start.checkpoint.empty()) session.note(fmt::format("{}: no checkpoint yet, starting anew", a.output));
@@ -103,7 +103,7 @@ void design_mirror(const DesignArguments& a, Session& session, int& exit_code) {
   const DesignRun made = run(problem, options, watch, session);
   const DesignResult& result = made.result;
   const TraceResult& traced = made.trace.result;
-  const DesignFigures& figures = made.figures;
+  const DesignMetrics& figures = made.figures;
   Json json = session.json_head(options.seed, traced.isa);
   json["device"] = accelerator ? accelerator->name() : "cpu";
   json.update(design_json(problem, result, figures));
@@ -112,15 +112,15 @@ void design_mirror(const DesignArguments& a, Session& session, int& exit_code) {
     return write_design_files(a.output, problem, result, figures, traced, watch.history(), json);
   });
   session.print_json(json);
-  session.say(fmt::format("{}: {} parameters, {} evaluations, {:.3g} M rays in {:.3g} s ({})", a.output,
-                          result.shape.parameter_count(), result.evaluations,
-                          1e-6 * static_cast<double>(result.rays), session.seconds("design"),
-                          to_string(result.end)));
-  for (const std::string& line : design_summary(problem, result, figures)) session.say(line);
-  session.say(fmt::format("  written: {}", fmt::join(names, " ")));
+  session.print_line(fmt::format("{}: {} parameters, {} evaluations, {:.3g} M rays in {:.3g} s ({})",
+                                 a.output, result.shape.parameter_count(), result.evaluations,
+                                 1e-6 * static_cast<double>(result.rays), session.seconds("design"),
+                                 to_string(result.end)));
+  for (const std::string& line : design_summary(problem, result, figures)) session.print_line(line);
+  session.print_line(fmt::format("  written: {}", fmt::join(names, " ")));
   if (!a.report.empty()) {
     write_design_report(a.output, a.report);
-    session.say(fmt::format("  report: {}", a.report));
+    session.print_line(fmt::format("  report: {}", a.report));
   }
   for (const LimitCheck& c : result.limits) {
     if (!c.held) exit_code = 1;
@@ -128,7 +128,7 @@ void design_mirror(const DesignArguments& a, Session& session, int& exit_code) {
   for (const ZoneCheck& zone : result.zones) {
     if (zone.verdict() != ZoneVerdict::met) exit_code = 1;
   }
-  if (result.end == DesignEnd::interrupted) exit_code = 3;
+  if (result.end == DesignTermination::interrupted) exit_code = 3;
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ void write_device_project(const TempDir& dir) {
 }
 
 TEST(DeviceCli, CudaWithoutADeviceIsOneLineAndExitOne) {
-  if (why_no_cuda().empty()) GTEST_SKIP() << "there is a CUDA device";
+  if (cuda_unavailable_reason().empty()) GTEST_SKIP() << "there is a CUDA device";
   const TempDir dir;
   write_device_project(dir);
   for (const char* command : {"trace p.toml -o out --device cuda", "design p.toml -o out --device cuda"}) {
@@ -33,7 +33,7 @@ TEST(DeviceCli, CudaWithoutADeviceIsOneLineAndExitOne) {
 }
 
 TEST(DeviceCli, AutoFallsBackToTheCpu) {
-  if (why_no_cuda().empty()) GTEST_SKIP() << "there is a CUDA device";
+  if (cuda_unavailable_reason().empty()) GTEST_SKIP() << "there is a CUDA device";
   const TempDir dir;
   write_device_project(dir);
   const auto run = run_lucerna(dir.path(), "trace p.toml -o out --rays 2000 --json");

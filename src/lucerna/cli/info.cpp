@@ -34,9 +34,9 @@ void info(const InfoArguments& a, Session& session) {
       throw InputError(fmt::format("{}: {}", path, d.warnings.front()));
     session.add_input(path);
     list.push_back(d.json);
-    session.say(path);
-    for (const std::string& line : d.lines) session.say(line);
-    for (const std::string& warning : d.warnings) session.say("  warning: " + warning);
+    session.print_line(path);
+    for (const std::string& line : d.lines) session.print_line(line);
+    for (const std::string& warning : d.warnings) session.print_line("  warning: " + warning);
   }
   if (!session.json) return;
   Json result = session.json_head(std::nullopt);

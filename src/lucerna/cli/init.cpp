@@ -20,7 +20,7 @@ void add_init(CLI::App& app, Session& session, int&) {
       throw InputError(fmt::format("{}: is there already; give --force to replace it", *output));
     }
     write_file(*output, project_template());
-    session.say(fmt::format("{} written; next: lucerna trace {} -o result", *output, *output));
+    session.print_line(fmt::format("{} written; next: lucerna trace {} -o result", *output, *output));
   });
 }
 

@@ -58,9 +58,9 @@ void make_source(const MakeSourceArguments& a, Session& session) {
     return draw_rays(*source, sequence, n, *create_ray_file(a.output, format, header, n), session.progress());
   });
   for (const std::string& warning : warnings) session.note(fmt::format("{}: {}", a.output, warning));
-  session.say(fmt::format("{}: {} rays of {:g} {} as {}, {:.1f} M rays/s", a.output, n, source->flux(),
-                          symbol(source->flux_unit()), format,
-                          1e-6 * static_cast<double>(n) / session.seconds("write")));
+  session.print_line(fmt::format("{}: {} rays of {:g} {} as {}, {:.1f} M rays/s", a.output, n, source->flux(),
+                                 symbol(source->flux_unit()), format,
+                                 1e-6 * static_cast<double>(n) / session.seconds("write")));
 }
 
 }  // namespace

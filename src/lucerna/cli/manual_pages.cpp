@@ -65,7 +65,7 @@ std::string manual_sentence(const std::string& text) {
   return manual_text(text) + (text.ends_with('.') ? "" : ".");
 }
 
-/// What stands for an option's value: RAYS for --rays.
+/// What represents an option's value: RAYS for --rays.
 std::string value_name(const OptionFacts& option) {
   std::string name = option.names.back();
   name.erase(0, name.find_first_not_of('-'));

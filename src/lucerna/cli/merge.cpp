@@ -24,11 +24,11 @@ void run_merge(const MergeArguments& a, Session& session) {
   for (const std::string& folder : a.folders)
     session.add_input(std::filesystem::path(folder) / kTraceFileName);
   prepare_folder(a.output, session.force);
-  const TraceFigures figures = session.timed("figures", [&] { return trace_figures(sum.result); });
+  const TraceMetrics figures = session.timed("figures", [&] { return trace_metrics(sum.result); });
   const auto names = write_trace_output(a.output, sum.result, sum.origin, figures, session);
-  session.say(fmt::format("{}: {} traces of one scene, rays {}:{} ({})", a.output, a.folders.size(),
-                          sum.result.first_ray, sum.result.last_ray, sum.result.isa));
-  say_trace_summary(figures, names, session);
+  session.print_line(fmt::format("{}: {} traces of one scene, rays {}:{} ({})", a.output, a.folders.size(),
+                                 sum.result.first_ray, sum.result.last_ray, sum.result.isa));
+  print_trace_summary(figures, names, session);
   if (sum.result.first_ray > 0) session.note(fmt::format("rays 0:{} are not in it", sum.result.first_ray));
 }
 

@@ -23,8 +23,8 @@ void report(const ReportArguments& a, Session& session) {
     throw UsageError(fmt::format("--rays goes with a model, and {} is none", a.input));
   }
   write_report(a.input, a.output, {a.rays.begin(), a.rays.end()}, session.record(), session.progress());
-  session.say(fmt::format("{} written, {:.2f} MB: opens in any browser, without a network", a.output,
-                          1e-6 * static_cast<double>(std::filesystem::file_size(a.output))));
+  session.print_line(fmt::format("{} written, {:.2f} MB: opens in any browser, without a network", a.output,
+                                 1e-6 * static_cast<double>(std::filesystem::file_size(a.output))));
 }
 
 }  // namespace

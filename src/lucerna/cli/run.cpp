@@ -17,7 +17,7 @@ namespace {
 
 enum ExitCode { kDone = 0, kBadInput = 1, kUsage = 2, kInterrupted = 3 };
 
-int complain(const char* text, ExitCode code) {
+int report_error(const char* text, ExitCode code) {
   fmt::print(stderr, "lucerna: {}\n", text);
   return code;
 }
@@ -32,8 +32,8 @@ std::string hint(const Error& error, const CLI::App& app, ExitCode code) {
   return known ? "; see " + name : "";
 }
 
-int complain(const Error& error, const CLI::App& app, ExitCode code) {
-  return complain((error.what() + hint(error, app, code)).c_str(), code);
+int report_error(const Error& error, const CLI::App& app, ExitCode code) {
+  return report_error((error.what() + hint(error, app, code)).c_str(), code);
 }
 
 }  // namespace
@@ -58,15 +58,15 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? kDone : kUsage;
   } catch (const UsageError& e) {
-    return complain(e, app, kUsage);
+    return report_error(e, app, kUsage);
   } catch (const Interrupted&) {
-    return complain("interrupted", kInterrupted);
+    return report_error("interrupted", kInterrupted);
   } catch (const Error& e) {
-    return complain(e, app, kBadInput);
+    return report_error(e, app, kBadInput);
   } catch (const std::bad_alloc&) {
-    return complain("out of memory", kBadInput);
+    return report_error("out of memory", kBadInput);
   } catch (const std::exception& e) {
-    return complain(e.what(), kBadInput);
+    return report_error(e.what(), kBadInput);
   }
 }
 

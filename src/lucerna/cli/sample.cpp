@@ -26,9 +26,9 @@ void run_sample(const SampleArguments& a, Session& session) {
   const auto warnings =
       session.timed("write", [&] { return sample(*model, n, a.output, options, session.progress()); });
   for (const std::string& warning : warnings) session.note(fmt::format("{}: {}", a.output, warning));
-  session.say(fmt::format("{}: {} rays of {:g} {} as {}, {:.1f} M rays/s", a.output, n, model->flux(),
-                          symbol(model->flux_unit()), format,
-                          1e-6 * static_cast<double>(n) / session.seconds("write")));
+  session.print_line(fmt::format("{}: {} rays of {:g} {} as {}, {:.1f} M rays/s", a.output, n, model->flux(),
+                                 symbol(model->flux_unit()), format,
+                                 1e-6 * static_cast<double>(n) / session.seconds("write")));
 }
 
 }  // namespace

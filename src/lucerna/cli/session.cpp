@@ -122,7 +122,7 @@ Json Session::json_head(std::optional<std::uint64_t> seed, const std::string& is
   return run_json(run_, seed, isa);
 }
 
-void Session::say(const std::string& line) {
+void Session::print_line(const std::string& line) {
   if (quiet || json) return;
   if (progress_) progress_->clear();
   fmt::print("{}\n", line);

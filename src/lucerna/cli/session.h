@@ -81,7 +81,7 @@ class Session {
   Json json_head(std::optional<std::uint64_t> seed, const std::string& isa = "scalar") const;
 
   /// Prints the line unless --quiet or --json; `note` goes to stderr also with --json.
-  void say(const std::string& line);
+  void print_line(const std::string& line);
   void note(const std::string& line);
   void print_json(const Json& object);
 

@@ -101,17 +101,17 @@ void run_trace(const TraceArguments& a, Session& session) {
   const NoiseTrace traced =
       session.timed("trace", [&] { return run_rays(a, project.scene, options, origin, session); });
   const TraceResult& result = traced.result;
-  const TraceFigures figures = session.timed("figures", [&] { return trace_figures(result, project.scene); });
+  const TraceMetrics figures = session.timed("figures", [&] { return trace_metrics(result, project.scene); });
   const auto names = write_trace_output(a.output, result, origin, figures, session);
   const double seconds = session.seconds("trace");
-  session.say(fmt::format(
+  session.print_line(fmt::format(
       "{}: {} rays in {:.3g} s, {:.3g} M rays/s ({}, {} threads); read {:.3g} s, figures {:.3g} s", a.output,
       figures.ledger.rays, seconds, 1e-6 * static_cast<double>(figures.ledger.rays) / seconds, result.isa,
       ThreadLimit::current(), session.seconds("read"), session.seconds("figures")));
-  say_trace_summary(figures, names, session);
+  print_trace_summary(figures, names, session);
   if (!a.report.empty()) {
     write_file(a.report, trace_report_html(read_trace_folder(a.output), {.scene = &project.scene}));
-    session.say(fmt::format("  report: {}", a.report));
+    session.print_line(fmt::format("  report: {}", a.report));
   }
 }
 

@@ -10,7 +10,7 @@
 namespace lucerna::cli {
 
 std::vector<std::string> write_trace_output(const std::string& folder, const TraceResult& result,
-                                            const TraceOrigin& origin, const TraceFigures& figures,
+                                            const TraceOrigin& origin, const TraceMetrics& figures,
                                             Session& session) {
   Json json = session.json_head(result.seed, result.isa);
   std::vector<std::string> warnings;
@@ -20,9 +20,10 @@ std::vector<std::string> write_trace_output(const std::string& folder, const Tra
   return names;
 }
 
-void say_trace_summary(const TraceFigures& figures, const std::vector<std::string>& names, Session& session) {
-  for (const std::string& line : trace_summary(figures)) session.say(line);
-  session.say(fmt::format("  written: {}", fmt::join(names, " ")));
+void print_trace_summary(const TraceMetrics& figures, const std::vector<std::string>& names,
+                         Session& session) {
+  for (const std::string& line : trace_summary(figures)) session.print_line(line);
+  session.print_line(fmt::format("  written: {}", fmt::join(names, " ")));
 }
 
 }  // namespace lucerna::cli

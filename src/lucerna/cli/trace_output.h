@@ -14,10 +14,11 @@ namespace lucerna::cli {
 /// takes), prints the JSON, and tells of warnings. Returns the names of the files. `seed` and inputs are what
 /// the session's head says.
 std::vector<std::string> write_trace_output(const std::string& folder, const TraceResult& result,
-                                            const TraceOrigin& origin, const TraceFigures& figures,
+                                            const TraceOrigin& origin, const TraceMetrics& figures,
                                             Session& session);
 
 /// The figures as text, and the files.
-void say_trace_summary(const TraceFigures& figures, const std::vector<std::string>& names, Session& session);
+void print_trace_summary(const TraceMetrics& figures, const std::vector<std::string>& names,
+                         Session& session);
 
 }  // namespace lucerna::cli

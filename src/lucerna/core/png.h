@@ -17,7 +17,7 @@ void write_png(const std::filesystem::path& path, std::size_t width, std::size_t
 struct GreyImage {
   std::size_t width = 0, height = 0;
   std::vector<double> value;
-  /// The level in the file that stands for 1.
+  /// The level in the file that represents 1.
   double white = 255.0;
   /// The file has colours.
   bool colour = false;

@@ -108,7 +108,7 @@ std::vector<AdviceTrial> advise(const DesignProblem& problem, const DesignError&
   again.checkpoint.clear();
   for (const AdviceChange& change : advice_changes(problem)) {
     const DesignResult result = design(change.problem, again, progress);
-    if (result.end == DesignEnd::interrupted) break;
+    if (result.end == DesignTermination::interrupted) break;
     trials.push_back({change.text, result.error, helps(result, found)});
   }
   return trials;

@@ -47,7 +47,7 @@ DesignOptions few_rays() {
   DesignOptions options;
   options.time_s = 1e6;
   options.max_rays = 1 << 13;
-  options.judge_rays = 1 << 17;
+  options.validation_rays = 1 << 17;
   options.advise = true;
   return options;
 }

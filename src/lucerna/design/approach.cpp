@@ -31,7 +31,7 @@ Approached approach(const FitProblem& problem, const DesignShape& given, int res
                       Rng(problem.seed, kStream + static_cast<std::uint64_t>(restart)));
   }
   FitProblem coarse = problem;
-  coarse.starts.clear();
+  coarse.guesses.clear();
   if (coarse.flux_weight > 0.0) coarse.flux_weight = kFitFluxWeight;
   const ContinuationSchedule schedule =
       continuation_schedule(start, problem.bins, {.rays = max_rays}).up_to_screening();

@@ -7,7 +7,7 @@
 #include "lucerna/design/window.h"
 #include "lucerna/random.h"
 #include "lucerna/source.h"
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 
 namespace lucerna {
 namespace {

@@ -33,9 +33,9 @@ BodyShadows::BodyShadows(std::vector<Body> bodies, std::size_t reflectors)
   for (const Body& body : bodies_) check(body);
 }
 
-std::optional<BodyMeeting> BodyShadows::first(const Vec3& origin, const Vec3& direction, double t_max_mm,
-                                              bool returning) const {
-  const TriangleTreeView tree = (returning ? returning_ : direct_).view();
+std::optional<ShadowHit> BodyShadows::first(const Vec3& origin, const Vec3& direction, double t_max_mm,
+                                            bool returning) const {
+  const TriangleBvhView tree = (returning ? returning_ : direct_).view();
   const TriangleHit hit = first_triangle(tree, origin, direction, returning ? kBodyStart : 0.0, t_max_mm);
   if (hit.triangle < 0) return std::nullopt;
   const TreeTriangle& triangle = tree.triangles[hit.triangle];
@@ -45,7 +45,7 @@ std::optional<BodyMeeting> BodyShadows::first(const Vec3& origin, const Vec3& di
   const bool back = triangle.body >= reflectors_ && dot(along, normal) > 0.0;
   const Vec3 place = origin + hit.t * direction + kBodyStart * at.face.vec();
   const double reflected = back ? 0.0 : bodies_[triangle.body].reflectance.at(-dot(along, at.normal));
-  return BodyMeeting{place, reflect(along, at.normal).vec(), reflected};
+  return ShadowHit{place, reflect(along, at.normal).vec(), reflected};
 }
 
 std::shared_ptr<const BodyShadows> shadows_of(const Scene& scene, const Frame& mirror_from_world) {

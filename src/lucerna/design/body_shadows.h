@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "lucerna/scene.h"
-#include "lucerna/trace/triangle_tree.h"
+#include "lucerna/trace/triangle_bvh.h"
 
 namespace lucerna {
 
-/// What a design's ray met in its way, in the mirror's frame.
-struct BodyMeeting {
+/// What a design's ray hit in its way, in the mirror's frame.
+struct ShadowHit {
   /// Where it goes on from, a little in front of the facet, and along what.
   Vec3 origin, direction;
   /// Share of the light that is reflected; 0: all of it ends here.
@@ -29,14 +29,14 @@ class BodyShadows {
   /// without triangles.
   BodyShadows(std::vector<Body> bodies, std::size_t reflectors);
 
-  /// The first one within (0, t_max_mm) of a ray; `returning`: it met something before.
-  std::optional<BodyMeeting> first(const Vec3& origin, const Vec3& direction, double t_max_mm,
-                                   bool returning) const;
+  /// The first one within (0, t_max_mm) of a ray; `returning`: it hit something before.
+  std::optional<ShadowHit> first(const Vec3& origin, const Vec3& direction, double t_max_mm,
+                                 bool returning) const;
 
  private:
   std::vector<Body> bodies_;
   std::size_t reflectors_;
-  TriangleTree direct_, returning_;
+  TriangleBvh direct_, returning_;
 };
 
 /// All that stands around a scene's first reflector; null where nothing does.

@@ -43,10 +43,10 @@ TEST(BodyShadows, EndReflectAndLetPass) {
                              body({4, -1, 5}, {6, 1, 6}, 0.0, true)},
                             3);
   const Vec3 up{0, 0, 1};
-  const auto met = shadows.first({0, 0, 0}, up, 1e9, false);
-  ASSERT_TRUE(met);
-  EXPECT_EQ(met->reflected, 0.0);
-  EXPECT_NEAR(met->origin.z, 10.0, 0.01);
+  const auto shadow = shadows.first({0, 0, 0}, up, 1e9, false);
+  ASSERT_TRUE(shadow);
+  EXPECT_EQ(shadow->reflected, 0.0);
+  EXPECT_NEAR(shadow->origin.z, 10.0, 0.01);
   EXPECT_FALSE(shadows.first({0, 0, 0}, up, 9.0, false)) << "the mirror is nearer";
   const auto mirror = shadows.first({0, 0, 15}, up, 1e9, true);
   ASSERT_TRUE(mirror);
@@ -190,7 +190,7 @@ TEST(BodyShadows, ADesignThatKnowsTheBodyIsNearerToTheTargetBehindIt) {
   DesignOptions options;
   options.time_s = 1e6;
   options.max_rays = 1 << 15;
-  options.judge_rays = 1 << 17;
+  options.validation_rays = 1 << 17;
   const DesignResult with = design(known, options), without = design(ignored, options);
   EXPECT_GT(with.bodies.mean, 0.02);
   EXPECT_EQ(without.bodies.mean, 0.0);
@@ -237,10 +237,10 @@ TEST(BodyShadows, OfSeveralMirrorsOneIsShapedAndTheOthersStandInTheLight) {
   const auto shadows = shadows_of(p.project.scene, p.world_from_mirror.inverse());
   ASSERT_TRUE(shadows);
   // Down the axis: the small mirror's face looks up, 68 mm before the large one's vertex.
-  const auto met = shadows->first({1, 1, 10}, {0, 0, 1}, 1e9, true);
-  ASSERT_TRUE(met);
-  EXPECT_NEAR(met->origin.z, 68.0, 0.3);
-  EXPECT_GT(met->reflected, 0.99);
+  const auto shadow = shadows->first({1, 1, 10}, {0, 0, 1}, 1e9, true);
+  ASSERT_TRUE(shadow);
+  EXPECT_NEAR(shadow->origin.z, 68.0, 0.3);
+  EXPECT_GT(shadow->reflected, 0.99);
   EXPECT_EQ(shadows->first({1, 1, 100}, {0, 0, -1}, 1e9, true)->reflected, 0.0) << "its back";
   // What a design leaves has both, the shaped one first, and reads again.
   write_file(folder / "again.toml", project_text(with_shape(p, p.start)));

@@ -52,7 +52,7 @@ double min_over_scale(double p, double c, double a, double d, double q, double b
 
 DesignBound etendue_bound(const ErrorBoxes& boxes, std::span<const double> target, TargetMode mode,
                           double share, const EtendueCurve& curve, const Vec3& axis, double opening_mm2,
-                          double mantle_mm2) {
+                          double lateral_mm2) {
   DesignBound bound;
   if (boxes.rectangle().is_plane || curve.degenerate()) return bound;
   const std::vector<std::size_t> order = brightest_first(boxes, target);
@@ -68,10 +68,10 @@ DesignBound etendue_bound(const ErrorBoxes& boxes, std::span<const double> targe
     part += target[b];
     part_sr += boxes.measure()[b];
     const double cosine = std::abs(dot(middle(boxes, b), axis));
-    const double area = opening_mm2 * cosine + mantle_mm2 * std::sqrt(positive(1.0 - cosine * cosine));
+    const double area = opening_mm2 * cosine + lateral_mm2 * std::sqrt(positive(1.0 - cosine * cosine));
     etendue += boxes.measure()[b] * area;
     if (k % 16 != 15) continue;
-    const double max = std::min(1.0, kEtendueSlack * share_in(curve, etendue));
+    const double max = std::min(1.0, kEtendueTolerance * share_in(curve, etendue));
     if (max >= 1.0) break;  // and more étendue holds all the more
     // By shape: s f has at most s most in the set, and the rest of s share is elsewhere.
     const double square = mode == TargetMode::absolute
@@ -87,9 +87,10 @@ DesignBound etendue_bound(const ErrorBoxes& boxes, std::span<const double> targe
 DesignBound design_bound(const ErrorBoxes& boxes, std::span<const double> target, TargetMode mode,
                          double share, SourceEtendue& etendue, const DesignShape& shape, const Vec3& axis) {
   const Aperture& a = shape.aperture();
-  const double mantle = 2.0 * std::hypot(a.half_x_mm(), a.half_y_mm()) * shape.height_mm();
+  const double lateral = 2.0 * std::hypot(a.half_x_mm(), a.half_y_mm()) * shape.height_mm();
   const auto bound = [&](const EtendueCurve& curve) {
-    return etendue_bound(boxes, target, mode, share, curve, axis, opening_mm2(shape, etendue.rays()), mantle);
+    return etendue_bound(boxes, target, mode, share, curve, axis, opening_mm2(shape, etendue.rays()),
+                         lateral);
   };
   const DesignBound quick = bound(etendue.quick());
   return quick.error > 0.0 ? bound(etendue.searched()) : quick;

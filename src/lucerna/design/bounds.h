@@ -15,11 +15,11 @@ namespace lucerna {
 /// sets of brightest boxes the one that binds most is taken; within the set and outside of it the deviations
 /// are spread as evenly as light could be at best, so that the true least error is larger. A is that of the
 /// convex hull of the mirror over its aperture, `height_mm` high along `axis`: opening_mm2 * |cos| +
-/// mantle_mm2 * sin. `share`: of the sources' flux in the rectangle (by shape; absolute mode does not use
+/// lateral_mm2 * sin. `share`: of the sources' flux in the rectangle (by shape; absolute mode does not use
 /// it). Plane targets have no bound (0).
 DesignBound etendue_bound(const ErrorBoxes& boxes, std::span<const double> target, TargetMode mode,
                           double share, const EtendueCurve& curve, const Vec3& axis, double opening_mm2,
-                          double mantle_mm2);
+                          double lateral_mm2);
 
 /// The same for a mirror's sources and aperture; the height is `shape`'s. The quick curve decides whether
 /// there is anything to bound; the searched one then bounds.

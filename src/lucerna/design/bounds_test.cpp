@@ -56,7 +56,7 @@ TEST(Bounds, TheCoreTakesNoMoreThanItsEtendue) {
   EXPECT_GT(expected, 0.1);
   EXPECT_NEAR(b.target_share, 0.9, 0.02);
   EXPECT_NEAR(b.max_share, 0.525, 0.01);
-  // Light may be thrown away: with half of it in the rectangle the core's share fits.
+  // Light may be discarded: with half of it in the rectangle the core's share fits.
   EXPECT_EQ(etendue_bound(s.boxes, s.target, TargetMode::shape, 0.5, even(5.0), kDown, 1000.0, 0.0).error,
             0.0);
 }

@@ -46,18 +46,18 @@ Cells inside(const ErrorBoxes& boxes, std::span<const double> target, std::span<
   std::vector<double> shares(replicates.size());
   for (int v = 0; v < kErrorBoxes; v += m) {
     for (int u = 0; u < kErrorBoxes; u += m) {
-      double measure = 0.0, wanted = 0.0;
+      double measure = 0.0, expected = 0.0;
       std::fill(shares.begin(), shares.end(), 0.0);
       for (int k = 0; k < m * m; ++k) {
         const auto b = static_cast<std::size_t>((v + k / m) * kErrorBoxes + u + k % m);
         if (boxes.measure()[b] == 0.0) continue;
         measure += boxes.measure()[b];
-        wanted += target[b];
+        expected += target[b];
         for (std::size_t r = 0; r < shares.size(); ++r) {
           shares[r] += replicates[r].flux[b] / replicates[r].emitted;
         }
       }
-      cells.add(measure, wanted, shares);
+      cells.add(measure, expected, shares);
     }
   }
   return cells;

@@ -55,26 +55,26 @@ class Reader {
     for (std::size_t i = 0; i < n; ++i) v.push_back(value<double>());
     return v;
   }
-  FitMark mark(const char* name) {
+  FitSnapshot snapshot(const char* name) {
     expect(name);
-    FitMark m;
+    FitSnapshot m;
     m.cost = value<double>();
     m.merit = value<double>();
-    m.over_noise = value<double>();
+    m.error_to_noise = value<double>();
     m.intervals_x = whole(1, kMaxIntervals);
     m.intervals_y = whole(0, kMaxIntervals);  // 0: of revolution
     m.parameters = numbers("of");
     return m;
   }
-  FreeFormMark search_mark(const char* name) {
+  FreeFormSnapshot search_snapshot(const char* name) {
     expect(name);
-    FreeFormMark m;
+    FreeFormSnapshot m;
     m.candidate = whole(-1, kMaxCount);
     m.level = whole(m.exists() ? 0 : -1, kFreeFormLevels - 1);
     m.transport.sign = value<double>();
     m.transport.vertex_distance_mm = value<double>();
     m.cost = value<double>();
-    m.over_noise = value<double>();
+    m.error_to_noise = value<double>();
     m.intervals_x = whole(1, kMaxIntervals);
     m.intervals_y = whole(1, kMaxIntervals);
     m.parameters = numbers("of");
@@ -117,15 +117,15 @@ void put(std::string& text, const char* name, const std::vector<double>& v) {
   text += '\n';
 }
 
-void put(std::string& text, const char* name, const FitMark& m) {
-  text +=
-      fmt::format("{} {} {} {} {} {} ", name, m.cost, m.merit, m.over_noise, m.intervals_x, m.intervals_y);
+void put(std::string& text, const char* name, const FitSnapshot& m) {
+  text += fmt::format("{} {} {} {} {} {} ", name, m.cost, m.merit, m.error_to_noise, m.intervals_x,
+                      m.intervals_y);
   put(text, "of", m.parameters);
 }
 
-void put(std::string& text, const char* name, const FreeFormMark& m) {
+void put(std::string& text, const char* name, const FreeFormSnapshot& m) {
   text += fmt::format("{} {} {} {} {} {} {} {} {} ", name, m.candidate, m.level, m.transport.sign,
-                      m.transport.vertex_distance_mm, m.cost, m.over_noise, m.intervals_x, m.intervals_y);
+                      m.transport.vertex_distance_mm, m.cost, m.error_to_noise, m.intervals_x, m.intervals_y);
   put(text, "of", m.parameters);
 }
 
@@ -139,7 +139,7 @@ std::string checkpoint_text(const FreeFormState& s, const std::string& key) {
   put(text, "costs", s.costs);
   put(text, "now", s.now);
   text += fmt::format("done {}\n", s.done.size());
-  for (const FreeFormMark& m : s.done) put(text, "mark", m);
+  for (const FreeFormSnapshot& m : s.done) put(text, "mark", m);
   return text + "end\n";
 }
 
@@ -155,10 +155,10 @@ FreeFormState parse_search_checkpoint(const std::string& text, const std::string
   s.evaluations = in.count("evaluations");
   s.total_rays = in.number<std::uint64_t>("total_rays");
   s.costs = in.numbers("costs");
-  s.now = in.search_mark("now");
-  const auto marks = in.number<std::size_t>("done");
-  if (marks > kMaxNumbers) damaged("a count is out of range");
-  for (std::size_t i = 0; i < marks; ++i) s.done.push_back(in.search_mark("mark"));
+  s.now = in.search_snapshot("now");
+  const auto snapshots = in.number<std::size_t>("done");
+  if (snapshots > kMaxNumbers) damaged("a count is out of range");
+  for (std::size_t i = 0; i < snapshots; ++i) s.done.push_back(in.search_snapshot("mark"));
   in.expect("end");
   return s;
 }
@@ -170,7 +170,7 @@ std::string checkpoint_text(const FitState& s, const std::string& key) {
       "total_rays {}\nover_noise {}\nstarts {}\nfailed_restarts {}\nrefused {}\nsearch_restarts {}\n"
       "search_restarts_left {}\ntwin {}\nincumbent_cost {}\n",
       kMagic, key, s.intervals_x, s.intervals_y, s.stage, s.step, s.lambda, s.evaluations, s.total_rays,
-      s.over_noise, r.begun, r.failed, s.refused, r.searches, r.searches_left, r.conjugate ? 1 : 0,
+      s.error_to_noise, r.begun, r.failed, s.refused, r.searches, r.searches_left, r.conjugate ? 1 : 0,
       r.incumbent_cost);
   put(text, "parameters", s.parameters);
   put(text, "costs", s.costs);
@@ -192,7 +192,7 @@ FitState parse_checkpoint(const std::string& text, const std::string& key) {
   s.lambda = in.number<double>("lambda");
   s.evaluations = in.count("evaluations");
   s.total_rays = in.number<std::uint64_t>("total_rays");
-  s.over_noise = in.number<double>("over_noise");
+  s.error_to_noise = in.number<double>("over_noise");
   s.restart.begun = in.count("starts");
   s.restart.failed = in.count("failed_restarts");
   s.refused = in.count("refused");
@@ -202,9 +202,9 @@ FitState parse_checkpoint(const std::string& text, const std::string& key) {
   s.restart.incumbent_cost = in.number<double>("incumbent_cost");
   s.parameters = in.numbers("parameters");
   s.costs = in.numbers("costs");
-  s.restart.screened = in.mark("gate");
-  s.restart.best = in.mark("best");
-  s.restart.found = in.mark("found");
+  s.restart.screened = in.snapshot("gate");
+  s.restart.best = in.snapshot("best");
+  s.restart.found = in.snapshot("found");
   s.search_costs = in.numbers("search_costs");
   in.expect("end");
   return s;

@@ -43,7 +43,7 @@ std::vector<double> any_doubles(Rng& rng) {
   return v;
 }
 
-FitMark any_mark(Rng& rng) {
+FitSnapshot any_mark(Rng& rng) {
   return {any_double(rng),
           any_double(rng),
           any_double(rng),
@@ -52,8 +52,8 @@ FitMark any_mark(Rng& rng) {
           any_doubles(rng)};
 }
 
-void expect_same(const FitMark& a, const FitMark& b) {
-  EXPECT_EQ(bits_of({a.cost, a.over_noise, a.merit}), bits_of({b.cost, b.over_noise, b.merit}));
+void expect_same(const FitSnapshot& a, const FitSnapshot& b) {
+  EXPECT_EQ(bits_of({a.cost, a.error_to_noise, a.merit}), bits_of({b.cost, b.error_to_noise, b.merit}));
   EXPECT_EQ(a.intervals_x, b.intervals_x);
   EXPECT_EQ(a.intervals_y, b.intervals_y);
   EXPECT_EQ(bits_of(a.parameters), bits_of(b.parameters));
@@ -71,7 +71,7 @@ void expect_same(const RestartState& a, const RestartState& b) {
   EXPECT_EQ(bits_of({a.incumbent_cost}), bits_of({b.incumbent_cost}));
 }
 
-FreeFormMark any_candidate(Rng& rng) {
+FreeFormSnapshot any_candidate(Rng& rng) {
   return {static_cast<int>(1e9 * rng.uniform()),
           static_cast<int>(kFreeFormLevels * rng.uniform()),
           {any_double(rng), any_double(rng)},
@@ -82,11 +82,11 @@ FreeFormMark any_candidate(Rng& rng) {
           any_doubles(rng)};
 }
 
-void expect_same(const FreeFormMark& a, const FreeFormMark& b) {
+void expect_same(const FreeFormSnapshot& a, const FreeFormSnapshot& b) {
   EXPECT_EQ(a.candidate, b.candidate);
   EXPECT_EQ(a.level, b.level);
-  EXPECT_EQ(bits_of({a.transport.sign, a.transport.vertex_distance_mm, a.cost, a.over_noise}),
-            bits_of({b.transport.sign, b.transport.vertex_distance_mm, b.cost, b.over_noise}));
+  EXPECT_EQ(bits_of({a.transport.sign, a.transport.vertex_distance_mm, a.cost, a.error_to_noise}),
+            bits_of({b.transport.sign, b.transport.vertex_distance_mm, b.cost, b.error_to_noise}));
   EXPECT_EQ(a.intervals_x, b.intervals_x);
   EXPECT_EQ(a.intervals_y, b.intervals_y);
   EXPECT_EQ(bits_of(a.parameters), bits_of(b.parameters));
@@ -138,7 +138,7 @@ TEST(Checkpoint, AStateSurvivesToTheBit) {
     s.refused = count();
     s.evaluations = count();
     s.total_rays = static_cast<std::uint64_t>(rng.uniform() * 0x1p63);
-    s.over_noise = any_double(rng);
+    s.error_to_noise = any_double(rng);
     s.restart = {count(), count(),    any_mark(rng), any_mark(rng),  count(),
                  count(), k % 2 == 0, any_mark(rng), any_double(rng)};
     s.search_costs = any_doubles(rng);
@@ -148,7 +148,7 @@ TEST(Checkpoint, AStateSurvivesToTheBit) {
     EXPECT_EQ(t.intervals_y, s.intervals_y);
     EXPECT_EQ(t.stage, s.stage);
     EXPECT_EQ(t.step, s.step);
-    EXPECT_EQ(bits_of({t.lambda, t.over_noise}), bits_of({s.lambda, s.over_noise}));
+    EXPECT_EQ(bits_of({t.lambda, t.error_to_noise}), bits_of({s.lambda, s.error_to_noise}));
     EXPECT_EQ(bits_of(t.costs), bits_of(s.costs));
     EXPECT_EQ(t.refused, s.refused);
     EXPECT_EQ(t.evaluations, s.evaluations);

@@ -70,7 +70,7 @@ class CmaRun {
       points.emplace_back(mean_ + sigma_ * steps.back());
     }
     std::vector<double> costs = run_.costs(points);
-    // A point outside the box stands for the nearest one inside; how far out it is makes it worse.
+    // A point outside the box represents the nearest one inside; how far out it is makes it worse.
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Eigen::VectorXd out = points[i] - points[i].cwiseMax(-1.0).cwiseMin(1.0);
       costs[i] += std::abs(costs[i]) * out.squaredNorm();

@@ -13,7 +13,7 @@ namespace lucerna {
 namespace {
 
 /// Knots (per direction) that a zero-etendue solution begins with: more only follow its facets.
-constexpr int kKnotsOfStarts = 4;
+constexpr int kKnotsOfGuesses = 4;
 
 /// Weight of roughness in the first stages, where slopes are measured in half widths of the window: enough
 /// against folds that coarse bins do not see, too little to hold the light back.
@@ -37,7 +37,7 @@ class Stages {
       const FitStage& last = all_.back();
       if (last.rays == stage.rays && last.bins == stage.bins && last.intervals_x == stage.intervals_x &&
           last.intervals_y == stage.intervals_y && last.smoothing == stage.smoothing &&
-          last.waves == stage.waves) {
+          last.cutoff == stage.cutoff) {
         all_.back().screening |= stage.screening;
         return;
       }
@@ -66,17 +66,17 @@ std::vector<FitStage> stages_of_revolution(int n, int ny, int k, double smoothin
   return stages.take();
 }
 
-/// Most intervals with which the search for basins is made: more cannot be told apart by so few rays, and
+/// Most intervals with which the search for basins is made: more cannot be distinguished by so few rays, and
 /// fewer than the shape's own would not show what its basin is worth.
 constexpr int kSearchKnots = 8;
 
 /// From light that costs the more the farther it has to go, to light nearly as it is.
 void add_search(const std::array<int, 2>& knots, int k, double smoothing, Stages& stages) {
   if (std::max(knots[0], knots[1]) > kSearchKnots) return;
-  const auto add = [&](double waves, std::uint64_t rays, double share) {
+  const auto add = [&](double cutoff, std::uint64_t rays, double share) {
     const int bins = std::max(knots[0], knots[1]) <= 4 ? k / 3 : k / 2;
     FitStage stage{knots[0], knots[1], bins, 1.0, rays, 30, 0.02, share * smoothing};
-    stage.waves = waves;
+    stage.cutoff = cutoff;
     stage.search = true;
     stages.add(stage);
   };
@@ -109,9 +109,9 @@ std::size_t ContinuationSchedule::first_with(int intervals) const {
   return stage;
 }
 
-std::size_t ContinuationSchedule::entry(FitEntry entry) const {
-  if (entry == FitEntry::few_knots) return search_stages_;
-  if (entry == FitEntry::own_knots) return first_with(kKnotsOfStarts);
+std::size_t ContinuationSchedule::entry(InitialKnots entry) const {
+  if (entry == InitialKnots::few_knots) return search_stages_;
+  if (entry == InitialKnots::own_knots) return first_with(kKnotsOfGuesses);
   return stages_.size() - 1;
 }
 
@@ -155,10 +155,10 @@ ContinuationSchedule continuation_schedule(const DesignShape& shape, const TentB
     const int y = shape.is_trough() ? ny : ny << doublings;
     stages.add({nx << doublings, y, k, 1.0, rays, 30, gain, 0.0, false, true});
   };
-  for (int g = 1; g <= o.growth; ++g) fine(g, two_to(18), 0.03);
-  fine(o.growth, two_to(20), 0.01);
+  for (int g = 1; g <= o.knot_doublings; ++g) fine(g, two_to(18), 0.03);
+  fine(o.knot_doublings, two_to(20), 0.01);
   // Many knots take up the noise of a million rays (400 parameters in 48 x 48 bins a sixth of its square).
-  if (many) fine(o.growth, two_to(22), 0.01);
+  if (many) fine(o.knot_doublings, two_to(22), 0.01);
   return ContinuationSchedule(stages.take());
 }
 

@@ -21,14 +21,14 @@ struct FitStage {
   int max_steps = 30;
   /// The stage ends when the last two accepted steps gained less than this share of the error.
   double min_gain = 0.03;
-  /// Weight of `roughness` in the cost.
+  /// Weight of `smoothness_penalty` in the cost.
   double smoothing = 0.0;
-  /// Starts are compared here: only the best goes on, later restarts only where they beat it.
+  /// Initial guesses are compared here: only the best goes on, later restarts only where they beat it.
   bool screening = false;
   /// The knots are taken only where the stage before ended above the noise; else those of before stay.
   bool grow = false;
-  /// Large scales of the light weigh more (large_scale.h), by so many half waves; 0: all alike.
-  double waves = 0.0;
+  /// Large scales of the light weigh more (spectral_weighting.h), by so many half waves; 0: all alike.
+  double cutoff = 0.0;
   /// Of the search for other basins, which only its own restarts pass. Such stages come first.
   bool search = false;
 };
@@ -51,8 +51,8 @@ class ContinuationSchedule {
   bool screens_from(std::size_t stage) const;
   /// The first of the fit's stages with so many intervals, the screening stage at the latest.
   std::size_t first_with(int intervals) const;
-  /// Where a start begins.
-  std::size_t entry(FitEntry entry) const;
+  /// Where a guess begins.
+  std::size_t entry(InitialKnots entry) const;
   /// The same without what follows the screening stage.
   ContinuationSchedule up_to_screening() const;
 
@@ -66,7 +66,7 @@ struct ScheduleOptions {
   /// Rays of the last stage at most.
   std::uint64_t rays = std::uint64_t{1} << 22;
   /// How often the knots may be doubled beyond the shape's own where the light asks for it.
-  int growth = 0;
+  int knot_doublings = 0;
 };
 
 /// The schedule for a shape: knots up to its own (and beyond, with growth), bins up to the problem's, always

@@ -35,10 +35,11 @@ std::vector<ScheduleCase> make_schedules() {
     const TentBins bins =
         shape.is_revolution() ? TentBins::rings(Frame(), 0.5, 48) : TentBins::square(Frame(), 0.3, 48);
     for (const int rays : {13, 16, 22}) {
-      for (const int growth : {0, 1, 2}) {
+      for (const int knot_doublings : {0, 1, 2}) {
         cases.push_back({fmt::format("{} x {} intervals, 2^{} rays, growth {}", shape.intervals_x(),
-                                     shape.intervals_y(), rays, growth),
-                         continuation_schedule(shape, bins, {std::uint64_t{1} << rays, growth}), shape});
+                                     shape.intervals_y(), rays, knot_doublings),
+                         continuation_schedule(shape, bins, {std::uint64_t{1} << rays, knot_doublings}),
+                         shape});
       }
     }
   }
@@ -64,7 +65,7 @@ TEST(ContinuationSchedule, RefinesOnlyAndNeverCoarsens) {
       EXPECT_FALSE(b.search) << name << " at " << i;
     }
     for (std::size_t i = 1; i < schedule.search_stages(); ++i) {
-      EXPECT_GT(schedule[i].waves, schedule[i - 1].waves) << name;  // from large scales to all of the light
+      EXPECT_GT(schedule[i].cutoff, schedule[i - 1].cutoff) << name;  // from large scales to all of the light
       EXPECT_GE(schedule[i].rays, schedule[i - 1].rays) << name;
     }
   }
@@ -88,11 +89,12 @@ TEST(ContinuationSchedule, EndsWithTheShapesKnotsAndScreensOnce) {
 
 TEST(ContinuationSchedule, EntriesAreBetweenTheSearchAndTheEnd) {
   for (const auto& [name, schedule, shape] : all_schedules()) {
-    const std::size_t few = schedule.entry(FitEntry::few_knots), own = schedule.entry(FitEntry::own_knots);
+    const std::size_t few = schedule.entry(InitialKnots::few_knots),
+                      own = schedule.entry(InitialKnots::own_knots);
     EXPECT_EQ(few, schedule.search_stages()) << name;
     EXPECT_LE(few, own) << name;
     EXPECT_LE(own, schedule.screening()) << name;
-    EXPECT_EQ(schedule.entry(FitEntry::end), schedule.size() - 1) << name;
+    EXPECT_EQ(schedule.entry(InitialKnots::end), schedule.size() - 1) << name;
   }
 }
 

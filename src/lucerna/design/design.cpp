@@ -25,7 +25,7 @@ namespace {
 /// Seconds that a validation gets where none are left, and without a limit.
 constexpr double kMinValidation_s = 2.0, kNoLimit = std::numeric_limits<double>::infinity();
 /// Rays that judge a result for which there is no time left.
-constexpr std::uint64_t kMinJudgeRays = std::uint64_t{1} << 18;
+constexpr std::uint64_t kMinValidationRays = std::uint64_t{1} << 18;
 /// Rays that measure how much light leaves the mirror to begin with.
 constexpr std::uint64_t kFluxRays = std::uint64_t{1} << 16;
 
@@ -95,7 +95,7 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
                     const DesignObserver& observer) {
   check(options);
   // A validation's ray, without derivatives, takes about half the time of a fit's.
-  TimeBudget time(options.time_s.value_or(problem.time_s), options.judge_rays / 2 + options.rays_after);
+  TimeBudget time(options.time_s.value_or(problem.time_s), options.validation_rays / 2 + options.rays_after);
   DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
   rays.evaluate_on(options.accelerator);
   rays.shade_by(shadows_of(problem.project.scene, problem.world_from_mirror.inverse()));
@@ -104,30 +104,33 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
   search_mirror({problem, options, problem_key(problem, options), time, progress, observer}, fit_data,
                 result);
   result.shape = ShapeLimits(problem.limits, problem.start).nearest(result.shape);
-  std::uint64_t judge_rays = options.judge_rays;
-  if (result.end != DesignEnd::converged) {
-    judge_rays = time.affordable(judge_rays, options.rays_after, std::min(judge_rays, kMinJudgeRays));
+  std::uint64_t validation_rays = options.validation_rays;
+  if (result.end != DesignTermination::converged) {
+    validation_rays =
+        time.affordable(validation_rays, options.rays_after, std::min(validation_rays, kMinValidationRays));
   }
-  if (result.end == DesignEnd::interrupted) judge_rays = std::min(judge_rays, kMinJudgeRays);
+  if (result.end == DesignTermination::interrupted)
+    validation_rays = std::min(validation_rays, kMinValidationRays);
   // Time stops a validation too, but not before there is an error to show.
-  const double max_s = result.end == DesignEnd::time ? std::max(time.left_s(), kMinValidation_s) : kNoLimit;
-  check_result(problem, options, fit_data, judge_rays, max_s, result, progress);
-  if (options.pareto && result.end != DesignEnd::interrupted) {
+  const double max_s =
+      result.end == DesignTermination::time ? std::max(time.left_s(), kMinValidation_s) : kNoLimit;
+  check_result(problem, options, fit_data, validation_rays, max_s, result, progress);
+  if (options.pareto && result.end != DesignTermination::interrupted) {
     result.pareto = pareto_front(problem, result.shape, options, progress);
   }
-  if (options.advise && result.end != DesignEnd::interrupted) {
+  if (options.advise && result.end != DesignTermination::interrupted) {
     result.advice = advise(problem, result.error, options, progress);
   }
   return result;
 }
 
-std::string_view to_string(DesignEnd end) {
+std::string_view to_string(DesignTermination end) {
   switch (end) {
-    case DesignEnd::converged:
+    case DesignTermination::converged:
       return "converged";
-    case DesignEnd::time:
+    case DesignTermination::time:
       return "time";
-    case DesignEnd::interrupted:
+    case DesignTermination::interrupted:
       return "interrupted";
   }
   return "";

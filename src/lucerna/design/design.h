@@ -30,7 +30,7 @@ struct DesignOptions {
   std::uint64_t max_rays = std::uint64_t{1} << 23;
   /// Rays of the validation, at most (ValidationOptions::max_rays), other than those it was fitted with.
   /// Where time ran out or the user asked to stop, fewer may be traced.
-  std::uint64_t judge_rays = std::uint64_t{1} << 24;
+  std::uint64_t validation_rays = std::uint64_t{1} << 24;
   /// Rays that will be traced after that (run_design sets it); time is kept for them.
   std::uint64_t rays_after = 0;
   /// Where evaluations are traced (device_evaluator.h); null: on the CPU.

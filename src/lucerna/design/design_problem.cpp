@@ -14,9 +14,9 @@
 #include "lucerna/design/window.h"
 #include "lucerna/reflector/profile.h"
 #include "lucerna/reflector/trough_surface.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/project_tables.h"
 #include "lucerna/trace/toml_reader.h"
-#include "lucerna/trace/units.h"
 
 namespace lucerna {
 
@@ -84,8 +84,8 @@ std::optional<int> read_restarts(TomlReader& reader) {
 
 /// How often the knots may be doubled, 0 where the project says how many: bins hold about four numbers for
 /// each parameter then.
-int doublings(const DesignShape& shape, int bins, bool told) {
-  if (told || shape.is_revolution()) return 0;
+int doublings(const DesignShape& shape, int bins, bool given_restarts) {
+  if (given_restarts || shape.is_revolution()) return 0;
   const int across = std::max(shape.intervals_x(), shape.intervals_y());
   const double share = shape.symmetry() == ShapeSymmetry::both ? 0.25 : 1.0;
   int n = 0;
@@ -222,11 +222,11 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   const Optimizer how = read_optimizer(design);
   const double time_s = design.number("time_s", 60.0);
   const std::vector<int> intervals = read_intervals(design);
-  const std::optional<int> told = read_restarts(design);
+  const std::optional<int> given_restarts = read_restarts(design);
   const double light_weight = design.number("light_weight", DesignProblem::kLightWeight);
   const PlacedReflector placed = project.scene.reflectors[0];
   const bool revolution = dynamic_cast<const RevolutionSurface*>(placed.reflector.surface.get()) != nullptr;
-  const int max_failed_restarts = told.value_or(kMaxFailedRestarts);
+  const int max_failed_restarts = given_restarts.value_or(kMaxFailedRestarts);
   const double source_flux = total_flux(project.scene.sources);
   DesignLimits limits;
   if (auto table = design.table("limits")) {
@@ -240,7 +240,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   if (auto table = design.table("tolerances")) tolerances = read_tolerances(std::move(*table));
   design.finish();
   start = start_within(limits, start, project.scene.sources, placed.world_from_reflector);
-  const int growth = doublings(start, WindowOptions().count, !intervals.empty());
+  const int knot_doublings = doublings(start, WindowOptions().count, !intervals.empty());
   add_detectors(project, target);
   DesignProblem problem{std::move(project),
                         std::move(target),
@@ -251,7 +251,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
                         time_s,
                         how,
                         max_failed_restarts,
-                        growth,
+                        knot_doublings,
                         !intervals.empty(),
                         light_weight,
                         tolerances};

@@ -28,7 +28,7 @@ struct DesignProblem {
   /// neighbours of the best) a design ends above the noise before its time: `restarts` of [design].
   int max_failed_restarts = 1'000'000;
   /// Of the continuation schedule: how often the knots may be doubled beyond those of `start`.
-  int growth = 0;
+  int knot_doublings = 0;
   /// The project says how many knots there are to be. A search among candidates keeps to them while they
   /// bring the mirror near the target.
   bool fixed_knots = false;
@@ -59,7 +59,7 @@ DesignShape start_within(const DesignLimits& limits, const DesignShape& start,
 /// Knots along a side of a free form where neither project nor mirror say how many, at least.
 inline constexpr int kFreeFormIntervals = 8;
 
-/// The bins in which the problem's result is judged.
+/// The bins in which the problem's result is evaluated.
 TentBins target_window(const DesignProblem& problem);
 
 /// The project with the mirror replaced: what `trace` takes.

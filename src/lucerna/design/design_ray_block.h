@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 
 namespace lucerna {
 

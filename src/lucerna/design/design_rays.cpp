@@ -8,7 +8,7 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/design/device_evaluator.h"
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 
 namespace lucerna {
 

@@ -9,8 +9,8 @@
 #include "lucerna/design/design_ray_block.h"
 #include "lucerna/progress.h"
 #include "lucerna/rays.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/ray_numbering.h"
-#include "lucerna/trace/units.h"
 
 namespace lucerna {
 
@@ -23,8 +23,8 @@ inline constexpr std::size_t kDesignTasks = 16;
 
 /// The rays that every evaluation of a design traces again (common random numbers), in the frame of the
 /// mirror. Block b of kBlockRays rays belongs to stream b mod kDesignStreams; within a stream, sources take
-/// their shares by SourceWord and each has a Sobol sequence of its own. Grows on demand and never changes
-/// what is there. 28 bytes per ray. Not thread safe while it grows.
+/// their shares by SourceInterleaving and each has a Sobol sequence of its own. Grows on demand and never
+/// changes what is there. 28 bytes per ray. Not thread safe while it grows.
 class DesignRays {
  public:
   /// `sources` in the luminaire frame. Throws InputError as `check(Scene)` does for sources.
@@ -60,7 +60,7 @@ class DesignRays {
 
   std::vector<PlacedSource> sources_;
   Frame mirror_from_world_;
-  SourceWord word_;
+  SourceInterleaving word_;
   std::uint64_t seed_;
   double flux_ = 0.0;
   std::vector<double> ray_flux_;

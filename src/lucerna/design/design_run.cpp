@@ -68,8 +68,8 @@ DesignRun run_design(const DesignProblem& problem, DesignOptions options, Progre
   run.wanted_noise = goal.noise;
   run.trace = timed(run.trace_s, [&] { return trace_until(scene, {.seed = options.seed + 1}, goal); });
   run.figures =
-      timed(run.figures_s, [&] { return design_figures(problem, run.result, run.trace.result, scene); });
-  if (problem.tolerances && run.result.end != DesignEnd::interrupted) {
+      timed(run.figures_s, [&] { return design_metrics(problem, run.result, run.trace.result, scene); });
+  if (problem.tolerances && run.result.end != DesignTermination::interrupted) {
     run.figures.tolerances = timed(run.tolerances_s, [&] {
       return tolerance_sweep(scene, *problem.tolerances, options.seed + 2, progress);
     });
@@ -85,7 +85,7 @@ DesignedMirror design(const std::filesystem::path& project, const DesignSettings
   options.seed = settings.seed;
   options.time_s = settings.time_s;
   options.max_rays = settings.max_rays;
-  options.judge_rays = 4 * settings.max_rays;
+  options.validation_rays = 4 * settings.max_rays;
   options.accelerator = design_accelerator(settings.device);
   options.pareto = settings.pareto;
   options.advise = settings.advise;

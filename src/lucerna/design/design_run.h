@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "lucerna/design/design_figures.h"
+#include "lucerna/design/design_metrics.h"
 #include "lucerna/trace.h"
 
 namespace lucerna {
@@ -17,7 +17,7 @@ struct DesignRun {
   /// Noise that `trace` was to have.
   double wanted_noise = 0.0;
   /// With tolerances where the problem has ranges, unless the design was interrupted.
-  DesignFigures figures;
+  DesignMetrics figures;
   /// Seconds of each phase.
   double design_s = 0.0, trace_s = 0.0, figures_s = 0.0, tolerances_s = 0.0;
 };

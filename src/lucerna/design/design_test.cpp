@@ -9,8 +9,8 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/design/checkpoint.h"
-#include "lucerna/photometric_figures.h"
 #include "lucerna/photometric_file.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/photometry/binned_intensity.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace/far_field_counts.h"
@@ -92,7 +92,7 @@ DesignOptions small() {
   DesignOptions options;
   options.time_s = 1e6;
   options.max_rays = 1 << 14;
-  options.judge_rays = 1 << 16;
+  options.validation_rays = 1 << 16;
   return options;
 }
 
@@ -108,7 +108,7 @@ TEST(Design, ReachesTheLightOfAHiddenProfile) {
   write_target(folder.path());
   const DesignProblem p = problem(folder.path(), "intervals = 8\n");
   const DesignResult result = design(p, small());
-  EXPECT_EQ(result.end, DesignEnd::converged);
+  EXPECT_EQ(result.end, DesignTermination::converged);
   EXPECT_GT(result.start_error.c12.excess, 0.12);
   EXPECT_LT(result.error.c12.excess, 0.03);  // 0.010 with a standard error of 0.008
   EXPECT_NEAR(result.efficiency.mean + result.absorbed.mean + result.back.mean + result.lost.mean, 1.0, 1e-9);
@@ -194,7 +194,7 @@ TEST(Design, ResumesWhereKnotsHaveGrownToTheSameBits) {
   const TempDir folder;
   write_target(folder.path());
   DesignProblem p = problem(folder.path(), "intervals = [1, 1]\noptimizer = \"least-squares\"\n", kFreeForm);
-  p.growth = 1;
+  p.knot_doublings = 1;
   DesignOptions options = tiny();
   options.max_rays = 1 << 16;
   const auto grown = [](const FitState& s) { return s.intervals_x == 2 && s.step == 1 ? 0 : -1; };
@@ -209,7 +209,7 @@ TEST(Design, EveryOptimizerIsSensible) {
     const DesignProblem p = problem(folder.path(), fmt::format("intervals = 1\noptimizer = \"{}\"\n", name));
     DesignOptions options = tiny();
     const DesignResult result = design(p, options);
-    EXPECT_EQ(result.end, DesignEnd::converged) << name;
+    EXPECT_EQ(result.end, DesignTermination::converged) << name;
     EXPECT_LT(result.error.c12.excess, 0.36 * result.start_error.c12.excess) << name;  // 0.20 to 0.24
     EXPECT_NEAR(result.efficiency.mean + result.absorbed.mean + result.back.mean + result.lost.mean, 1.0,
                 1e-9)
@@ -226,7 +226,7 @@ TEST(Design, TimeMayEndWithinASearch) {
   DesignOptions options = tiny();
   options.time_s = 1e-9;
   const DesignResult result = design(p, options);
-  EXPECT_EQ(result.end, DesignEnd::time);
+  EXPECT_EQ(result.end, DesignTermination::time);
   EXPECT_EQ(result.history.size(), 1u);
   EXPECT_GT(result.efficiency.mean, 0.5);
   EXPECT_FALSE(parse_checkpoint(result.checkpoint, result.checkpoint.substr(32, 16)).search_costs.empty());
@@ -273,7 +273,7 @@ TEST(Design, ShapesAFreeFormMirrorAndKeepsItsSymmetry) {
   EXPECT_EQ(p.start.parameter_count(), 16u);
   DesignOptions options = small();
   options.max_rays = 1 << 16;
-  options.judge_rays = 1 << 18;
+  options.validation_rays = 1 << 18;
   const DesignResult result = design(p, options);
   EXPECT_LT(result.error.c12.excess, 0.3 * result.start_error.c12.excess);  // 0.19
   EXPECT_NEAR(result.shape.at(9, 4).z_mm, result.shape.at(-9, -4).z_mm, 1e-12);

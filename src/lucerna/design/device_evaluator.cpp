@@ -5,7 +5,7 @@
 
 #include "lucerna/design/evaluation_launch.h"
 #include "lucerna/design/evaluation_sums.h"
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 
 namespace lucerna {
 
@@ -58,9 +58,9 @@ Evaluation DeviceEvaluator::evaluate_family(const DesignShape& design, const Sha
   auto* const c = room<double>(coefficients_, m);
   a.upload(0, c, shape.coefficients().data(), m * sizeof(double));
   launch.view.shape.coefficients = c;
-  auto* const near = room<double>(near_bends_, shape.near_bends().size());
-  a.upload(0, near, shape.near_bends().data(), shape.near_bends().size() * sizeof(double));
-  launch.view.shape.near_bends = near;
+  auto* const near = room<double>(near_curvatures_, shape.near_curvatures().size());
+  a.upload(0, near, shape.near_curvatures().data(), shape.near_curvatures().size() * sizeof(double));
+  launch.view.shape.near_curvatures = near;
   auto* const table = room<ReflectanceEntry>(reflectance_, reflectance.table().size());
   a.upload(0, table, reflectance.table().data(), reflectance.table().size() * sizeof(ReflectanceEntry));
   launch.view.reflectance = table;
@@ -76,8 +76,8 @@ Evaluation DeviceEvaluator::evaluate_family(const DesignShape& design, const Sha
   a.wait(0);
 
   EvaluationSums sums;
-  for (std::size_t s = 0; s < kDesignStreams; ++s) sums.flux[s] = in_rays(back + s * n, n, kUnitsPerRay);
-  const std::vector<double> ends = in_rays(back + kDesignStreams * n, kEvaluationEnds, kUnitsPerRay);
+  for (std::size_t s = 0; s < kDesignStreams; ++s) sums.flux[s] = in_rays(back + s * n, n, kQuantaPerRay);
+  const std::vector<double> ends = in_rays(back + kDesignStreams * n, kEvaluationEnds, kQuantaPerRay);
   const auto of = [&](PathEnd end) { return ends[static_cast<std::size_t>(end)]; };
   sums.direct = of(PathEnd::direct), sums.reflected = of(PathEnd::reflected);
   sums.back = of(PathEnd::back), sums.lost = of(PathEnd::lost), sums.absorbed = ends.back();

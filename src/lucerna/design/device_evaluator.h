@@ -35,7 +35,7 @@ class DeviceEvaluator {
 
   std::shared_ptr<Accelerator> accelerator_;
   std::mutex mutex_;
-  AcceleratorBuffer rays_, near_bends_, coefficients_, reflectance_, totals_, host_totals_;
+  AcceleratorBuffer rays_, near_curvatures_, coefficients_, reflectance_, totals_, host_totals_;
   std::uint64_t blocks_ = 0;
 };
 

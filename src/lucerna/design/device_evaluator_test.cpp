@@ -140,7 +140,7 @@ TEST(DeviceEvaluator, AWholeFitRunsThereToTheSameMirror) {
 /// On a machine with a CUDA device: ctest -L gpu, or scripts/gpu_check.sh.
 void expect_agreement(std::uint64_t n) {
   auto devices = cuda_accelerators();
-  if (devices.empty()) GTEST_SKIP() << why_no_cuda();
+  if (devices.empty()) GTEST_SKIP() << cuda_unavailable_reason();
   const std::shared_ptr<Accelerator> device = std::move(devices.front());
   DesignRays rays = lamp(n);
   EvaluationOptions options;

@@ -15,7 +15,7 @@
 #include "lucerna/design/device_evaluator.h"
 #include "lucerna/design/evaluation_sums.h"
 #include "lucerna/design/hit_kernels.h"
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 
 namespace lucerna {
 
@@ -31,12 +31,12 @@ struct TaskSums {
   double* jacobian = nullptr;
   std::size_t coefficients = 0;
 
-  void ended(PathEnd end, double kept, double taken) {
+  void ended(PathEnd end, double reflected_flux, double taken) {
     absorbed += taken;
     (end == PathEnd::direct      ? direct
      : end == PathEnd::reflected ? reflected
      : end == PathEnd::back      ? back
-                                 : lost) += kept;
+                                 : lost) += reflected_flux;
   }
   void add(int bin, double x) { flux[static_cast<std::size_t>(bin)] += x; }
   struct Row {
@@ -97,7 +97,7 @@ class BlockTracer {
     PathEnd end = PathEnd::direct;
     int hits = 0;
     std::size_t last = 0;
-    /// How often it met a body, and the share of its light that these reflected.
+    /// How often it hit a body, and the share of its light that these reflected.
     int bodies = 0;
     double share = 1.0;
   };
@@ -110,9 +110,9 @@ class BlockTracer {
   void count(const State& s, double weight, Sums& sums) {
     if (s.bodies == 0) return view_.count(path_, weight, sums);
     // What the mirror absorbed before is its own.
-    const double taken = weight * (1.0 - s.share), kept = view_.reflected_share(path_);
-    sums.bodies += taken * kept;
-    sums.absorbed += taken * (1.0 - kept);
+    const double taken = weight * (1.0 - s.share), reflected_flux = view_.reflected_share(path_);
+    sums.bodies += taken * reflected_flux;
+    sums.absorbed += taken * (1.0 - reflected_flux);
     if (s.share > 0.0) frozen_.count(path_, weight * s.share, sums);
   }
 
@@ -130,7 +130,7 @@ class BlockTracer {
       std::size_t left = 0;
       for (std::size_t i = 0; i < n; ++i) {
         State& s = paths_[ray_[i]];
-        if (shadows_ != nullptr && meets_body(i, s)) {
+        if (shadows_ != nullptr && hits_body(i, s)) {
           if (!body_sends_on(s)) continue;
           ray_[left] = ray_[i];
           put(left++, s, 0.0, 0.0);
@@ -163,17 +163,17 @@ class BlockTracer {
   }
 
   /// Whether a body is in the way to what the search found, and then what it leaves of the ray.
-  bool meets_body(std::size_t i, State& s) {
+  bool hits_body(std::size_t i, State& s) {
     const std::int32_t what = ends_.what[i];
     if (what != kHitNothing && what != kHitFront && what != kHitBack) return false;
     const double t_max =
         what == kHitNothing ? static_cast<double>(std::numeric_limits<float>::max()) : ends_.t[i];
-    const auto met = shadows_->first(s.origin, s.direction, t_max, s.hits + s.bodies > 0);
-    if (!met) return false;
+    const auto shadow = shadows_->first(s.origin, s.direction, t_max, s.hits + s.bodies > 0);
+    if (!shadow) return false;
     ++s.bodies;
-    s.share *= met->reflected;
-    s.origin = met->origin;
-    s.direction = met->direction;
+    s.share *= shadow->reflected;
+    s.origin = shadow->origin;
+    s.direction = shadow->direction;
     return true;
   }
 

@@ -57,7 +57,7 @@ struct Evaluation {
 /// change from hitting to missing have measure zero among given rays but not in the mean: at rims they are
 /// counted by EvaluationOptions::rim_mm, at edges of the mirror's own shadow they are left out. A reflectance
 /// that depends on the angle is taken at the ray's own angle, its change is left out. Bodies that shade the
-/// rays take light where it meets them first; light that crosses the edge of a body as the surface moves, and
+/// rays take light where it hits them first; light that crosses the edge of a body as the surface moves, and
 /// how light moves that a body reflected, are left out of the derivatives. `rays` must hold that many. Rays
 /// of one task are summed in order, tasks are added in order: the same bits for any number of threads. Thread
 /// safe.

@@ -6,7 +6,7 @@
 #include "lucerna/design/evaluation_launch.h"
 #include "lucerna/trace/accelerator_error.h"
 #include "lucerna/trace/block_sums.cuh"
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 
 namespace lucerna {
 

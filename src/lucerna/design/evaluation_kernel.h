@@ -47,20 +47,20 @@ struct EvaluationView {
   /// What a path of `weight` adds to `sums`.
   template <class Sums>
   LUCERNA_HD void count(const Path<Shape>& path, double weight, Sums& sums) const {
-    const double kept = weight * reflected_share(path);
-    sums.ended(path.end, kept, weight - kept);
+    const double reflected_flux = weight * reflected_share(path);
+    sums.ended(path.end, reflected_flux, weight - reflected_flux);
     const bool counts = path.end == PathEnd::reflected || (path.end == PathEnd::direct && direct_light);
     if (!counts) return;
     TentDeposit d;
     bins.deposit(path.origin, path.direction, d);
     for (int k = 0; k < d.n; ++k) {
       const auto i = static_cast<std::size_t>(k);
-      sums.add(d.bin[i], kept * d.weight[i]);
+      sums.add(d.bin[i], reflected_flux * d.weight[i]);
     }
     if (!derivatives || d.n == 0 || path.hits == 0) return;
-    differentiate(path, kept, d, sums);
+    differentiate(path, reflected_flux, d, sums);
     if (rim_mm <= 0.0) return;
-    for (int i = 0; i < path.hits; ++i) rim_term(path, i, kept, d, sums);
+    for (int i = 0; i < path.hits; ++i) rim_term(path, i, reflected_flux, d, sums);
   }
 
   /// The tents' change with every coefficient that a hit touches.
@@ -85,7 +85,7 @@ struct EvaluationView {
     }
   }
 
-  /// Light that the rim gains or loses as a hit moves: a strip of `rim_mm` inside it stands for the rim.
+  /// Light that the rim gains or loses as a hit moves: a strip of `rim_mm` inside it represents the rim.
   template <class Sums>
   LUCERNA_HD void rim_term(const Path<Shape>& path, int last, double energy, const TentDeposit& reflected,
                            Sums& sums) const {

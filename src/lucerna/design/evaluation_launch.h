@@ -8,12 +8,13 @@
 #include "lucerna/design/design_ray_block.h"
 #include "lucerna/design/evaluation_kernel.h"
 #include "lucerna/trace/accelerator.h"
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 
 namespace lucerna {
 
 // An evaluation in an accelerator's memory. All sums are whole numbers, so they do not depend on the order in
-// which threads add: flux in units of trace/units.h, derivatives in units of 2^-20 of a mean ray per mm.
+// which threads add: flux in units of trace/flux_quanta.h, derivatives in units of 2^-20 of a mean ray per
+// mm.
 
 inline constexpr double kDerivativeUnits = 0x1p20;
 /// One derivative of one ray is held to +-2^50 units, a thousand million mean rays per mm, which only rays
@@ -38,11 +39,11 @@ struct EvaluationThread {
   std::int64_t ends[kEvaluationEnds] = {};
 
   LUCERNA_HD static std::int64_t whole(double x) { return static_cast<std::int64_t>(std::floor(x + 0.5)); }
-  LUCERNA_HD void ended(PathEnd end, double kept, double absorbed) {
-    ends[static_cast<int>(end)] += whole(kept * kUnitsPerRay);
-    ends[kEvaluationEnds - 1] += whole(absorbed * kUnitsPerRay);
+  LUCERNA_HD void ended(PathEnd end, double reflected_flux, double absorbed) {
+    ends[static_cast<int>(end)] += whole(reflected_flux * kQuantaPerRay);
+    ends[kEvaluationEnds - 1] += whole(absorbed * kQuantaPerRay);
   }
-  LUCERNA_HD void add(int bin, double x) { atomic_add(flux + bin, whole(x * kUnitsPerRay)); }
+  LUCERNA_HD void add(int bin, double x) { atomic_add(flux + bin, whole(x * kQuantaPerRay)); }
   struct Row {
     std::int64_t* at;
     LUCERNA_HD void add(int coefficient, double x) const {

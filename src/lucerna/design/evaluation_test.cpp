@@ -10,8 +10,8 @@
 #include "lucerna/design/smooth_path.h"
 #include "lucerna/random.h"
 #include "lucerna/source.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/reference_tracer.h"
-#include "lucerna/trace/units.h"
 
 namespace lucerna {
 namespace {

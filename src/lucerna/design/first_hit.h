@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Where a ray first meets a smooth mirror, for any width of vectors (wide.h, one_lane.h). Included by files
-// that are compiled for one instruction set each: no headers of the standard library with inline functions.
+// Where a ray first hits a smooth mirror, for any width of vectors (simd_double.h, scalar_double.h). Included
+// by files that are compiled for one instruction set each: no headers of the standard library with inline
+// functions.
 
 #include <stddef.h>
 #include <stdint.h>
@@ -21,12 +22,12 @@ struct HitRow {
 struct BsplineHitTable {
   HitRow x, y;
   const double* coefficients;
-  const double* near_bends;
+  const double* near_curvatures;
 };
 struct RevolutionHitTable {
   HitRow r;
   const double* coefficients;
-  const double* near_bends;
+  const double* near_curvatures;
 };
 
 /// A mirror z = k r^2 + s(x, y), s one of the tables', over an aperture (all in mm).
@@ -35,7 +36,7 @@ struct HitMirror {
   Table spline;
   double k;
   double low, high;  ///< s lies between them over the aperture
-  double bend;       ///< bound of |s''| along any direction
+  double curvature;  ///< bound of |s''| along any direction
   double cell;       ///< least width of a cell of knots
   bool round;        ///< aperture: circle of half_x, or rectangle; less a hole
   double half_x, half_y, hole;
@@ -111,7 +112,7 @@ LUCERNA_HD inline HitLook<V> hit_look(const BsplineHitTable& s, V x, V y) {
   look.sx = look.sx * V(s.x.per_mm);
   look.sy = look.sy * V(s.y.per_mm);
   const V cell = V(static_cast<double>(kNearSizes)) * (cy * V(static_cast<double>(s.x.intervals)) + cx);
-  for (int k = 0; k < kNearSizes; ++k) look.near[k] = gather(s.near_bends + k, cell);
+  for (int k = 0; k < kNearSizes; ++k) look.near[k] = gather(s.near_curvatures + k, cell);
   return look;
 }
 
@@ -130,7 +131,7 @@ LUCERNA_HD inline HitLook<V> hit_look(const RevolutionHitTable& s, V x, V y) {
   look.sx = x * per_r;
   look.sy = y * per_r;
   for (int k = 0; k < kNearSizes; ++k) {
-    look.near[k] = gather(s.near_bends + k, V(static_cast<double>(kNearSizes)) * cell);
+    look.near[k] = gather(s.near_curvatures + k, V(static_cast<double>(kNearSizes)) * cell);
   }
   return look;
 }
@@ -171,7 +172,7 @@ class HitSearch {
     df_ = V(0.0);
     looks_ = V(0.0);
     what_ = V(static_cast<double>(kHitNothing));
-    const V away = max(slope, V(0.0)) / (c2_ + V(0.5 * m.bend) * across_);
+    const V away = max(slope, V(0.0)) / (c2_ + V(0.5 * m.curvature) * across_);
     t_ = t_ + select(is(on_mirror), away, V(0.0));
     skip_air(t_ <= t_end_);
     return t_ <= t_end_;
@@ -314,7 +315,7 @@ class HitSearch {
 
   /// The longest step that the bounds allow.
   LUCERNA_HD V step_length(const HitMirror<Table>& m, const HitLook<V>& look) {
-    const V half = V(0.5) * across_, whole = c2_ + V(m.bend) * half;
+    const V half = V(0.5) * across_, whole = c2_ + V(m.curvature) * half;
     const Mask front = V(0.0) < side_;
     const V behind = select(front, V(0.0), V(2.0) * c2_);  // there the base bends the other way
     // On a stretch as long as `good`, |f''| is at most twice `max`.

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
+#include "lucerna/design/conjugate_solution.h"
 #include "lucerna/design/perturbed.h"
-#include "lucerna/design/twin.h"
 #include "lucerna/design/zero_etendue.h"
 
 namespace lucerna {
@@ -31,7 +31,7 @@ Eigen::VectorXd to_eigen(const std::vector<double>& v) {
 
 /// Begins with `shape` unless there are starts.
 FitProblem with_starts(FitProblem problem, const DesignShape& shape) {
-  if (problem.starts.empty()) problem.starts = {{shape}};
+  if (problem.guesses.empty()) problem.guesses = {{shape}};
   return problem;
 }
 
@@ -75,7 +75,7 @@ void Fit::begin_stage(Progress& progress) {
   const FitStage& s = stage();
   const bool other = s.intervals_x != shape_.intervals_x() || s.intervals_y != shape_.intervals_y();
   // A stage that is taken up again in its middle has its knots already.
-  if (other && state_.step == 0 && (!s.grow || state_.over_noise > kGoodOverNoise)) {
+  if (other && state_.step == 0 && (!s.grow || state_.error_to_noise > kGoodErrorToNoise)) {
     set_shape(shape_.refined(s.intervals_x, s.intervals_y));
   }
   objective_.emplace(problem_, s, progress);
@@ -95,8 +95,9 @@ bool Fit::stage_ended() const {
 }
 
 void Fit::finish_stage() {
-  state_.over_noise = std::sqrt(point_->equations.cost) / std::max(objective_->error(*point_).floor, 1e-12);
-  const FitMark now = mark();
+  state_.error_to_noise =
+      std::sqrt(point_->equations.cost) / std::max(objective_->error(*point_).floor, 1e-12);
+  const FitSnapshot now = snapshot();
   const auto ended = static_cast<std::size_t>(state_.stage);
   ++state_.stage;
   state_.step = 0;
@@ -113,17 +114,18 @@ void Fit::take(const FitBranch& branch) {
     case FitBranch::Kind::next:
       return;
     case FitBranch::Kind::restored:
-      state_.over_noise = branch.mark.over_noise;
+      state_.error_to_noise = branch.snapshot.error_to_noise;
       [[fallthrough]];
     case FitBranch::Kind::end:
-      set_shape(shape_of(branch.mark));
+      set_shape(shape_of(branch.snapshot));
       state_.stage = static_cast<int>(branch.stage);
       return;
     case FitBranch::Kind::conjugate:
       begin_with(conjugate(), branch.stage);
       return;
     case FitBranch::Kind::begin:
-      begin_with(branch.start ? problem_.starts[*branch.start].shape : shape_of(branch.mark), branch.stage);
+      begin_with(branch.start ? problem_.guesses[*branch.start].shape : shape_of(branch.snapshot),
+                 branch.stage);
       break;
   }
   if (branch.perturbation <= 0.0) return;
@@ -131,18 +133,21 @@ void Fit::take(const FitBranch& branch) {
   set_shape(perturbed(shape_, size_mm, Rng(problem_.seed, branch.stream)));
 }
 
-FitMark Fit::mark() const {
+FitSnapshot Fit::snapshot() const {
   const double missing = 1.0 - point_->light.flux.sum() / problem_.flux_reference;
   const double less = std::max(0.0, problem_.flux_weight - kFluxWeightOfEnds) * missing * missing;
   const double cost = point_->equations.cost;
-  return {cost, state_.over_noise, cost - less, state_.intervals_x, state_.intervals_y, state_.parameters};
+  return {
+      cost, state_.error_to_noise, cost - less, state_.intervals_x, state_.intervals_y, state_.parameters};
 }
 
-DesignShape Fit::shape_of(const FitMark& mark) const {
-  return family_.refined(mark.intervals_x, mark.intervals_y).with(to_eigen(mark.parameters));
+DesignShape Fit::shape_of(const FitSnapshot& snapshot) const {
+  return family_.refined(snapshot.intervals_x, snapshot.intervals_y).with(to_eigen(snapshot.parameters));
 }
 
-DesignShape Fit::conjugate() const { return twin(shape_, point_source(*problem_.rays, kSourceRays).at_mm.z); }
+DesignShape Fit::conjugate() const {
+  return conjugate_solution(shape_, point_source(*problem_.rays, kSourceRays).at_mm.z);
+}
 
 DesignShape Fit::best() const {
   const RestartState& r = state_.restart;

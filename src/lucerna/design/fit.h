@@ -13,7 +13,7 @@ namespace lucerna {
 
 /// A fit by least squares: takes the steps of a schedule's stages and goes on where the restart policy says.
 /// Every decision depends on the state alone, so that a fit that is stopped after any step and taken up from
-/// its state goes on to the same bits.
+/// its state continues bit-identically.
 class Fit {
  public:
   /// Starts with the first of the problem's starts, or at `shape`. `search_costs` is kept in the state.
@@ -51,8 +51,8 @@ class Fit {
   void take(const FitBranch& branch);
   void begin_with(const DesignShape& start, std::size_t stage);
   void set_shape(const DesignShape& shape);
-  FitMark mark() const;
-  DesignShape shape_of(const FitMark& mark) const;
+  FitSnapshot snapshot() const;
+  DesignShape shape_of(const FitSnapshot& snapshot) const;
   DesignShape conjugate() const;
 
   FitProblem problem_;

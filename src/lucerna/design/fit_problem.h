@@ -11,14 +11,14 @@
 
 namespace lucerna {
 
-/// Where in the schedule a start begins: with few knots, which leave the details to what the light asks for;
-/// with most of its own; or in the last stage, where it is known to be near.
-enum class FitEntry { few_knots, own_knots, end };
+/// Where in the schedule an initial guess begins: with few knots, which leave the details to what the light
+/// asks for; with most of its own; or in the last stage, where it is known to be near.
+enum class InitialKnots { few_knots, own_knots, end };
 
 /// A shape that a fit may begin with.
-struct FitStart {
+struct InitialGuess {
   DesignShape shape;
-  FitEntry entry = FitEntry::few_knots;
+  InitialKnots entry = InitialKnots::few_knots;
   /// Relative RMS^2 with limits, in a third of the bins.
   double cost = 0.0;
 };
@@ -29,7 +29,7 @@ struct FitProblem {
   Reflectance reflectance{1.0};
   /// Flux that the target puts into any bins over its window, as shares of the sources' flux.
   std::function<Eigen::VectorXd(const TentBins&)> target;
-  /// The bins in which the result is judged.
+  /// The bins in which the result is evaluated.
   TentBins bins;
   TargetMode mode = TargetMode::shape;
   bool direct_light = true;
@@ -40,13 +40,13 @@ struct FitProblem {
   /// residuals to `rows` unless null. Limits on light trace the first `rays` rays. Empty: no limits.
   std::function<double(const DesignShape&, std::uint64_t rays, ResidualRows* rows)> limits;
   /// Shapes to begin with, the most promising first; empty: the shape that the fit is made with.
-  std::vector<FitStart> starts;
+  std::vector<InitialGuess> guesses;
   /// So many of them are compared at the screening stage before the best goes on; further ones are the first
   /// restarts.
   std::size_t compared = 5;
   /// Rays that were traced to find them.
   std::uint64_t search_rays = 0;
-  /// While the result is above the noise the fit restarts, alternately from `starts` and from the incumbent,
+  /// While the result is above the noise the fit restarts, alternately from `guesses` and from the incumbent,
   /// perturbed (free forms: from the search for basins and from the incumbent). So many restarts in a row
   /// that gain nothing end it. 0: neither restarts nor a search.
   int max_failed_restarts = 6;

@@ -7,14 +7,14 @@
 
 #include "lucerna/design/approach.h"
 #include "lucerna/design/levenberg_marquardt.h"
-#include "lucerna/design/roughness.h"
+#include "lucerna/design/smoothness_penalty.h"
 
 namespace lucerna {
 
 namespace {
 
 /// Share of a third difference on the axis that counts as roughness.
-constexpr double kRoughnessAtAxis = 0.02;
+constexpr double kSmoothnessAtAxis = 0.02;
 /// Knots for which a level's smoothing is meant, over the aperture's radius: roughness is that of a third
 /// derivative, whatever the knots.
 constexpr double kSmoothingStep = 1.0 / 24.0;
@@ -57,7 +57,8 @@ FreeFormPoint FreeFormFit::at(DesignShape shape) const {
   equations *= error_weight();
   if (zones_) zones_->add_to(light, equations);
   ResidualRows rows;
-  equations.cost += roughness(shape, smoothing_for(shape, level_.smoothing), kRoughnessAtAxis, &rows);
+  equations.cost +=
+      smoothness_penalty(shape, smoothing_for(shape, level_.smoothing), kSmoothnessAtAxis, &rows);
   if (problem_.limits) equations.cost += problem_.limits(shape, level_.rays, &rows);
   rows.add_to(equations);
   if (problem_.flux_weight > 0.0) {

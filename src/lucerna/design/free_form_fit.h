@@ -15,15 +15,15 @@ namespace lucerna {
 /// How finely a free form is fitted.
 struct FreeFormLevel {
   int intervals_x = 32, intervals_y = 32;
-  /// Bins across the target's rectangle widened by `widen`: finer than what a result is judged by, so that no
-  /// ripple hides in them.
+  /// Bins across the target's rectangle widened by `widen`: finer than what a result is evaluated by, so that
+  /// no ripple hides in them.
   int bins = 64;
   double widen = 1.25;
   std::uint64_t rays = std::uint64_t{1} << 18;
   int max_steps = 6;
   /// Two accepted steps that gained less than this share of the error end the level.
   double min_gain = 0.02;
-  /// Weight of `roughness`.
+  /// Weight of `smoothness_penalty`.
   double smoothing = 0.0;
   /// How zones count.
   ZoneStage zones;

@@ -84,11 +84,11 @@ std::pair<int, int> intervals_of(const Aperture& a, int max) {
 
 }  // namespace
 
-std::optional<DesignShape> free_form_start(const FitProblem& problem, const DesignShape& family,
+std::optional<DesignShape> free_form_guess(const FitProblem& problem, const DesignShape& family,
                                            const TransportChoice& choice) {
   problem.rays->grow(kStartRays);
   const TentBins bins = graded_bins(problem.rectangle, problem.mirror_from_world, kStartBins, kStartWiden, 0);
-  return transport_start(
+  return transport_guess(
       {problem.rays, kStartRays, problem.reflectance.max(), problem.direct_light, problem.target(bins), bins},
       family, choice);
 }
@@ -117,7 +117,7 @@ TransportChoice FreeFormSearch::first_choice(int number) const {
   return {c.sign, c.vertex_distance_mm * given_.aperture().outer_radius_mm()};
 }
 
-bool FreeFormSearch::keeps_few_knots() const {
+bool FreeFormSearch::fixed_to_few_knots() const {
   return has_few_knots(given_) && max_intervals_ == std::max(given_.intervals_x(), given_.intervals_y());
 }
 
@@ -125,21 +125,21 @@ TransportChoice FreeFormSearch::choice(int number) const {
   if (number < kFirstCandidates) return first_choice(number);
   // A neighbour of the best; of the first choice where the given mirror is the best.
   Rng rng(problem_.seed, static_cast<std::uint64_t>(number), 77);
-  const FreeFormMark* best = best_of(kEnd);
+  const FreeFormSnapshot* best = best_of(kEnd);
   const bool of_given = best != nullptr && !best->transport.exists();
-  if (of_given && keeps_few_knots()) return {};
+  if (of_given && fixed_to_few_knots()) return {};
   const TransportChoice about = best != nullptr && !of_given ? best->transport : first_choice(1);
   const double factor = std::pow(kFarthest, 2.0 * rng.uniform() - 1.0);
   return {about.sign, factor * about.vertex_distance_mm};
 }
 
-std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormMark& mark) {
-  if (mark.candidate == 0) return nearer_of_given();
-  if (!mark.transport.exists()) return approached(mark.candidate);
+std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormSnapshot& snapshot) {
+  if (snapshot.candidate == 0) return nearer_of_given();
+  if (!snapshot.transport.exists()) return approached(snapshot.candidate);
   const FreeFormLevel rough = level(0);
   const DesignShape family = DesignShape::bspline(given_.focal_mm(), given_.aperture(), rough.intervals_x,
                                                   rough.intervals_y, given_.symmetry());
-  return free_form_start(problem_, family, mark.transport);
+  return free_form_guess(problem_, family, snapshot.transport);
 }
 
 DesignShape FreeFormSearch::approached(int restart) {
@@ -150,7 +150,7 @@ DesignShape FreeFormSearch::approached(int restart) {
 }
 
 DesignShape FreeFormSearch::nearer_of_given() {
-  if (!keeps_few_knots()) return given_;
+  if (!fixed_to_few_knots()) return given_;
   DesignShape near = approached(0);
   const FreeFormFit fit(problem_, level(0));
   state_.evaluations += 2;
@@ -158,9 +158,9 @@ DesignShape FreeFormSearch::nearer_of_given() {
   return fit.at(near).equations.cost < fit.at(given_).equations.cost ? near : given_;
 }
 
-const FreeFormMark* FreeFormSearch::best_of(int level) const {
-  const FreeFormMark* best = nullptr;
-  for (const FreeFormMark& m : state_.done) {
+const FreeFormSnapshot* FreeFormSearch::best_of(int level) const {
+  const FreeFormSnapshot* best = nullptr;
+  for (const FreeFormSnapshot& m : state_.done) {
     if (m.level == level && (best == nullptr || m.cost < best->cost)) best = &m;
   }
   return best;
@@ -168,13 +168,13 @@ const FreeFormMark* FreeFormSearch::best_of(int level) const {
 
 bool FreeFormSearch::was_at(int candidate, int level) const {
   return std::any_of(state_.done.begin(), state_.done.end(),
-                     [&](const FreeFormMark& m) { return m.candidate == candidate && m.level == level; });
+                     [&](const FreeFormSnapshot& m) { return m.candidate == candidate && m.level == level; });
 }
 
-const FreeFormMark* FreeFormSearch::next_promotion() const {
+const FreeFormSnapshot* FreeFormSearch::next_promotion() const {
   const auto best_waiting = [&](int level) {
-    const FreeFormMark* best = nullptr;
-    for (const FreeFormMark& m : state_.done) {
+    const FreeFormSnapshot* best = nullptr;
+    for (const FreeFormSnapshot& m : state_.done) {
       if (m.level != level || m.parameters.empty() || was_at(m.candidate, level + 1)) continue;
       if (best == nullptr || m.cost < best->cost) best = &m;
     }
@@ -182,21 +182,21 @@ const FreeFormMark* FreeFormSearch::next_promotion() const {
   };
   const auto count = [&](int level) {
     return std::count_if(state_.done.begin(), state_.done.end(),
-                         [&](const FreeFormMark& m) { return m.level == level; });
+                         [&](const FreeFormSnapshot& m) { return m.level == level; });
   };
-  const FreeFormMark* given = best_of(0);
+  const FreeFormSnapshot* given = best_of(0);
   const bool near = state_.begun == 1 && given != nullptr && given->cost < kErrorShare[0] * kNear * kNear;
   if (state_.begun < kFirstCandidates && !near && best_of(kEnd) == nullptr) return nullptr;
-  const FreeFormMark* rough = best_waiting(0);
+  const FreeFormSnapshot* rough = best_waiting(0);
   const bool hopeful = rough != nullptr && rough->cost < kHopeless * best_of(0)->cost;
   if (hopeful && count(1) < (near ? 1 : kFine)) return rough;
-  const FreeFormMark* fine = best_waiting(1);
-  const FreeFormMark* end = best_of(kEnd);
+  const FreeFormSnapshot* fine = best_waiting(1);
+  const FreeFormSnapshot* end = best_of(kEnd);
   if (end == nullptr) return fine;
   // The best goes on with more rays where noise is a good part of its error, else after some neighbours; then
   // the others, while they may win, and neighbours.
   const int neighbours_before = std::min(kNeighboursBefore, problem_.max_failed_restarts);
-  const bool ready = end->over_noise < kNoisy || state_.begun >= kFirstCandidates + neighbours_before;
+  const bool ready = end->error_to_noise < kNoisy || state_.begun >= kFirstCandidates + neighbours_before;
   if (ready && !was_at(end->candidate, kMoreRays)) return end;
   if (state_.begun < kFirstCandidates) return nullptr;
   if (fine != nullptr && fine->cost < kWorthOn * best_of(1)->cost) return fine;
@@ -204,20 +204,21 @@ const FreeFormMark* FreeFormSearch::next_promotion() const {
   return nullptr;
 }
 
-DesignShape FreeFormSearch::shape_of(const FreeFormMark& mark) const {
-  return given_.refined(mark.intervals_x, mark.intervals_y)
-      .with(Eigen::VectorXd::Map(mark.parameters.data(), static_cast<Eigen::Index>(mark.parameters.size())));
+DesignShape FreeFormSearch::shape_of(const FreeFormSnapshot& snapshot) const {
+  return given_.refined(snapshot.intervals_x, snapshot.intervals_y)
+      .with(Eigen::VectorXd::Map(snapshot.parameters.data(),
+                                 static_cast<Eigen::Index>(snapshot.parameters.size())));
 }
 
-bool FreeFormSearch::knots_suffice(const FreeFormMark& mark) const {
-  const double share = kErrorShare[static_cast<std::size_t>(mark.level - 1)];
-  return mark.over_noise < kEnoughKnots || mark.cost < share * kNear * kNear;
+bool FreeFormSearch::knots_suffice(const FreeFormSnapshot& snapshot) const {
+  const double share = kErrorShare[static_cast<std::size_t>(snapshot.level - 1)];
+  return snapshot.error_to_noise < kEnoughKnots || snapshot.cost < share * kNear * kNear;
 }
 
-void FreeFormSearch::begin(const DesignShape& shape, const FreeFormMark& mark, Progress& progress) {
-  const FreeFormLevel l = level(mark.level);
+void FreeFormSearch::begin(const DesignShape& shape, const FreeFormSnapshot& snapshot, Progress& progress) {
+  const FreeFormLevel l = level(snapshot.level);
   // Knots are refined, never coarsened, and only where something is left to gain.
-  const bool enough = !mark.transport.exists() && (mark.level == 0 || knots_suffice(mark));
+  const bool enough = !snapshot.transport.exists() && (snapshot.level == 0 || knots_suffice(snapshot));
   const bool has = shape.intervals_x() >= l.intervals_x && shape.intervals_y() >= l.intervals_y;
   const DesignShape fine = enough || has ? shape
                                          : shape.refined(std::max(shape.intervals_x(), l.intervals_x),
@@ -226,7 +227,7 @@ void FreeFormSearch::begin(const DesignShape& shape, const FreeFormMark& mark, P
   point_.emplace(fit_->at(fine));
   ++state_.evaluations;
   state_.total_rays += l.rays;
-  state_.now = mark;
+  state_.now = snapshot;
   state_.now.intervals_x = fine.intervals_x();
   state_.now.intervals_y = fine.intervals_y();
   state_.step = 0;
@@ -237,13 +238,13 @@ void FreeFormSearch::begin(const DesignShape& shape, const FreeFormMark& mark, P
 
 void FreeFormSearch::choose(Progress& progress) {
   while (true) {
-    if (const FreeFormMark* mark = next_promotion()) {
-      FreeFormMark next = *mark;
+    if (const FreeFormSnapshot* snapshot = next_promotion()) {
+      FreeFormSnapshot next = *snapshot;
       ++next.level;
       begin(shape_of(next), next, progress);
       return;
     }
-    FreeFormMark next;
+    FreeFormSnapshot next;
     next.candidate = state_.begun++;
     next.level = 0;
     if (next.candidate > 0) next.transport = choice(next.candidate);
@@ -262,7 +263,7 @@ bool FreeFormSearch::level_ended() const {
   const FreeFormLevel l = level(state_.now.level);
   if (state_.step >= l.max_steps || state_.refused >= kMaxRefusedInARow) return true;
   const std::vector<double>& c = state_.costs;
-  const FreeFormMark* best = best_of(0);
+  const FreeFormSnapshot* best = best_of(0);
   if (state_.now.level == 0 && best != nullptr && state_.step >= 2 &&
       state_.now.cost > kHopeless * best->cost) {
     return true;
@@ -271,8 +272,8 @@ bool FreeFormSearch::level_ended() const {
 }
 
 void FreeFormSearch::forget_what_cannot_win() {
-  for (FreeFormMark& m : state_.done) {
-    const FreeFormMark* best = best_of(m.level);
+  for (FreeFormSnapshot& m : state_.done) {
+    const FreeFormSnapshot* best = best_of(m.level);
     const bool passed = was_at(m.candidate, m.level + 1);
     if (passed || (m.cost > kWorthOn * best->cost && best_of(kMoreRays) != nullptr && m.level < kEnd)) {
       m.parameters.clear();
@@ -318,7 +319,7 @@ FitRecord FreeFormSearch::step(Progress& progress) {
   const double squared = weight * error.relative_rms * error.relative_rms;
   const double excess = std::max(squared - noise, kMinCostShare * squared);
   state_.now.cost = kErrorShare[static_cast<std::size_t>(state_.now.level)] * excess + (cost - squared);
-  state_.now.over_noise = std::sqrt(cost / std::max(noise, 1e-24));
+  state_.now.error_to_noise = std::sqrt(cost / std::max(noise, 1e-24));
   record.stage = state_.now.level;
   record.step = state_.step;
   record.candidate = state_.now.candidate;
@@ -339,23 +340,23 @@ bool FreeFormSearch::done() const {
   if (!state_.now.exists() && neighbours >= problem_.max_failed_restarts && next_promotion() == nullptr)
     return true;
   if (state_.failed >= kMaxFailed) return true;
-  const FreeFormMark* best = best_of(kMoreRays);
-  return best != nullptr && best->over_noise * best->over_noise <= 1.0 + kNoiseShare;
+  const FreeFormSnapshot* best = best_of(kMoreRays);
+  return best != nullptr && best->error_to_noise * best->error_to_noise <= 1.0 + kNoiseShare;
 }
 
 std::uint64_t FreeFormSearch::next_rays() const {
   if (state_.now.exists()) return (point_ ? 1 : 2) * level(state_.now.level).rays;
-  const FreeFormMark* next = next_promotion();
+  const FreeFormSnapshot* next = next_promotion();
   return 2 * level(next != nullptr ? next->level + 1 : 0).rays;
 }
 
 DesignShape FreeFormSearch::best() const {
-  const FreeFormMark* best = nullptr;
-  const auto better = [&](const FreeFormMark& m) {
+  const FreeFormSnapshot* best = nullptr;
+  const auto better = [&](const FreeFormSnapshot& m) {
     return !m.parameters.empty() &&
            (best == nullptr || m.level > best->level || (m.level == best->level && m.cost < best->cost));
   };
-  for (const FreeFormMark& m : state_.done) {
+  for (const FreeFormSnapshot& m : state_.done) {
     if (better(m)) best = &m;
   }
   // The one at work only gets better; where it has come so far, it counts.

@@ -9,20 +9,20 @@
 
 #include "lucerna/design/fit_record.h"
 #include "lucerna/design/free_form_fit.h"
-#include "lucerna/design/transport_start.h"
+#include "lucerna/design/transport_guess.h"
 
 namespace lucerna {
 
 /// What a point source's mirror would be for a fit's target, with the knots and the symmetry of `family`; see
-/// transport_start. Grows the problem's rays.
-std::optional<DesignShape> free_form_start(const FitProblem& problem, const DesignShape& family,
+/// transport_guess. Grows the problem's rays.
+std::optional<DesignShape> free_form_guess(const FitProblem& problem, const DesignShape& family,
                                            const TransportChoice& choice);
 
 /// Rough, fine, to the end; the last is gone through again with more rays.
 inline constexpr int kFreeFormLevels = 4;
 
 /// A candidate that was fitted on a level.
-struct FreeFormMark {
+struct FreeFormSnapshot {
   int candidate = -1, level = -1;
   /// What it began with; none: the given mirror, or what an approach made of it.
   TransportChoice transport{};
@@ -30,7 +30,7 @@ struct FreeFormMark {
   /// rough), and what lost light, limits and roughness cost.
   double cost = 0.0;
   /// Error over noise.
-  double over_noise = 0.0;
+  double error_to_noise = 0.0;
   int intervals_x = 1, intervals_y = 1;
   std::vector<double> parameters;
   bool exists() const { return candidate >= 0; }
@@ -39,7 +39,7 @@ struct FreeFormMark {
 /// All that the next step depends on; a checkpoint holds exactly this.
 struct FreeFormState {
   /// The candidate at work; without parameters: none, the next is chosen.
-  FreeFormMark now;
+  FreeFormSnapshot now;
   int step = 0, refused = 0;
   double lambda = 1e-2;
   std::vector<double> costs;
@@ -47,8 +47,8 @@ struct FreeFormState {
   int begun = 0, failed = 0;
   int evaluations = 0;
   std::uint64_t total_rays = 0;
-  /// What came to the end of a level, in order; only marks that may still be taken up keep parameters.
-  std::vector<FreeFormMark> done;
+  /// What came to the end of a level, in order; only snapshots that may still be taken up keep parameters.
+  std::vector<FreeFormSnapshot> done;
 };
 
 /// Finds a free form by successive halving: candidates (the given mirror; a point source's mirrors of both
@@ -57,7 +57,7 @@ struct FreeFormState {
 /// noise is a good part of its error and after some of them elsewhere. A given mirror of few knots that is to
 /// have no more is first brought near the target (approach.h). A given mirror keeps its knots as long as they
 /// bring it near the noise or the target. Knots are only ever refined. Every decision depends on the state
-/// alone: a search that is stopped after any step and taken up from its state goes on to the same bits.
+/// alone: a search that is stopped after any step and taken up from its state continues bit-identically.
 class FreeFormSearch {
  public:
   /// `given` with its own knots; `max_intervals`: knots along the longer side that the search may refine to
@@ -82,26 +82,26 @@ class FreeFormSearch {
   TransportChoice first_choice(int number) const;
   /// Whether the given mirror is a matter for `approach`: of few knots, and there are to be no more. Where
   /// there may be more, mirrors of point sources are as near from the start.
-  bool keeps_few_knots() const;
-  /// Whether a given mirror's knots are enough for the next level; `mark` has that level already.
-  bool knots_suffice(const FreeFormMark& mark) const;
+  bool fixed_to_few_knots() const;
+  /// Whether a given mirror's knots are enough for the next level; `snapshot` has that level already.
+  bool knots_suffice(const FreeFormSnapshot& snapshot) const;
   /// What a candidate that is not the given mirror begins with.
   TransportChoice choice(int number) const;
   /// What an approach from the given mirror leads to. Counts its rays.
   DesignShape approached(int restart);
   /// The given mirror, or what an approach makes of it, whichever is nearer to the target.
   DesignShape nearer_of_given();
-  const FreeFormMark* best_of(int level) const;
+  const FreeFormSnapshot* best_of(int level) const;
   bool was_at(int candidate, int level) const;
-  /// The next mark to be taken up a level; null where a new candidate is to begin.
-  const FreeFormMark* next_promotion() const;
+  /// The next snapshot to be taken up a level; null where a new candidate is to begin.
+  const FreeFormSnapshot* next_promotion() const;
   void choose(Progress& progress);
-  /// `mark`: the candidate, its transport, and the level that begins.
-  void begin(const DesignShape& shape, const FreeFormMark& mark, Progress& progress);
+  /// `snapshot`: the candidate, its transport, and the level that begins.
+  void begin(const DesignShape& shape, const FreeFormSnapshot& snapshot, Progress& progress);
   void finish();
   bool level_ended() const;
-  std::optional<DesignShape> start_of(const FreeFormMark& mark);
-  DesignShape shape_of(const FreeFormMark& mark) const;
+  std::optional<DesignShape> start_of(const FreeFormSnapshot& snapshot);
+  DesignShape shape_of(const FreeFormSnapshot& snapshot) const;
   void forget_what_cannot_win();
 
   const FitProblem& problem_;

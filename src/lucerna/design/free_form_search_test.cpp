@@ -64,7 +64,7 @@ FreeFormSearch run(const FitProblem& problem, const DesignShape& given, int step
   return search;
 }
 
-TEST(TransportStart, IsNearTheTargetForBothSigns) {
+TEST(TransportGuess, IsNearTheTargetForBothSigns) {
   DesignRays rays = disk_rays();
   const FitProblem problem = oval_problem(rays);
   rays.grow(std::uint64_t{1} << 18);
@@ -73,19 +73,19 @@ TEST(TransportStart, IsNearTheTargetForBothSigns) {
   const DesignShape family = DesignShape::bspline(15, Aperture::circle(60, 4), 24, 24);
   EXPECT_GT(error_of(problem, family), 0.8) << "the paraboloid is far off, or the test says nothing";
   for (const TransportChoice choice : {TransportChoice{-1.0, 10.0}, TransportChoice{1.0, 24.0}}) {
-    const auto start = transport_start(transport, family, choice);
+    const auto start = transport_guess(transport, family, choice);
     ASSERT_TRUE(start) << choice.sign;
     EXPECT_NEAR(start->at(0.0, 0.0).z_mm, 15.0 - choice.vertex_distance_mm, 0.3) << choice.sign;
     EXPECT_LT(error_of(problem, *start), 0.12) << choice.sign;
   }
 }
 
-TEST(TransportStart, IsNothingWhereNoMirrorCanBe) {
+TEST(TransportGuess, IsNothingWhereNoMirrorCanBe) {
   DesignRays rays = disk_rays();
   const FitProblem problem = oval_problem(rays);
   const TentBins bins = graded_bins(problem.rectangle, Frame(), 32, 1.1, 0);
   const TransportProblem transport{&rays, rays.size(), 0.9, true, problem.target(bins), bins};
-  EXPECT_FALSE(transport_start(transport, plain(), {1.0, 3.0})) << "it would close before it reaches the rim";
+  EXPECT_FALSE(transport_guess(transport, plain(), {1.0, 3.0})) << "it would close before it reaches the rim";
 }
 
 TEST(FittedToPoints, GoesThroughASmoothSurfaceAndBeyondItsPoints) {
@@ -129,11 +129,11 @@ TEST(FreeFormSearch, ANeighbourThatIsTheBestHasNeighbours) {
   FreeFormState state = run(problem, plain(), 20).state();
   state.now = {};
   state.step = 0;
-  FreeFormMark best = state.done.back();
+  FreeFormSnapshot best = state.done.back();
   best.candidate = 12;
   best.transport = {1.0, 22.0};
   best.cost = 1e-9;
-  best.over_noise = 10.0;
+  best.error_to_noise = 10.0;
   state.done.clear();
   for (int level = 0; level < 4; ++level) {
     best.level = level;
@@ -146,7 +146,7 @@ TEST(FreeFormSearch, ANeighbourThatIsTheBestHasNeighbours) {
   EXPECT_NEAR(search.state().now.transport.vertex_distance_mm, 22.0, 0.31 * 22.0);
 }
 
-// No ray meets the mirror and none of the rest counts: nothing tells of any parameter.
+// No ray hits the mirror and none of the rest counts: nothing tells of any parameter.
 TEST(FreeFormSearch, EndsAStepThatNoLightTellsOf) {
   EmitterOptions options;
   options.kind = EmitterKind::disk;

@@ -4,13 +4,13 @@
 #include <string_view>
 
 #include "lucerna/core/processor.h"
-#include "lucerna/design/one_lane.h"
+#include "lucerna/design/scalar_double.h"
 
 namespace lucerna {
 
 const HitKernels& scalar_hit_kernels() {
-  static constexpr HitKernels kernels{"scalar", search_hits<OneLane, BsplineHitTable>,
-                                      search_hits<OneLane, RevolutionHitTable>};
+  static constexpr HitKernels kernels{"scalar", search_hits<ScalarDouble, BsplineHitTable>,
+                                      search_hits<ScalarDouble, RevolutionHitTable>};
   return kernels;
 }
 

@@ -52,7 +52,7 @@ std::vector<Vec3> surface_points(const Mesh& mesh, double spacing_mm) {
 std::vector<ZoneColumn> zone_columns(const KeepOut& zone, const Aperture& aperture, bool revolution) {
   const double outer = aperture.outer_radius_mm(), step = 2.0 * outer / kColumnsAcross;
   const Lattice lattice{step};
-  // A point stands for all within half a step of it, so that nothing slips between the places.
+  // A point represents all within half a step of it, so that nothing slips between the places.
   const double reach = zone.clearance_mm + step;
   const int cells = static_cast<int>(std::ceil(reach / step));
   std::unordered_map<long long, ZoneColumn> columns;

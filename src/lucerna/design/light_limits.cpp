@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "lucerna/core/error.h"
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 
 namespace lucerna {
 
@@ -81,7 +81,7 @@ void LightLimits::check(const DesignShape& start, const DesignRays& rays) const 
   if (!min_efficiency_) return;
   const Aperture& a = start.aperture();
   const double outer = std::min(a.half_x_mm(), a.half_y_mm()), hole = a.hole_radius_mm();
-  double meets = 0.0, all = 0.0;
+  double incident = 0.0, all = 0.0;
   const std::uint64_t blocks = rays.size() / kBlockRays;
   for (std::uint64_t b = 0; b < blocks; ++b) {
     const DesignRays::Block& block = rays.block(b);
@@ -96,16 +96,16 @@ void LightLimits::check(const DesignShape& start, const DesignRays& rays) const 
       if (r > outer || height <= 0.0 || down <= aside) continue;
       const double reach = height / down * aside;  // sideways until the start's height, and as much again
       if (r + 2.0 * reach > outer || (hole > 0.0 && r - 2.0 * reach < hole)) continue;
-      meets += weight;
+      incident += weight;
     }
   }
-  const double max = 1.0 - (1.0 - reflectance_.max()) * meets / all;
+  const double max = 1.0 - (1.0 - reflectance_.max()) * incident / all;
   if (*min_efficiency_ <= max) return;
   throw InputError(
       fmt::format("design.limits: min_efficiency = {} and the reflector's reflectance, at most {}, "
                   "contradict each other: "
                   "at least {:.0f} % of the light hits the mirror, so that no more than {:.3f} leaves",
-                  *min_efficiency_, reflectance_.max(), 100.0 * meets / all, max),
+                  *min_efficiency_, reflectance_.max(), 100.0 * incident / all, max),
       ErrorCause::contradiction);
 }
 

@@ -21,7 +21,7 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 
 /// What the triangles say about a mirror.
 struct Figures {
-  double widest = 0.0, hole = kFar, low = kFar, high = -kFar, steepest = 0.0;
+  double widest = 0.0, hole = kFar, low = kFar, high = -kFar, max_slope = 0.0;
   double half_x = 0.0, half_y = 0.0;
 };
 
@@ -43,7 +43,7 @@ Figures figures(const Mesh& mesh) {
   for (const auto& t : mesh.triangles) {
     const std::array<Vec3, 3> p{mesh.vertices_mm[t[0]], mesh.vertices_mm[t[1]], mesh.vertices_mm[t[2]]};
     const Vec3 normal = cross(p[1] - p[0], p[2] - p[0]);
-    f.steepest = std::max(f.steepest, std::atan2(std::hypot(normal.x, normal.y), normal.z));
+    f.max_slope = std::max(f.max_slope, std::atan2(std::hypot(normal.x, normal.y), normal.z));
     if (on_axis(p[0], p[1], p[2])) f.hole = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
       f.hole = std::min(f.hole, from_axis(p[k], p[(k + 1) % 3]));
@@ -178,7 +178,7 @@ std::vector<LimitCheck> check_limits(const Mesh& mirror, const DesignLimits& lim
   min("min_opening_mm", limits.min_opening_mm, 2.0 * std::min(f.half_x, f.half_y), 2.0 * chord_mm);
   min("min_hole_diameter_mm", limits.min_hole_diameter_mm, 2.0 * f.hole, 2.0 * chord_mm);
   max("max_height_mm", limits.max_height_mm, f.high - f.low, 1e-4);
-  max("max_slope_deg", limits.max_slope_deg, degrees(f.steepest), slope_deg);
+  max("max_slope_deg", limits.max_slope_deg, degrees(f.max_slope), slope_deg);
   if (limits.min_radius_mm) {
     const double radius = 1.0 / std::max(curvature(mirror), 1e-9);
     min("min_radius_mm", limits.min_radius_mm, radius, 0.1 * *limits.min_radius_mm);

@@ -72,7 +72,7 @@ class Row {
         design_.family());
   }
   /// Adds a second derivative: `along` of the slopes' change from place to place.
-  void add_bend(double x, double y, double xx, double xy, double yy) {
+  void add_second(double x, double y, double xx, double xy, double yy) {
     const double e = 1e-4 * design_.aperture().outer_radius_mm(), per = 0.5 / e;
     add(x + e, y, 0.0, per * xx, per * xy);
     add(x - e, y, 0.0, -per * xx, -per * xy);
@@ -223,7 +223,7 @@ double ShapeLimits::cost(const DesignShape& shape, std::span<const Limit* const>
         const Curvature k = curvature_at(shape, p.x, p.y);
         const double sign = k.value >= 0.0 ? per : -per;
         hinge(sign * k.value - 1.0 / kCurvatureMargin + 1.0,
-              [&](Row& row) { row.add_bend(p.x, p.y, sign * k.xx, sign * k.xy, sign * k.yy); });
+              [&](Row& row) { row.add_second(p.x, p.y, sign * k.xx, sign * k.xy, sign * k.yy); });
       }
     }
     for (const Wall& w : limit->walls) {

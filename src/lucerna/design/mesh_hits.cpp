@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "lucerna/core/error.h"
-#include "lucerna/trace/triangle_tree.h"
+#include "lucerna/trace/triangle_bvh.h"
 
 #if defined(LUCERNA_EMBREE)
 #include <embree3/rtcore.h>
@@ -19,7 +19,7 @@ class TreeHits final : public MeshHitFinder {
   explicit TreeHits(const std::vector<Body>& meshes) : tree_(meshes, true) {}
 
   void first_hits(const MeshRays& rays, std::size_t n, MeshHits& hits) const override {
-    const TriangleTreeView view = tree_.view();
+    const TriangleBvhView view = tree_.view();
     for (std::size_t i = 0; i < n; ++i) {
       const auto wide = [](float a, float b, float c) {
         return Vec3{static_cast<double>(a), static_cast<double>(b), static_cast<double>(c)};
@@ -39,7 +39,7 @@ class TreeHits final : public MeshHitFinder {
   }
 
  private:
-  TriangleTree tree_;
+  TriangleBvh tree_;
 };
 
 #if defined(LUCERNA_EMBREE)

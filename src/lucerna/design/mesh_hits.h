@@ -39,7 +39,7 @@ bool has_embree();
 
 /// Embree's; coordinates rounded to float32. Throws InputError without Embree.
 std::unique_ptr<MeshHitFinder> embree_hits(const std::vector<Body>& meshes);
-/// Those of the library's own tree (trace/triangle_tree.h), one ray at a time in double; coordinates rounded
+/// Those of the library's own tree (trace/triangle_bvh.h), one ray at a time in double; coordinates rounded
 /// likewise. Some ten times slower.
 std::unique_ptr<MeshHitFinder> tree_hits(const std::vector<Body>& meshes);
 

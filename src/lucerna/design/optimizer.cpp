@@ -9,8 +9,8 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
+#include "lucerna/design/initial_guesses.h"
 #include "lucerna/design/profile_search.h"
-#include "lucerna/design/starts.h"
 
 namespace lucerna {
 
@@ -26,12 +26,12 @@ const std::array<Optimizer, 6>& known() {
   return kKnown;
 }
 
-/// Rays of an evaluation of a search: noise far below what tells basins apart.
+/// Rays of an evaluation of a search: noise far below what distinguishes basins.
 constexpr std::uint64_t kSearchRays = std::uint64_t{1} << 15;
 /// Half width of the box, over the mirror's radius.
 constexpr double kReach = 0.06;
 /// Error of a start (with what light it loses) from which profiles are not searched.
-constexpr double kGoodStart = 0.05;
+constexpr double kGoodGuess = 0.05;
 /// Profiles that are compared at the screening stage before the best of them goes on.
 constexpr std::size_t kProfilesCompared = 3;
 
@@ -55,16 +55,16 @@ bool add_profiles(FitProblem& problem, const DesignShape& shape, std::uint64_t r
     ++record.step;
     return !fresh || watch(record, now.best);
   };
-  std::vector<FitStart> found = profile_search(problem, shape, rays, on_progress, whole);
+  std::vector<InitialGuess> found = profile_search(problem, shape, rays, on_progress, whole);
   problem.search_rays = record.total_rays;
   // The point source's solutions stay in reserve, should the search be misled.
   constexpr std::size_t kMax = 8;
   if (found.size() > kMax) found.erase(found.begin() + kMax, found.end());
   problem.compared = kProfilesCompared;
-  found.insert(found.end(), problem.starts.begin(), problem.starts.end());
+  found.insert(found.end(), problem.guesses.begin(), problem.guesses.end());
   std::stable_sort(found.begin(), found.end(),
-                   [](const FitStart& a, const FitStart& b) { return a.cost < b.cost; });
-  problem.starts = std::move(found);
+                   [](const InitialGuess& a, const InitialGuess& b) { return a.cost < b.cost; });
+  problem.guesses = std::move(found);
   return whole;
 }
 
@@ -94,19 +94,19 @@ SearchSpace search_space(const DesignShape& about, const ContinuationSchedule& s
 
 int search_evaluations(std::size_t parameters) { return 60 * static_cast<int>(parameters); }
 
-bool prepare_starts(FitProblem& problem, const DesignShape& shape, const ContinuationSchedule& schedule,
-                    const Optimizer& optimizer, std::vector<double>& costs, const SearchWatch& watch,
-                    Progress& progress) {
-  problem.starts.clear();
+bool prepare_guesses(FitProblem& problem, const DesignShape& shape, const ContinuationSchedule& schedule,
+                     const Optimizer& optimizer, std::vector<double>& costs, const SearchWatch& watch,
+                     Progress& progress) {
+  problem.guesses.clear();
   if (!optimizer.zero_etendue) return true;
-  problem.starts = fit_starts(problem, shape, progress);
+  problem.guesses = initial_guesses(problem, shape, progress);
   if (!optimizer.global) {
     // A start as good as this is in its basin already.
-    return !can_search_profiles(problem, shape) || problem.starts[0].cost < kGoodStart * kGoodStart ||
+    return !can_search_profiles(problem, shape) || problem.guesses[0].cost < kGoodGuess * kGoodGuess ||
            add_profiles(problem, shape, schedule.last().rays, costs, watch, progress);
   }
 
-  const SearchSpace space = search_space(problem.starts[0].shape, schedule);
+  const SearchSpace space = search_space(problem.guesses[0].shape, schedule);
   const std::uint64_t rays = std::min(kSearchRays, schedule.last().rays);
   problem.rays->grow(rays, progress);
   const TentBins bins = rebinned(problem.bins, 1.0, problem.bins.count() / 3);
@@ -153,7 +153,8 @@ bool prepare_starts(FitProblem& problem, const DesignShape& shape, const Continu
   }
   problem.search_rays = record.total_rays;
   const DesignShape found = space.shape.with(best);
-  problem.starts.insert(problem.starts.begin(), {found, FitEntry::own_knots, record.error * record.error});
+  problem.guesses.insert(problem.guesses.begin(),
+                         {found, InitialKnots::own_knots, record.error * record.error});
   return whole;
 }
 

@@ -51,8 +51,8 @@ using SearchWatch = std::function<bool(const FitRecord&, const DesignShape& best
 /// paid for already (a checkpoint) and is extended with every batch: a search that is taken up again with
 /// them ends at the same bits. Candidates of a batch are evaluated in parallel. Returns false if `watch`
 /// ended the search; the first start is then the best so far. Progress phases "rays", "starts", "search".
-bool prepare_starts(FitProblem& problem, const DesignShape& shape, const ContinuationSchedule& schedule,
-                    const Optimizer& optimizer, std::vector<double>& costs, const SearchWatch& watch,
-                    Progress& progress = no_progress());
+bool prepare_guesses(FitProblem& problem, const DesignShape& shape, const ContinuationSchedule& schedule,
+                     const Optimizer& optimizer, std::vector<double>& costs, const SearchWatch& watch,
+                     Progress& progress = no_progress());
 
 }  // namespace lucerna

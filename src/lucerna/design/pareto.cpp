@@ -60,13 +60,13 @@ std::vector<ParetoPoint> front(const std::vector<ParetoPoint>& all) {
 }
 
 /// Mirrors to begin with: the one that was found, and those of the choices.
-std::vector<DesignShape> starts(const FitProblem& fit, const DesignShape& found) {
+std::vector<DesignShape> guesses(const FitProblem& fit, const DesignShape& found) {
   std::vector<DesignShape> out{found};
   const Aperture& a = found.aperture();
   const int n = std::max(kIntervals, std::max(found.intervals_x(), found.intervals_y()));
   const DesignShape family = DesignShape::bspline(found.focal_mm(), a, n, n, found.symmetry());
   for (const TransportChoice& c : kChoices) {
-    const auto start = free_form_start(fit, family, {c.sign, c.vertex_distance_mm * a.outer_radius_mm()});
+    const auto start = free_form_guess(fit, family, {c.sign, c.vertex_distance_mm * a.outer_radius_mm()});
     if (start) out.push_back(*start);
   }
   return out;
@@ -86,7 +86,7 @@ std::vector<ParetoPoint> pareto_front(const DesignProblem& problem, const Design
   FitProblem fit = fit_problem(problem, options, rays);
   const ErrorBoxes boxes(target_rectangle(problem.target));
   const std::vector<double> target = box_target(boxes, problem.target, rays.flux());
-  const std::vector<DesignShape> from = starts(fit, found);
+  const std::vector<DesignShape> from = guesses(fit, found);
   std::vector<ParetoPoint> points;
   for (const DesignShape& start : from) {
     DesignShape shape = start;
@@ -97,7 +97,7 @@ std::vector<ParetoPoint> pareto_front(const DesignProblem& problem, const Design
       scene.reflectors.front().reflector = shape.reflector();
       ValidationOptions o;
       o.seed = options.seed;
-      o.min_rays = o.max_rays = std::min(options.judge_rays, kValidationRays);
+      o.min_rays = o.max_rays = std::min(options.validation_rays, kValidationRays);
       points.push_back({fit.flux_weight, shape.at(0.0, 0.0).z_mm - problem.start.at(0.0, 0.0).z_mm,
                         validate(scene, boxes, target, problem.target.mode, o).error});
       progress.update("pareto", points.size(), 2 * from.size());

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "lucerna/core/parallel.h"
+#include "lucerna/design/initial_guesses.h"
 #include "lucerna/design/limits.h"
 #include "lucerna/design/perturbed.h"
-#include "lucerna/design/starts.h"
 #include "lucerna/design/zone_table.h"
 
 namespace lucerna {
@@ -26,7 +26,7 @@ constexpr double kApart = 0.003;
 constexpr int kFirstPerParameter = 300, kMaxFirst = 3000, kFirstSteps = 12, kSecondPerParameter = 30,
               kSecondSteps = 60;
 constexpr int kHopsPerRound = 3, kHoppers = 48, kHoppersPerParameter = 5, kHopsEach = 8, kHopSteps = 30,
-              kKept = 96;
+              kRetained = 96;
 /// How many shapes a round traces, and with how many rays: the fewer are left the better they are known.
 struct Round {
   int shapes;
@@ -228,7 +228,7 @@ class Search {
         return (c.shape.parameters() - o.shape.parameters()).cwiseAbs().maxCoeff() > kApart * radius_mm_;
       });
       if (other) out.push_back(std::move(c));
-      if (out.size() == kKept) break;
+      if (out.size() == kRetained) break;
     }
     return out;
   }
@@ -253,8 +253,8 @@ bool can_search_profiles(const FitProblem& problem, const DesignShape& shape) {
          shape.parameter_count() <= kMaxParameters;
 }
 
-std::vector<FitStart> profile_search(const FitProblem& problem, const DesignShape& shape, std::uint64_t rays,
-                                     const ProfileWatch& watch, bool& whole) {
+std::vector<InitialGuess> profile_search(const FitProblem& problem, const DesignShape& shape,
+                                         std::uint64_t rays, const ProfileWatch& watch, bool& whole) {
   problem.rays->grow(std::min(rays, kTableRays));
   Search search(problem, shape, rays);
   std::vector<Candidate> candidates = search.first();
@@ -269,11 +269,11 @@ std::vector<FitStart> profile_search(const FitProblem& problem, const DesignShap
       whole = watch(search.progress(std::min(rays, kSearchRounds[r].rays)));
     }
   }
-  std::vector<FitStart> starts;
+  std::vector<InitialGuess> guesses;
   for (const Traced& t : search.traced()) {
-    starts.push_back({t.candidate.shape, FitEntry::end, t.candidate.cost});
+    guesses.push_back({t.candidate.shape, InitialKnots::end, t.candidate.cost});
   }
-  return starts;
+  return guesses;
 }
 
 }  // namespace lucerna

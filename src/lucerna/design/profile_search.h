@@ -33,7 +33,7 @@ inline constexpr int kProfileEvaluations = 11;
 /// then fewer with more rays (at most `rays`). Deterministic: the same for any number
 /// of threads. Costs about ten seconds of processor time with 2^22 rays. Ends early, with `whole` false,
 /// where `watch` says so.
-std::vector<FitStart> profile_search(const FitProblem& problem, const DesignShape& shape, std::uint64_t rays,
-                                     const ProfileWatch& watch, bool& whole);
+std::vector<InitialGuess> profile_search(const FitProblem& problem, const DesignShape& shape,
+                                         std::uint64_t rays, const ProfileWatch& watch, bool& whole);
 
 }  // namespace lucerna

@@ -49,7 +49,7 @@ ZoneTable table_of(const Lamp& lamp, std::uint64_t count = kProfileRays) {
           Eigen::VectorXd::Zero(48)};
 }
 
-// What is left is the noise of 2^18 rays, 0.5-0.8 % for table and trace each: the table meets them elsewhere.
+// What is left is the noise of 2^18 rays, 0.5-0.8 % for table and trace each: the table hits them elsewhere.
 TEST(ZoneTable, ThrowsTheLightOfTheTrace) {
   for (const double side : {1.0, -1.0}) {  // gamma about z, or from behind
     Lamp lamp;
@@ -104,7 +104,7 @@ TEST(ProfileSearch, FindsAHiddenMirrorsLightForAnyNumberOfThreads) {
         problem, plain, kProfileRays, [&](const ProfileProgress&) { return ++batch < batches; }, whole);
   };
   bool whole = false;
-  std::vector<FitStart> two, one;
+  std::vector<InitialGuess> two, one;
   two = searched(3, whole);
   EXPECT_FALSE(whole);  // ended by its caller
   EXPECT_LT(std::sqrt(two.front().cost), 0.03);

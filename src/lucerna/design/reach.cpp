@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "lucerna/core/error.h"
-#include "lucerna/design/starts.h"
+#include "lucerna/design/initial_guesses.h"
 
 namespace lucerna {
 
@@ -58,7 +58,7 @@ std::vector<std::string> etendue_statements(const Reach& reach, TargetMode mode,
         reach.opening_mm2, reach.etendue_mm2sr, reach.needed_mm2sr, 100.0 * reach.max_share, what,
         100.0 * share));
   };
-  const double max = kEtendueSlack * reach.max_share;
+  const double max = kEtendueTolerance * reach.max_share;
   if (reach.wanted_share > max && reach.wanted_share <= 1.0) {
     forbids("the target asks for", reach.wanted_share);
   }

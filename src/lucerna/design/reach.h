@@ -13,7 +13,7 @@ namespace lucerna {
 
 /// Étendue curves are known to a few per cent: so much more flux is granted before a target is called
 /// impossible.
-inline constexpr double kEtendueSlack = 1.05;
+inline constexpr double kEtendueTolerance = 1.05;
 
 /// What no mirror of an aperture can beat, whatever its shape (Liouville: light keeps its étendue, a mirror
 /// its luminance at best).

@@ -38,21 +38,21 @@ constexpr double kSearchPerturbation = 2.0;
 /// Random streams of the search begin here, beyond those of the fit's restarts.
 constexpr std::uint64_t kSearchStream = std::uint64_t{1} << 33;
 
-FitBranch branch_to(FitBranch::Kind kind, std::size_t stage, FitMark mark = {}) {
-  return {.kind = kind, .stage = stage, .start = {}, .mark = std::move(mark)};
+FitBranch branch_to(FitBranch::Kind kind, std::size_t stage, FitSnapshot snapshot = {}) {
+  return {.kind = kind, .stage = stage, .start = {}, .snapshot = std::move(snapshot)};
 }
 
-/// `mark` begins anew.
-FitBranch begin_mark(const FitMark& mark, std::size_t stage) {
-  return branch_to(FitBranch::Kind::begin, stage, mark);
+/// `snapshot` begins anew.
+FitBranch begin_snapshot(const FitSnapshot& snapshot, std::size_t stage) {
+  return branch_to(FitBranch::Kind::begin, stage, snapshot);
 }
 
 }  // namespace
 
 RestartRules restart_rules(const FitProblem& problem) {
   RestartRules rules;
-  rules.starts.clear();
-  for (const FitStart& s : problem.starts) rules.starts.push_back(s.entry);
+  rules.guesses.clear();
+  for (const InitialGuess& s : problem.guesses) rules.guesses.push_back(s.entry);
   rules.compared = problem.compared;
   rules.max_failed = problem.max_failed_restarts;
   rules.perturbation = problem.perturbation;
@@ -62,35 +62,37 @@ RestartRules restart_rules(const FitProblem& problem) {
 
 RestartPolicy::RestartPolicy(RestartRules rules, ContinuationSchedule schedule)
     : rules_(std::move(rules)), schedule_(std::move(schedule)) {
-  LUCERNA_CHECK(!rules_.starts.empty(), "a fit without starts");
+  LUCERNA_CHECK(!rules_.guesses.empty(), "a fit without starts");
 }
 
-FitBranch RestartPolicy::begin_start(std::size_t start) const {
-  FitBranch branch = branch_to(FitBranch::Kind::begin, schedule_.entry(rules_.starts[start]));
+FitBranch RestartPolicy::begin_guess(std::size_t start) const {
+  FitBranch branch = branch_to(FitBranch::Kind::begin, schedule_.entry(rules_.guesses[start]));
   branch.start = start;
   return branch;
 }
 
-FitBranch RestartPolicy::first() const { return begin_start(0); }
+FitBranch RestartPolicy::first() const { return begin_guess(0); }
 
-FitBranch RestartPolicy::after(std::size_t stage, const FitMark& now, RestartState& state) const {
+FitBranch RestartPolicy::after(std::size_t stage, const FitSnapshot& now, RestartState& state) const {
   if (schedule_[stage].search) return schedule_[stage + 1].search ? FitBranch{} : after_search(now, state);
   if (schedule_[stage].screening) return after_screening(stage, now, state);
   return next_after(stage, now, state);
 }
 
-FitBranch RestartPolicy::next_after(std::size_t stage, const FitMark& now, RestartState& state) const {
+FitBranch RestartPolicy::next_after(std::size_t stage, const FitSnapshot& now, RestartState& state) const {
   return stage + 1 < schedule_.size() ? FitBranch{} : after_last(now, state);
 }
 
-FitBranch RestartPolicy::after_screening(std::size_t stage, const FitMark& now, RestartState& state) const {
+FitBranch RestartPolicy::after_screening(std::size_t stage, const FitSnapshot& now,
+                                         RestartState& state) const {
   const bool better = !state.screened.exists() || now.cost < state.screened.cost;
   if (better) state.screened = now;
   if (state.best.exists()) return better ? next_after(stage, now, state) : next_search(state);
   const auto begun = static_cast<std::size_t>(state.begun);
-  if (state.screened.over_noise > kGoodOverNoise && begun < std::min(rules_.compared, rules_.starts.size())) {
+  if (state.screened.error_to_noise > kGoodErrorToNoise &&
+      begun < std::min(rules_.compared, rules_.guesses.size())) {
     ++state.begun;
-    return begin_start(begun);
+    return begin_guess(begun);
   }
   if (worth_searching(state)) {
     if (state.searches == 0) state.searches_left = kSearchesAtScreening;
@@ -101,13 +103,13 @@ FitBranch RestartPolicy::after_screening(std::size_t stage, const FitMark& now, 
 
 bool RestartPolicy::worth_searching(const RestartState& state) const {
   return schedule_.search_stages() > 0 && rules_.max_failed > 0 &&
-         state.screened.over_noise > kSettledOverNoise && state.screened.cost < kNearError * kNearError;
+         state.screened.error_to_noise > kSettledOverNoise && state.screened.cost < kNearError * kNearError;
 }
 
 /// The best at the screening stage goes on.
 FitBranch RestartPolicy::leave_screening(RestartState& state) const {
   const std::size_t next = schedule_.screening() + 1;
-  if (next == schedule_.size()) return after_last(FitMark(state.screened), state);
+  if (next == schedule_.size()) return after_last(FitSnapshot(state.screened), state);
   return branch_to(FitBranch::Kind::restored, next, state.screened);
 }
 
@@ -126,16 +128,16 @@ FitBranch RestartPolicy::next_search(RestartState& state) const {
 FitBranch RestartPolicy::begin_search(RestartState& state) const {
   const int number = state.searches++;
   if (number == 0) {
-    return begin_mark(state.best.exists() ? state.best : state.screened, schedule_.search_stages() - 1);
+    return begin_snapshot(state.best.exists() ? state.best : state.screened, schedule_.search_stages() - 1);
   }
   FitBranch branch = branch_to(FitBranch::Kind::begin, 0);
-  branch.start = static_cast<std::size_t>(number) % rules_.starts.size();
+  branch.start = static_cast<std::size_t>(number) % rules_.guesses.size();
   branch.perturbation = kSearchPerturbation * rules_.perturbation;
   branch.stream = kSearchStream + static_cast<std::uint64_t>(number);
   return branch;
 }
 
-FitBranch RestartPolicy::after_search(const FitMark& now, RestartState& state) const {
+FitBranch RestartPolicy::after_search(const FitSnapshot& now, RestartState& state) const {
   const bool reference = state.searches == 1 && !state.conjugate;
   if (reference) state.incumbent_cost = now.cost;
   if (!state.found.exists() || now.cost < state.found.cost) state.found = now;
@@ -143,12 +145,12 @@ FitBranch RestartPolicy::after_search(const FitMark& now, RestartState& state) c
   if (state.conjugate) return branch_to(FitBranch::Kind::conjugate, schedule_.search_stages() - 1);
   if (state.found.cost < kSearchGain * kSearchGain * state.incumbent_cost) {
     state.incumbent_cost = state.found.cost;
-    return begin_mark(state.found, schedule_.screening());
+    return begin_snapshot(state.found, schedule_.screening());
   }
   return next_search(state);
 }
 
-FitBranch RestartPolicy::after_last(const FitMark& now, RestartState& state) const {
+FitBranch RestartPolicy::after_last(const FitSnapshot& now, RestartState& state) const {
   const bool first = !state.best.exists();
   const bool gained = first || now.merit < kGain * kGain * state.best.merit;
   state.failed = gained ? 0 : state.failed + 1;
@@ -163,12 +165,12 @@ FitBranch RestartPolicy::restart(RestartState& state) const {
     return branch_to(FitBranch::Kind::end, schedule_.size(), state.best);
   }
   const int number = state.begun++;
-  const auto n = rules_.starts.size(), k = static_cast<std::size_t>(number);
-  if (k < n) return begin_start(k);
+  const auto n = rules_.guesses.size(), k = static_cast<std::size_t>(number);
+  if (k < n) return begin_guess(k);
   state.searches_left = 0;
   FitBranch branch;
   if (number % 3 == 2) {
-    branch = begin_mark(state.best, schedule_.first_with(schedule_.last().intervals_x));
+    branch = begin_snapshot(state.best, schedule_.first_with(schedule_.last().intervals_x));
   } else if (schedule_.search_stages() > 0) {
     state.searches_left = kSearchesLater;
     return next_search(state);
@@ -183,7 +185,7 @@ FitBranch RestartPolicy::restart(RestartState& state) const {
 
 bool RestartPolicy::at_noise(const RestartState& state) const {
   const double scatter = std::sqrt(2.0 / static_cast<double>(rules_.bins));
-  const double over = state.best.over_noise;
+  const double over = state.best.error_to_noise;
   return state.best.exists() && over * over <= 1.0 + std::max(kEndShare, 2.0 * scatter);
 }
 

@@ -30,7 +30,7 @@ ContinuationSchedule schedule(bool with_search) {
 
 RestartPolicy policy(bool with_search, int max_failed = 5) {
   RestartRules rules;
-  rules.starts.assign(7, FitEntry::few_knots);
+  rules.guesses.assign(7, InitialKnots::few_knots);
   rules.max_failed = max_failed;
   return {rules, schedule(with_search)};
 }
@@ -44,8 +44,8 @@ struct Walk {
   bool ended = false;
 };
 
-/// A mark of error `error` with noise 0.01, told apart by its parameter.
-FitMark mark(double error, double id) {
+/// A snapshot of error `error` with noise 0.01, distinguished by its parameter.
+FitSnapshot snapshot(double error, double id) {
   const double cost = error * error;
   return {cost, error / 0.01, cost, 1, 1, {id}};
 }
@@ -55,7 +55,7 @@ Walk walk(const RestartPolicy& policy, const std::function<double(Rng&)>& error,
   Rng rng(seed, 0);
   std::size_t stage = policy.first().stage;
   for (int k = 0; k < 20'000 && !w.ended; ++k) {
-    const FitMark now = mark(error(rng), k);
+    const FitSnapshot now = snapshot(error(rng), k);
     if (stage + 1 == policy.schedule().size()) w.ends.push_back(now.merit);
     const FitBranch b = policy.after(stage, now, w.state);
     w.branches.push_back(b);
@@ -72,7 +72,8 @@ double far(Rng& rng) { return 0.1 + 0.4 * rng.uniform(); }
 
 bool same(const FitBranch& a, const FitBranch& b) {
   return a.kind == b.kind && a.stage == b.stage && a.start == b.start &&
-         a.mark.parameters == b.mark.parameters && a.perturbation == b.perturbation && a.stream == b.stream;
+         a.snapshot.parameters == b.snapshot.parameters && a.perturbation == b.perturbation &&
+         a.stream == b.stream;
 }
 
 TEST(RestartPolicy, NeverLosesTheIncumbent) {
@@ -83,7 +84,7 @@ TEST(RestartPolicy, NeverLosesTheIncumbent) {
     EXPECT_TRUE(std::is_sorted(w.incumbents.rbegin(), w.incumbents.rend())) << seed;
     const double best = *std::min_element(w.ends.begin(), w.ends.end());
     EXPECT_EQ(w.state.best.merit, best) << seed;
-    EXPECT_EQ(w.branches.back().mark.parameters, w.state.best.parameters) << seed;
+    EXPECT_EQ(w.branches.back().snapshot.parameters, w.state.best.parameters) << seed;
   }
 }
 
@@ -129,7 +130,7 @@ TEST(RestartPolicy, ComparesTheFirstStartsUntilOneIsGood) {
     RestartState state;
     const RestartPolicy p = policy(false);
     int n = 1;
-    while (p.after(p.schedule().screening(), mark(error, 1), state).start) ++n;
+    while (p.after(p.schedule().screening(), snapshot(error, 1), state).start) ++n;
     return n;
   };
   EXPECT_EQ(begun(0.3), 5);    // 30 times the noise: all that may be compared
@@ -140,18 +141,18 @@ TEST(RestartPolicy, EndsAtTheNoiseOrAfterRestartsThatGainNothing) {
   const RestartPolicy p = policy(false, 3);
   const std::size_t last = p.schedule().size() - 1;
   RestartState state;
-  EXPECT_EQ(p.after(last, mark(0.0104, 1), state).kind, FitBranch::Kind::end);
+  EXPECT_EQ(p.after(last, snapshot(0.0104, 1), state).kind, FitBranch::Kind::end);
   EXPECT_TRUE(p.at_noise(state));
   state = {};
-  EXPECT_EQ(p.after(last, mark(0.3, 1), state).kind, FitBranch::Kind::begin);
+  EXPECT_EQ(p.after(last, snapshot(0.3, 1), state).kind, FitBranch::Kind::begin);
   EXPECT_FALSE(p.at_noise(state));
-  EXPECT_EQ(p.after(last, mark(0.299, 2), state).kind, FitBranch::Kind::begin);  // less than 3 % gained
-  EXPECT_EQ(p.after(last, mark(0.28, 3), state).kind, FitBranch::Kind::begin);
+  EXPECT_EQ(p.after(last, snapshot(0.299, 2), state).kind, FitBranch::Kind::begin);  // less than 3 % gained
+  EXPECT_EQ(p.after(last, snapshot(0.28, 3), state).kind, FitBranch::Kind::begin);
   EXPECT_EQ(state.failed, 0);
-  for (int k = 0; k < 2; ++k) EXPECT_EQ(p.after(last, mark(0.4, 4), state).kind, FitBranch::Kind::begin);
-  const FitBranch end = p.after(last, mark(0.4, 5), state);
+  for (int k = 0; k < 2; ++k) EXPECT_EQ(p.after(last, snapshot(0.4, 4), state).kind, FitBranch::Kind::begin);
+  const FitBranch end = p.after(last, snapshot(0.4, 5), state);
   EXPECT_EQ(end.kind, FitBranch::Kind::end);
-  EXPECT_EQ(end.mark.parameters, std::vector<double>{3});
+  EXPECT_EQ(end.snapshot.parameters, std::vector<double>{3});
 }
 
 TEST(RestartPolicy, SearchesOnlyNearTheTargetAndAboveTheNoise) {
@@ -160,7 +161,7 @@ TEST(RestartPolicy, SearchesOnlyNearTheTargetAndAboveTheNoise) {
     const RestartPolicy p = policy(with_search);
     FitBranch b;
     do {
-      b = p.after(p.schedule().screening(), mark(error, 1), state);
+      b = p.after(p.schedule().screening(), snapshot(error, 1), state);
     } while (b.start);
     return b.kind;
   };
@@ -175,17 +176,17 @@ TEST(RestartPolicy, TriesTheConjugateOfWhatIsNear) {
   const RestartPolicy p = policy(true);
   const std::size_t last_search = p.schedule().search_stages() - 1;
   RestartState state;
-  state.screened = mark(0.04, 1);
+  state.screened = snapshot(0.04, 1);
   state.searches = 1;
   state.searches_left = 9;
-  EXPECT_EQ(p.after(last_search, mark(0.04, 2), state).kind, FitBranch::Kind::conjugate);
-  EXPECT_EQ(p.after(last_search, mark(0.041, 3), state).kind, FitBranch::Kind::begin);
-  EXPECT_FALSE(p.after(last_search, mark(0.06, 4), state).kind == FitBranch::Kind::conjugate);  // too far
-  EXPECT_EQ(p.after(last_search, mark(0.05, 5), state).kind, FitBranch::Kind::conjugate);
-  const FitBranch better = p.after(last_search, mark(0.03, 6), state);
+  EXPECT_EQ(p.after(last_search, snapshot(0.04, 2), state).kind, FitBranch::Kind::conjugate);
+  EXPECT_EQ(p.after(last_search, snapshot(0.041, 3), state).kind, FitBranch::Kind::begin);
+  EXPECT_FALSE(p.after(last_search, snapshot(0.06, 4), state).kind == FitBranch::Kind::conjugate);  // too far
+  EXPECT_EQ(p.after(last_search, snapshot(0.05, 5), state).kind, FitBranch::Kind::conjugate);
+  const FitBranch better = p.after(last_search, snapshot(0.03, 6), state);
   EXPECT_EQ(better.kind, FitBranch::Kind::begin);
   EXPECT_EQ(better.stage, p.schedule().screening());
-  EXPECT_EQ(better.mark.parameters, std::vector<double>{6});
+  EXPECT_EQ(better.snapshot.parameters, std::vector<double>{6});
 }
 
 }  // namespace

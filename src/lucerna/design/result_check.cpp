@@ -13,7 +13,7 @@
 #include "lucerna/design/light_limits.h"
 #include "lucerna/design/reach.h"
 #include "lucerna/design/validation.h"
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 
 namespace lucerna {
 

@@ -25,11 +25,11 @@ class Stop {
 
   bool operator()(std::uint64_t total_rays, std::uint64_t next_rays) {
     if (run_.progress.stop_requested()) {
-      result_.end = DesignEnd::interrupted;
+      result_.end = DesignTermination::interrupted;
     } else if (run_.time.spent(total_rays - before_, next_rays)) {
-      result_.end = DesignEnd::time;
+      result_.end = DesignTermination::time;
     }
-    return result_.end != DesignEnd::converged;
+    return result_.end != DesignTermination::converged;
   }
 
  private:
@@ -65,7 +65,7 @@ void search_free_form(const SearchRun& run, const FitProblem& fit, DesignResult&
 void search_coarse_to_fine(const SearchRun& run, FitProblem& fit_data, DesignResult& result) {
   const DesignProblem& problem = run.problem;
   const ContinuationSchedule schedule =
-      continuation_schedule(problem.start, fit_data.bins, {run.options.max_rays, problem.growth});
+      continuation_schedule(problem.start, fit_data.bins, {run.options.max_rays, problem.knot_doublings});
   FitState state;
   if (!run.options.checkpoint.empty()) state = parse_checkpoint(run.options.checkpoint, run.key);
   Stop stop(run, state.total_rays, result);
@@ -75,9 +75,9 @@ void search_coarse_to_fine(const SearchRun& run, FitProblem& fit_data, DesignRes
     if (run.observer) run.observer(record, best, checkpoint_text(state, run.key));
     return !stop(record.total_rays, record.rays);
   };
-  if (!prepare_starts(fit_data, problem.start, schedule, problem.optimizer, state.search_costs, watch,
-                      run.progress)) {
-    result.shape = fit_data.starts[0].shape;
+  if (!prepare_guesses(fit_data, problem.start, schedule, problem.optimizer, state.search_costs, watch,
+                       run.progress)) {
+    result.shape = fit_data.guesses[0].shape;
     result.checkpoint = checkpoint_text(state, run.key);
     result.evaluations = static_cast<int>(state.search_costs.size());
     return;
@@ -85,7 +85,7 @@ void search_coarse_to_fine(const SearchRun& run, FitProblem& fit_data, DesignRes
   Fit fit = begun ? Fit(fit_data, schedule, problem.start, state)
                   : Fit(fit_data, schedule, problem.start, state.search_costs);
   step_until_done(run, fit, stop, result);
-  if (result.end == DesignEnd::converged && !fit.at_noise()) {
+  if (result.end == DesignTermination::converged && !fit.at_noise()) {
     result.remarks.push_back(
         fmt::format("ended before its time: {} further restarts in a row brought nothing better",
                     fit.state().restart.failed));

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "lucerna/design/first_hit.h"
-#include "lucerna/design/one_lane.h"
+#include "lucerna/design/scalar_double.h"
 #include "lucerna/geometry.h"
 #include "lucerna/host_device.h"
 #include "lucerna/reflector.h"
@@ -43,10 +43,10 @@ LUCERNA_HD inline HitRow hit_row(const KnotRow& row) {
 }
 /// The mirror as the searches of first_hit.h read it.
 LUCERNA_HD inline BsplineHitTable hit_table(const BsplineView& s) {
-  return {hit_row(s.row_x), hit_row(s.row_y), s.coefficients, s.near_bends};
+  return {hit_row(s.row_x), hit_row(s.row_y), s.coefficients, s.near_curvatures};
 }
 LUCERNA_HD inline RevolutionHitTable hit_table(const RevolutionView& s) {
-  return {hit_row(s.row), s.coefficients, s.near_bends};
+  return {hit_row(s.row), s.coefficients, s.near_curvatures};
 }
 template <class Shape>
 LUCERNA_HD auto hit_mirror(const Shape& shape, const Aperture& a) {
@@ -55,7 +55,7 @@ LUCERNA_HD auto hit_mirror(const Shape& shape, const Aperture& a) {
                           0.25 / shape.focal_mm,
                           shape.band.low_mm,
                           shape.band.high_mm,
-                          shape.bend_bound,
+                          shape.curvature_bound,
                           shape.cell_mm(),
                           a.shape() == ApertureShape::circle,
                           a.half_x_mm(),
@@ -63,7 +63,7 @@ LUCERNA_HD auto hit_mirror(const Shape& shape, const Aperture& a) {
                           a.hole_radius_mm()};
 }
 
-/// Where a ray goes on after meeting the mirror, and what it met.
+/// Where a ray goes on after meeting the mirror, and what it hit.
 template <class Shape>
 LUCERNA_HD void reflect_path(const Shape& shape, double t, Vec3& o, Vec3& d, typename Path<Shape>::Hit& hit) {
   const double x = o.x + t * d.x, y = o.y + t * d.y;
@@ -116,8 +116,8 @@ class SmoothTracer {
 
   /// `slope` is f' where the ray starts on the mirror.
   LUCERNA_HD int32_t first_hit(const Vec3& o, const Vec3& d, bool on_mirror, double slope, double& t) const {
-    HitSearch<OneLane, Table> search;
-    const OneLane from[3] = {o.x, o.y, o.z}, along[3] = {d.x, d.y, d.z};
+    HitSearch<ScalarDouble, Table> search;
+    const ScalarDouble from[3] = {o.x, o.y, o.z}, along[3] = {d.x, d.y, d.z};
     if (!search.begin(mirror_, from, along, on_mirror ? 1.0 : 0.0, slope).m) return kHitNothing;
     while (!search.step(mirror_).m) {
     }

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "lucerna/design/limits.h"
-#include "lucerna/design/roughness.h"
+#include "lucerna/design/smoothness_penalty.h"
 #include "lucerna/design/window.h"
 
 namespace lucerna {
@@ -23,7 +23,7 @@ StageObjective::StageObjective(const FitProblem& problem, const FitStage& stage,
       bins_(rebinned(problem.bins, stage.widen, stage.bins)),
       target_(problem.target(bins_)) {
   problem_.rays->grow(stage.rays, progress);
-  if (stage.waves > 0.0) scale_.emplace(bins_, stage.waves);
+  if (stage.cutoff > 0.0) scale_.emplace(bins_, stage.cutoff);
 }
 
 FitPoint StageObjective::at(DesignShape shape) const {
@@ -41,7 +41,7 @@ NormalEquations StageObjective::equations(const DesignShape& shape, const Evalua
       scale_ ? normal_equations((*scale_)(light), scale_->flux(target_), bins_, problem_.mode)
              : normal_equations(light, target_, bins_, problem_.mode);
   ResidualRows rows;
-  equations.cost += roughness(shape, stage_.smoothing, 1.0, &rows);
+  equations.cost += smoothness_penalty(shape, stage_.smoothing, 1.0, &rows);
   if (problem_.limits) equations.cost += problem_.limits(shape, stage_.rays, &rows);
   rows.add_to(equations);
   if (problem_.flux_weight > 0.0) {

@@ -5,8 +5,8 @@
 
 #include "lucerna/design/continuation_schedule.h"
 #include "lucerna/design/fit_problem.h"
-#include "lucerna/design/large_scale.h"
 #include "lucerna/design/levenberg_marquardt.h"
+#include "lucerna/design/spectral_weighting.h"
 #include "lucerna/progress.h"
 
 namespace lucerna {
@@ -41,7 +41,7 @@ class StageObjective {
   FitStage stage_;
   TentBins bins_;
   Eigen::VectorXd target_;
-  std::optional<LargeScale> scale_;
+  std::optional<SpectralWeighting> scale_;
 };
 
 }  // namespace lucerna

@@ -141,11 +141,11 @@ std::optional<double> height_at(const Envelope& envelope, double scale, const Ve
 }  // namespace
 
 std::vector<DesignShape> supporting_paraboloids(const DesignShape& family, const PointSource& source,
-                                                std::span<const DirectedFlux> wanted, double blur_rad) {
+                                                std::span<const DirectedFlux> target_flux, double blur_rad) {
   std::vector<DirectedFlux> to;
   double max = 0.0;
-  for (const DirectedFlux& l : wanted) max = std::max(max, l.flux);
-  for (const DirectedFlux& l : wanted) {
+  for (const DirectedFlux& l : target_flux) max = std::max(max, l.flux);
+  for (const DirectedFlux& l : target_flux) {
     if (l.flux > 1e-4 * max) to.push_back(l);
   }
   std::vector<DesignShape> shapes;

@@ -38,7 +38,7 @@ struct PlaneTarget {
 /// The light that is wanted: [target] of a project.
 struct DesignTarget {
   /// For a plane: that of the point luminaire at the mirror's place which would light it just so; a start for
-  /// search, never what the result is judged by.
+  /// search, never what the result is evaluated by.
   IntensityDistribution distribution;
   TargetMode mode = TargetMode::shape;
   std::string file;

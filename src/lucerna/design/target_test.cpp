@@ -73,7 +73,7 @@ TEST(PlaneTarget, AMirrorIsShapedForARectangleOnTheFloor) {
   write_file(folder / "e.csv", "1\n");
   DesignOptions options;
   options.max_rays = 1 << 14;
-  options.judge_rays = 1 << 17;
+  options.validation_rays = 1 << 17;
   const DesignProblem p =
       target_problem(folder.path(), kFloor, "intervals = 2\nrestarts = 1\ntime_s = 1e6\n");
   const DesignResult result = design(p, options);

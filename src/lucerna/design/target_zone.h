@@ -63,7 +63,7 @@ struct TargetZone {
 /// plane as `x_mm` and `y_mm`, each a number or [low, high] (`c_deg` may pass 360); `cell_deg` or `cell_mm`;
 /// and at least one bound: `min_cd`, `max_cd` or `min_cd_per_klm`, `max_cd_per_klm` (per 1000 lm of the
 /// sources); on planes `min_lx`, `max_lx`, `min_uo` (minimum over mean) and `min_ul` (minimum over maximum
-/// along a line); `min_of_mean`, `max_of_mean` with `mean_of`, the name of a zone. In W, cd stands for W/sr
+/// along a line); `min_of_mean`, `max_of_mean` with `mean_of`, the name of a zone. In W, cd represents W/sr
 /// and lx for W/m2. Empty without zones. Throws InputError with file, line, key, found and expected.
 std::vector<TargetZone> read_zones(TomlReader& target, bool plane, double source_flux);
 

@@ -28,9 +28,9 @@ FarFieldDetector watch() {
   return d;
 }
 
-ToleranceFigures figures_of(const TraceResult& result) {
+ToleranceMetrics figures_of(const TraceResult& result) {
   const FarFieldMetrics m = far_field_metrics(counted_far_field(result, 0), {});
-  ToleranceFigures f;
+  ToleranceMetrics f;
   f.efficiency = out_flux(result).map([&](double x) { return x / result.flux; }).estimate();
   if (m.peak) f.peak = m.peak->cd;
   f.centre = m.axis_cd;
@@ -41,7 +41,7 @@ ToleranceFigures figures_of(const TraceResult& result) {
   return f;
 }
 
-using Figure = std::function<std::optional<Estimate>(const ToleranceFigures&)>;
+using Figure = std::function<std::optional<Estimate>(const ToleranceMetrics&)>;
 
 ToleranceSpread spread_of(const std::string& name, const ToleranceSweep& sweep, const Figure& figure) {
   ToleranceSpread s;
@@ -160,11 +160,11 @@ ToleranceSweep tolerance_sweep(const Scene& scene, const ToleranceRanges& ranges
     progress.update("tolerances", sweep.figures.size(), sweep.cases.size());
   }
   sweep.spread = {
-      spread_of("efficiency", sweep, [](const ToleranceFigures& f) { return f.efficiency; }),
-      spread_of("peak", sweep, [](const ToleranceFigures& f) { return f.peak; }),
-      spread_of("centre", sweep, [](const ToleranceFigures& f) { return f.centre; }),
-      spread_of("beam_c0_deg", sweep, [](const ToleranceFigures& f) { return f.beam_c0_deg; }),
-      spread_of("beam_c90_deg", sweep, [](const ToleranceFigures& f) { return f.beam_c90_deg; }),
+      spread_of("efficiency", sweep, [](const ToleranceMetrics& f) { return f.efficiency; }),
+      spread_of("peak", sweep, [](const ToleranceMetrics& f) { return f.peak; }),
+      spread_of("centre", sweep, [](const ToleranceMetrics& f) { return f.centre; }),
+      spread_of("beam_c0_deg", sweep, [](const ToleranceMetrics& f) { return f.beam_c0_deg; }),
+      spread_of("beam_c90_deg", sweep, [](const ToleranceMetrics& f) { return f.beam_c90_deg; }),
   };
   return sweep;
 }
@@ -180,7 +180,7 @@ std::string tolerances_csv(const ToleranceSweep& sweep) {
   };
   for (std::size_t i = 0; i < sweep.cases.size(); ++i) {
     const ToleranceCase& c = sweep.cases[i];
-    const ToleranceFigures& f = sweep.figures[i];
+    const ToleranceMetrics& f = sweep.figures[i];
     csv +=
         fmt::format("{},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g}", c.name, c.shift_mm.x, c.shift_mm.y,
                     c.shift_mm.z, c.tilt_x_deg, c.tilt_y_deg, c.slope_error_mrad, c.reflectance);

@@ -27,7 +27,7 @@ Scene spot() {
   return scene;
 }
 
-const ToleranceFigures& figures(const ToleranceSweep& sweep, const std::string& name) {
+const ToleranceMetrics& figures(const ToleranceSweep& sweep, const std::string& name) {
   const auto found = std::find_if(sweep.cases.begin(), sweep.cases.end(),
                                   [&](const ToleranceCase& c) { return c.name == name; });
   return sweep.figures.at(static_cast<std::size_t>(found - sweep.cases.begin()));
@@ -40,7 +40,7 @@ TEST(Tolerances, TheSweepSeesWhatOpticsSays) {
   ranges.samples = 4;
   ranges.rays = 1 << 17;
   const ToleranceSweep sweep = tolerance_sweep(spot(), ranges, 3);
-  const ToleranceFigures& nominal = sweep.figures.front();
+  const ToleranceMetrics& nominal = sweep.figures.front();
   EXPECT_EQ(sweep.cases.front().name, "nominal");
   // The disk looks at the mirror: every ray is reflected once, so efficiency follows the reflectance.
   EXPECT_NEAR(nominal.efficiency.mean, 0.85, 0.01);
@@ -65,7 +65,7 @@ TEST(Tolerances, TheSweepSeesWhatOpticsSays) {
 TEST(Tolerances, NothingMovesNothing) {
   ToleranceRanges none{0.0, 0.0, 0.0, 0.0, 2, 1 << 15};
   const ToleranceSweep sweep = tolerance_sweep(spot(), none, 3);
-  for (const ToleranceFigures& f : sweep.figures) {
+  for (const ToleranceMetrics& f : sweep.figures) {
     EXPECT_EQ(f.efficiency.mean, sweep.figures[0].efficiency.mean);
     EXPECT_EQ(f.peak.mean, sweep.figures[0].peak.mean);
     EXPECT_GT(f.peak.standard_error, 0.0);

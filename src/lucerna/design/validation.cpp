@@ -12,8 +12,8 @@
 #include "lucerna/core/parallel.h"
 #include "lucerna/design/mesh_hits.h"
 #include "lucerna/trace/body_tracer.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/ray_numbering.h"
-#include "lucerna/trace/units.h"
 
 namespace lucerna {
 
@@ -25,7 +25,7 @@ constexpr std::uint64_t kFirstRound = std::uint64_t{1} << 18;
 /// Rays that are one block of every replicate.
 constexpr std::uint64_t kRoundUnit = kReplicates * kBlockRays;
 /// Reflected rays start this share of the scene's size in front of the facet: some roundings of float32, so
-/// that none meets its own facet from behind.
+/// that none hits its own facet from behind.
 constexpr double kLift = 4e-6;
 
 using Clock = std::chrono::steady_clock;
@@ -158,13 +158,13 @@ class BatchTracer {
     sort_by_direction();
     for (int reflections = 0; count_ > 0; ++reflections) {
       meshes_.finder(reflections > 0).first_hits(rays_, count_, hits_);
-      std::size_t kept = 0;
+      std::size_t retained = 0;
       for (std::size_t i = 0; i < count_; ++i) {
         if (!interact(i, reflections, sums)) continue;
-        move(i, kept);
-        ++kept;
+        move(i, retained);
+        ++retained;
       }
-      count_ = kept;
+      count_ = retained;
     }
   }
 
@@ -327,12 +327,12 @@ void trace_round(const Scene& scene, const RayNumbering& numbering, const Meshes
   parallel_blocks(kReplicates, 1, [&](std::size_t r, std::size_t) {
     const auto tracer = std::make_unique<BatchTracer>(scene, numbering, meshes, boxes, zones);
     BoxSums& sums = replicates[r];
-    std::uint64_t told = first;
+    std::uint64_t reported = first;
     for (std::uint64_t j = first; j < last; ++j) {
       tracer->add_block(kReplicates * j + r, sums);
       if (j % 64 != 63 && j + 1 != last) continue;
-      counted.add((j + 1 - told) * kBlockRays);
-      told = j + 1;
+      counted.add((j + 1 - reported) * kBlockRays);
+      reported = j + 1;
     }
     tracer->finish(sums);
   });

@@ -54,7 +54,7 @@ struct Validation {
 
 /// Traces the scene's sources through its mirrors as triangles (cad_mesh_within, as the STL export has them),
 /// and its bodies, into the cells of the boxes: 16 replicates of independent Owen-scrambled Sobol sequences
-/// (rays of files come once each), reflections up to 100, mirrors absorb on their backs, light that meets
+/// (rays of files come once each), reflections up to 100, mirrors absorb on their backs, light that hits
 /// nothing counts as direct. Slope errors of mirrors and bodies are drawn as `trace` draws them. `target` is
 /// flux per cell (box_target). The same bits for any number of threads where time does not stop it. Progress
 /// phase "validate", in rays; stops early with what there is when asked to. Throws InputError on a bad scene,

@@ -12,7 +12,7 @@
 #include "lucerna/design/mesh_hits.h"
 #include "lucerna/source.h"
 #include "lucerna/trace.h"
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "tests/support/one_at_a_time.h"
 
 namespace lucerna {

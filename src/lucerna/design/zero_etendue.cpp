@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "lucerna/design/supporting_paraboloids.h"
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 
 namespace lucerna {
 
@@ -61,13 +61,13 @@ struct Balance {
 using ProfilePoints = std::vector<std::array<double, 2>>;
 
 /// Integrates the profile whose flux up to `rim` makes the wanted light; goes on beyond with the last angle.
-ProfilePoints integrate(const Balance& way, const Cumulative& source, const Cumulative& wanted, double hole,
-                        double rim, double distance_mm, double source_z_mm) {
+ProfilePoints integrate(const Balance& way, const Cumulative& source, const Cumulative& target_flux,
+                        double hole, double rim, double distance_mm, double source_z_mm) {
   constexpr int kPoints = 1500;
   const double from = source.below(hole), all = source.below(rim) - from;
   const auto gamma = [&](double theta) {
     const double share = std::clamp((source.below(theta) - from) / all, 0.0, 1.0);
-    return way.side * wanted.angle_of((way.outward ? share : 1.0 - share) * wanted.total());
+    return way.side * target_flux.angle_of((way.outward ? share : 1.0 - share) * target_flux.total());
   };
   ProfilePoints points;
   double log_rho = std::log(distance_mm);
@@ -106,7 +106,7 @@ std::vector<DesignShape> flux_balance(const DesignShape& family, const PointSour
   const Direction axis;
   const Cumulative from_source(source.light,
                                [&](const Direction& d) { return kPi - angle_between(d, axis); });
-  const Cumulative wanted(light, [&](const Direction& d) { return angle_between(d, axis); });
+  const Cumulative target_flux(light, [&](const Direction& d) { return angle_between(d, axis); });
   const double radius = family.aperture().outer_radius_mm();
   const double hole = std::atan2(family.aperture().hole_radius_mm(), distance);
   std::vector<DesignShape> shapes;
@@ -116,14 +116,14 @@ std::vector<DesignShape> flux_balance(const DesignShape& family, const PointSour
     double low = hole + 0.05, high = kPi - 0.05;
     for (int i = 0; i < 40; ++i) {
       const double rim = 0.5 * (low + high);
-      const ProfilePoints p = integrate(way, from_source, wanted, hole, rim, distance, source.at_mm.z);
+      const ProfilePoints p = integrate(way, from_source, target_flux, hole, rim, distance, source.at_mm.z);
       double reached = 0.0;  // the radius at the rim itself
       const auto at = static_cast<std::size_t>(static_cast<double>(1500) / 1.15);
       if (p.size() > at) reached = p[at][0];
       (p.size() <= at || reached > radius ? high : low) = rim;
     }
     const auto height =
-        height_of(integrate(way, from_source, wanted, hole, low, distance, source.at_mm.z), radius);
+        height_of(integrate(way, from_source, target_flux, hole, low, distance, source.at_mm.z), radius);
     if (!height) continue;
     const double vertex = family.at(0.0, 0.0).z_mm;
     shapes.push_back(
@@ -162,7 +162,7 @@ std::vector<DesignShape> trough_balance(const DesignShape& family, const PointSo
   const double vertex = family.at(0.0, 0.0).z_mm, distance = source.at_mm.z - vertex;
   if (!(distance > 0.0)) return {};
   const Cumulative from_source(source.light, [](const Direction& d) { return std::atan2(d.x(), -d.z()); });
-  const Cumulative wanted(light, [](const Direction& d) { return seen_along_y(d); });
+  const Cumulative target_flux(light, [](const Direction& d) { return seen_along_y(d); });
   const double half_x = family.aperture().half_x_mm();
   std::vector<DesignShape> shapes;
   for (const bool same : {true, false}) {
@@ -173,7 +173,7 @@ std::vector<DesignShape> trough_balance(const DesignShape& family, const PointSo
       if (!(all > 0.0)) return shapes;
       const auto gamma = [&](double theta) {
         const double share = std::clamp((from_source.below(theta) - begin) / all, 0.0, 1.0);
-        return wanted.angle_of((same ? share : 1.0 - share) * wanted.total());
+        return target_flux.angle_of((same ? share : 1.0 - share) * target_flux.total());
       };
       double to_left = 0.05, to_right = 0.05;
       minus = trough_side(gamma, -1.0, half_x, distance, source.at_mm.x, source.at_mm.z, to_left);
@@ -217,13 +217,13 @@ PointSource point_source(const DesignRays& rays, std::uint64_t count) {
 }
 
 std::vector<DesignShape> zero_etendue_shapes(const DesignShape& family, const PointSource& source,
-                                             std::span<const DirectedFlux> wanted, double blur_rad) {
+                                             std::span<const DirectedFlux> target_flux, double blur_rad) {
   double total = 0.0;
-  for (const DirectedFlux& l : wanted) total += l.flux;
+  for (const DirectedFlux& l : target_flux) total += l.flux;
   if (!(total > 0.0)) return {};
-  if (family.is_revolution()) return flux_balance(family, source, wanted);
-  if (family.is_trough()) return trough_balance(family, source, wanted);
-  return supporting_paraboloids(family, source, wanted, blur_rad);
+  if (family.is_revolution()) return flux_balance(family, source, target_flux);
+  if (family.is_trough()) return trough_balance(family, source, target_flux);
+  return supporting_paraboloids(family, source, target_flux, blur_rad);
 }
 
 }  // namespace lucerna

@@ -20,9 +20,9 @@ struct PointSource {
 /// Of the first `rays` rays (rounded to whole blocks). Flux in shares of the source's.
 PointSource point_source(const DesignRays& rays, std::uint64_t count);
 
-/// Mirrors that a point source would need to throw exactly the light `wanted` (in the mirror's frame; its sum
-/// does not matter): where a design starts, since blurring by the source's size moves the optimum little
-/// where the mirror is large beside the source. Each holds the family's vertex and fills its aperture.
+/// Mirrors that a point source would need to throw exactly the light `target_flux` (in the mirror's frame;
+/// its sum does not matter): where a design starts, since blurring by the source's size moves the optimum
+/// little where the mirror is large beside the source. Each holds the family's vertex and fills its aperture.
 /// Solutions that fold over or leave the aperture's reach are left out; there may be none.
 ///
 /// Revolution: flux balance. The ray that leaves the source at the angle theta from the vertex goes out at
@@ -36,6 +36,6 @@ PointSource point_source(const DesignRays& rays, std::uint64_t count);
 /// 2004: cost -log(1 - d . o), or its negative for the other envelope) with an entropy that falls step by
 /// step and leaves the envelope as smooth as `blur_rad` (Sinkhorn's iteration). Two solutions.
 std::vector<DesignShape> zero_etendue_shapes(const DesignShape& family, const PointSource& source,
-                                             std::span<const DirectedFlux> wanted, double blur_rad);
+                                             std::span<const DirectedFlux> target_flux, double blur_rad);
 
 }  // namespace lucerna

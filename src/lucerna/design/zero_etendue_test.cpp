@@ -9,7 +9,7 @@
 #include "lucerna/design/least_squares.h"
 #include "lucerna/design/smooth_path.h"
 #include "lucerna/source.h"
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 
 namespace lucerna {
 namespace {
@@ -78,16 +78,16 @@ TEST(ZeroEtendue, APointSourceGivesAnyRotationalBeam) {
     const double gamma = angle_between(d, Direction());
     return gamma < 0.35 ? 1.0 + 8.0 * gamma : 0.0;
   };
-  std::vector<DirectedFlux> wanted;
+  std::vector<DirectedFlux> target_flux;
   for (int i = 0; i < 700; ++i) {
     const double gamma = (i + 0.5) * 5e-4;
     const Direction d = Direction::from_unit({std::sin(gamma), 0, std::cos(gamma)});
-    wanted.push_back({d, intensity(d) * std::sin(gamma)});
+    target_flux.push_back({d, intensity(d) * std::sin(gamma)});
   }
   const std::vector<double> flux = bins.flux_of(intensity);
   const Eigen::VectorXd target = Eigen::Map<const Eigen::VectorXd>(flux.data(), bins.count());
   const std::vector<DesignShape> shapes =
-      zero_etendue_shapes(plain, point_source(rays, kPointRays), wanted, 0.0);
+      zero_etendue_shapes(plain, point_source(rays, kPointRays), target_flux, 0.0);
   ASSERT_GE(shapes.size(), 2u);
   EXPECT_LT(min_error(shapes, rays, bins, target), 0.06);
   EXPECT_GT(min_error({plain}, rays, bins, target), 0.9);
@@ -97,14 +97,14 @@ TEST(ZeroEtendue, APointSourceGivesAnyRotationalBeam) {
 TEST(ZeroEtendue, ParaboloidsMakeARectangleOfLight) {
   const DesignRays rays = rays_of(EmitterKind::sphere);  // 1 mm in radius, 4 degrees from the vertex
   const DesignShape plain = DesignShape::bspline(kFocal_mm, Aperture::rectangle(80, 80), 10, 10);
-  const std::vector<DirectedFlux> wanted = cells(0.4, 0.2, 16);
+  const std::vector<DirectedFlux> target_flux = cells(0.4, 0.2, 16);
   const TentBins bins = TentBins::square(Frame(), 0.5, 16);
   const std::vector<double> flux = bins.flux_of(
       [](const Direction& d) { return std::abs(d.x()) < 0.4 && std::abs(d.y()) < 0.2 ? 1.0 : 0.0; });
   const Eigen::VectorXd target =
       Eigen::Map<const Eigen::VectorXd>(flux.data(), static_cast<Eigen::Index>(flux.size()));
   const std::vector<DesignShape> shapes =
-      zero_etendue_shapes(plain, point_source(rays, kPointRays), wanted, 0.05);
+      zero_etendue_shapes(plain, point_source(rays, kPointRays), target_flux, 0.05);
   ASSERT_GE(shapes.size(), 1u);
   EXPECT_LT(min_error(shapes, rays, bins, target), 0.35);
   EXPECT_GT(min_error({plain}, rays, bins, target), 0.8);
@@ -122,13 +122,14 @@ TEST(ZeroEtendue, ATroughSpreadsTheLightOfALine) {
   const DesignShape plain = DesignShape::trough(kFocal_mm, Aperture::rectangle(80, 200), 16);
   const auto across = [](const Direction& d) { return std::atan2(d.x(), d.z()); };
   // Twice as much light to one side as to the other, within 25 degrees.
-  std::vector<DirectedFlux> wanted;
+  std::vector<DirectedFlux> target_flux;
   for (int i = 0; i < 500; ++i) {
     const double gamma = radians(25.0) * ((i + 0.5) / 250.0 - 1.0);
-    wanted.push_back({Direction::from_unit({std::sin(gamma), 0, std::cos(gamma)}), gamma > 0.0 ? 2.0 : 1.0});
+    target_flux.push_back(
+        {Direction::from_unit({std::sin(gamma), 0, std::cos(gamma)}), gamma > 0.0 ? 2.0 : 1.0});
   }
   const std::vector<DesignShape> shapes =
-      zero_etendue_shapes(plain, point_source(rays, kPointRays), wanted, 0.0);
+      zero_etendue_shapes(plain, point_source(rays, kPointRays), target_flux, 0.0);
   ASSERT_GE(shapes.size(), 1u);
   const auto shares = [&](const DesignShape& s) {  // of the reflected light in bins of the angle across
     const SmoothTracer<BsplineView> tracer(std::get<BsplineShape>(s.family()).view(), s.aperture());

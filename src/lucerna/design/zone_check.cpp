@@ -78,14 +78,14 @@ ZoneBoundCheck check_bound(const ZoneCells& cells, const ZoneLight& light, std::
   std::vector<double> short_by(reference.size()), ratio(reference.size());
   for (std::size_t c = cells.first(zone); c < cells.first(zone + 1); ++c) {
     for (std::size_t r = 0; r < reference.size(); ++r) {
-      const double slack = bound.value * reference[r] - light.of(c)[r];
-      short_by[r] = bound.is_min ? slack : -slack;
+      const double tolerance = bound.value * reference[r] - light.of(c)[r];
+      short_by[r] = bound.is_min ? tolerance : -tolerance;
     }
     const Estimate e = mean_estimate(short_by);
-    const bool kept = e.mean < 0.0 && -e.mean >= kZoneErrors * e.standard_error;
+    const bool held = e.mean < 0.0 && -e.mean >= kZoneErrors * e.standard_error;
     const bool broken = e.mean > 0.0 && e.mean >= kZoneErrors * e.standard_error;
     out.verdict = worse(out.verdict,
-                        broken ? ZoneVerdict::missed : (kept ? ZoneVerdict::met : ZoneVerdict::undetermined));
+                        broken ? ZoneVerdict::missed : (held ? ZoneVerdict::met : ZoneVerdict::undetermined));
     const double missing = unit > 0.0 ? e.mean / (bound.value * unit) : 1.0;
     if (!(missing > out.missing)) continue;
     out.missing = missing;

@@ -166,7 +166,7 @@ TEST(ZoneCost, ASearchEndsWithTheBandsHeld) {
   for (int i = 0; i < 400 && !search.done(); ++i) {
     search.step();
     const auto& done = search.state().done;
-    if (std::any_of(done.begin(), done.end(), [](const FreeFormMark& m) { return m.level == 2; })) break;
+    if (std::any_of(done.begin(), done.end(), [](const FreeFormSnapshot& m) { return m.level == 2; })) break;
   }
   DesignRays fresh = cost_rays(99);
   fresh.grow(std::uint64_t{1} << 19);

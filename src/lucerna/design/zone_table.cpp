@@ -10,7 +10,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 
 namespace lucerna {
 
@@ -21,7 +21,7 @@ constexpr std::size_t kZones = 100, kHeightLevels = 5;
 constexpr double kMaxTableCells = 4096.0, kMaxTurns = 400.0;
 /// Longest step of an angle over what the source spreads.
 constexpr double kStepShare = 0.06;
-/// Where light meets a zone nearly along its face, how much more of it a tilted zone may catch.
+/// Where light hits a zone nearly along its face, how much more of it a tilted zone may catch.
 constexpr double kMaxGain = 8.0;
 /// Parts that the rays are counted in, by their number alone: sums never depend on threads.
 constexpr std::uint64_t kParts = 4;
@@ -63,7 +63,7 @@ struct ZoneTable::Light {
   double all = 0.0;
 };
 
-/// One ray where it meets the face of the base paraboloid raised to a level. `across`: its flux over the
+/// One ray where it hits the face of the base paraboloid raised to a level. `across`: its flux over the
 /// projection of a square mm of the face.
 struct ZoneTable::Arrival {
   double r = 0.0, z = 0.0, chi = 0.0, beta = 0.0, across = 0.0;

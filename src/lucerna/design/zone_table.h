@@ -8,7 +8,7 @@
 namespace lucerna {
 
 /// What each zone of a mirror of revolution throws into the rings, tabulated over the zone's height and
-/// slope: light that meets the mirror once is a sum over zones, each of which knows only where it is and how
+/// slope: light that hits the mirror once is a sum over zones, each of which knows only where it is and how
 /// it is tilted. A shape then costs some twenty microseconds instead of a trace, so that thousands can be
 /// tried. Left out: second reflections and shadows, so what is found here is a start and never a result.
 /// Immutable, thread safe.

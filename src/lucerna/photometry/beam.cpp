@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "lucerna/core/error.h"
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 
 namespace lucerna {
 
@@ -171,8 +171,8 @@ double cone_mean_error_cd(const IntensityDistribution& d, std::span<const double
   return std::sqrt(variance);
 }
 
-BeamFigures beam_figures(const IntensityDistribution& d, double centre_cone_deg) {
-  BeamFigures figures;
+BeamMetrics beam_metrics(const IntensityDistribution& d, double centre_cone_deg) {
+  BeamMetrics figures;
   figures.flux = total_flux(d);
   figures.peak = peak_intensity(d);
   figures.axis_gamma_deg = axis_gamma_deg(d);

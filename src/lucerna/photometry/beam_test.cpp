@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "lucerna/core/error.h"
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 
 namespace lucerna {
 namespace {
@@ -41,7 +41,7 @@ TEST(Beam, UplightIsMeasuredAboutTheZenith) {
   const auto d = filled([](double, double g) { return 500.0 * tent(180.0 - g, 30.0); });
   EXPECT_EQ(axis_gamma_deg(d), 180.0);
   EXPECT_NEAR(*beam_angle_deg(d, 0.0, 0.5, BeamReference::centre), 30.0, 1e-9);
-  EXPECT_NEAR(beam_figures(d).centre_cd, 500.0 * (1.0 - 2.0 / 3.0 / 30.0), 0.5);
+  EXPECT_NEAR(beam_metrics(d).centre_cd, 500.0 * (1.0 - 2.0 / 3.0 / 30.0), 0.5);
 }
 
 TEST(Beam, TiltedBeamKeepsItsWidth) {
@@ -73,7 +73,7 @@ TEST(Beam, ConeMeanOfALinearBeam) {
 }
 
 TEST(Beam, FiguresOfNothing) {
-  const BeamFigures f = beam_figures(uniform_distribution(90.0, 10.0));
+  const BeamMetrics f = beam_metrics(uniform_distribution(90.0, 10.0));
   EXPECT_EQ(f.flux, 0.0);
   EXPECT_FALSE(f.planes.front().beam_of_maximum);
 }

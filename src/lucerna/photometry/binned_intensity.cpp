@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "lucerna/core/error.h"
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/photometry/node_errors.h"
 
 namespace lucerna {

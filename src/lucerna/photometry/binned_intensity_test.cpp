@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "lucerna/core/error.h"
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/random.h"
 
 namespace lucerna {
@@ -202,7 +202,7 @@ TEST(BinnedIntensityStatistical, ThePolesAreNotNoisier) {
       const double off = result.distribution.cd[i] / per_sr - 1.0;
       squares += off * off;
       n += 1.0;
-      // sqrt(1 / 40) is 0.158; a pole stands for three quarters of a square.
+      // sqrt(1 / 40) is 0.158; a pole represents three quarters of a square.
       EXPECT_LT(result.standard_error_cd[i] / per_sr, 0.158 * 1.6) << c << ' ' << g;
     }
     EXPECT_EQ(result.distribution.at(c, 150), 0.0);

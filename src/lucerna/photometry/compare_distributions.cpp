@@ -7,7 +7,7 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/intensity_comparison.h"
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/photometry/binned_intensity.h"
 #include "lucerna/photometry/resample.h"
 #include "lucerna/photometry/transport.h"
@@ -153,17 +153,17 @@ std::pair<Vec3, double> minimise(F&& f, const Vec3& start, double size, int eval
     sort();
     if (length(simplex[3].second - simplex[0].second) < 1e-6) break;
     const Vec3 centre = (simplex[0].second + simplex[1].second + simplex[2].second) / 3.0;
-    const auto try_at = [&](double t) {
+    const auto cost_at = [&](double t) {
       const Vec3 x = centre + t * (simplex[3].second - centre);
       return std::pair{f(x), x};
     };
-    const auto reflected = try_at(-1.0);
+    const auto reflected = cost_at(-1.0);
     if (reflected.first < simplex[0].first) {
-      const auto further = try_at(-2.0);
+      const auto further = cost_at(-2.0);
       simplex[3] = further.first < reflected.first ? further : reflected;
     } else if (reflected.first < simplex[2].first) {
       simplex[3] = reflected;
-    } else if (const auto inside = try_at(0.5); inside.first < simplex[3].first) {
+    } else if (const auto inside = cost_at(0.5); inside.first < simplex[3].first) {
       simplex[3] = inside;
     } else {
       for (std::size_t i = 1; i < 4; ++i) {

@@ -6,7 +6,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/intensity_comparison.h"
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/photometry/resample.h"
 #include "lucerna/photometry/transport.h"
 #include "lucerna/random.h"

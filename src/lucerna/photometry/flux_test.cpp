@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "lucerna/core/error.h"
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 
 namespace lucerna {
 namespace {

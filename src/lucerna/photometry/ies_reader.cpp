@@ -3,8 +3,8 @@
 #include <cctype>
 #include <cmath>
 
-#include "lucerna/photometric_figures.h"
 #include "lucerna/photometric_file.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/photometry/expand_grid.h"
 #include "lucerna/photometry/ies_body.h"
 #include "lucerna/photometry/symmetry.h"
@@ -127,7 +127,7 @@ void assign_keywords(const std::vector<Keyword>& keywords, PhotometricFile& file
   }
   for (const char* key : {"_ABSOLUTELUMENS", "_TOTALLUMINAIRELUMENS"}) {
     for (const Keyword& keyword : keywords) {
-      if (upper_case(keyword.key) == key) file.origin.stated_flux_lm = number_from(keyword.text);
+      if (upper_case(keyword.key) == key) file.origin.declared_flux_lm = number_from(keyword.text);
     }
   }
   if (!lamp.empty()) l.lamps.push_back({.count = 1, .type = lamp});

@@ -173,7 +173,7 @@ double read_lamps(LdtLines& in, PhotometricFile& file, double lorl, RepairLog& l
     log.repair(sets_line + 3, "the lamp flux is {}: 1000 lm taken, cd/klm read as cd", reference_lm);
     reference_lm = l.lamps.front().flux_lm = 1000.0;
   }
-  if (lorl > 0.0) file.origin.stated_flux_lm = reference_lm * lorl / 100.0;
+  if (lorl > 0.0) file.origin.declared_flux_lm = reference_lm * lorl / 100.0;
   return reference_lm;
 }
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "lucerna/core/error.h"
-#include "lucerna/photometric_figures.h"
 #include "lucerna/photometric_file.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/photometry/photometric_text.h"
 #include "lucerna/photometry/symmetry.h"
 

@@ -200,8 +200,8 @@ Candidates candidates(const CountedSphere& sphere, const Scan& s, const Kernel& 
 double apart_deg(const Direction& a, const Direction& b) { return degrees(angle_between(a, b)); }
 
 /// Whether a candidate far from the brightest is as bright within the error of the difference.
-void find_rivals(const Candidates& c, const LargestFigure& max, const PeakEstimate& p, bool& other_c,
-                 bool& other_gamma) {
+void find_runners_up(const Candidates& c, const LargestFigure& max, const PeakEstimate& p, bool& other_c,
+                     bool& other_gamma) {
   const TypeCAngles at = type_c_angles(c.direction(max.index));
   for (std::size_t i = 0; i < c.cd.size(); ++i) {
     const TypeCAngles a = type_c_angles(c.direction(i));
@@ -277,7 +277,7 @@ void place_peak(const Candidates& c, const LargestFigure& max, PeakEstimate& p) 
     c_error = std::hypot(scatter(across), min) / std::max(std::sin(at.gamma_rad), 1e-9);
   }
   bool other_c = false, other_gamma = false;
-  find_rivals(c, max, p, other_c, other_gamma);
+  find_runners_up(c, max, p, other_c, other_gamma);
   const double from_pole = degrees(std::min(at.gamma_rad, std::numbers::pi - at.gamma_rad));
   if (!other_gamma) p.gamma_deg = Estimate{degrees(at.gamma_rad), gamma_error};
   // The draws of a ring of light are far apart too, but all as far from the axis.
@@ -287,8 +287,7 @@ void place_peak(const Candidates& c, const LargestFigure& max, PeakEstimate& p) 
 
 /// The kernel at the peak: `widest` or one of half its radius, a quarter, ... Structure below the cells'
 /// resolution shows in the mean about the peak, which is too noisy to be taken otherwise.
-void choose_radius(const CountedSphere& sphere, const LargestFigure& max, const Kernel& widest,
-                   FoundPeak& p) {
+void choose_radius(const CountedSphere& sphere, const LargestFigure& max, const Kernel& widest, FoundPeak& p) {
   RadiusChoice choice;
   choice.add(max.values, max.estimate.standard_error);
   std::vector<double> shrinks{1.0};

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "lucerna/core/file.h"
-#include "lucerna/photometric_figures.h"
 #include "lucerna/photometric_file.h"
+#include "lucerna/photometric_metrics.h"
 #include "tests/support/data_dir.h"
 
 namespace lucerna {

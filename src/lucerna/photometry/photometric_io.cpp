@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "lucerna/core/file.h"
-#include "lucerna/photometric_figures.h"
 #include "lucerna/photometric_file.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/photometry/photometric_text.h"
 
 namespace lucerna {
@@ -66,7 +66,7 @@ void check_flux(const PhotometricFile& file, std::vector<Fault>& faults) {
           100.0 * ratio, flux, *lamp));
     }
   }
-  if (const auto stated = file.origin.stated_flux_lm;
+  if (const auto stated = file.origin.declared_flux_lm;
       stated && *stated > 0.0 && file.distribution.unit == FluxUnit::lumen) {
     if (std::abs(flux / *stated - 1.0) > 0.02) {
       warn(fmt::format("the intensities hold {:.1f} lm, the file states {:.1f} lm ({:+.1f} %)", flux, *stated,

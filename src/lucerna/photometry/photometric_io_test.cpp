@@ -8,8 +8,8 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
-#include "lucerna/photometric_figures.h"
 #include "lucerna/photometric_file.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/photometry/symmetry.h"
 #include "tests/support/paths.h"
 #include "tests/support/temp_dir.h"
@@ -167,7 +167,7 @@ TEST(PhotometricIo, TypeAAndBHoldTheSameFlux) {
   for (const char* name : {"ies_type_A_full.ies", "ies_type_A_H_symmetric.ies", "ies_type_B_full.ies"}) {
     const PhotometricFile file = read_photometric_file(own(name));
     EXPECT_NEAR(total_flux(file.distribution), exact, 0.015 * exact) << name;
-    EXPECT_NEAR(beam_figures(file.distribution).peak.gamma_deg, 0.0, 1e-9) << name;
+    EXPECT_NEAR(beam_metrics(file.distribution).peak.gamma_deg, 0.0, 1e-9) << name;
   }
 }
 

@@ -10,8 +10,8 @@
 #include <map>
 #include <set>
 
-#include "lucerna/photometric_figures.h"
 #include "lucerna/photometric_file.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/photometry/symmetry.h"
 #include "lucerna/photometry/type_ab.h"
 #include "lucerna/random.h"

@@ -10,7 +10,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 
 namespace lucerna {
 namespace {

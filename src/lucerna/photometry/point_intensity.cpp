@@ -18,7 +18,7 @@ constexpr std::uint64_t kFirstSamples = 1024, kMaxSamples = std::uint64_t{1} << 
 /// Of each direction that a search looks at; the same random numbers for all, so that most noise cancels.
 constexpr std::uint64_t kSearchSamples = 512, kSearchSeed = 11, kFinalSeed = 23;
 /// Starts that are searched about, and looked at again by themselves.
-constexpr std::size_t kSearched = 2, kKept = 2;
+constexpr std::size_t kSearched = 2, kRetained = 2;
 /// A search ends when its step is this share of the radius.
 constexpr double kFirstStep = 0.5, kLastStep = 0.05;
 constexpr int kNeighbours = 6;
@@ -129,7 +129,7 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
   const auto brighter = [](const Found& a, const Found& b) { return a.cd > b.cd; };
   std::stable_sort(found.begin(), found.end(), brighter);
   const std::size_t searched = std::min(kSearched, found.size());
-  found.resize(std::min(found.size(), kKept));
+  found.resize(std::min(found.size(), kRetained));
   for (std::size_t i = 0; i < searched; ++i)
     found.push_back(pattern_search(intensity, found[i].direction, radius_deg));
   // Other samples choose among the few that are left, and do not hold the noise that led the search there.

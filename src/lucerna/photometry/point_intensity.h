@@ -8,7 +8,7 @@
 
 #include "lucerna/estimate.h"
 #include "lucerna/geometry.h"
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 
 namespace lucerna {
 

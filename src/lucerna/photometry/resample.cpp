@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 
 namespace lucerna {
 

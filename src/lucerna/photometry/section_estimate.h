@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/photometry/counted_sphere.h"
 
 namespace lucerna {

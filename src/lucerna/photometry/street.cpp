@@ -8,7 +8,7 @@
 #include <span>
 
 #include "lucerna/core/error.h"
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 
 namespace lucerna {
 

@@ -60,8 +60,8 @@ class TransportSimplex {
     for (const auto& each : from) supply_sum += each.mass;
     for (const auto& each : to) demand_sum += each.mass;
     for (std::size_t i = 0; i < m_; ++i) {
-      const double shake = 1.0 + 1e-9 * static_cast<double>((i * 2654435761u) % 1024) / 1024.0;
-      supply.push_back(from[i].mass / supply_sum * shake);
+      const double perturbation = 1.0 + 1e-9 * static_cast<double>((i * 2654435761u) % 1024) / 1024.0;
+      supply.push_back(from[i].mass / supply_sum * perturbation);
     }
     double total = 0.0;
     for (const double s : supply) total += s;

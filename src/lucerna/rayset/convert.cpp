@@ -50,18 +50,18 @@ RayConversionResult convert_ray_file(const std::filesystem::path& in, const std:
   RayConversionResult result{0, header.flux(), header.flux_unit, {}};
   std::uint64_t first = 0;
   for_each_block(*reader, progress, "convert", [&](const RayBlock& block) {
-    RayBlock kept;
-    kept.extra.resize(block.extra.size());
+    RayBlock retained;
+    retained.extra.resize(block.extra.size());
     if (subset) {
-      subset->select(block, first, kept);
-      for (float& weight : kept.weight) weight = static_cast<float>(factor * static_cast<double>(weight));
+      subset->select(block, first, retained);
+      for (float& weight : retained.weight) weight = static_cast<float>(factor * static_cast<double>(weight));
     } else {
-      kept = block;
+      retained = block;
     }
     first += block.size();
-    if (moves) transform(kept, conversion.new_from_old);
-    writer->write(kept);
-    result.rays += kept.size();
+    if (moves) transform(retained, conversion.new_from_old);
+    writer->write(retained);
+    result.rays += retained.size();
   });
   if (conversion.strict && !reader->warnings().empty()) throw InputError(reader->warnings().front());
   writer->finish();

@@ -20,12 +20,12 @@ namespace {
 constexpr std::size_t kFieldBlock = std::size_t{1} << 16;
 constexpr double kMinRays = 1000.0;
 /// Of the dealing out of rays: not the seed of any source.
-constexpr std::uint64_t kDealSeed = 0x9e3779b97f4a7c15u;
+constexpr std::uint64_t kAssignmentSeed = 0x9e3779b97f4a7c15u;
 
 /// A ray on the focus plane; weights are relative to the mean of its set.
 struct PlaneRay {
   float x_mm = 0.0f, y_mm = 0.0f, weight = 0.0f;
-  bool of_test = false, dealt_to_test = false;
+  bool of_test = false, assigned_to_test = false;
 };
 
 void append_plane_rays(const Views& views, const RayBlock& rays, bool of_test, double test_share,
@@ -43,7 +43,7 @@ void append_plane_rays(const Views& views, const RayBlock& rays, bool of_test, d
       ray.y_mm = static_cast<float>((*at)[1]);
       ray.weight = static_cast<float>(static_cast<double>(rays.weight[i]) / mean);
       ray.of_test = of_test;
-      ray.dealt_to_test = Rng(kDealSeed + (of_test ? 1 : 0), i).uniform() < test_share;
+      ray.assigned_to_test = Rng(kAssignmentSeed + (of_test ? 1 : 0), i).uniform() < test_share;
     }
   });
 }
@@ -54,7 +54,7 @@ std::int32_t cell_number(float mm, double cell_mm) {
 }
 
 struct Sums {
-  std::array<double, 2> own{}, dealt{};  // of the reference, of the test
+  std::array<double, 2> own{}, assigned{};  // of the reference, of the test
 };
 
 struct Keyed {
@@ -77,7 +77,7 @@ PlaneDifference difference_at(const std::vector<PlaneRay>& rays, double cell_um)
   const auto add = [&](Sums& sums, const PlaneRay& ray) {
     const double w = static_cast<double>(ray.weight);
     sums.own[ray.of_test] += w;
-    sums.dealt[ray.dealt_to_test] += w;
+    sums.assigned[ray.assigned_to_test] += w;
   };
   for (const PlaneRay& ray : rays) add(total, ray);
   PlaneDifference result;
@@ -91,7 +91,7 @@ PlaneDifference difference_at(const std::vector<PlaneRay>& rays, double cell_um)
     for (; end < keyed.size() && keyed[end].x == keyed[i].x && keyed[end].y == keyed[i].y; ++end)
       add(cell, rays[keyed[end].ray]);
     result.l1 += differ(cell.own, total.own);
-    result.floor += differ(cell.dealt, total.dealt);
+    result.floor += differ(cell.assigned, total.assigned);
     i = end;
   }
   return result;
@@ -247,14 +247,14 @@ FieldCorrelations field_correlations(const ViewCounts& reference, const ViewCoun
   return result;
 }
 
-std::string_view to_string(LookFrom from) { return from == LookFrom::front ? "front" : "side"; }
+std::string_view to_string(Viewpoint from) { return from == Viewpoint::front ? "front" : "side"; }
 
 std::optional<LuminanceImage> luminance_image(const Views& views, const RayBlock& reference,
-                                              const RayBlock& test, LookFrom from) {
+                                              const RayBlock& test, Viewpoint from) {
   const Frame& view = views.frame().world_from_view;
   // Both images have the view frame's y axis upwards.
   const Frame world_from_look =
-      from == LookFrom::front ? view : Frame(-1.0 * view.ez(), view.ey(), view.ex(), view.origin_mm());
+      from == Viewpoint::front ? view : Frame(-1.0 * view.ez(), view.ey(), view.ex(), view.origin_mm());
   const Frame look_from_world = world_from_look.inverse();
   const double min_cosine = std::cos(kLookCone_rad);
   const auto mark = [&](const Ray& ray, double weight) -> std::optional<Mark> {

@@ -33,11 +33,11 @@ struct LuminanceImage {
 inline constexpr double kLookCone_rad = 0.2617993877991494;  // 15 degrees
 
 /// Where to look from.
-enum class LookFrom { front, side };  // against a; against the view frame's x axis
-std::string_view to_string(LookFrom from);
+enum class Viewpoint { front, side };  // against a; against the view frame's x axis
+std::string_view to_string(Viewpoint from);
 
 /// Nothing where fewer than 1000 of the reference's rays go that way.
 std::optional<LuminanceImage> luminance_image(const Views& views, const RayBlock& reference,
-                                              const RayBlock& test, LookFrom from);
+                                              const RayBlock& test, Viewpoint from);
 
 }  // namespace lucerna

@@ -88,7 +88,7 @@ TEST(FieldCorrelationsStatistical, EqualSourcesReachTheNoiseLimitAndOthersDoNot)
 TEST(LuminanceImageStatistical, ALambertianSquareIsEquallyBrightAndAsWideAsItIs) {
   const RayBlock a = square(400'000, 9), b = square(400'000, 10, 1.0);
   const Views views(a);
-  const auto image = luminance_image(views, a, b, LookFrom::front);
+  const auto image = luminance_image(views, a, b, Viewpoint::front);
   ASSERT_TRUE(image);
   const double cell_mm = (image->window.high[0] - image->window.low[0]) / LuminanceImage::kCells;
   double sum = 0.0, smaller = 0.0;
@@ -112,7 +112,7 @@ TEST(LuminanceImageStatistical, ALambertianSquareIsEquallyBrightAndAsWideAsItIs)
   // Flux over pi A; some 26,800 rays go into the cone: 1 % is 1.6 standard deviations, weights counted.
   EXPECT_NEAR(sum / n * std::numbers::pi * 4.0, 1.0, 0.05);
   EXPECT_NEAR(smaller / m * std::numbers::pi * 1.0, 1.0, 0.05);
-  EXPECT_FALSE(luminance_image(views, square(10'000, 11), b, LookFrom::side)) << "hardly any light that way";
+  EXPECT_FALSE(luminance_image(views, square(10'000, 11), b, Viewpoint::side)) << "hardly any light that way";
 }
 
 TEST(FieldComparison, SameBitsForAnyNumberOfThreads) {

@@ -28,7 +28,7 @@ Finding finding(const InputError& error, const std::filesystem::path& path) {
   return finding(Severity::error, std::move(text));
 }
 
-void judge(const RaySetHeader& header, const RaySummary& summary, std::vector<Finding>& found) {
+void check_totals(const RaySetHeader& header, const RaySummary& summary, std::vector<Finding>& found) {
   const auto warn = [&](std::string text) { found.push_back({Severity::warning, "", std::move(text)}); };
   if (summary.count == 0) return warn("no rays");
   if (!(summary.weight_sum > 0.0)) found.push_back({Severity::error, "", "no ray carries flux"});
@@ -60,7 +60,7 @@ std::vector<Finding> check_ray_file(const std::filesystem::path& path, const Rea
       found.push_back(finding(Severity::warning, warning));
     if (reader->dropped() > 0)
       found.push_back({Severity::error, "", fmt::format("{} faulty rays", reader->dropped())});
-    judge(reader->header(), statistics.result(), found);
+    check_totals(reader->header(), statistics.result(), found);
   };
   try {
     pass(false);

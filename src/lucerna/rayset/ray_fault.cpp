@@ -116,17 +116,17 @@ std::optional<RayFault> check_rays(RayBlock& block, const std::vector<ColumnSpec
 }
 
 std::size_t drop_faulty_rays(RayBlock& block, const std::vector<ColumnSpec>& columns, RayFault& example) {
-  std::size_t kept = 0, dropped = 0;
+  std::size_t retained = 0, dropped = 0;
   for (std::size_t i = 0; i < block.size(); ++i) {
     std::string what = fault_of(block, columns, i);
     if (what.empty()) {
-      if (kept != i) move_ray(block, i, kept);
-      ++kept;
+      if (retained != i) move_ray(block, i, retained);
+      ++retained;
     } else if (dropped++ == 0) {
       example = {i, std::move(what)};
     }
   }
-  block.resize(kept);
+  block.resize(retained);
   return dropped;
 }
 

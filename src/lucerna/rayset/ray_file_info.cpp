@@ -11,7 +11,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kMaxKept = 1 << 20;
+constexpr std::uint64_t kMaxRetained = 1 << 20;
 
 /// Wavelengths of the rays seen so far.
 struct Range {
@@ -43,18 +43,19 @@ RayFileInfo describe_ray_file(const std::filesystem::path& path, const ReadOptio
                               Progress& progress) {
   const auto reader = open_ray_file(path, options);
   const auto wavelength = find_column(reader->header().columns, ColumnKind::wavelength_nm);
-  const std::uint64_t step = std::max<std::uint64_t>(1, (reader->ray_count() + kMaxKept - 1) / kMaxKept);
+  const std::uint64_t step =
+      std::max<std::uint64_t>(1, (reader->ray_count() + kMaxRetained - 1) / kMaxRetained);
   RayStatistics statistics;
   Range range;
-  RayBlock kept;
+  RayBlock retained;
   std::uint64_t first = 0;
   for_each_block(*reader, progress, "info", [&](const RayBlock& block) {
     statistics.add(block);
     if (wavelength) range.add(block.extra[*wavelength]);
     for (std::uint64_t i = (step - first % step) % step; i < block.size(); i += step) {
-      kept.resize(kept.size() + 1, 0);
-      kept.set(kept.size() - 1, block.ray(i));
-      kept.weight.back() = block.weight[i];
+      retained.resize(retained.size() + 1, 0);
+      retained.set(retained.size() - 1, block.ray(i));
+      retained.weight.back() = block.weight[i];
     }
     first += block.size();
   });
@@ -64,10 +65,10 @@ RayFileInfo describe_ray_file(const std::filesystem::path& path, const ReadOptio
   info.header = reader->header();
   info.summary = statistics.result();
   if (const auto flux = info.header.flux()) info.flux_ratio = info.summary.weight_sum / *flux;
-  info.surface = guess_surface(kept);
+  info.surface = guess_surface(retained);
   info.spectrum = describe_spectrum(info.header, range);
   info.warnings = reader->warnings();
-  info.some_rays = std::move(kept);
+  info.some_rays = std::move(retained);
   return info;
 }
 

@@ -336,11 +336,11 @@ std::vector<Matrix3d> as_z(const std::vector<Matrix3d>& all) {
   return out;
 }
 
-template <class Try>
-SurfaceGuess best_of(const Starts& s, const std::vector<Matrix3d>& axes, const Try& attempt) {
+template <class Guess>
+SurfaceGuess best_of(const Starts& s, const std::vector<Matrix3d>& axes, const Guess& guess_on) {
   SurfaceGuess best;
   for (const Matrix3d& m : axes) {
-    const SurfaceGuess guess = attempt(s, m);
+    const SurfaceGuess guess = guess_on(s, m);
     // More than noise better, so that the world's axes win where others fit equally well.
     if (guess.share > best.share + 1e-9) best = guess;
   }

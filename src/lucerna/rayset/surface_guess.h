@@ -8,7 +8,7 @@
 
 namespace lucerna {
 
-/// What the starts of a ray set look like. `scattered` stands for everything else: egg-shaped hulls, volumes.
+/// What the starts of a ray set look like. `scattered` represents everything else: egg-shaped hulls, volumes.
 enum class StartShape { point, line, surface, scattered };
 
 /// Where the rays of a file start, as far as the rays say.

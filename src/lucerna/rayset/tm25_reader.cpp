@@ -51,7 +51,7 @@ class Tm25Opener {
 
   /// A stated quantity > 0; NaN, 0, negatives and the NaN that a big-endian writer left (2.4e-38) mean "not
   /// stated".
-  std::optional<float> stated(std::size_t offset) const {
+  std::optional<float> declared(std::size_t offset) const {
     const auto value = load<float>(head_, offset);
     const bool swapped_nan = load<std::uint32_t>(head_, offset) == 0x0100807FU ||
                              load<std::uint32_t>(head_, offset) == 0x0000C07FU;
@@ -103,8 +103,8 @@ void Tm25Opener::read_header() {
   RaySetHeader& header = facts_.header;
   header.creation_method = load<std::int32_t>(head_, kCreationMethod);
   header.start_position = load<std::int32_t>(head_, kStartPosition);
-  header.flux_lm = stated(kFluxLm);
-  header.flux_w = stated(kFluxW);
+  header.flux_lm = declared(kFluxLm);
+  header.flux_w = declared(kFluxW);
   header.texts.date = load_text(head_, kDate, kDateSize);
   facts_.ray_count = load<std::uint64_t>(head_, kRayCount);
   const auto spectral = load<std::int32_t>(head_, kSpectralId);
@@ -112,7 +112,7 @@ void Tm25Opener::read_header() {
     fail(kSpectralId, "spectral identifier {} found, 0 to 4 expected", spectral);
   }
   if (spectral == one_wavelength) {
-    header.wavelength_nm = stated(kWavelength);
+    header.wavelength_nm = declared(kWavelength);
     if (!header.wavelength_nm)
       warn("byte {}: one wavelength for all rays is announced, none is given", kWavelength);
   }
@@ -280,15 +280,15 @@ void Tm25Opener::place_rays() {
     if (n > file_.size() / layout_.record_bytes()) return std::nullopt;
     return file_.size() - n * layout_.record_bytes();
   };
-  const auto settle = [&](std::uint64_t start) { layout_.first_byte = start; };
-  if (anchored() == computed) return settle(computed);
+  const auto begin_at = [&](std::uint64_t start) { layout_.first_byte = start; };
+  if (anchored() == computed) return begin_at(computed);
   if (flag_[stokes] && n > 0) {
     const RayFileFacts facts = facts_;
     const RecordLayout layout = layout_;
     set_stokes(3);
     if (anchored() == computed) {
       warn("Stokes vectors of 3 numbers, without the axis of the ellipse");
-      return settle(computed);
+      return begin_at(computed);
     }
     facts_ = facts;
     layout_ = layout;
@@ -298,11 +298,11 @@ void Tm25Opener::place_rays() {
       plausible(*start)) {
     warn("byte {}: the rays begin here as seen from the end of the file; byte {} expected from the header",
          *start, computed);
-    return settle(*start);
+    return begin_at(*start);
   }
   if (start && *start > computed && plausible(computed)) {
     warn("byte {}: {} bytes after the last ray", computed + n * layout_.record_bytes(), *start - computed);
-    return settle(computed);
+    return begin_at(computed);
   }
   if (!options_.salvage) require_records(file_, n, kRayCount, computed, layout_.record_bytes());
   if (!plausible(computed) && !options_.salvage) {
@@ -310,7 +310,7 @@ void Tm25Opener::place_rays() {
   }
   facts_.ray_count =
       whole_records(file_, n, kRayCount, computed, layout_.record_bytes(), options_.salvage, facts_.warnings);
-  settle(computed);
+  begin_at(computed);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ using namespace tm25;
 
 namespace {
 
-constexpr float kNotStated = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNotDeclared = std::numeric_limits<float>::quiet_NaN();
 
 /// Where each column of the header goes in a record, and the flags that say so.
 struct Tm25Columns {
@@ -148,15 +148,15 @@ void Tm25Writer::write_header(const RaySetHeader& header) {
   std::memcpy(head.data(), "TM25", 4);
   store(head, kVersion, std::int32_t{2013});
   store(head, kCreationMethod, static_cast<std::int32_t>(header.creation_method));
-  store(head, kFluxLm, header.flux_lm ? static_cast<float>(*header.flux_lm) : kNotStated);
-  store(head, kFluxW, header.flux_w ? static_cast<float>(*header.flux_w) : kNotStated);
+  store(head, kFluxLm, header.flux_lm ? static_cast<float>(*header.flux_lm) : kNotDeclared);
+  store(head, kFluxW, header.flux_w ? static_cast<float>(*header.flux_w) : kNotDeclared);
   if (header.texts.date.size() >= kDateSize) warnings_.push_back("date: cut to 27 characters");
   store_text(head, kDate, kDateSize, header.texts.date);
   store(head, kStartPosition, static_cast<std::int32_t>(header.start_position));
   const int id = spectral_id(header);
   store(head, kSpectralId, static_cast<std::int32_t>(id));
-  store(head, kWavelength, id == one_wavelength ? *header.wavelength_nm : kNotStated);
-  float shortest = kNotStated, longest = kNotStated;
+  store(head, kWavelength, id == one_wavelength ? *header.wavelength_nm : kNotDeclared);
+  float shortest = kNotDeclared, longest = kNotDeclared;
   for (const SpectralTable& table : header.spectra) {
     if (table.wavelength_nm.empty()) continue;
     shortest = std::fmin(shortest, table.wavelength_nm.front());

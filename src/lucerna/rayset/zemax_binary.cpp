@@ -26,7 +26,7 @@ std::vector<std::byte> header_of(const InputFile& file) {
   return head;
 }
 
-std::optional<double> stated(std::span<const std::byte> head, std::size_t offset) {
+std::optional<double> declared(std::span<const std::byte> head, std::size_t offset) {
   const auto value = load<float>(head, offset);
   if (std::isfinite(value) && value > 0.0F) return value;
   return std::nullopt;
@@ -124,7 +124,7 @@ std::unique_ptr<RayReader> open_zemax_binary(InputFile file, const ReadOptions& 
     facts.warnings.push_back(fmt::format("byte {}: spectral rays with lumen, watt expected", kFluxTypeAt));
   RaySetHeader& header = facts.header;
   header.flux_unit = lumen ? FluxUnit::lumen : FluxUnit::watt;
-  const auto source = stated(head, kSourceFluxAt), rays = stated(head, kRaySetFluxAt);
+  const auto source = declared(head, kSourceFluxAt), rays = declared(head, kRaySetFluxAt);
   if (const auto flux = rays ? rays : source) header.set_flux(*flux);
   if (source && rays && std::abs(*source - *rays) > 0.01 * *rays) {
     facts.warnings.push_back(
@@ -139,7 +139,7 @@ std::unique_ptr<RayReader> open_zemax_binary(InputFile file, const ReadOptions& 
     layout.floats = 8;
     header.columns = {{ColumnKind::wavelength_nm, standard_label(ColumnKind::wavelength_nm)}};
     layout.extra = {{7, 1000.0}};
-  } else if (const auto wavelength = stated(head, kWavelengthAt)) {
+  } else if (const auto wavelength = declared(head, kWavelengthAt)) {
     header.wavelength_nm = static_cast<float>(1000.0 * *wavelength);
   }
   facts.ray_count = whole_records(file, load<std::uint32_t>(head, kRayCountAt), kRayCountAt, kZemaxHeaderSize,

@@ -24,7 +24,9 @@ LUCERNA_HD inline CubicBasis cubic_basis_slope(double t) {
 }
 
 /// Second derivatives with respect to t.
-LUCERNA_HD inline CubicBasis cubic_basis_bend(double t) { return {1.0 - t, 3.0 * t - 2.0, 1.0 - 3.0 * t, t}; }
+LUCERNA_HD inline CubicBasis cubic_basis_second(double t) {
+  return {1.0 - t, 3.0 * t - 2.0, 1.0 - 3.0 * t, t};
+}
 
 /// A row of equal knot intervals: where a place lies in it. Places beyond the ends belong to the end
 /// intervals.

@@ -26,14 +26,14 @@ struct FieldNode {
 };
 
 /// What a leaf square of cells has of the mirror: some, none but it lies in the hole or along the rim, where
-/// rays come by on their way to it, or none and no ray that meets the mirror need come by (an aperture
+/// rays come by on their way to it, or none and no ray that hits the mirror need come by (an aperture
 /// without its hole is convex).
 enum class LeafKind : std::uint8_t { beyond, mirror, bare };
 
-/// The slab over a leaf square, and a bound on its gradient: nowhere longer than `steepness`.
+/// The slab over a leaf square, and a bound on its gradient: nowhere longer than `gradient_bound`.
 struct FieldLeaf {
   FieldNode slab;
-  float steepness = 0.0F;
+  float gradient_bound = 0.0F;
 };
 
 /// Cells per side of a leaf square.
@@ -82,13 +82,13 @@ LUCERNA_HD inline FieldLeaf field_leaf(const FieldVertex* vertices, int cells, f
   // Heights over that plane, and how far a cell's edges can bend away from their chords: at most a quarter of
   // the maximum difference between a slope and the chord's, in each direction. By column, so that compilers
   // see vectors.
-  float low[k + 1], high[k + 1], bend_x[k], bend_y[k + 1], slope_x[k + 1], slope_y[k + 1];
+  float low[k + 1], high[k + 1], curvature_x[k], curvature_y[k + 1], slope_x[k + 1], slope_y[k + 1];
   for (std::size_t i = 0; i <= k; ++i) {
     low[i] = FLT_MAX;
     high[i] = -FLT_MAX;
-    bend_y[i] = slope_x[i] = slope_y[i] = 0.0F;
+    curvature_y[i] = slope_x[i] = slope_y[i] = 0.0F;
   }
-  for (std::size_t i = 0; i < k; ++i) bend_x[i] = 0.0F;
+  for (std::size_t i = 0; i < k; ++i) curvature_x[i] = 0.0F;
   detail::FieldRow rows[2];
   for (std::size_t j = 0; j <= k; ++j) {
     detail::FieldRow& row = rows[j % 2];
@@ -104,32 +104,32 @@ LUCERNA_HD inline FieldLeaf field_leaf(const FieldVertex* vertices, int cells, f
     LUCERNA_KEEP_LOOP
     for (std::size_t i = 0; i < k; ++i) {
       const float chord = row.z[i + 1] - row.z[i];
-      bend_x[i] = max(bend_x[i], max(std::abs(row.p[i] - chord), std::abs(row.p[i + 1] - chord)));
+      curvature_x[i] = max(curvature_x[i], max(std::abs(row.p[i] - chord), std::abs(row.p[i + 1] - chord)));
     }
     if (j == 0) continue;
     const detail::FieldRow& before = rows[1 - j % 2];
     LUCERNA_KEEP_LOOP
     for (std::size_t i = 0; i <= k; ++i) {
       const float chord = row.z[i] - before.z[i];
-      bend_y[i] = max(bend_y[i], max(std::abs(before.q[i] - chord), std::abs(row.q[i] - chord)));
+      curvature_y[i] = max(curvature_y[i], max(std::abs(before.q[i] - chord), std::abs(row.q[i] - chord)));
     }
   }
   for (std::size_t i = 1; i <= k; ++i) low[0] = min(low[0], low[i]);
   detail::max_first(high, k + 1);
-  detail::max_first(bend_x, k);
-  detail::max_first(bend_y, k + 1);
+  detail::max_first(curvature_x, k);
+  detail::max_first(curvature_y, k + 1);
   detail::max_first(slope_x, k + 1);
   detail::max_first(slope_y, k + 1);
   const float half = 0.5F * static_cast<float>(k);
   // A hair more for the rounding of these sums.
-  const float slack = 1e-6F * (std::abs(low[0]) + std::abs(high[0])) + FLT_MIN;
+  const float tolerance = 1e-6F * (std::abs(low[0]) + std::abs(high[0])) + FLT_MIN;
   // An edge is a cubic: its slope is within that of its ends and 3 chord - (both), which is at most thrice
   // the maximum bend steeper than an end. Across, the other edges' bends add their difference.
-  const float steep_x = (slope_x[0] + 3.0F * bend_x[0] + 0.5F * bend_y[0]) / step_x_mm;
-  const float steep_y = (slope_y[0] + 3.0F * bend_y[0] + 0.5F * bend_x[0]) / step_y_mm;
+  const float gradient_x = (slope_x[0] + 3.0F * curvature_x[0] + 0.5F * curvature_y[0]) / step_x_mm;
+  const float gradient_y = (slope_y[0] + 3.0F * curvature_y[0] + 0.5F * curvature_x[0]) / step_y_mm;
   return {{0.5F * (low[0] + high[0]) + half * (dx + dy), dx / step_x_mm, dy / step_y_mm,
-           0.5F * (high[0] - low[0]) + 0.25F * (bend_x[0] + bend_y[0]) + slack},
-          (1.0F + 1e-5F) * std::sqrt(steep_x * steep_x + steep_y * steep_y)};
+           0.5F * (high[0] - low[0]) + 0.25F * (curvature_x[0] + curvature_y[0]) + tolerance},
+          (1.0F + 1e-5F) * std::sqrt(gradient_x * gradient_x + gradient_y * gradient_y)};
 }
 
 #undef LUCERNA_KEEP_LOOP

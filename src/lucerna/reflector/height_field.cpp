@@ -119,7 +119,7 @@ void HeightField::sample(const HeightSurface& surface) {
 
 void HeightField::rebuild() {
   const auto blocks = static_cast<std::size_t>(cells_ / kBlock);
-  std::vector<float> steepness(blocks, 0.0F);  // by row of squares
+  std::vector<float> gradient_bound(blocks, 0.0F);  // by row of squares
   parallel_blocks(blocks, 4, [&](std::size_t first, std::size_t last) {
     for (std::size_t by = first; by < last; ++by) {
       for (std::size_t bx = 0; bx < blocks; ++bx) {
@@ -128,11 +128,11 @@ void HeightField::rebuild() {
         if (leaf_kinds_[i] == LeafKind::beyond) continue;
         const FieldLeaf leaf = field_leaf(vertices_.data(), cells_, step_x_mm_, step_y_mm_, bx, by);
         if (leaf_kinds_[i] == LeafKind::mirror) nodes_[i] = leaf.slab;
-        steepness[by] = std::max(steepness[by], leaf.steepness);
+        gradient_bound[by] = std::max(gradient_bound[by], leaf.gradient_bound);
       }
     }
   });
-  steepness_ = *std::max_element(steepness.begin(), steepness.end());
+  gradient_bound_ = *std::max_element(gradient_bound.begin(), gradient_bound.end());
   for (std::size_t level = 1; level < offsets_.size(); ++level) {
     const std::size_t n = blocks >> level;
     FieldNode* const out = &nodes_[static_cast<std::size_t>(offsets_[level])];

@@ -57,14 +57,14 @@ class HeightField {
   /// Height over the quadric lies in [low, high] wherever the mirror is.
   const HeightRange& band() const { return band_; }
   /// The gradient of the height over the quadric is nowhere longer within rim_mm() of the axis.
-  float steepness() const { return steepness_; }
+  float gradient_bound() const { return gradient_bound_; }
   /// Every cell of the mirror ends within this distance of the axis.
   double rim_mm() const {
     return 1.0001 * aperture_.outer_radius_mm() + static_cast<double>(step_x_mm_ + step_y_mm_);
   }
 
-  /// Makes nodes, band and steepness again after `vertices()` changed. Same bits for any number of threads.
-  /// O(cells^2).
+  /// Makes nodes, band and gradient bound again after `vertices()` changed. Same bits for any number of
+  /// threads. O(cells^2).
   void rebuild();
 
   /// The surface of cubic pieces at (x, y), clamped to the region: what the fast tracers hit.
@@ -84,7 +84,7 @@ class HeightField {
   std::vector<LeafKind> leaf_kinds_;
   std::vector<std::int32_t> offsets_;
   HeightRange band_;
-  float steepness_ = 0.0F;
+  float gradient_bound_ = 0.0F;
 };
 
 }  // namespace lucerna

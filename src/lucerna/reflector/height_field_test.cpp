@@ -55,7 +55,7 @@ TEST(HeightField, AQuadricIsExactToRounding) {
 }
 
 /// The longest gradient over the quadric at random places within the rim.
-double steepest(const HeightField& field) {
+double max_slope(const HeightField& field) {
   Rng rng(3, 0);
   double max = 0.0;
   for (int i = 0; i < 50000; ++i) {
@@ -70,18 +70,18 @@ double steepest(const HeightField& field) {
 // Of a smooth mirror with a hole, and of one whose heights and slopes have nothing to do with each other.
 TEST(HeightField, SteepnessBoundsEveryGradient) {
   HeightField field({std::make_shared<Pillows>(), Aperture::circle(80.0, 20.0)}, 1024);
-  const double smooth = steepest(field);
-  EXPECT_GE(static_cast<double>(field.steepness()), smooth);
-  EXPECT_LT(static_cast<double>(field.steepness()), 1.3 * smooth);
+  const double smooth = max_slope(field);
+  EXPECT_GE(static_cast<double>(field.gradient_bound()), smooth);
+  EXPECT_LT(static_cast<double>(field.gradient_bound()), 1.3 * smooth);
   Rng rng(4, 0);
   for (FieldVertex& v : field.vertices()) {
     v = {static_cast<float>(rng.uniform()), static_cast<float>(4.0 * rng.uniform() - 2.0),
          static_cast<float>(4.0 * rng.uniform() - 2.0)};
   }
   field.rebuild();
-  const double rough = steepest(field);
+  const double rough = max_slope(field);
   EXPECT_GT(rough, 2.0);
-  EXPECT_GE(static_cast<double>(field.steepness()), rough);
+  EXPECT_GE(static_cast<double>(field.gradient_bound()), rough);
 }
 
 // Every slab of every level holds the cubic pieces that the tracers hit.

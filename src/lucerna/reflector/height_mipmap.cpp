@@ -14,7 +14,7 @@ HeightMipmap::HeightMipmap(const Reflector& reflector, int levels)
   step_x_mm_ = (region_.x1_mm - region_.x0_mm) / static_cast<double>(n);
   step_y_mm_ = (region_.y1_mm - region_.y0_mm) / static_cast<double>(n);
   // Rounding in a ray's height against rounding in a surface's: far below any optical length.
-  const double slack_mm = 1e-9 * (1.0 + reflector.aperture.outer_radius_mm());
+  const double tolerance_mm = 1e-9 * (1.0 + reflector.aperture.outer_radius_mm());
   constexpr double kNothing = std::numeric_limits<double>::infinity();
 
   std::vector<HeightRange>& finest = cells_.back();
@@ -29,8 +29,8 @@ HeightMipmap::HeightMipmap(const Reflector& reflector, int levels)
           cell = {kNothing, -kNothing};
         } else {
           cell = reflector.surface->range(r);
-          cell.low_mm -= slack_mm;
-          cell.high_mm += slack_mm;
+          cell.low_mm -= tolerance_mm;
+          cell.high_mm += tolerance_mm;
         }
       }
     }

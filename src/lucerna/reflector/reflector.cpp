@@ -62,7 +62,7 @@ std::shared_ptr<const SplineProfile> checked_profile(const std::vector<ProfileKn
 }
 
 /// Chords steeper than this make a curve: a spline over the radius bends too much there.
-constexpr double kSteepest = 10.0;
+constexpr double kMaxGradient = 10.0;
 
 /// True if the points make a function of the radius. Descending ones are refused: they are one too, but said
 /// from the wrong end.
@@ -70,7 +70,7 @@ bool is_function(const std::vector<ProfileKnot>& knots) {
   bool function = true, descends = knots.size() > 1;
   for (std::size_t i = 1; i < knots.size(); ++i) {
     const double dr = knots[i].r_mm - knots[i - 1].r_mm, dz = knots[i].z_mm - knots[i - 1].z_mm;
-    function = function && !(dr <= 0.0 || std::abs(dz) > kSteepest * dr);
+    function = function && !(dr <= 0.0 || std::abs(dz) > kMaxGradient * dr);
     descends = descends && dr < 0.0;
   }
   if (descends) {

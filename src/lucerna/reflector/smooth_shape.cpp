@@ -16,7 +16,7 @@ HeightRange hull(const std::vector<double>& c) {
 }
 
 /// The maximum of each cell's neighbourhoods, cells x kNearSizes.
-std::vector<double> max_near(const std::vector<double>& bends, int nx, int ny) {
+std::vector<double> max_near(const std::vector<double>& curvatures, int nx, int ny) {
   std::vector<double> out;
   for (int j = 0; j < ny; ++j) {
     for (int i = 0; i < nx; ++i) {
@@ -25,7 +25,7 @@ std::vector<double> max_near(const std::vector<double>& bends, int nx, int ny) {
         double max = 0.0;
         for (int v = std::max(0, j - size); v <= std::min(ny - 1, j + size); ++v) {
           for (int u = std::max(0, i - size); u <= std::min(nx - 1, i + size); ++u) {
-            max = std::max(max, bends[static_cast<std::size_t>(v * nx + u)]);
+            max = std::max(max, curvatures[static_cast<std::size_t>(v * nx + u)]);
           }
         }
         out.push_back(max);
@@ -46,7 +46,7 @@ BsplineShape::BsplineShape(double focal_mm, KnotRow row_x, KnotRow row_y, std::v
   // Second derivatives of a B-spline are splines of lower degree on the differences of its coefficients, so
   // the largest differences bound them; a symmetric 2 x 2 matrix bends at most max(|xx|, |yy|) + |xy|.
   const auto c = [&](int i, int j) { return c_[static_cast<std::size_t>(j * nx + i)]; };
-  const auto bend_of = [&](int i0, int j0) {
+  const auto curvature_of = [&](int i0, int j0) {
     double xx = 0.0, yy = 0.0, xy = 0.0;
     for (int j = j0; j < j0 + 4; ++j) {
       for (int i = i0; i < i0 + 4; ++i) {
@@ -60,12 +60,12 @@ BsplineShape::BsplineShape(double focal_mm, KnotRow row_x, KnotRow row_y, std::v
     return std::max(xx / (x_.step_mm * x_.step_mm), yy / (y_.step_mm * y_.step_mm)) +
            xy / (x_.step_mm * y_.step_mm);
   };
-  std::vector<double> bends;
+  std::vector<double> curvatures;
   for (int j = 0; j < y_.intervals; ++j) {
-    for (int i = 0; i < x_.intervals; ++i) bends.push_back(bend_of(i, j));
+    for (int i = 0; i < x_.intervals; ++i) curvatures.push_back(curvature_of(i, j));
   }
-  bend_bound_ = *std::max_element(bends.begin(), bends.end());
-  near_bends_ = max_near(bends, x_.intervals, y_.intervals);
+  curvature_bound_ = *std::max_element(curvatures.begin(), curvatures.end());
+  near_curvatures_ = max_near(curvatures, x_.intervals, y_.intervals);
 }
 
 RevolutionShape::RevolutionShape(double focal_mm, KnotRow row, std::vector<double> coefficients)
@@ -77,15 +77,15 @@ RevolutionShape::RevolutionShape(double focal_mm, KnotRow row, std::vector<doubl
   // Both principal bends of the swept surface, s'' and s' / r, are at most the largest |s''| from the axis to
   // there.
   double inner = 0.0;
-  std::vector<double> bends;
+  std::vector<double> curvatures;
   for (std::size_t i = 0; i + 3 < c_.size(); ++i) {
     for (std::size_t k = i + 1; k < i + 3; ++k) {
       inner = std::max(inner, std::abs(c_[k - 1] - 2.0 * c_[k] + c_[k + 1]) / (row_.step_mm * row_.step_mm));
     }
-    bends.push_back(inner);
+    curvatures.push_back(inner);
   }
-  bend_bound_ = inner;
-  near_bends_ = max_near(bends, row_.intervals, 1);
+  curvature_bound_ = inner;
+  near_curvatures_ = max_near(curvatures, row_.intervals, 1);
 }
 
 }  // namespace lucerna

@@ -24,19 +24,21 @@ class BsplineShape {
   /// The offset lies in this range everywhere on the rectangle (convex hull of the coefficients).
   const HeightRange& band() const { return band_; }
   /// Bound on the offset's second derivative along any unit direction of the xy plane.
-  double bend_bound() const { return bend_bound_; }
+  double curvature_bound() const { return curvature_bound_; }
   /// The same within near_cells(size) cells of each cell of knots: cells row by row x kNearSizes.
-  const std::vector<double>& near_bends() const { return near_bends_; }
+  const std::vector<double>& near_curvatures() const { return near_curvatures_; }
 
-  BsplineView view() const { return {focal_mm_, x_, y_, c_.data(), band_, bend_bound_, near_bends_.data()}; }
+  BsplineView view() const {
+    return {focal_mm_, x_, y_, c_.data(), band_, curvature_bound_, near_curvatures_.data()};
+  }
 
  private:
   double focal_mm_;
   KnotRow x_, y_;
   std::vector<double> c_;
   HeightRange band_;
-  double bend_bound_ = 0.0;
-  std::vector<double> near_bends_;
+  double curvature_bound_ = 0.0;
+  std::vector<double> near_curvatures_;
 };
 
 /// z = r^2 / (4 f) + cubic B-spline of r on uniform knots over [0, r_max], mirrored at the axis, so that the
@@ -51,18 +53,20 @@ class RevolutionShape {
   const KnotRow& row() const { return row_; }
   const std::vector<double>& coefficients() const { return c_; }
   const HeightRange& band() const { return band_; }
-  double bend_bound() const { return bend_bound_; }
-  const std::vector<double>& near_bends() const { return near_bends_; }
+  double curvature_bound() const { return curvature_bound_; }
+  const std::vector<double>& near_curvatures() const { return near_curvatures_; }
 
-  RevolutionView view() const { return {focal_mm_, row_, c_.data(), band_, bend_bound_, near_bends_.data()}; }
+  RevolutionView view() const {
+    return {focal_mm_, row_, c_.data(), band_, curvature_bound_, near_curvatures_.data()};
+  }
 
  private:
   double focal_mm_;
   KnotRow row_;
   std::vector<double> c_;
   HeightRange band_;
-  double bend_bound_ = 0.0;
-  std::vector<double> near_bends_;
+  double curvature_bound_ = 0.0;
+  std::vector<double> near_curvatures_;
 };
 
 /// A smooth shape as tracers and exporters see a surface.
@@ -79,8 +83,8 @@ class SmoothSurface final : public HeightSurface {
     const double x = 0.5 * (r.x0_mm + r.x1_mm), y = 0.5 * (r.y0_mm + r.y1_mm);
     const double a = 0.5 * (r.x1_mm - r.x0_mm), b = 0.5 * (r.y1_mm - r.y0_mm);
     const SurfacePoint p = at(x, y);
-    const double bend = shape_.bend_bound() + 0.5 / shape_.focal_mm();
-    const double reach = std::abs(p.dzdx) * a + std::abs(p.dzdy) * b + 0.5 * bend * (a * a + b * b);
+    const double second = shape_.curvature_bound() + 0.5 / shape_.focal_mm();
+    const double reach = std::abs(p.dzdx) * a + std::abs(p.dzdy) * b + 0.5 * second * (a * a + b * b);
     return {p.z_mm - reach, p.z_mm + reach};
   }
 

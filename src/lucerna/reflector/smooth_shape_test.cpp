@@ -31,16 +31,16 @@ void expect_bounded(const View& view, double half_mm) {
     const double angle = 6.3 * rng.uniform(), dx = std::cos(angle), dy = std::sin(angle);
     const auto at = view.local(x, y);
     const double base = 0.5 / view.focal_mm;
-    const double bend = dx * dx * (at.hxx - base) + 2.0 * dx * dy * at.hxy + dy * dy * (at.hyy - base);
-    ASSERT_LE(std::abs(bend), view.bend_bound * (1.0 + 1e-9));
+    const double second = dx * dx * (at.hxx - base) + 2.0 * dx * dy * at.hxy + dy * dy * (at.hyy - base);
+    ASSERT_LE(std::abs(second), view.curvature_bound * (1.0 + 1e-9));
     for (int size = 0; size < kNearSizes; ++size) {
       // From a place as far away as the bound reaches.
       const double away = rng.uniform() * near_cells(size) * view.cell_mm(), turn = 6.3 * rng.uniform();
       const double from_x = x + away * std::cos(turn), from_y = y + away * std::sin(turn);
       if (std::abs(from_x) > half_mm || std::abs(from_y) > half_mm) continue;
-      const double bound = view.near_bends_at(from_x, from_y)[size];
-      ASSERT_LE(std::abs(bend), bound * (1.0 + 1e-9)) << x << ' ' << y << ' ' << size;
-      largest_share = std::max(largest_share, std::abs(bend) / bound);
+      const double bound = view.near_curvatures_at(from_x, from_y)[size];
+      ASSERT_LE(std::abs(second), bound * (1.0 + 1e-9)) << x << ' ' << y << ' ' << size;
+      largest_share = std::max(largest_share, std::abs(second) / bound);
     }
   }
   EXPECT_GT(largest_share, 0.3);  // bounds that are far too large would cost time
@@ -51,9 +51,9 @@ TEST(SmoothShape, NearBendsHoldAndForgetAFarSpike) {
   const BsplineShape shape(15.0, row, row, with_a_spike(std::size_t{15} * 15, std::size_t{15} * 12 + 12));
   const BsplineView view = shape.view();
   expect_bounded(view, 50.0);
-  EXPECT_LT(view.near_bends_at(-30.0, -30.0)[0], 0.1 * view.bend_bound);
-  EXPECT_LT(view.near_bends_at(-30.0, -30.0)[1], 0.1 * view.bend_bound);
-  EXPECT_EQ(view.near_bends_at(45.0, 45.0)[0], view.bend_bound);
+  EXPECT_LT(view.near_curvatures_at(-30.0, -30.0)[0], 0.1 * view.curvature_bound);
+  EXPECT_LT(view.near_curvatures_at(-30.0, -30.0)[1], 0.1 * view.curvature_bound);
+  EXPECT_EQ(view.near_curvatures_at(45.0, 45.0)[0], view.curvature_bound);
 }
 
 TEST(SmoothShape, NearBendsOfAProfileKnowTheAxis) {
@@ -63,12 +63,12 @@ TEST(SmoothShape, NearBendsOfAProfileKnowTheAxis) {
   at_rim[0] = at_rim[2];
   const RevolutionShape shape(15.0, row, at_rim);
   expect_bounded(shape.view(), 35.0);
-  EXPECT_LT(shape.view().near_bends_at(5.0, 0.0)[1], 0.1 * shape.bend_bound());
+  EXPECT_LT(shape.view().near_curvatures_at(5.0, 0.0)[1], 0.1 * shape.curvature_bound());
   std::vector<double> at_axis = with_a_spike(15, 1);
   at_axis[0] = at_axis[2];
   const RevolutionShape inner(15.0, row, at_axis);
   expect_bounded(inner.view(), 35.0);
-  EXPECT_EQ(inner.view().near_bends_at(45.0, 0.0)[0], inner.bend_bound());
+  EXPECT_EQ(inner.view().near_curvatures_at(45.0, 0.0)[0], inner.curvature_bound());
 }
 
 }  // namespace

@@ -42,13 +42,13 @@ struct BsplineView {
   /// The offset lies in this range everywhere on the rectangle (convex hull of the coefficients).
   HeightRange band;
   /// Bound on the offset's second derivative along any unit direction of the xy plane.
-  double bend_bound = 0.0;
+  double curvature_bound = 0.0;
   /// The same about each cell, row by row: within near_cells(0) cells of it, near_cells(1), ...
-  const double* near_bends = nullptr;
+  const double* near_curvatures = nullptr;
 
-  LUCERNA_HD const double* near_bends_at(double x, double y) const {
+  LUCERNA_HD const double* near_curvatures_at(double x, double y) const {
     const std::ptrdiff_t cell = row_y.place(y).first * std::ptrdiff_t{row_x.intervals} + row_x.place(x).first;
-    return near_bends + kNearSizes * cell;
+    return near_curvatures + kNearSizes * cell;
   }
   /// Least width of a cell.
   LUCERNA_HD double cell_mm() const { return row_x.step_mm < row_y.step_mm ? row_x.step_mm : row_y.step_mm; }
@@ -74,8 +74,8 @@ struct BsplineView {
 
   LUCERNA_HD Local local(double x, double y) const {
     const KnotRow::Place px = row_x.place(x), py = row_y.place(y);
-    const CubicBasis bx = cubic_basis(px.t), dx = cubic_basis_slope(px.t), ex = cubic_basis_bend(px.t);
-    const CubicBasis by = cubic_basis(py.t), dy = cubic_basis_slope(py.t), ey = cubic_basis_bend(py.t);
+    const CubicBasis bx = cubic_basis(px.t), dx = cubic_basis_slope(px.t), ex = cubic_basis_second(px.t);
+    const CubicBasis by = cubic_basis(py.t), dy = cubic_basis_slope(py.t), ey = cubic_basis_second(py.t);
     const int nx = row_x.coefficients();
     const double* c = coefficients + std::ptrdiff_t{py.first} * nx + px.first;
     double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0, syy = 0.0;
@@ -142,11 +142,11 @@ struct RevolutionView {
   KnotRow row;
   const double* coefficients = nullptr;
   HeightRange band;
-  double bend_bound = 0.0;
-  const double* near_bends = nullptr;
+  double curvature_bound = 0.0;
+  const double* near_curvatures = nullptr;
 
-  LUCERNA_HD const double* near_bends_at(double x, double y) const {
-    return near_bends + std::ptrdiff_t{kNearSizes} * row.place(std::sqrt(x * x + y * y)).first;
+  LUCERNA_HD const double* near_curvatures_at(double x, double y) const {
+    return near_curvatures + std::ptrdiff_t{kNearSizes} * row.place(std::sqrt(x * x + y * y)).first;
   }
   LUCERNA_HD double cell_mm() const { return row.step_mm; }
 
@@ -171,7 +171,7 @@ struct RevolutionView {
     Local l;
     l.first = {p.first};
     l.basis = {cubic_basis(p.t)};
-    const CubicBasis d = cubic_basis_slope(p.t), e = cubic_basis_bend(p.t);
+    const CubicBasis d = cubic_basis_slope(p.t), e = cubic_basis_second(p.t);
     double slope = 0.0, bend = 0.0;
     for (std::size_t i = 0; i < 4; ++i) {
       const double c = coefficients[static_cast<std::size_t>(p.first) + i];

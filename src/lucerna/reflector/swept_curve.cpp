@@ -12,7 +12,7 @@ namespace lucerna {
 namespace {
 
 /// Pieces turn by less than this, radians: then a piece along its steeper coordinate is monotone in it, and a
-/// ray meets it at most twice but for grazing.
+/// ray hits it at most twice but for grazing.
 constexpr double kMaxTurn = 0.1;
 /// Halvings of one interval between points.
 constexpr int kMaxHalvings = 10;

@@ -106,7 +106,7 @@ TEST(SweptCurve, ProfileFamiliesPickItUpByThemselves) {
   EXPECT_NE(profile_reflector({{10, 0}, {12, 50}, {12.5, 80}}, Aperture::circle(25.0)).curve, nullptr)
       << "steep";
   EXPECT_NE(profile_trough(arc(20.0, 150.0, 20), Aperture::rectangle(20.0, 100.0)).curve, nullptr);
-  // The mouth's diameter, as a project has it by default, stands for the whole curve.
+  // The mouth's diameter, as a project has it by default, represents the whole curve.
   const Reflector deep = profile_reflector(arc(20.0, 150.0, 20), Aperture::circle(20.0));
   EXPECT_NEAR(deep.aperture.half_x_mm(), 20.0, 1e-3);
   EXPECT_NO_THROW(profile_reflector(arc(20.0, 150.0, 20), Aperture::circle(60.0)));

@@ -54,7 +54,7 @@ EtendueShares etendue_of(const Side& side) {
 std::vector<LuminancePicture> write_pictures(const fs::path& folder, const Views& views,
                                              const RayBlock& reference, const RayBlock& test) {
   std::vector<LuminancePicture> pictures;
-  for (const LookFrom from : {LookFrom::front, LookFrom::side}) {
+  for (const Viewpoint from : {Viewpoint::front, Viewpoint::side}) {
     const auto image = luminance_image(views, reference, test, from);
     if (!image) continue;
     const ComparisonPicture p = comparison_picture(LuminanceImage::kCells, LuminanceImage::kCells,

@@ -48,8 +48,8 @@ void write_design_progress(const std::filesystem::path& folder, const DesignProb
   write_file(folder / "checkpoint", checkpoint);
 }
 
-DesignStart read_design_progress(const std::filesystem::path& folder) {
-  DesignStart start;
+DesignProgress read_design_progress(const std::filesystem::path& folder) {
+  DesignProgress start;
   if (!std::filesystem::exists(folder / "checkpoint")) return start;
   start.checkpoint = read_file(folder / "checkpoint", kMaxBytes);
   if (std::filesystem::exists(folder / "history.csv")) {
@@ -72,7 +72,7 @@ std::vector<std::string> write_reflector_files(const std::filesystem::path& fold
 }
 
 std::vector<std::string> write_design_files(const std::filesystem::path& folder, const DesignProblem& problem,
-                                            const DesignResult& result, const DesignFigures& figures,
+                                            const DesignResult& result, const DesignMetrics& figures,
                                             const TraceResult& traced, std::string_view history,
                                             const nlohmann::ordered_json& json) {
   write_design_progress(folder, problem, result.shape, history, result.checkpoint);

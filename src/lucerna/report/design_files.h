@@ -17,10 +17,10 @@ void write_design_progress(const std::filesystem::path& folder, const DesignProb
 
 /// A folder that a design is to go on from: its checkpoint (empty if it never got so far) and the lines of
 /// its history up to there. Throws InputError if a file cannot be read.
-struct DesignStart {
+struct DesignProgress {
   std::string checkpoint, history;
 };
-DesignStart read_design_progress(const std::filesystem::path& folder);
+DesignProgress read_design_progress(const std::filesystem::path& folder);
 
 /// Writes the mirror as `reflector.step .stl .obj .dxf .csv` (in its own frame, mm; tolerances as
 /// `cad_mesh_within`). Throws InputError as the exporters do. Returns the names.
@@ -30,7 +30,7 @@ std::vector<std::string> write_reflector_files(const std::filesystem::path& fold
 /// Writes all that `design` leaves in a folder: the above, `tolerances.csv` where there
 /// was a sweep, and what `trace` leaves, `result.json` last. `traced` is the trace that `figures` are of.
 std::vector<std::string> write_design_files(const std::filesystem::path& folder, const DesignProblem& problem,
-                                            const DesignResult& result, const DesignFigures& figures,
+                                            const DesignResult& result, const DesignMetrics& figures,
                                             const TraceResult& traced, std::string_view history,
                                             const nlohmann::ordered_json& json);
 

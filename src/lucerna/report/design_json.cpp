@@ -50,7 +50,7 @@ Json tolerances_json(const ToleranceSweep& sweep) {
   out["cases"] = Json::array();
   for (std::size_t i = 0; i < sweep.cases.size(); ++i) {
     const ToleranceCase& c = sweep.cases[i];
-    const ToleranceFigures& f = sweep.figures[i];
+    const ToleranceMetrics& f = sweep.figures[i];
     out["cases"].push_back({{"name", c.name},
                             {"shift_mm", {c.shift_mm.x, c.shift_mm.y, c.shift_mm.z}},
                             {"tilt_deg", {c.tilt_x_deg, c.tilt_y_deg}},
@@ -77,21 +77,21 @@ struct Table {
   }
 };
 
-void far_field_rows(const DesignFigures& f, Table& table) {
+void far_field_rows(const DesignMetrics& f, Table& table) {
   if (!f.target_beam || f.trace.far_fields.empty()) return;
-  const BeamFigures& want = *f.target_beam;
-  const FarFieldMetrics& have = f.trace.far_fields.front().metrics;
+  const BeamMetrics& want = *f.target_beam;
+  const FarFieldMetrics& obtained = f.trace.far_fields.front().metrics;
   const char* unit = f.trace.ledger.unit == FluxUnit::lumen ? "cd" : "W/sr";
   const auto amount = [&](double x) { return fmt::format("{:.5g} {}", x, unit); };
-  if (have.peak) {
-    table.row("peak", amount(want.peak.cd), estimate_text(have.peak->cd, unit));
+  if (obtained.peak) {
+    table.row("peak", amount(want.peak.cd), estimate_text(obtained.peak->cd, unit));
     table.row("peak at", fmt::format("C {:g}, {:g} deg", want.peak.c_deg, want.peak.gamma_deg),
-              peak_place_text(*have.peak));
+              peak_place_text(*obtained.peak));
   }
-  table.row("on the axis", amount(want.centre_cd), estimate_text(have.axis_cd, unit));
+  table.row("on the axis", amount(want.centre_cd), estimate_text(obtained.axis_cd, unit));
   for (const double c : {0.0, 90.0}) {
     const auto* a = plane_at(want.planes, c);
-    const auto* b = plane_at(have.planes, c);
+    const auto* b = plane_at(obtained.planes, c);
     if (a == nullptr || b == nullptr) continue;
     table.row(fmt::format("beam angle C{:g}-C{:g}", c, c + 180.0), angle(a->beam_of_maximum),
               angle_text(b->beam_of_maximum));
@@ -100,18 +100,18 @@ void far_field_rows(const DesignFigures& f, Table& table) {
   }
 }
 
-void plane_rows(const DesignFigures& f, Table& table) {
+void plane_rows(const DesignMetrics& f, Table& table) {
   if (!f.target_plane || !f.result_plane) return;
   const char* unit = f.trace.ledger.unit == FluxUnit::lumen ? "lx" : "W/m2";
   const auto amount = [&](const Estimate& x) { return estimate_text(x, unit); };
   const auto share = [](const std::optional<Estimate>& x) {
     return x ? estimate_text(*x) : std::string("-");
   };
-  const PlaneSummary &want = *f.target_plane, &have = *f.result_plane;
-  table.row("mean illuminance", amount(want.mean), amount(have.mean));
-  table.row("min", amount(want.min), amount(have.min));
-  table.row("max", amount(want.max), amount(have.max));
-  table.row("uniformity (min / mean)", share(want.uniformity), share(have.uniformity));
+  const PlaneSummary &want = *f.target_plane, &obtained = *f.result_plane;
+  table.row("mean illuminance", amount(want.mean), amount(obtained.mean));
+  table.row("min", amount(want.min), amount(obtained.min));
+  table.row("max", amount(want.max), amount(obtained.max));
+  table.row("uniformity (min / mean)", share(want.uniformity), share(obtained.uniformity));
 }
 
 void tolerance_rows(const ToleranceSweep& sweep, std::vector<std::string>& lines) {
@@ -217,7 +217,7 @@ nlohmann::ordered_json pareto_json(const std::vector<ParetoPoint>& points) {
 }
 
 /// Errors against the target; of zones alone there is no other target, so only where the light is.
-Json error_figures(const DesignProblem& problem, const DesignResult& result) {
+Json error_metrics(const DesignProblem& problem, const DesignResult& result) {
   Json start{{"in_rectangle", estimate_json(result.start_error.in_rectangle)}};
   if (problem.target.zones != nullptr) start["zones"] = zones_json(result.start_zones);
   if (problem.target.zones_only) {
@@ -241,8 +241,8 @@ Json error_figures(const DesignProblem& problem, const DesignResult& result) {
 
 }  // namespace
 
-Json design_json(const DesignProblem& problem, const DesignResult& result, const DesignFigures& f) {
-  Json json = error_figures(problem, result);
+Json design_json(const DesignProblem& problem, const DesignResult& result, const DesignMetrics& f) {
+  Json json = error_metrics(problem, result);
   if (problem.target.zones != nullptr) json["zones"] = zones_json(result.zones);
   if (!result.pareto.empty()) json["pareto"] = pareto_json(result.pareto);
   if (!result.advice.empty()) json["advice"] = advice_json(result.advice);
@@ -281,7 +281,7 @@ Json design_json(const DesignProblem& problem, const DesignResult& result, const
 }
 
 std::vector<std::string> design_summary(const DesignProblem& problem, const DesignResult& result,
-                                        const DesignFigures& f) {
+                                        const DesignMetrics& f) {
   Table table;
   const bool zones_only = problem.target.zones_only;
   const bool absolute = problem.target.mode == TargetMode::absolute;

@@ -23,7 +23,7 @@ std::vector<std::string> write_trace(const std::filesystem::path& folder, const 
   if (error) throw_input_error(folder.string(), "", "cannot make the folder: {}", error.message());
   nlohmann::ordered_json json = run_json({.inputs = project.inputs}, result.seed, result.isa);
   std::vector<std::string> lost;
-  return write_trace_results(folder, result, trace_origin(project), trace_figures(result, project.scene),
+  return write_trace_results(folder, result, trace_origin(project), trace_metrics(result, project.scene),
                              json, warnings != nullptr ? *warnings : lost);
 }
 

@@ -59,7 +59,7 @@ void make_design(const test::TempDir& dir, const std::string& target) {
   const Project project = read_project(dir / "p.toml");
   TraceOptions options;
   options.last_ray = 50'000;
-  const TraceFigures figures = trace_figures(trace(project.scene, options));
+  const TraceMetrics figures = trace_metrics(trace(project.scene, options));
   const Json kEstimate{{"value", 0.89}, {"standard_error", 0.002}};
   const Json kError{{"value", 0.0323}, {"floor", 0.0016}, {"excess", 0.0322}, {"standard_error", 0.0003}};
   Json json{{"program_version", std::string(version())},

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/report/html_assets.h"
 #include "lucerna/report/report_zones.h"
 #include "lucerna/report/svg_cartesian.h"
@@ -78,10 +78,10 @@ std::string plane_table(const ResultFigures& result, const std::string& detector
 Json far_field_json(const FarFieldTable& field) {
   const IntensityDistribution& d = field.distribution;
   std::size_t skip_c = 1, skip_g = 1;
-  const auto kept = [](std::size_t n, std::size_t skip) { return (n + skip - 1) / skip; };
-  while (kept(d.c_deg.size(), skip_c) * kept(d.gamma_deg.size(), skip_g) > kMaxCells) {
+  const auto count_after = [](std::size_t n, std::size_t skip) { return (n + skip - 1) / skip; };
+  while (count_after(d.c_deg.size(), skip_c) * count_after(d.gamma_deg.size(), skip_g) > kMaxCells) {
     // The denser axis is thinned first; gamma keeps its last angle only when the steps divide it.
-    (kept(d.c_deg.size(), skip_c) > kept(d.gamma_deg.size(), skip_g) ? skip_c : skip_g) *= 2;
+    (count_after(d.c_deg.size(), skip_c) > count_after(d.gamma_deg.size(), skip_g) ? skip_c : skip_g) *= 2;
   }
   Json c = Json::array(), gamma = Json::array();
   std::vector<double> cd, se;
@@ -143,7 +143,7 @@ std::optional<std::string> plane_key(const ResultFigures& result, const std::str
 }
 
 /// An angle with its error, or that it is not determined.
-std::string angle_figure(const ResultFigures& result, const std::string& key) {
+std::string angle_metric(const ResultFigures& result, const std::string& key) {
   return result.at(key).is_null() ? "not determined" : result.figure(key);
 }
 
@@ -152,10 +152,10 @@ std::string angle_cards(const ResultFigures& result, const std::string& detector
   for (const double c : {0.0, 90.0}) {
     const auto key = plane_key(result, detector, c);
     if (!key) continue;
-    out += card(fmt::format("Beam angle C{:g}", c), angle_figure(result, *key + "/beam_angle_of_maximum_deg"),
+    out += card(fmt::format("Beam angle C{:g}", c), angle_metric(result, *key + "/beam_angle_of_maximum_deg"),
                 "°",
                 fmt::format("50 % of the maximum; field angle (10 %) {}°",
-                            angle_figure(result, *key + "/field_angle_of_maximum_deg")));
+                            angle_metric(result, *key + "/field_angle_of_maximum_deg")));
   }
   return out;
 }

@@ -166,7 +166,7 @@ Compared compare(HtmlPage& page, const SourceModel& model, Json& result, const M
   reference.add(*options.rays);
   test.add(drawn);
   result["views"] = views_json(compare_view_counts(reference, test));
-  for (const ViewKind kind : kViewKinds) out.view_plots += view_figures(page, kind, reference, test);
+  for (const ViewKind kind : kViewKinds) out.view_plots += view_metrics(page, kind, reference, test);
   return out;
 }
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "lucerna/intensity_comparison.h"
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/report/grid_map.h"
 #include "lucerna/report/html_text.h"
 #include "lucerna/report/report_far_field.h"

@@ -6,12 +6,12 @@
 
 #include "lucerna/core/file.h"
 #include "lucerna/error.h"
-#include "lucerna/photometric_figures.h"
 #include "lucerna/photometric_file.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/ray_file.h"
 #include "lucerna/source.h"
 #include "lucerna/source_model.h"
-#include "lucerna/trace_figures.h"
+#include "lucerna/trace_metrics.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {

@@ -43,7 +43,7 @@ void make_trace(const test::TempDir& dir, const std::string& project_toml = kPro
   const Project project = read_project(dir / "p.toml");
   TraceOptions options;
   options.last_ray = 20'000;
-  const TraceFigures figures = trace_figures(trace(project.scene, options));
+  const TraceMetrics figures = trace_metrics(trace(project.scene, options));
   nlohmann::ordered_json json{{"program_version", std::string(version())},
                               {"schema_version", kJsonSchemaVersion},
                               {"command", "lucerna trace"},

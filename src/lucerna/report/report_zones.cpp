@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 
 namespace lucerna {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 
 namespace lucerna {
 namespace {

@@ -9,7 +9,7 @@ namespace lucerna {
 
 /// A field of `result.json`.
 struct ResultField {
-  /// "detectors[].peak.intensity"; `*` stands for a name that follows from the input, `**` for everything
+  /// "detectors[].peak.intensity"; `*` represents a name that follows from the input, `**` for everything
   /// below.
   std::string_view path;
   /// "trace" (and merge), "design", or "both".
@@ -24,7 +24,7 @@ struct ResultField {
 /// All of them, in the order of the files.
 std::span<const ResultField> result_fields();
 
-/// Whether `pattern` (ResultField::path) stands for `path`.
+/// Whether `pattern` (ResultField::path) represents `path`.
 bool stands_for(std::string_view pattern, std::string_view path);
 
 /// The reference page of `result.json`, in Markdown, from the table.

@@ -49,7 +49,7 @@ std::set<std::string> paths_of(const Json& json) {
   return paths;
 }
 
-/// Paths that no field stands for; and takes what stands for one out of `unseen`.
+/// Paths that no field represents; and takes what represents one out of `unseen`.
 std::set<std::string> unknown_paths(const Json& json, const std::set<std::string_view>& of,
                                     std::set<std::string_view>& unseen) {
   std::set<std::string> unknown;
@@ -115,7 +115,7 @@ Json trace_file_json(const Project& project) {
   Json json = run_json({"lucerna trace", project.inputs, {{"trace", 1.0}}}, 1, result.isa);
   json["sequence"] = "sobol";
   json["rays"] = {{"first", 0}, {"last", 1}};
-  json.update(trace_json(trace_figures(result)));
+  json.update(trace_json(trace_metrics(result)));
   return json;
 }
 
@@ -137,8 +137,8 @@ Json design_file_json(const std::filesystem::path& folder, const std::string& ta
   ToleranceRanges ranges;
   ranges.samples = 2;
   ranges.rays = 1 << 14;
-  DesignFigures figures =
-      design_figures(problem, result, trace(problem.project.scene, options), problem.project.scene);
+  DesignMetrics figures =
+      design_metrics(problem, result, trace(problem.project.scene, options), problem.project.scene);
   figures.tolerances = tolerance_sweep(problem.project.scene, ranges, 1);
   return design_json(problem, result, figures);
 }

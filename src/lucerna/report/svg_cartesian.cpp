@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "lucerna/estimate.h"
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 
 namespace lucerna {
 

@@ -141,8 +141,8 @@ std::vector<std::vector<SvgPoint>> contour_rings(const SampledField& field, doub
 
 std::vector<SvgPoint> thinned(const std::vector<SvgPoint>& line, double tolerance) {
   if (line.size() < 3) return line;
-  std::vector<bool> kept(line.size(), false);
-  kept.front() = kept.back() = true;
+  std::vector<bool> retained(line.size(), false);
+  retained.front() = retained.back() = true;
   std::vector<std::pair<std::size_t, std::size_t>> open{{0, line.size() - 1}};
   while (!open.empty()) {
     const auto [a, b] = open.back();
@@ -158,13 +158,13 @@ std::vector<SvgPoint> thinned(const std::vector<SvgPoint>& line, double toleranc
       if (off > max) max = off, farthest = i;
     }
     if (farthest == a) continue;
-    kept[farthest] = true;
+    retained[farthest] = true;
     open.push_back({a, farthest});
     open.push_back({farthest, b});
   }
   std::vector<SvgPoint> out;
   for (std::size_t i = 0; i < line.size(); ++i) {
-    if (kept[i]) out.push_back(line[i]);
+    if (retained[i]) out.push_back(line[i]);
   }
   return out;
 }

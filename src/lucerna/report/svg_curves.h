@@ -30,7 +30,7 @@ struct CurvePlot {
 };
 
 /// A diagram of lines as an SVG document, with a legend; at most as many curves as there are `kCurveColors`
-/// are told apart. Throws InputError if nothing can be drawn. Thread safe; O(points).
+/// are distinguished. Throws InputError if nothing can be drawn. Thread safe; O(points).
 std::string curves_svg(const CurvePlot& plot);
 
 /// The same numbers for the page's script: `data-plot` "curves" (assets/report.js) and the saved table.

@@ -8,7 +8,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/report/svg_contour.h"
 
 namespace lucerna {

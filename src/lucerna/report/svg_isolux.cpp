@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/report/svg_contour.h"
 
 namespace lucerna {

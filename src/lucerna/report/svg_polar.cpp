@@ -8,7 +8,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/estimate.h"
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/report/svg_axes.h"
 #include "lucerna/report/svg_canvas.h"
 
@@ -169,7 +169,7 @@ void draw_figures(SvgCanvas& canvas, const IntensityDistribution& d, const std::
     canvas.text({60.0, y + 38.0}, "C90 – C270: " + drawn->c90);
     return;
   }
-  const BeamFigures f = beam_figures(d);
+  const BeamMetrics f = beam_metrics(d);
   const auto plane = [&](double c) {
     return *std::find_if(f.planes.begin(), f.planes.end(), [&](const auto& p) { return p.c_deg == c; });
   };

@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 
 namespace lucerna {
 

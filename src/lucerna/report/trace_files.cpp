@@ -21,7 +21,7 @@ namespace lucerna {
 
 namespace {
 
-PhotometricFile photometric_file(const FarFieldFigures& figures, const TraceOrigin& origin) {
+PhotometricFile photometric_file(const FarFieldResult& figures, const TraceOrigin& origin) {
   PhotometricFile file{figures.intensity.distribution, {}};
   file.luminaire.name = figures.field.name;
   file.luminaire.manufacturer = "Lucerna simulation";
@@ -34,7 +34,7 @@ PhotometricFile photometric_file(const FarFieldFigures& figures, const TraceOrig
 
 }  // namespace
 
-std::string far_field_csv(const FarFieldFigures& figures) {
+std::string far_field_csv(const FarFieldResult& figures) {
   const IntensityDistribution& d = figures.intensity.distribution;
   const bool error_known = !figures.intensity.standard_error_cd.empty();
   const char* unit = d.unit == FluxUnit::lumen ? "cd" : "w_per_sr";
@@ -50,7 +50,7 @@ std::string far_field_csv(const FarFieldFigures& figures) {
   return csv;
 }
 
-std::string plane_csv(const PlaneFigures& figures) {
+std::string plane_csv(const PlaneMetrics& figures) {
   const PlaneImage& image = figures.image;
   const bool lumen = image.unit == FluxUnit::lumen;
   const std::string figure = figures.view ? (lumen ? "luminance_cd_per_m2" : "radiance_w_per_m2_sr")
@@ -85,7 +85,7 @@ PlanePicture plane_picture(const PlaneImage& image) {
 namespace {
 
 /// Writes the rays that left in the format of every ray detector. Weights become fluxes, as TM-25 has them.
-std::vector<std::string> write_rays(const std::filesystem::path& folder, const TraceFigures& figures,
+std::vector<std::string> write_rays(const std::filesystem::path& folder, const TraceMetrics& figures,
                                     const RayBlock& rays, std::vector<std::string>* warnings) {
   std::vector<std::string> names;
   if (figures.rays.empty()) return names;
@@ -98,7 +98,7 @@ std::vector<std::string> write_rays(const std::filesystem::path& folder, const T
   for (const float w : rays.weight) sum += static_cast<double>(w);
   for (float& w : set.rays.weight)
     w = static_cast<float>(static_cast<double>(w) / sum * figures.rays.front().flux.mean);
-  for (const RayFigures& f : figures.rays) {
+  for (const RayOutputMetrics& f : figures.rays) {
     // Other formats have no place for it, and would warn of it.
     set.header.texts.file_creator = f.detector.format == "tm25" ? fmt::format("lucerna {}", version()) : "";
     names.push_back(ray_file_name(f.detector));
@@ -112,7 +112,7 @@ std::vector<std::string> write_rays(const std::filesystem::path& folder, const T
 }  // namespace
 
 std::vector<std::string> write_trace_files(const std::filesystem::path& folder, const TraceOrigin& origin,
-                                           const TraceFigures& figures, const RayBlock& rays,
+                                           const TraceMetrics& figures, const RayBlock& rays,
                                            const nlohmann::ordered_json& result,
                                            std::vector<std::string>* warnings) {
   std::vector<std::string> names;
@@ -120,7 +120,7 @@ std::vector<std::string> write_trace_files(const std::filesystem::path& folder, 
     write_file(folder / name, text);
     names.push_back(name);
   };
-  for (const FarFieldFigures& f : figures.far_fields) {
+  for (const FarFieldResult& f : figures.far_fields) {
     const PhotometricFile file = photometric_file(f, origin);
     if (f.field.unit == FluxUnit::lumen) write(f.field.name + ".ldt", ldt_text(file));
     write(f.field.name + ".ies", ies_text(file, PhotometricFormat::ies_2019));
@@ -131,7 +131,7 @@ std::vector<std::string> write_trace_files(const std::filesystem::path& folder, 
                                                .figures = drawn_figures(f)}));
   }
   for (const auto* images : {&figures.planes, &figures.luminances}) {
-    for (const PlaneFigures& f : *images) {
+    for (const PlaneMetrics& f : *images) {
       write(f.image.name + ".csv", plane_csv(f));
       const PlanePicture picture = plane_picture(f.image);
       write_png(folder / (f.image.name + ".png"), picture.width, picture.height, picture.rgb);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lucerna/trace/trace_origin.h"
-#include "lucerna/trace_figures.h"
+#include "lucerna/trace_metrics.h"
 
 namespace lucerna {
 
@@ -19,18 +19,18 @@ namespace lucerna {
 /// names. `rays` are TraceResult::out_rays, `result` is what goes into result.json. What a ray format had to
 /// leave out goes to `warnings`.
 std::vector<std::string> write_trace_files(const std::filesystem::path& folder, const TraceOrigin& origin,
-                                           const TraceFigures& figures, const RayBlock& rays,
+                                           const TraceMetrics& figures, const RayBlock& rays,
                                            const nlohmann::ordered_json& result,
                                            std::vector<std::string>* warnings = nullptr);
 
 /// The table NAME.csv: a header line, then c_deg, gamma_deg, intensity and its standard error per grid angle.
-std::string far_field_csv(const FarFieldFigures& figures);
+std::string far_field_csv(const FarFieldResult& figures);
 
 /// The table NAME.csv of a plane or luminance image: a header line, then per cell x_mm, y_mm (its middle in
 /// the grid's frame), the value and its standard error (empty where it is not known); x runs first, both from
 /// the negative side. The value's column: illuminance_lx, luminance_cd_per_m2, irradiance_w_per_m2 or
 /// radiance_w_per_m2_sr.
-std::string plane_csv(const PlaneFigures& figures);
+std::string plane_csv(const PlaneMetrics& figures);
 
 /// The picture NAME.png as rows of RGB from the top: viridis from 0 to the largest value, y up, x to the
 /// right, every cell a square of as many pixels as bring the longer side to 512 or more (at most 64 a cell).

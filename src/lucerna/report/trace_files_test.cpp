@@ -24,7 +24,7 @@ std::vector<std::string> files_of(const std::string& flux_line) {
   const Project project = read_project(dir / "p.toml");
   TraceOptions options;
   options.last_ray = 16'384;
-  const TraceFigures figures = trace_figures(trace(project.scene, options));
+  const TraceMetrics figures = trace_metrics(trace(project.scene, options));
   const std::string csv = far_field_csv(figures.far_fields[0]);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 72 * 181);
   auto names = write_trace_files(dir.path(), trace_origin(project), figures, {}, trace_json(figures));
@@ -51,7 +51,7 @@ TEST(TraceFiles, EveryDetectorHasItsFilesAndCanBeReadBack) {
   TraceOptions options;
   options.last_ray = 20'000;
   const TraceResult traced = trace(project.scene, options);
-  const TraceFigures figures = trace_figures(traced);
+  const TraceMetrics figures = trace_metrics(traced);
   nlohmann::ordered_json json = trace_json(figures);
   json["schema_version"] = kJsonSchemaVersion;
   const auto names = write_trace_files(dir.path(), trace_origin(project), figures, traced.out_rays, json);

@@ -22,7 +22,7 @@ std::string fault(const std::string& csv) {
 }
 
 TEST(TraceFolder, TableIsTheInverseOfItsWriter) {
-  FarFieldFigures figures;
+  FarFieldResult figures;
   figures.intensity.distribution = uniform_distribution(90.0, 45.0);
   auto& d = figures.intensity.distribution;
   for (std::size_t i = 0; i < d.cd.size(); ++i) {
@@ -51,7 +51,7 @@ TEST(TraceFolder, BrokenTablesNameTheirLine) {
 }
 
 TEST(TraceFolder, PlaneTablesAreTheInverseOfTheirWriter) {
-  PlaneFigures figures;
+  PlaneMetrics figures;
   figures.image.grid = {Frame(), 30.0, 20.0, 3, 2};
   for (std::size_t i = 0; i < 6; ++i) {
     figures.image.value.push_back(0.1 * static_cast<double>(i * i));

@@ -94,7 +94,7 @@ Json zones_json(const FarFieldMetrics& m) {
           {"bug", list_json(m.bug_zones)}};
 }
 
-Json far_field_json(const FarFieldFigures& f) {
+Json far_field_json(const FarFieldResult& f) {
   Json json{{"name", f.field.name},
             {"kind", "far-field"},
             {"unit", f.field.unit == FluxUnit::lumen ? "cd" : "W/sr"},
@@ -114,7 +114,7 @@ Json far_field_json(const FarFieldFigures& f) {
 
 Json vector_json(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-Json plane_json(const PlaneFigures& f) {
+Json plane_json(const PlaneMetrics& f) {
   const PlaneGrid& grid = f.image.grid;
   const Frame& frame = grid.world_from_plane;
   Json peak = estimate_json(f.extremes.max);
@@ -143,7 +143,7 @@ Json plane_json(const PlaneFigures& f) {
   return json;
 }
 
-Json rays_json(const RayFigures& f, FluxUnit unit) {
+Json rays_json(const RayOutputMetrics& f, FluxUnit unit) {
   return {{"name", f.detector.name},           {"kind", "rays"},
           {"unit", std::string(symbol(unit))}, {"format", f.detector.format},
           {"file", ray_file_name(f.detector)}, {"rays", f.rays},
@@ -163,7 +163,7 @@ Json beam_json(const FarFieldMetrics& m) {
           {"planes", planes_json(m.planes)}};
 }
 
-Json beam_json(const BeamFigures& beam) {
+Json beam_json(const BeamMetrics& beam) {
   return {
       {"peak", {{"intensity", beam.peak.cd}, {"c_deg", beam.peak.c_deg}, {"gamma_deg", beam.peak.gamma_deg}}},
       {"centre", {{"intensity", beam.centre_cd}, {"gamma_deg", beam.axis_gamma_deg}}},
@@ -191,9 +191,9 @@ DrawnFigures drawn_figures(const Json& f) {
   return d;
 }
 
-DrawnFigures drawn_figures(const FarFieldFigures& f) { return drawn_figures(far_field_json(f)); }
+DrawnFigures drawn_figures(const FarFieldResult& f) { return drawn_figures(far_field_json(f)); }
 
-Json trace_json(const TraceFigures& figures) {
+Json trace_json(const TraceMetrics& figures) {
   Json out;
   out["ledger"] = ledger_json(figures.ledger);
   out["detectors"] = Json::array();

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "lucerna/photometric_figures.h"
+#include "lucerna/photometric_metrics.h"
 #include "lucerna/source.h"
 #include "lucerna/trace.h"
 
@@ -26,15 +26,15 @@ Scene half_caught(double flux) {
   return scene;
 }
 
-TEST(TraceFigures, EverythingThatLeavesIsInTheFarField) {
+TEST(TraceMetrics, EverythingThatLeavesIsInTheFarField) {
   TraceOptions options;
   options.last_ray = 40'000;
-  const TraceFigures figures = trace_figures(trace(half_caught(500.0), options));
+  const TraceMetrics figures = trace_metrics(trace(half_caught(500.0), options));
   const Ledger& l = figures.ledger;
   EXPECT_GT(l.out_direct.mean, 100.0);
   EXPECT_GT(l.out_reflected.mean, 100.0);
   ASSERT_EQ(figures.far_fields.size(), 1u);
-  const FarFieldFigures& f = figures.far_fields[0];
+  const FarFieldResult& f = figures.far_fields[0];
   const Estimate flux = f.metrics.flux;
   EXPECT_NEAR(flux.mean, l.out_direct.mean + l.out_reflected.mean, 1e-9);
   EXPECT_NEAR(total_flux(f.intensity.distribution), flux.mean, 1e-6 * flux.mean);
@@ -44,20 +44,20 @@ TEST(TraceFigures, EverythingThatLeavesIsInTheFarField) {
   EXPECT_LT(f.metrics.axis_cd.standard_error, 0.2 * f.metrics.axis_cd.mean);
 }
 
-TEST(TraceFigures, NoiseFallsWithTheRootOfTheRays) {
+TEST(TraceMetrics, NoiseFallsWithTheRootOfTheRays) {
   TraceOptions options;
   options.sequence = SequenceKind::random;
   options.last_ray = 1 << 17;
-  const double few = trace_figures(trace(half_caught(500.0), options)).far_fields[0].noise;
+  const double few = trace_metrics(trace(half_caught(500.0), options)).far_fields[0].noise;
   options.last_ray = 1 << 21;
-  const double many = trace_figures(trace(half_caught(500.0), options)).far_fields[0].noise;
+  const double many = trace_metrics(trace(half_caught(500.0), options)).far_fields[0].noise;
   EXPECT_NEAR(few / many, 4.0, 0.6);
 }
 
-TEST(TraceFigures, JsonClosesAndUnknownErrorsAreNull) {
+TEST(TraceMetrics, JsonClosesAndUnknownErrorsAreNull) {
   TraceOptions options;
   options.last_ray = 300;  // one replicate only: no error can be known
-  const nlohmann::ordered_json json = trace_json(trace_figures(trace(half_caught(500.0), options)));
+  const nlohmann::ordered_json json = trace_json(trace_metrics(trace(half_caught(500.0), options)));
   const auto& ledger = json["ledger"];
   double sum = 0.0;
   for (const char* part : {"out_direct", "out_reflected", "lost"}) sum += ledger[part]["value"].get<double>();

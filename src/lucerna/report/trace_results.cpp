@@ -10,7 +10,7 @@
 namespace lucerna {
 
 std::vector<std::string> write_trace_results(const std::filesystem::path& folder, const TraceResult& result,
-                                             const TraceOrigin& origin, const TraceFigures& figures,
+                                             const TraceOrigin& origin, const TraceMetrics& figures,
                                              nlohmann::ordered_json& json,
                                              std::vector<std::string>& warnings) {
   json["sequence"] = std::string(to_string(result.sequence));

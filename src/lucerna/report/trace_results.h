@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lucerna/trace/trace_origin.h"
-#include "lucerna/trace_figures.h"
+#include "lucerna/trace_metrics.h"
 
 namespace lucerna {
 
@@ -15,7 +15,7 @@ namespace lucerna {
 /// the raw sums that `merge` takes. `json` begins with run_json and gets the rest. Returns the names of the
 /// files; what a format had to leave out goes to `warnings`.
 std::vector<std::string> write_trace_results(const std::filesystem::path& folder, const TraceResult& result,
-                                             const TraceOrigin& origin, const TraceFigures& figures,
+                                             const TraceOrigin& origin, const TraceMetrics& figures,
                                              nlohmann::ordered_json& json,
                                              std::vector<std::string>& warnings);
 

@@ -75,7 +75,7 @@ std::vector<double> shares(ViewKind kind, const ViewCounts& counts, const GridMa
 
 }  // namespace
 
-std::string view_figures(HtmlPage& page, ViewKind kind, const ViewCounts& reference, const ViewCounts& test) {
+std::string view_metrics(HtmlPage& page, ViewKind kind, const ViewCounts& reference, const ViewCounts& test) {
   const std::string word(to_string(kind)), name = text_of(kind).name;
   GridMap map = axes_of(kind, reference.views().window(kind));
   const std::vector<double> p = shares(kind, reference, map), q = shares(kind, test, map);

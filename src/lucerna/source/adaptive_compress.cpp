@@ -151,14 +151,14 @@ std::string describe_choice(const SearchResult& search) {
   if (dome.exists()) {
     text += fmt::format("; in a dome of R {:.3f} mm, index {:.3f}", dome.radius_mm, dome.index);
   }
-  std::array<std::array<bool, kSupportKinds>, 2> told{};
-  told[dome.exists() ? 1 : 0][static_cast<std::size_t>(search.best.on.support.kind)] = true;
-  for (const SupportScore& rival : search.rivals) {
-    const Support& s = rival.on.support;
-    bool& known = told[s.dome.exists() ? 1 : 0][static_cast<std::size_t>(s.kind)];
+  std::array<std::array<bool, kSupportKinds>, 2> reported{};
+  reported[dome.exists() ? 1 : 0][static_cast<std::size_t>(search.best.on.support.kind)] = true;
+  for (const SupportScore& runner_up : search.runners_up) {
+    const Support& s = runner_up.on.support;
+    bool& known = reported[s.dome.exists() ? 1 : 0][static_cast<std::size_t>(s.kind)];
     if (known) continue;
     known = true;
-    text += fmt::format("; {:.3f} better than {}{}", search.coarse_nats - rival.nats, to_string(s.kind),
+    text += fmt::format("; {:.3f} better than {}{}", search.coarse_nats - runner_up.nats, to_string(s.kind),
                         s.dome.exists() ? " in a dome" : "");
   }
   return text;
@@ -247,15 +247,16 @@ double sum_of(std::span<const float> weight) {
 
 /// The layers of one band of wavelengths: the best support, a second one that overlaps it if there is one,
 /// and what is left.
-void add_layers(LayerGrower& grower, std::span<const float> weight, std::span<const float> second_part,
-                const SearchResult& search, const std::optional<LayerSplit>& split) {
+void add_layers(LayerGrower& grower, std::span<const float> weight,
+                std::span<const float> second_responsibility, const SearchResult& search,
+                const std::optional<LayerSplit>& split) {
   const std::string why = fmt::format("{}; {} trees, {:.1f} nats a split", describe_choice(search),
                                       grower.setting.trees, grower.setting.penalty_nats);
   if (split) {
     std::vector<float> part(weight.size());
-    for (std::size_t i = 0; i < part.size(); ++i) part[i] = weight[i] * (1.0f - second_part[i]);
+    for (std::size_t i = 0; i < part.size(); ++i) part[i] = weight[i] * (1.0f - second_responsibility[i]);
     grower.add(search.best.on, part, true, why);
-    for (std::size_t i = 0; i < part.size(); ++i) part[i] = weight[i] * second_part[i];
+    for (std::size_t i = 0; i < part.size(); ++i) part[i] = weight[i] * second_responsibility[i];
     grower.add(split->second(), part, true,
                fmt::format("light that overlaps: {:.4f} +- {:.4f} nats per ray better than without",
                            split->gain_nats(), split->gain_error()));
@@ -269,7 +270,7 @@ void add_layers(LayerGrower& grower, std::span<const float> weight, std::span<co
 /// many rays do not show.
 constexpr std::size_t kWholeRays = 4'500'000;
 
-void make_whole(std::vector<float>& part, std::uint64_t seed) {
+void assign_hard(std::vector<float>& part, std::uint64_t seed) {
   constexpr std::size_t kBlock = 1 << 14;
   parallel_blocks(part.size(), kBlock, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
@@ -285,8 +286,8 @@ std::vector<GrownLayer> grown_layers(const RayBlock& rays, std::span<const float
                                      const std::optional<LayerSplit>& split, const Setting& setting,
                                      double tolerance_mm, std::uint64_t seed, Progress& progress) {
   LayerGrower grower{rays, setting, sum_of(rays.weight), tolerance_mm, progress};
-  std::vector<float> second = split ? split->second_parts(rays) : std::vector<float>{};
-  if (rays.size() > kWholeRays) make_whole(second, seed);
+  std::vector<float> second = split ? split->second_responsibilities(rays) : std::vector<float>{};
+  if (rays.size() > kWholeRays) assign_hard(second, seed);
   if (bands.cuts_nm.empty()) add_layers(grower, rays.weight, second, search, split);
   for (std::uint32_t b = 0; b < bands.tables.size() && !bands.cuts_nm.empty(); ++b) {
     std::vector<float> weight(rays.size());
@@ -391,13 +392,13 @@ std::unique_ptr<AdaptiveModel> compress_adaptive(const RaySet& rays, const Adapt
 
 std::unique_ptr<AdaptiveModel> compress_adaptive(RayReader& reader, const AdaptiveOptions& options,
                                                  Progress& progress) {
-  const std::uint64_t count = reader.ray_count(), kept = std::min(count, options.max_rays);
+  const std::uint64_t count = reader.ray_count(), retained = std::min(count, options.max_rays);
   RayBlock rays, block;
   std::vector<float> nm;
   std::uint64_t read = 0, next = 0;
   const auto place_of = [&](std::uint64_t i) {
-    if (kept == count) return i;
-    const double stretch = static_cast<double>(count) / static_cast<double>(kept);
+    if (retained == count) return i;
+    const double stretch = static_cast<double>(count) / static_cast<double>(retained);
     return static_cast<std::uint64_t>((static_cast<double>(i) + Rng(options.seed, i).uniform()) * stretch);
   };
   std::uint64_t wanted = place_of(0);
@@ -405,11 +406,11 @@ std::unique_ptr<AdaptiveModel> compress_adaptive(RayReader& reader, const Adapti
     const auto its = wavelengths_of(block, reader.header());
     const std::vector<float> block_nm(its.begin(), its.end());
     block.extra.clear();
-    if (kept == count) {
+    if (retained == count) {
       rays.append(block);
       nm.insert(nm.end(), block_nm.begin(), block_nm.end());
     }
-    for (; kept < count && next < kept && wanted < read + n; wanted = place_of(++next)) {
+    for (; retained < count && next < retained && wanted < read + n; wanted = place_of(++next)) {
       const auto i = static_cast<std::size_t>(wanted - read);
       rays.append(block, i);
       if (!block_nm.empty()) nm.push_back(block_nm[i]);

@@ -33,20 +33,20 @@ RaySet few_drawn(EmitterKind kind, std::size_t n) {
 bool shines(EmitterKind kind, const Ray& ray) {
   const Vec3& d = ray.direction.vec();
   const Vec3 at = std::abs(d.z) > 1e-9 ? ray.at(-ray.origin_mm.z / d.z) : Vec3{1e9, 0, 0};
-  const double slack = 1e-5;
-  BoundingSurface body = BoundingSurface::sphere(1.0 + slack);
+  const double tolerance = 1e-5;
+  BoundingSurface body = BoundingSurface::sphere(1.0 + tolerance);
   switch (kind) {
     case EmitterKind::disk:
-      return d.z > 0.0 && std::hypot(at.x, at.y) < 1.0 + slack;
+      return d.z > 0.0 && std::hypot(at.x, at.y) < 1.0 + tolerance;
     case EmitterKind::rectangle:
-      return d.z > 0.0 && std::max(std::abs(at.x), std::abs(at.y)) < 0.5 + slack;
+      return d.z > 0.0 && std::max(std::abs(at.x), std::abs(at.y)) < 0.5 + tolerance;
     case EmitterKind::led:
-      return d.z > 0.0 && std::hypot(at.x, at.y) < 2.5 + slack;
+      return d.z > 0.0 && std::hypot(at.x, at.y) < 2.5 + tolerance;
     case EmitterKind::cylinder:
-      body = BoundingSurface::cylinder(1.0 + slack, 6.0 + slack);
+      body = BoundingSurface::cylinder(1.0 + tolerance, 6.0 + tolerance);
       break;
     case EmitterKind::filament:
-      body = BoundingSurface::cylinder(0.66 + slack, 8.12 + slack);
+      body = BoundingSurface::cylinder(0.66 + tolerance, 8.12 + tolerance);
       body.world_from_surface = Frame({0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {});
       break;
     case EmitterKind::sphere:

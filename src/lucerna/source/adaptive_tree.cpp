@@ -299,7 +299,7 @@ void TreeGrower::grow(std::span<TreeItem> items, const TreeBox& box, const Place
 }
 
 /// Gain and splits of each node's subtree once what does not pay is gone; 0 splits = becomes a leaf.
-std::vector<std::uint32_t> splits_kept_below(const GrownTree& grown, double penalty_nats) {
+std::vector<std::uint32_t> splits_retained_below(const GrownTree& grown, double penalty_nats) {
   const std::size_t n = grown.nodes.size();
   std::vector<double> gain(n, 0.0);
   std::vector<std::uint32_t> splits(n, 0);
@@ -328,7 +328,7 @@ double step_width(double f, double rays) {
   return std::max(kFinestStep, 1.0 / std::sqrt(std::max(1.0, rays * f * (1.0 - f))));
 }
 
-std::int16_t settled_step(const GrownTree& grown, std::size_t i, double rays) {
+std::int16_t coded_step(const GrownTree& grown, std::size_t i, double rays) {
   const auto& node = grown.nodes[i];
   const double f = node.cut * (1.0 / kTreeCuts), scale = grown.effective_rays / grown.total_weight;
   const double left = scale * grown.nodes[i + 1].weight, right = scale * grown.nodes[i + node.right].weight;
@@ -381,12 +381,12 @@ std::vector<GrownTree> grow_trees(std::span<TreeItem> items, const TreeBox& box,
   return grown;
 }
 
-std::size_t kept_splits(const GrownTree& grown, double penalty_nats) {
-  return splits_kept_below(grown, penalty_nats)[0];
+std::size_t retained_splits(const GrownTree& grown, double penalty_nats) {
+  return splits_retained_below(grown, penalty_nats)[0];
 }
 
 DensityTree prune_tree(const GrownTree& grown, double penalty_nats) {
-  const auto splits = splits_kept_below(grown, penalty_nats);
+  const auto splits = splits_retained_below(grown, penalty_nats);
   DensityTree tree;
   tree.rays = grown.effective_rays;
   tree.nodes.resize(2 * static_cast<std::size_t>(splits[0]) + 1);
@@ -400,13 +400,13 @@ DensityTree prune_tree(const GrownTree& grown, double penalty_nats) {
     stack.pop_back();
     if (splits[p.from] == 0) continue;
     const auto& node = grown.nodes[p.from];
-    TreeNode& kept = tree.nodes[p.to];
-    kept.right = 2 + 2 * splits[p.from + 1];
-    kept.axis = node.axis;
-    kept.cut = node.cut;
-    kept.step = settled_step(grown, p.from, tree.rays * p.share);
-    const double left = tree_share(kept, tree.rays * p.share);
-    stack.push_back({p.from + node.right, p.to + kept.right, p.share * (1.0 - left)});
+    TreeNode& retained = tree.nodes[p.to];
+    retained.right = 2 + 2 * splits[p.from + 1];
+    retained.axis = node.axis;
+    retained.cut = node.cut;
+    retained.step = coded_step(grown, p.from, tree.rays * p.share);
+    const double left = tree_share(retained, tree.rays * p.share);
+    stack.push_back({p.from + node.right, p.to + retained.right, p.share * (1.0 - left)});
     stack.push_back({p.from + 1, p.to + 1, p.share * left});
   }
   return tree;

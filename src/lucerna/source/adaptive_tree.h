@@ -130,7 +130,7 @@ std::vector<GrownTree> grow_trees(std::span<TreeItem> items, const TreeBox& box,
 DensityTree prune_tree(const GrownTree& grown, double penalty_nats);
 
 /// Splits that prune_tree would keep; O(nodes).
-std::size_t kept_splits(const GrownTree& grown, double penalty_nats);
+std::size_t retained_splits(const GrownTree& grown, double penalty_nats);
 
 /// Density of `tree` (1 / volume of the box's numbers) at a point; 0 outside the box. O(depth).
 double tree_density(const DensityTree& tree, const TreeBox& box, const std::array<double, 4>& c);

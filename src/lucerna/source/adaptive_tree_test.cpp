@@ -138,7 +138,7 @@ TEST(AdaptiveTree, PruningKeepsWhatPays) {
   const GrownTree grown = grow_trees(rays, kUnitBox, {.penalty_nats = 2.0}, 1).front();
   std::size_t last = ~std::size_t{0};
   for (const double penalty : {2.0, 4.0, 8.0, 16.0, 1e9}) {
-    const std::size_t splits = kept_splits(grown, penalty);
+    const std::size_t splits = retained_splits(grown, penalty);
     EXPECT_LE(splits, last);
     EXPECT_EQ(prune_tree(grown, penalty).leaves(), splits + 1);
     last = splits;

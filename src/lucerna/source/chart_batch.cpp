@@ -51,7 +51,7 @@ struct ConcentricNumbers {
   }
 };
 
-/// Where a line meets a support: two numbers, its direction's parts across the normal, and the chart.
+/// Where a line hits a support: two numbers, its direction's parts across the normal, and the chart.
 struct Hit {
   double c0, c1, x, y, chart;
 };

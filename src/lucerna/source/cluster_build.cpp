@@ -207,15 +207,15 @@ std::vector<double> assign_to_triangles(const PreparedRays& p, const std::vector
         Shares s{std::vector<double>(mesh.arms.size(), 0.0), std::vector<double>(mesh.triangles.size(), 0.0)};
         std::uint32_t hint = 0;  // neighbours in the octree are neighbours in the mesh
         for (std::size_t i = first; i < last; ++i) {
-          const Vec3 arm = p.rays.origin_mm(i) - p.surface.centre_mm;
-          const MeshPlace place = locate(mesh, arm, hint);
+          const Vec3 radius_vector = p.rays.origin_mm(i) - p.surface.centre_mm;
+          const MeshPlace place = locate(mesh, radius_vector, hint);
           const double w = static_cast<double>(p.rays.weight[i]);
           if (place.triangle != Triangulation::kNoTriangle) {
             hint = place.triangle;
             for (std::size_t k = 0; k < 3; ++k) s.point[mesh.triangles[hint][k]] += w * place.barycentric[k];
             s.element[hint] += w;
           }
-          members[i] = {nearest_corner(mesh, place.triangle, arm), p.code[i], p.rays.weight[i]};
+          members[i] = {nearest_corner(mesh, place.triangle, radius_vector), p.code[i], p.rays.weight[i]};
         }
         return s;
       });
@@ -338,7 +338,7 @@ void fit_densities(ClusterData& data, const std::vector<double>& energy, std::ve
 
 }  // namespace
 
-AssignedRays assign_rays(const PreparedRays& p, std::vector<std::uint32_t> kept) {
+AssignedRays assign_rays(const PreparedRays& p, std::vector<std::uint32_t> retained) {
   for (;;) {
     AssignedRays result;
     ClusterData& data = result.data;
@@ -346,7 +346,7 @@ AssignedRays assign_rays(const PreparedRays& p, std::vector<std::uint32_t> kept)
     data.low_mm = p.low_mm;
     data.step_mm = p.step_mm;
     std::vector<Vec3> points;
-    for (const std::uint32_t v : kept) {
+    for (const std::uint32_t v : retained) {
       data.place.push_back(p.place[v]);
       points.push_back(p.point_mm[v]);
     }
@@ -374,14 +374,14 @@ AssignedRays assign_rays(const PreparedRays& p, std::vector<std::uint32_t> kept)
     std::partial_sum(result.begin.begin(), result.begin.end(), result.begin.begin());
     // A cluster that got no rays has no directions: the mesh is made again without it.
     std::vector<std::uint32_t> alive;
-    for (std::size_t v = 0; v < kept.size(); ++v) {
-      if (energy[v] > 0.0) alive.push_back(kept[v]);
+    for (std::size_t v = 0; v < retained.size(); ++v) {
+      if (energy[v] > 0.0) alive.push_back(retained[v]);
     }
-    if (alive.size() == kept.size()) {
+    if (alive.size() == retained.size()) {
       fit_densities(data, energy, std::move(density));
       return result;
     }
-    kept = std::move(alive);
+    retained = std::move(alive);
   }
 }
 

@@ -39,10 +39,10 @@ struct AssignedRays {
   std::vector<std::uint32_t> begin;
 };
 
-/// Triangulates the points `kept` (numbers of clusters), gives each ray to the nearest corner of its
+/// Triangulates the points `retained` (numbers of clusters), gives each ray to the nearest corner of its
 /// triangle, drops the holes of the mesh and fits the densities so that each cluster sends out the weight of
 /// its rays.
-AssignedRays assign_rays(const PreparedRays& prepared, std::vector<std::uint32_t> kept);
+AssignedRays assign_rays(const PreparedRays& prepared, std::vector<std::uint32_t> retained);
 
 /// Sets the directional distributions, and stores them as levels, multiples of `level_step` below the top.
 void set_directions(const AssignedRays& assigned, double penalty_nats, int level_step, ClusterData& data);

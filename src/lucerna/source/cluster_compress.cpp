@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint64_t kMinBytes = 2000;
 /// A search for a size ends with at least this share of it used, or when it has tried so many penalties.
 constexpr double kUsedShare = 0.95;
-constexpr int kMaxTries = 14;
+constexpr int kMaxTrials = 14;
 /// Below, every ray has a triangle of directions of its own; above, there is no split.
 constexpr double kMinPenalty = 0.02, kLargestPenalty = 1e9;
 
@@ -43,9 +43,13 @@ std::vector<ClusterRay> removal_rays(const PreparedRays& p, std::size_t count, s
     const auto i = std::min(n - 1, static_cast<std::size_t>((static_cast<double>(k) + u) *
                                                             static_cast<double>(n) / static_cast<double>(m)));
     while (p.leaf_begin[leaf + 1] <= i) ++leaf;
-    const Vec3 arm = p.rays.origin_mm(i) - p.surface.centre_mm;
-    chosen[k] = {static_cast<float>(arm.x), static_cast<float>(arm.y), static_cast<float>(arm.z), p.code[i],
-                 p.rays.weight[i],          p.leaf_cluster[leaf]};
+    const Vec3 radius_vector = p.rays.origin_mm(i) - p.surface.centre_mm;
+    chosen[k] = {static_cast<float>(radius_vector.x),
+                 static_cast<float>(radius_vector.y),
+                 static_cast<float>(radius_vector.z),
+                 p.code[i],
+                 p.rays.weight[i],
+                 p.leaf_cluster[leaf]};
   }
   return chosen;
 }
@@ -53,7 +57,7 @@ std::vector<ClusterRay> removal_rays(const PreparedRays& p, std::size_t count, s
 /// Clusters left by a removal at some penalty, and the rays that decide the next.
 struct Removal {
   double penalty = 0.0;
-  std::vector<std::uint32_t> kept;
+  std::vector<std::uint32_t> retained;
   std::vector<ClusterRay> rays;
 };
 
@@ -66,8 +70,8 @@ class Compressor {
         totals_(totals),
         progress_(progress),
         statistics_(statistics) {
-    base_.kept.resize(prepared.place.size());
-    std::iota(base_.kept.begin(), base_.kept.end(), 0u);
+    base_.retained.resize(prepared.place.size());
+    std::iota(base_.retained.begin(), base_.retained.end(), 0u);
     base_.rays = removal_rays(prepared, options.removal_rays, options.seed);
   }
 
@@ -100,7 +104,7 @@ class Compressor {
     remove(made);
     statistics_.seconds_removal += clock.lap();
     progress_.step("compress: distributions", 0, 0);
-    const AssignedRays assigned = assign_rays(prepared_, made.removal.kept);
+    const AssignedRays assigned = assign_rays(prepared_, made.removal.retained);
     made.data = assigned.data;
     made.data.flux = totals_.flux;
     made.data.flux_unit = totals_.flux_unit;
@@ -115,11 +119,12 @@ class Compressor {
     if (!prepared_.surface.has_area()) return;
     Removal& r = made.removal;
     for (;; made.price *= 1.6) {
-      RemovalResult result = remove_clusters(prepared_.surface, prepared_.point_mm, r.rays, std::move(r.kept),
-                                             {made.penalty, made.price, options_.min_clusters}, progress_);
-      r.kept = std::move(result.kept);
+      RemovalResult result =
+          remove_clusters(prepared_.surface, prepared_.point_mm, r.rays, std::move(r.retained),
+                          {made.penalty, made.price, options_.min_clusters}, progress_);
+      r.retained = std::move(result.retained);
       statistics_.rounds += result.rounds;
-      if (!options_.max_clusters || r.kept.size() <= *options_.max_clusters) break;
+      if (!options_.max_clusters || r.retained.size() <= *options_.max_clusters) break;
       if (made.price * made.penalty > kLargestPenalty) break;
     }
     r.penalty = made.penalty;
@@ -131,7 +136,7 @@ class Compressor {
     double low = 0.0, low_bytes = 0.0, high = 0.0,
            high_bytes = 0.0;  // penalties of too large and of good files
     std::optional<Made> best;
-    for (int tries = 1;; ++tries) {
+    for (int trials = 1;; ++trials) {
       const double bytes = static_cast<double>(made.bytes), penalty = made.penalty;
       const double over = bytes / static_cast<double>(limit);
       if (made.bytes > limit) {
@@ -146,9 +151,9 @@ class Compressor {
         if (over >= kUsedShare) break;
       }
       if (low >= kLargestPenalty || (high > 0.0 && high <= kMinPenalty)) break;
-      if (high > 0.0 && (tries >= kMaxTries || high < 1.005 * low)) break;
+      if (high > 0.0 && (trials >= kMaxTrials || high < 1.005 * low)) break;
       const double factor = std::pow(over, 0.8);
-      double next = penalty * (over > 1.0 ? std::clamp(factor, tries < kMaxTries ? 1.15 : 10.0, 10.0)
+      double next = penalty * (over > 1.0 ? std::clamp(factor, trials < kMaxTrials ? 1.15 : 10.0, 10.0)
                                           : std::clamp(factor, 0.1, 0.87));
       if (low > 0.0 && high > 0.0) {
         const double goal = std::log(0.975 * static_cast<double>(limit));

@@ -29,16 +29,16 @@ std::array<double, 3> middle_of(const std::array<double, 3>& a, const std::array
 void split(const MeshSurface& surface, const MeshPiece& piece, int splits, std::vector<MeshPiece>& out) {
   std::array<Vec3, 3> middle;
   std::array<std::array<double, 3>, 3> share;
-  double bend = 0.0;
+  double deviation = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
     const Vec3 flat = 0.5 * (piece.corner_mm[a] + piece.corner_mm[b]);
     middle[k] = surface.put_back(flat);
     share[k] = middle_of(piece.share[a], piece.share[b]);
     const double edge = length(piece.corner_mm[a] - piece.corner_mm[b]);
-    if (edge > 0.0) bend = std::max(bend, length(middle[k] - flat) / edge);
+    if (edge > 0.0) deviation = std::max(deviation, length(middle[k] - flat) / edge);
   }
-  if (splits == 0 || bend <= kFlatEnough) {
+  if (splits == 0 || deviation <= kFlatEnough) {
     out.push_back(piece);
     out.back().measure = triangle_area(piece.corner_mm);
     return;
@@ -182,25 +182,27 @@ void ClusterModel::emit(const Sequence& sequence, std::uint64_t first, RayBlock&
 
 namespace {
 
-/// Barycentric coordinates of where the line from the origin along `arm` meets the triangle; nothing if it
-/// misses it by more than the share `slack` of its size.
-std::optional<std::array<double, 3>> cast(const std::array<Vec3, 3>& corner, const Vec3& arm, double slack) {
+/// Barycentric coordinates of where the line from the origin along `radius_vector` hits the triangle; nothing
+/// if it misses it by more than the share `tolerance` of its size.
+std::optional<std::array<double, 3>> cast(const std::array<Vec3, 3>& corner, const Vec3& radius_vector,
+                                          double tolerance) {
   const auto volume = [](const Vec3& a, const Vec3& b, const Vec3& c) { return dot(a, cross(b, c)); };
   const double whole = volume(corner[0], corner[1], corner[2]);
-  std::array<double, 3> part{volume(arm, corner[1], corner[2]), volume(corner[0], arm, corner[2]),
-                             volume(corner[0], corner[1], arm)};
+  std::array<double, 3> part{volume(radius_vector, corner[1], corner[2]),
+                             volume(corner[0], radius_vector, corner[2]),
+                             volume(corner[0], corner[1], radius_vector)};
   double sum = 0.0;
   for (double& x : part) sum += x = whole < 0.0 ? -x : x;
   if (!(sum > 0.0)) return std::nullopt;
   for (double& x : part) {
     x /= sum;
-    if (!(x >= -slack)) return std::nullopt;
+    if (!(x >= -tolerance)) return std::nullopt;
   }
   return part;
 }
 
 /// Elements are looked through before their pieces; a border that rounding moved is still theirs.
-constexpr double kBorderSlack = 1e-9;
+constexpr double kBorderTolerance = 1e-9;
 
 /// Starts are float32 and representatives rounded: this far off the surface is still on it, in shares of the
 /// arm.
@@ -210,7 +212,7 @@ constexpr double kOnSurface = 1e-5;
 
 // The pieces of an element tile its cone: their corners are put back along lines from the same centre.
 template <typename See>
-void ClusterModel::pieces_along(const Vec3& arm, const See& see) const {
+void ClusterModel::pieces_along(const Vec3& radius_vector, const See& see) const {
   const auto from_centre = [&](std::array<Vec3, 3> corner) {
     for (Vec3& c : corner) c = c - data_.surface.centre_mm;
     return corner;
@@ -218,10 +220,11 @@ void ClusterModel::pieces_along(const Vec3& arm, const See& see) const {
   for (std::size_t e = 0; e < data_.elements.size(); ++e) {
     const Triangle& v = data_.elements[e];
     if (mesh_corners(v) != 3) continue;
-    if (!cast(from_centre({points_[v[0]], points_[v[1]], points_[v[2]]}), arm, kBorderSlack)) continue;
+    if (!cast(from_centre({points_[v[0]], points_[v[1]], points_[v[2]]}), radius_vector, kBorderTolerance))
+      continue;
     for (std::size_t i = element_begin_[e]; i < element_begin_[e + 1]; ++i) {
       const std::array<Vec3, 3> corner = from_centre(pieces_[i].corner_mm);
-      const auto part = cast(corner, arm, 0.0);
+      const auto part = cast(corner, radius_vector, 0.0);
       if (part && !see(pieces_[i], corner, *part)) return;
     }
   }
@@ -232,30 +235,31 @@ double ClusterModel::pdf_area(const Vec3& point_mm) const {
     throw InputError(
         fmt::format("pdf_area does not exist: all rays start on one {}", to_string(data_.surface.kind)));
   }
-  const Vec3 arm = point_mm - data_.surface.centre_mm;
+  const Vec3 radius_vector = point_mm - data_.surface.centre_mm;
   const bool open = data_.surface.kind == MeshSurfaceKind::hull;
-  if (!open && length(data_.surface.put_back(point_mm) - point_mm) > kOnSurface * length(arm)) return 0.0;
+  if (!open && length(data_.surface.put_back(point_mm) - point_mm) > kOnSurface * length(radius_vector))
+    return 0.0;
   double pdf = 0.0;
-  pieces_along(
-      arm, [&](const MeshPiece& piece, const std::array<Vec3, 3>& corner, const std::array<double, 3>& part) {
-        Vec3 q;
-        double density = 0.0;
-        for (std::size_t k = 0; k < 3; ++k) {
-          q += part[k] * corner[k];
-          density += part[k] * piece.density[k];
-        }
-        if (open && length(q - arm) > kOnSurface * length(arm)) return true;
-        double stretch = 1.0;  // flat area per surface area, along the line from the centre
-        if (data_.surface.kind > MeshSurfaceKind::plane && !open) {
-          const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-          const double far = length(arm), near = length(q);
-          const double surface_cosine = std::abs(dot(data_.surface.normal(point_mm), arm)) / far;
-          const double flat_cosine = std::abs(dot(normal, q)) / (length(normal) * near);
-          stretch = surface_cosine / (far * far) * (near * near) / flat_cosine;
-        }
-        pdf = std::max(pdf, density / total_ * stretch);  // on a border two pieces agree
-        return true;
-      });
+  pieces_along(radius_vector, [&](const MeshPiece& piece, const std::array<Vec3, 3>& corner,
+                                  const std::array<double, 3>& part) {
+    Vec3 q;
+    double density = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      q += part[k] * corner[k];
+      density += part[k] * piece.density[k];
+    }
+    if (open && length(q - radius_vector) > kOnSurface * length(radius_vector)) return true;
+    double stretch = 1.0;  // flat area per surface area, along the line from the centre
+    if (data_.surface.kind > MeshSurfaceKind::plane && !open) {
+      const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
+      const double far = length(radius_vector), near = length(q);
+      const double surface_cosine = std::abs(dot(data_.surface.normal(point_mm), radius_vector)) / far;
+      const double flat_cosine = std::abs(dot(normal, q)) / (length(normal) * near);
+      stretch = surface_cosine / (far * far) * (near * near) / flat_cosine;
+    }
+    pdf = std::max(pdf, density / total_ * stretch);  // on a border two pieces agree
+    return true;
+  });
   return pdf;
 }
 
@@ -263,8 +267,8 @@ double ClusterModel::pdf_solid_angle(const Vec3& point_mm, const Direction& dire
   // The element that holds the point; where none does, the one whose corner is nearest.
   std::uint32_t v = 0;
   bool found = false;
-  const Vec3 arm = point_mm - data_.surface.centre_mm;
-  pieces_along(arm, [&](const MeshPiece& piece, const auto&, const auto&) {
+  const Vec3 radius_vector = point_mm - data_.surface.centre_mm;
+  pieces_along(radius_vector, [&](const MeshPiece& piece, const auto&, const auto&) {
     v = nearest_cluster(data_.elements[piece.element], points_.data(), point_mm);
     found = true;
     return false;

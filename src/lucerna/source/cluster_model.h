@@ -102,9 +102,10 @@ class ClusterModel final : public SourceModel {
  private:
   void build_directions();
   /// Calls `see(piece, corners from the surface's centre, barycentric coordinates)` for the triangular pieces
-  /// that the line along `arm` from the surface's centre meets (several on their borders), until it is false.
+  /// that the line along `radius_vector` from the surface's centre meets (several on their borders), until it
+  /// is false.
   template <typename See>
-  void pieces_along(const Vec3& arm, const See& see) const;
+  void pieces_along(const Vec3& radius_vector, const See& see) const;
 
   ClusterData data_;
   std::vector<Vec3> points_;

@@ -139,15 +139,16 @@ Round measure(const MeshSurface& surface, const std::vector<Vec3>& points, std::
         Splat s{std::vector<double>(round.mesh.arms.size(), 0.0),
                 std::vector<double>(round.mesh.triangles.size(), 0.0)};
         for (std::size_t i = first; i < last; ++i) {
-          const Vec3 arm = rays[i].arm();
-          const MeshPlace place = locate(round.mesh, arm, round.mesh.triangle_of[start[rays[i].cluster]]);
+          const Vec3 radius_vector = rays[i].radius_vector();
+          const MeshPlace place =
+              locate(round.mesh, radius_vector, round.mesh.triangle_of[start[rays[i].cluster]]);
           const double w = static_cast<double>(rays[i].weight);
           if (place.triangle != Triangulation::kNoTriangle) {
             for (std::size_t k = 0; k < 3; ++k)
               s.shares[round.mesh.triangles[place.triangle][k]] += w * place.barycentric[k];
             s.weight[place.triangle] += w;
           }
-          rays[i].cluster = nearest_corner(round.mesh, place.triangle, arm);
+          rays[i].cluster = nearest_corner(round.mesh, place.triangle, radius_vector);
         }
         return s;
       });
@@ -240,11 +241,11 @@ std::vector<bool> marked(const Round& round, std::vector<Cost> costs, const Remo
 
 }  // namespace
 
-std::uint32_t nearest_corner(const Triangulation& mesh, std::uint32_t t, const Vec3& arm) {
+std::uint32_t nearest_corner(const Triangulation& mesh, std::uint32_t t, const Vec3& radius_vector) {
   double nearest = std::numeric_limits<double>::infinity();
   std::uint32_t best = 0;
   const auto consider = [&](std::uint32_t v) {
-    const Vec3 e = mesh.arms[v] - arm;
+    const Vec3 e = mesh.arms[v] - radius_vector;
     if (dot(e, e) < nearest) {
       nearest = dot(e, e);
       best = v;
@@ -308,41 +309,41 @@ MeshDensity mesh_density(const Triangulation& mesh, const std::vector<double>& a
 }
 
 RemovalResult remove_clusters(const MeshSurface& surface, const std::vector<Vec3>& points,
-                              std::vector<ClusterRay>& rays, std::vector<std::uint32_t> kept,
+                              std::vector<ClusterRay>& rays, std::vector<std::uint32_t> retained,
                               const RemovalOptions& options, Progress& progress) {
   RemovalResult result;
   // Where each ray's search starts, as an index of the points of the next mesh; rays start as numbers of all
   // points.
   std::vector<std::uint32_t> start(points.size(), 0);
-  for (std::uint32_t i = 0; i < kept.size(); ++i) start[kept[i]] = i;
+  for (std::uint32_t i = 0; i < retained.size(); ++i) start[retained[i]] = i;
   for (;; ++result.rounds) {
     progress.step("compress: remove clusters", result.rounds, 0);
-    if (kept.size() <= options.min_clusters) break;
+    if (retained.size() <= options.min_clusters) break;
     std::vector<Vec3> left;
-    for (const std::uint32_t v : kept) left.push_back(points[v]);
+    for (const std::uint32_t v : retained) left.push_back(points[v]);
     const Round round = measure(surface, left, rays, start);
     const std::vector<Cost> costs = costs_of(round, options);
     const std::vector<bool> gone = marked(round, costs, options);
-    start.assign(kept.size(), 0);
+    start.assign(retained.size(), 0);
     std::vector<std::uint32_t> next;
-    for (std::uint32_t v = 0; v < kept.size(); ++v) {
+    for (std::uint32_t v = 0; v < retained.size(); ++v) {
       if (gone[v]) continue;
       start[v] = static_cast<std::uint32_t>(next.size());
-      next.push_back(kept[v]);
+      next.push_back(retained[v]);
     }
-    for (std::uint32_t v = 0; v < kept.size(); ++v) {
+    for (std::uint32_t v = 0; v < retained.size(); ++v) {
       if (gone[v]) start[v] = start[costs[v].heir];
     }
-    const bool done = next.size() == kept.size();
-    kept = std::move(next);
+    const bool done = next.size() == retained.size();
+    retained = std::move(next);
     if (done) break;
   }
   // Back to numbers of all points: where the rays ended up.
-  if (result.rounds > 0 || kept.size() > options.min_clusters) {
+  if (result.rounds > 0 || retained.size() > options.min_clusters) {
     for (ClusterRay& ray : rays)
-      ray.cluster = kept[std::min<std::size_t>(start[ray.cluster], kept.size() - 1)];
+      ray.cluster = retained[std::min<std::size_t>(start[ray.cluster], retained.size() - 1)];
   }
-  result.kept = std::move(kept);
+  result.retained = std::move(retained);
   return result;
 }
 

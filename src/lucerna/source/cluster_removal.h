@@ -17,7 +17,7 @@ struct ClusterRay {
   float weight = 0.0f;                             // mean about 1
   std::uint32_t cluster = 0;
 
-  Vec3 arm() const {
+  Vec3 radius_vector() const {
     return {static_cast<double>(arm_x), static_cast<double>(arm_y), static_cast<double>(arm_z)};
   }
 };
@@ -35,7 +35,7 @@ struct RemovalOptions {
 /// What is left when nothing more is removed.
 struct RemovalResult {
   /// Numbers of the clusters that stay, ascending.
-  std::vector<std::uint32_t> kept;
+  std::vector<std::uint32_t> retained;
   std::size_t rounds = 0;
 };
 
@@ -51,12 +51,12 @@ struct RemovalResult {
 /// neighbours. `points` are all representatives, `rays[i].cluster` starts as an index of them. Same result
 /// for any number of threads. Calls `progress` once a round.
 RemovalResult remove_clusters(const MeshSurface& surface, const std::vector<Vec3>& points,
-                              std::vector<ClusterRay>& rays, std::vector<std::uint32_t> kept,
+                              std::vector<ClusterRay>& rays, std::vector<std::uint32_t> retained,
                               const RemovalOptions& options, Progress& progress);
 
-/// The nearest corner (helpers do not count) of triangle `t` to the point at `arm`; the nearest point of the
-/// mesh if all corners are helpers.
-std::uint32_t nearest_corner(const Triangulation& mesh, std::uint32_t t, const Vec3& arm);
+/// The nearest corner (helpers do not count) of triangle `t` to the point at `radius_vector`; the nearest
+/// point of the mesh if all corners are helpers.
+std::uint32_t nearest_corner(const Triangulation& mesh, std::uint32_t t, const Vec3& radius_vector);
 
 /// Area of each triangle on the surface, mm^2: once split at the edges' midpoints, which are put back.
 std::vector<double> triangle_areas(const MeshSurface& surface, const Triangulation& mesh);

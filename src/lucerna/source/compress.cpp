@@ -3,7 +3,7 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/ray_file.h"
-#include "lucerna/rayset/superpose.h"
+#include "lucerna/rayset/merge_ray_sets.h"
 #include "lucerna/source/adaptive_compress.h"
 #include "lucerna/source/cluster_compress.h"
 #include "lucerna/source_model.h"
@@ -64,7 +64,7 @@ CompressedFiles compress(const std::vector<std::filesystem::path>& files, const 
     if (files.size() == 1) {
       all = std::move(rays);
     } else {
-      superpose(all, std::move(rays), file.string());
+      merge_ray_sets(all, std::move(rays), file.string());
     }
   }
   if (options.flux) all.header.set_flux(*options.flux);

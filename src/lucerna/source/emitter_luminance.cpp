@@ -48,7 +48,7 @@ std::optional<LineLight> from_outside(const std::optional<double>& exit_mm, doub
 }
 
 std::optional<LineLight> from_cylinder(const EmitterShape& s, const Ray& ray) {
-  // Its ends do not shine: the mantle of an endless one, as far as this one goes.
+  // Its ends do not shine: the lateral surface of an endless one, as far as this one goes.
   const Vec3 across{ray.direction.x(), ray.direction.y(), 0.0};
   if (across.x == 0.0 && across.y == 0.0) return std::nullopt;
   const auto inside = detail::inside_round({ray.origin_mm.x, ray.origin_mm.y, 0.0}, across, s.radius_mm);

@@ -66,13 +66,13 @@ void FittedSupport::densities(const RayBlock& rays, std::size_t first, std::span
   }
 }
 
-PlainDensity::PlainDensity(const RayBlock& rays, std::span<const float> weight, const Vec3& focus_mm,
-                           double tolerance_mm)
+BackgroundDensity::BackgroundDensity(const RayBlock& rays, std::span<const float> weight,
+                                     const Vec3& focus_mm, double tolerance_mm)
     : fitted_(rays, weight, about(focus_mm, rays), tolerance_mm) {
   even_ = kEvenShare / fitted_.volume();
 }
 
-void PlainDensity::densities(const RayBlock& rays, std::size_t first, std::span<double> out) const {
+void BackgroundDensity::densities(const RayBlock& rays, std::size_t first, std::span<double> out) const {
   fitted_.densities(rays, first, out);
   for (double& d : out) d = (1.0 - kEvenShare) * d + even_;
 }

@@ -13,7 +13,7 @@ namespace lucerna {
 inline constexpr double kQuickPenaltyNats = 6.0;
 
 /// A quick density of some rays on a support: one tree a chart, or the mean of several. What supports are
-/// judged by and what tells overlapping layers apart. Immutable once made; thread safe.
+/// evaluated by and what tells overlapping layers apart. Immutable once made; thread safe.
 class FittedSupport {
  public:
   /// Nothing at all.
@@ -48,10 +48,10 @@ class FittedSupport {
 
 /// The plain density that everything is compared with: lines about the focus, with a hundredth of the light
 /// spread evenly so that nothing is impossible.
-class PlainDensity {
+class BackgroundDensity {
  public:
-  PlainDensity(const RayBlock& rays, std::span<const float> weight, const Vec3& focus_mm,
-               double tolerance_mm);
+  BackgroundDensity(const RayBlock& rays, std::span<const float> weight, const Vec3& focus_mm,
+                    double tolerance_mm);
   /// Densities of the lines of rays `first`, `first + 1` ... of a block.
   void densities(const RayBlock& rays, std::size_t first, std::span<double> out) const;
 

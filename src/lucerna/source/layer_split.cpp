@@ -8,7 +8,7 @@
 
 namespace lucerna {
 
-/// Some rays in two halves: each is judged by densities made from the other.
+/// Some rays in two halves: each is evaluated by densities made from the other.
 struct SplitHalves {
   std::array<RayBlock, 2> rays;
   std::array<std::vector<double>, 2> plain;
@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::size_t kSplitRays = 60'000, kSplitBlock = 4096;
 constexpr int kFirstSteps = 8, kSteps = 6;
-/// Share of the plain density in every mixture, as in SupportJudge.
-constexpr double kSplitPlainShare = 0.02;
+/// Share of the plain density in every mixture, as in HeldOutScorer.
+constexpr double kSplitBackgroundShare = 0.02;
 /// Less light than this is left to the background.
 constexpr double kMinLayerShare = 0.004;
 /// The mixture must gain so many standard errors; and as much for each leaf that it has more than the first
@@ -45,7 +45,7 @@ SplitHalves halves_of(const RayBlock& rays, const Vec3& focus_mm, double toleran
   for (std::size_t i = 0; i < rays.size(); ++i) h.rays[i % 2].append(rays, i);
   for (std::size_t k = 0; k < 2; ++k) {
     const RayBlock& other = h.rays[1 - k];
-    h.plain[k] = densities(h.rays[k], PlainDensity(other, other.weight, focus_mm, tolerance_mm));
+    h.plain[k] = densities(h.rays[k], BackgroundDensity(other, other.weight, focus_mm, tolerance_mm));
   }
   return h;
 }
@@ -99,7 +99,8 @@ HalfNumbers logs(const SplitHalves& h, const HalfNumbers& first, const HalfNumbe
   for (std::size_t k = 0; k < 2; ++k) {
     for (std::size_t i = 0; i < h.rays[k].size(); ++i) {
       const double mixed = (1.0 - share) * first[k][i] + share * second[k][i];
-      out[k].push_back(std::log((1.0 - kSplitPlainShare) * mixed + kSplitPlainShare * h.plain[k][i]));
+      out[k].push_back(
+          std::log((1.0 - kSplitBackgroundShare) * mixed + kSplitBackgroundShare * h.plain[k][i]));
     }
   }
   return out;
@@ -120,7 +121,7 @@ std::array<double, 2> gain(const SplitHalves& h, const HalfNumbers& a, const Hal
 
 }  // namespace
 
-std::vector<float> LayerSplit::second_parts(const RayBlock& rays) const {
+std::vector<float> LayerSplit::second_responsibilities(const RayBlock& rays) const {
   constexpr double kNearly = 0.02;
   std::vector<float> out(rays.size());
   parallel_blocks(rays.size(), kSplitBlock, [&](std::size_t first, std::size_t last) {

@@ -24,7 +24,7 @@ class LayerSplit {
 
   /// The part of each ray, 0 to 1, that is the second layer's; what is nearly all of one layer is given to
   /// it. On all threads, the same for any number of them.
-  std::vector<float> second_parts(const RayBlock& rays) const;
+  std::vector<float> second_responsibilities(const RayBlock& rays) const;
 
  private:
   friend struct LayerSplitter;

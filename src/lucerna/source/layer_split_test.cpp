@@ -42,7 +42,7 @@ TEST(LayerSplitSlow, ADieAndItsTubeAreToldApart) {
   const auto split = split_of(rays);
   ASSERT_TRUE(split.has_value());
   EXPECT_GT(split->gain_nats(), 4.0 * split->gain_error());
-  const std::vector<float> part = split->second_parts(rays);
+  const std::vector<float> part = split->second_responsibilities(rays);
   // Which of the two was found first is chance; every ray's own layer is what counts.
   double of_die = 0.0, of_wall = 0.0, dies = 0.0, walls = 0.0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -52,8 +52,8 @@ TEST(LayerSplitSlow, ADieAndItsTubeAreToldApart) {
     (wall ? of_wall : of_die) += static_cast<double>(part[i]);
     (wall ? walls : dies) += 1.0;
   }
-  // Much of the wall's light has lines that the die's has too: a perfect judge could not part them all. A
-  // split that knows nothing has 0 here.
+  // Much of the wall's light has lines that the die's has too: a perfect classifier could not part them all.
+  // A split that knows nothing has 0 here.
   EXPECT_GT(std::abs(of_wall / walls - of_die / dies), 0.35);
 }
 

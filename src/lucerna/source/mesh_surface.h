@@ -24,7 +24,7 @@ enum class MeshSurfaceKind : std::uint8_t {
 std::string_view to_string(MeshSurfaceKind kind);
 
 /// The convex surface that carries a mesh of representatives, as seen from a point `centre_mm` inside it (for
-/// a plane: behind it), so that every line from there meets it once. Immutable, thread safe.
+/// a plane: behind it), so that every line from there hits it once. Immutable, thread safe.
 struct MeshSurface {
   MeshSurfaceKind kind = MeshSurfaceKind::point;
   /// point: the point. line: x is along it, the origin on it. plane: z is its normal, the origin on it.

@@ -9,7 +9,7 @@
 namespace lucerna {
 
 /// The étendue curve of a model from its own density p: `rays` of its rays in the order of falling p, each of
-/// which stands for 1 / (rays p) of étendue. Noise: about 1 / sqrt(rays) of each value. Degenerate where the
+/// which represents 1 / (rays p) of étendue. Noise: about 1 / sqrt(rays) of each value. Degenerate where the
 /// model has no étendue. Cost: pdf_etendue of each ray; 16,384 rays of a model of clusters take some seconds.
 EtendueCurve etendue_curve(const SourceModel& model, std::uint64_t rays = 16'384, std::uint64_t seed = 1);
 

@@ -50,15 +50,15 @@ double choose_penalty(const RayBlock& rays, const BoundedSupport& on, double tol
   Projection q = project(held, held.weight, on, tolerance_mm);
   std::array<double, kPenalties.size()> score{};
   for (ChartItems& chart : p.charts) {
-    const auto judge = std::find_if(q.charts.begin(), q.charts.end(),
-                                    [&](const ChartItems& c) { return c.chart == chart.chart; });
-    if (judge == q.charts.end()) continue;
+    const auto held_out = std::find_if(q.charts.begin(), q.charts.end(),
+                                       [&](const ChartItems& c) { return c.chart == chart.chart; });
+    if (held_out == q.charts.end()) continue;
     const GrowOptions grow{.penalty_nats = kPenalties.front(), .fine_trees = trees > 1 ? 0u : 1u};
     const auto grown = grow_trees(chart.items, chart.box, grow, static_cast<std::size_t>(trees));
     for (std::size_t k = 0; k < kPenalties.size(); ++k) {
       std::vector<TreeLookup> lookups;
       for (const GrownTree& g : grown) lookups.emplace_back(prune_tree(g, kPenalties[k]), chart.box);
-      score[k] += log_likelihood(lookups, judge->items, chart.box.volume());
+      score[k] += log_likelihood(lookups, held_out->items, chart.box.volume());
     }
   }
   const auto best = std::max_element(score.begin(), score.end());

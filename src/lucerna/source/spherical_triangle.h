@@ -37,7 +37,7 @@ class SphericalTriangleSampler {
 };
 
 LUCERNA_HD inline Direction SphericalTriangleSampler::sample(double u, double v) const {
-  // The great circle through b that cuts off the area u * solid angle beside a meets the side ac in `edge`.
+  // The great circle through b that cuts off the area u * solid angle beside a hits the side ac in `edge`.
   const double angle = u * solid_angle_ - alpha_;
   const double s = std::sin(angle), t = std::cos(angle);
   const double p = t - cos_alpha_, r = s + sin_alpha_ * cos_side_;

@@ -20,10 +20,10 @@ Direction random_direction(std::uint64_t seed, std::uint64_t i) {
   return test::random_direction(rng);
 }
 
-bool inside(const SphericalTriangle& t, const Vec3& d, double slack) {
+bool inside(const SphericalTriangle& t, const Vec3& d, double tolerance) {
   const double sign = dot(t.a, cross(t.b, t.c)) > 0.0 ? 1.0 : -1.0;
-  return sign * dot(cross(t.a, t.b), d) > -slack && sign * dot(cross(t.b, t.c), d) > -slack &&
-         sign * dot(cross(t.c, t.a), d) > -slack;
+  return sign * dot(cross(t.a, t.b), d) > -tolerance && sign * dot(cross(t.b, t.c), d) > -tolerance &&
+         sign * dot(cross(t.c, t.a), d) > -tolerance;
 }
 
 TEST(SphericalTriangle, EveryLevelCoversTheSphere) {

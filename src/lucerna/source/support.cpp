@@ -40,14 +40,14 @@ Pair square_from_disk(double x, double y) {
   return {0.5 * (b * k * std::atan(x / y) + 1.0), 0.5 * (b + 1.0)};
 }
 
-Pair projected_from(const Vec3& d, const Triad& t, PolarMap map) {
+Pair projected_from(const Vec3& d, const OrthonormalBasis& t, PolarMap map) {
   const double x = dot(d, t.u), y = dot(d, t.v);
   if (map == PolarMap::polar) return {std::min(0.5, 0.5 * (x * x + y * y)), azimuth_of(x, y)};
   const Pair s = square_from_disk(x, y);
   return {kSquare * s[0], kSquare * s[1]};
 }
 
-ChartPoint with_direction(std::uint32_t chart, double c0, double c1, const Vec3& d, const Triad& t,
+ChartPoint with_direction(std::uint32_t chart, double c0, double c1, const Vec3& d, const OrthonormalBasis& t,
                           PolarMap map) {
   const Pair p = projected_from(d, t, map);
   return {chart, {c0, c1, p[0], p[1]}};
@@ -60,8 +60,8 @@ std::optional<ChartPoint> plane_chart(const Ray& r, PolarMap map, bool round) {
   const std::uint32_t chart = dz > 0.0 ? 0 : 1;
   const double across = 0.5 * (p.x * p.x + p.y * p.y);
   if (round)
-    return with_direction(chart, across, azimuth_of(p.x, p.y), r.direction, disk_triad(p, chart), map);
-  return with_direction(chart, p.x, p.y, r.direction, plane_triad(chart), map);
+    return with_direction(chart, across, azimuth_of(p.x, p.y), r.direction, disk_basis(p, chart), map);
+  return with_direction(chart, p.x, p.y, r.direction, plane_basis(chart), map);
 }
 
 std::optional<ChartPoint> sphere_chart(const Ray& r, double radius, PolarMap map) {
@@ -71,7 +71,7 @@ std::optional<ChartPoint> sphere_chart(const Ray& r, double radius, PolarMap map
   if (rest < 0.0) return std::nullopt;
   const Direction n = Direction::from(q + std::sqrt(rest) * r.direction.vec());
   return with_direction(0, radius * n.z(), radius * azimuth_of(n.x(), n.y()), r.direction,
-                        sphere_triad(n.vec()), map);
+                        sphere_basis(n.vec()), map);
 }
 
 std::optional<ChartPoint> cylinder_chart(const Ray& r, const Support& s) {
@@ -84,10 +84,10 @@ std::optional<ChartPoint> cylinder_chart(const Ray& r, const Support& s) {
   const bool cap = s.half_size_mm.z - std::abs(p.z) < s.radius_mm - rho;
   if (cap) {
     const std::uint32_t chart = p.z > 0.0 ? 1 : 2;
-    return with_direction(chart, 0.5 * rho * rho, azimuth, r.direction, plane_triad(chart - 1), s.map);
+    return with_direction(chart, 0.5 * rho * rho, azimuth, r.direction, plane_basis(chart - 1), s.map);
   }
   return with_direction(0, s.radius_mm * wrapped(azimuth - s.twist_per_mm * p.z), p.z, r.direction,
-                        mantle_triad(azimuth), s.map);
+                        lateral_basis(azimuth), s.map);
 }
 
 std::optional<ChartPoint> box_chart(const Ray& r, const Support& s) {
@@ -103,13 +103,13 @@ std::optional<ChartPoint> box_chart(const Ray& r, const Support& s) {
   }
   const auto chart = static_cast<std::uint32_t>(2 * axis + (component(p, axis) > 0.0 ? 0 : 1));
   return with_direction(chart, component(p, (axis + 1) % 3), component(p, (axis + 2) % 3), r.direction,
-                        box_triad(chart), s.map);
+                        box_basis(chart), s.map);
 }
 
 std::optional<ChartPoint> focal_chart(const Ray& r, PolarMap map) {
   const Vec3& d = r.direction.vec();
   const Vec3 p = r.origin_mm - dot(r.origin_mm, d) * d;
-  const Triad t = sphere_triad(d);
+  const OrthonormalBasis t = sphere_basis(d);
   const double x = dot(p, t.v), y = dot(p, t.u), azimuth = azimuth_of(d.x, d.y);
   if (map == PolarMap::polar) return ChartPoint{0, {0.5 * (x * x + y * y), azimuth_of(x, y), d.z, azimuth}};
   return ChartPoint{0, {x, y, d.z, azimuth}};

@@ -20,7 +20,7 @@ namespace lucerna {
 /// |----------|--------|-----------------|------------------|
 /// | plane    | 2: light to +z, light to -z | x, y where the line crosses z = 0 | about the normal |
 /// | sphere   | 1 | z, R azimuth where the line leaves it | about the normal |
-/// | cylinder | 3: mantle, top, bottom | R azimuth (less the twist), z; r^2/2, azimuth | about the normal |
+/// | cylinder | 3: side, top, bottom | R azimuth (less the twist), z; r^2/2, azimuth | about the normal |
 /// | box      | 6: +x -x +y -y +z -z | the two other coordinates in cyclic order | about the normal |
 /// | focal    | 1 | where the line passes the origin, across it | cosine to z, azimuth |
 /// | axis     | 1 | z of the point nearest to the z axis, signed distance | area function of the angle to z,

@@ -88,7 +88,7 @@ struct OnSphere {
   }
 };
 
-struct OnMantle {
+struct OnLateral {
   double radius, twist;
   LUCERNA_ALWAYS_INLINE Place operator()(double a, double b) const {
     const SinCos t = sin_cos(a / radius + twist * b);
@@ -160,8 +160,8 @@ LUCERNA_VECTOR_CLONES void fill_sphere(const Support& s, const Columns& c, RayBa
   fill(s, c, ConcentricDirection(), OnSphere{s.radius_mm}, out);
 }
 
-LUCERNA_VECTOR_CLONES void fill_mantle(const Support& s, const Columns& c, RayBatch& out) {
-  const OnMantle on{s.radius_mm, s.twist_per_mm};
+LUCERNA_VECTOR_CLONES void fill_lateral(const Support& s, const Columns& c, RayBatch& out) {
+  const OnLateral on{s.radius_mm, s.twist_per_mm};
   if (s.map == PolarMap::polar) return fill(s, c, PolarDirection(), on, out);
   fill(s, c, ConcentricDirection(), on, out);
 }
@@ -258,7 +258,7 @@ void rays_inside(const Support& s, std::uint32_t chart, const Columns& c, RayBat
     case SupportKind::sphere:
       return fill_sphere(s, c, out);
     case SupportKind::cylinder:
-      return chart == 0 ? fill_mantle(s, c, out) : fill_end(s, chart == 1 ? 1.0 : -1.0, c, out);
+      return chart == 0 ? fill_lateral(s, c, out) : fill_end(s, chart == 1 ? 1.0 : -1.0, c, out);
     case SupportKind::box:
       return fill_box(s, chart, c, out);
     case SupportKind::focal:

@@ -129,10 +129,10 @@ Projection project(const RayBlock& rays, std::span<const float> weight, const Bo
     if (c != max) charts[c].items.reserve(count[c]);
   }
   // The fullest chart keeps the array; the others' rays are taken out of it.
-  std::size_t kept = 0;
+  std::size_t retained = 0;
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (chart[i] == max)
-      items[kept++] = items[i];
+      items[retained++] = items[i];
     else if (chart[i] < charts.size())
       charts[chart[i]].items.push_back(items[i]);
     else if (chart[i] == kMissedChart) {
@@ -140,7 +140,7 @@ Projection project(const RayBlock& rays, std::span<const float> weight, const Bo
       result.missed_weight += static_cast<double>(weight[i]);
     }
   }
-  items.resize(kept);
+  items.resize(retained);
   charts[max].items = std::move(items);
   for (ChartItems& c : charts) {
     if (c.items.empty()) continue;

@@ -39,7 +39,7 @@ struct Parabola {
 };
 
 struct Polisher {
-  const SupportJudge& judge;
+  const HeldOutScorer& scorer;
   double length_mm, angle;
   SupportScore best;
   /// Steps of each move, in units of the first.
@@ -53,7 +53,7 @@ struct Polisher {
   std::optional<std::array<double, 2>> sides(int move, double t) const {
     const auto low = at(move, -t), high = at(move, t);
     if (!low || !high) return std::nullopt;
-    const auto scores = judge.scores({*low, *high});
+    const auto scores = scorer.scores({*low, *high});
     return std::array<double, 2>{scores[0].nats, scores[1].nats};
   }
 
@@ -81,16 +81,16 @@ struct Polisher {
     const double vertex = p.vertex();
     if (p.gain(vertex) * static_cast<double>(best.log_density.size()) < kWorthNats) return false;
     const auto better = at(move, vertex * t);
-    if (better) best = judge.score(*better);
+    if (better) best = scorer.score(*better);
     return better.has_value();
   }
 };
 
 }  // namespace
 
-SupportScore polish_support(const SupportJudge& judge, const Support& start, double length_mm, double angle,
+SupportScore polish_support(const HeldOutScorer& scorer, const Support& start, double length_mm, double angle,
                             Progress& progress) {
-  Polisher polisher{judge, length_mm, angle, judge.score(start)};
+  Polisher polisher{scorer, length_mm, angle, scorer.score(start)};
   polisher.step.fill(1.0);
   // What was well placed at first is left alone the second time.
   std::array<bool, kSupportMoves> again;
@@ -102,7 +102,7 @@ SupportScore polish_support(const SupportJudge& judge, const Support& start, dou
       wanted = wanted && polisher.improve(move);
     }
   }
-  return judge.tightened(polisher.best);
+  return scorer.tightened(polisher.best);
 }
 
 }  // namespace lucerna

@@ -11,7 +11,7 @@ namespace lucerna {
 /// four steps of each move, as wide as it takes for the score to fall well below that roughness, looks
 /// through it. Steps are `length_mm` and `angle` at first. A vertex is taken if it is worth 4 nats of all
 /// held-out rays. Cost: some 10 scores a move.
-SupportScore polish_support(const SupportJudge& judge, const Support& start, double length_mm, double angle,
+SupportScore polish_support(const HeldOutScorer& scorer, const Support& start, double length_mm, double angle,
                             Progress& progress);
 
 }  // namespace lucerna

@@ -24,11 +24,11 @@ inline constexpr double kGrazing = 1e-6;
 inline constexpr double kSquare = 1.7724538509055159;  // sqrt(pi)
 
 /// A right-handed triad at a point of a surface.
-struct Triad {
+struct OrthonormalBasis {
   Vec3 u, v, n;
 };
 
-LUCERNA_HD inline Direction direction_from(double a, double b, const Triad& t, PolarMap map) {
+LUCERNA_HD inline Direction direction_from(double a, double b, const OrthonormalBasis& t, PolarMap map) {
   double x = 0.0, y = 0.0;
   if (map == PolarMap::polar) {
     const double r = std::sqrt(std::clamp(2.0 * a, 0.0, 1.0));
@@ -57,13 +57,13 @@ LUCERNA_HD inline double solve_t_minus_sin(double m) {
 }
 
 /// Charts of a plane: 0 to +z, 1 to -z (mirrored, so that the triad stays right-handed).
-LUCERNA_HD inline Triad plane_triad(std::uint32_t chart) {
+LUCERNA_HD inline OrthonormalBasis plane_basis(std::uint32_t chart) {
   if (chart == 0) return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   return {{1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
 }
 
 /// On a disk azimuths of directions count from the radius, so that round sources look the same all round.
-LUCERNA_HD inline Triad disk_triad(const Vec3& p, std::uint32_t chart) {
+LUCERNA_HD inline OrthonormalBasis disk_basis(const Vec3& p, std::uint32_t chart) {
   const double r = std::hypot(p.x, p.y), c = r > 0.0 ? p.x / r : 1.0, s = r > 0.0 ? p.y / r : 0.0;
   if (chart == 0) return {{c, s, 0}, {-s, c, 0}, {0, 0, 1}};
   return {{c, s, 0}, {s, -c, 0}, {0, 0, -1}};
@@ -77,18 +77,18 @@ LUCERNA_HD inline double component(const Vec3& v, std::size_t axis) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-LUCERNA_HD inline Triad box_triad(std::uint32_t chart) {
+LUCERNA_HD inline OrthonormalBasis box_basis(std::uint32_t chart) {
   const std::size_t axis = chart / 2;
   const double sign = chart % 2 == 0 ? 1.0 : -1.0;
   return {unit_axis((axis + 1) % 3, 1.0), unit_axis((axis + 2) % 3, sign), unit_axis(axis, sign)};
 }
 
-LUCERNA_HD inline Triad mantle_triad(double azimuth) {
+LUCERNA_HD inline OrthonormalBasis lateral_basis(double azimuth) {
   const double c = std::cos(azimuth), s = std::sin(azimuth);
   return {{-s, c, 0}, {0, 0, 1}, {c, s, 0}};
 }
 
-LUCERNA_HD inline Triad sphere_triad(const Vec3& n) {
+LUCERNA_HD inline OrthonormalBasis sphere_basis(const Vec3& n) {
   const double across = std::hypot(n.x, n.y);
   const double c = across > 0.0 ? n.x / across : 1.0, s = across > 0.0 ? n.y / across : 0.0;
   return {{-s, c, 0}, {-n.z * c, -n.z * s, across}, n};
@@ -119,31 +119,32 @@ LUCERNA_HD inline Ray sphere_ray(const std::array<double, 4>& c, double radius, 
   const Direction n = warp::at_cosine(z, c[1] / (2.0 * kPi * radius));
   // At the poles the triad follows the azimuth that was stored, not the one left in n.
   const double cosine = std::cos(c[1] / radius), sine = std::sin(c[1] / radius);
-  const Triad t{{-sine, cosine, 0}, {-z * cosine, -z * sine, std::sqrt(std::max(0.0, 1.0 - z * z))}, n.vec()};
+  const OrthonormalBasis t{
+      {-sine, cosine, 0}, {-z * cosine, -z * sine, std::sqrt(std::max(0.0, 1.0 - z * z))}, n.vec()};
   return {radius * n.vec(), direction_from(c[2], c[3], t, map)};
 }
 
 LUCERNA_HD inline Ray cylinder_ray(const ChartPoint& p, const Support& s) {
   if (p.chart == 0) {
     const double azimuth = p.c[0] / s.radius_mm + s.twist_per_mm * p.c[1];
-    const Triad t = mantle_triad(azimuth);
+    const OrthonormalBasis t = lateral_basis(azimuth);
     return {s.radius_mm * t.n + Vec3{0, 0, p.c[1]}, direction_from(p.c[2], p.c[3], t, s.map)};
   }
   const double rho = std::min(s.radius_mm, std::sqrt(std::max(0.0, 2.0 * p.c[0])));
   const double z = p.chart == 1 ? s.half_size_mm.z : -s.half_size_mm.z;
   return {{rho * std::cos(p.c[1]), rho * std::sin(p.c[1]), z},
-          direction_from(p.c[2], p.c[3], plane_triad(p.chart - 1), s.map)};
+          direction_from(p.c[2], p.c[3], plane_basis(p.chart - 1), s.map)};
 }
 
 LUCERNA_HD inline Ray disk_ray(const ChartPoint& p, const Support& s) {
   const double r = std::sqrt(std::max(0.0, 2.0 * p.c[0]));
   const Vec3 radius{std::cos(p.c[1]), std::sin(p.c[1]), 0.0};
-  return {r * radius, direction_from(p.c[2], p.c[3], disk_triad(radius, p.chart), s.map)};
+  return {r * radius, direction_from(p.c[2], p.c[3], disk_basis(radius, p.chart), s.map)};
 }
 
 LUCERNA_HD inline Ray box_ray(const ChartPoint& p, const Support& s) {
   const std::size_t axis = p.chart / 2;
-  const Triad t = box_triad(p.chart);
+  const OrthonormalBasis t = box_basis(p.chart);
   const Vec3 face = component(s.half_size_mm, axis) * t.n;
   return {face + unit_axis((axis + 1) % 3, p.c[0]) + unit_axis((axis + 2) % 3, p.c[1]),
           direction_from(p.c[2], p.c[3], t, s.map)};
@@ -152,7 +153,7 @@ LUCERNA_HD inline Ray box_ray(const ChartPoint& p, const Support& s) {
 LUCERNA_HD inline Ray local_ray(const ChartPoint& p, const Support& s) {
   switch (s.kind) {
     case SupportKind::plane:
-      return {{p.c[0], p.c[1], 0.0}, direction_from(p.c[2], p.c[3], plane_triad(p.chart), s.map)};
+      return {{p.c[0], p.c[1], 0.0}, direction_from(p.c[2], p.c[3], plane_basis(p.chart), s.map)};
     case SupportKind::sphere:
       return sphere_ray(p.c, s.radius_mm, s.map);
     case SupportKind::cylinder:

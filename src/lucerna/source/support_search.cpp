@@ -184,31 +184,32 @@ std::vector<Support> candidates(const RayBlock& rays, const RayShape& shape, con
 }
 
 /// One round of compass search: the best of all single steps is taken while one gains.
-SupportScore refine_round(const SupportJudge& judge, SupportScore start, double length_mm, double angle,
+SupportScore refine_round(const HeldOutScorer& scorer, SupportScore start, double length_mm, double angle,
                           Progress& progress) {
   constexpr int kMaxSteps = 5;
   for (int step = 0; step < kMaxSteps; ++step) {
     if (progress.stop_requested()) throw Interrupted();
-    std::vector<Support> tries;
+    std::vector<Support> trials;
     for (int move = 0; move < kSupportMoves; ++move) {
       for (const double sign : {-1.0, 1.0}) {
-        if (const auto t = moved(start.on.support, move, sign * length_mm, sign * angle)) tries.push_back(*t);
+        if (const auto t = moved(start.on.support, move, sign * length_mm, sign * angle))
+          trials.push_back(*t);
       }
     }
-    const auto scores = judge.scores(tries);
+    const auto scores = scorer.scores(trials);
     const auto best = std::max_element(scores.begin(), scores.end(),
                                        [](const auto& a, const auto& b) { return a.nats < b.nats; });
-    if (best == scores.end() || !judge.clearly_better(*best, start)) break;
+    if (best == scores.end() || !scorer.clearly_better(*best, start)) break;
     start = *best;
   }
-  return judge.tightened(start);
+  return scorer.tightened(start);
 }
 
 /// Rounds with steps halved after each.
-SupportScore refine(const SupportJudge& judge, SupportScore start, double length_mm, double angle, int rounds,
-                    Progress& progress) {
+SupportScore refine(const HeldOutScorer& scorer, SupportScore start, double length_mm, double angle,
+                    int rounds, Progress& progress) {
   for (int round = 0; round < rounds; ++round, length_mm *= 0.5, angle *= 0.5) {
-    start = refine_round(judge, std::move(start), length_mm, angle, progress);
+    start = refine_round(scorer, std::move(start), length_mm, angle, progress);
   }
   return start;
 }
@@ -251,11 +252,11 @@ std::optional<SupportScore> degenerate_support(const RayBlock& rays, const RaySh
     }
   }
   if (best.empty() || min == 4) return std::nullopt;
-  const SupportJudge judge(rays, shape.focus_mm, tolerance_mm);
-  const SupportScore start = best_first(judge.scores(best)).front();
+  const HeldOutScorer scorer(rays, shape.focus_mm, tolerance_mm);
+  const SupportScore start = best_first(scorer.scores(best)).front();
   // Only turns leave the rays' numbers few; turns of a line's axis do not even that.
   const bool free = start.on.support.kind == SupportKind::focal && min == 2;
-  return free ? refine(judge, start, 0.0, radians(12.0), 8, progress) : start;
+  return free ? refine(scorer, start, 0.0, radians(12.0), 8, progress) : start;
 }
 
 /// Supports that are searched alike.
@@ -298,29 +299,29 @@ SearchResult search_support(const RayBlock& rays, const BoundingSurface& surface
     return result;
   }
   progress.step("compress: supports", 0, 2);
-  const SupportJudge screen(stratified_choice(coarse, kScreenRays, seed + 2), shape.focus_mm, tolerance_mm);
+  const HeldOutScorer screen(stratified_choice(coarse, kScreenRays, seed + 2), shape.focus_mm, tolerance_mm);
   std::vector<Support> promising;
   std::array<std::size_t, 2 * kSupportKinds> of_kind{};
   for (const SupportScore& score : best_first(screen.scores(candidates(coarse, shape, surface)))) {
     if (of_kind[family(score.on.support)]++ < 2 * kRefinedOfKind) promising.push_back(score.on.support);
   }
-  const SupportJudge judge(coarse, shape.focus_mm, tolerance_mm);
+  const HeldOutScorer scorer(coarse, shape.focus_mm, tolerance_mm);
   std::vector<SupportScore> racers;
   of_kind.fill(0);
-  for (const SupportScore& score : best_first(judge.scores(promising))) {
+  for (const SupportScore& score : best_first(scorer.scores(promising))) {
     std::size_t& count = of_kind[family(score.on.support)];
     if (racers.size() < kRefined && count++ < kRefinedOfKind) racers.push_back(score);
   }
   double length_mm = 0.25 * shape.spread_mm, angle = radians(12.0);
   for (std::size_t round = 0; round < kRacers.size(); ++round, length_mm *= 0.5, angle *= 0.5) {
     for (SupportScore& racer : racers)
-      racer = refine_round(judge, std::move(racer), length_mm, angle, progress);
+      racer = refine_round(scorer, std::move(racer), length_mm, angle, progress);
     racers = best_first(std::move(racers));
-    for (; racers.size() > kRacers[round]; racers.pop_back()) result.rivals.push_back(racers.back());
+    for (; racers.size() > kRacers[round]; racers.pop_back()) result.runners_up.push_back(racers.back());
   }
   progress.step("compress: supports", 1, 2);
-  result.rivals.insert(result.rivals.end(), racers.begin() + 1, racers.end());
-  result.rivals = best_first(std::move(result.rivals));
+  result.runners_up.insert(result.runners_up.end(), racers.begin() + 1, racers.end());
+  result.runners_up = best_first(std::move(result.runners_up));
   result.coarse_nats = racers.front().nats;
   result.best = std::move(racers.front());
   result.step_mm = length_mm, result.step_rad = angle;
@@ -330,11 +331,11 @@ SearchResult search_support(const RayBlock& rays, const BoundingSurface& surface
 
 void polish(SearchResult& found, const RayBlock& rays, std::uint64_t seed, Progress& progress) {
   if (found.degenerate) return;
-  const SupportJudge fine(stratified_choice(rays, kFineRays, seed), found.focus_mm, found.tolerance_mm);
+  const HeldOutScorer fine(stratified_choice(rays, kFineRays, seed), found.focus_mm, found.tolerance_mm);
   found.best =
       refine(fine, fine.score(found.best.on.support), found.step_mm, found.step_rad, kFineRounds, progress);
-  const SupportJudge last(stratified_choice(rays, kPolishRays, seed + 3), found.focus_mm, found.tolerance_mm,
-                          2);
+  const HeldOutScorer last(stratified_choice(rays, kPolishRays, seed + 3), found.focus_mm, found.tolerance_mm,
+                           2);
   found.best = polish_support(last, found.best.on.support, found.step_mm, found.step_rad, progress);
 }
 

@@ -17,7 +17,7 @@ struct SupportScore {
   double nats = 0.0;
   /// Share of the flux that it carries.
   double carried = 0.0;
-  /// Log density of each held-out ray with flux, and the rays' weights: what differences are judged by.
+  /// Log density of each held-out ray with flux, and the rays' weights: what differences are evaluated by.
   std::vector<float> log_density;
 };
 
@@ -25,7 +25,7 @@ struct SearchResult {
   SupportScore best;
   /// What it was chosen from, best first; their `nats` compare with `coarse_nats`, the best support's before
   /// it was refined on more rays.
-  std::vector<SupportScore> rivals;
+  std::vector<SupportScore> runners_up;
   double coarse_nats = 0.0;
   /// Where a polish goes on: steps at which the search stopped, the virtual focus, the rays' rounding.
   double step_mm = 0.0, step_rad = 0.0;
@@ -36,7 +36,7 @@ struct SearchResult {
 };
 
 /// Finds the support that makes the density of `rays` simplest: places and sizes of every kind are proposed
-/// from the rays' virtual focus, mean direction, principal axes and `surface`, each is judged by held-out
+/// from the rays' virtual focus, mean direction, principal axes and `surface`, each is evaluated by held-out
 /// likelihood on some ten thousand rays, and the best few race: they are moved, turned and scaled.
 /// Depends on rays and seed alone. Cost: about 1 s of one core, whatever the number of rays.
 SearchResult search_support(const RayBlock& rays, const BoundingSurface& surface, std::uint64_t seed,

@@ -10,7 +10,7 @@ namespace lucerna {
 namespace {
 
 /// Rounding of lines' numbers must not put the outermost line beside the support.
-constexpr double kSlack = 1e-6;
+constexpr double kRelativeTolerance = 1e-6;
 
 /// The smallest value that all but `missed` of the values do not exceed.
 double all_but(std::vector<double>& values, double missed) {
@@ -33,7 +33,7 @@ double distance_from_axis(const Ray& r, double half_mm) {
 }
 
 /// Where the line is inside a cylinder about z without ends, from its lowest to its highest z.
-std::optional<std::array<double, 2>> inside_mantle(const Ray& r, double radius_mm) {
+std::optional<std::array<double, 2>> inside_lateral(const Ray& r, double radius_mm) {
   const Vec3 &o = r.origin_mm, &d = r.direction.vec();
   const double a = d.x * d.x + d.y * d.y, b = o.x * d.x + o.y * d.y;
   const double c = o.x * o.x + o.y * o.y - radius_mm * radius_mm;
@@ -54,18 +54,19 @@ std::optional<Support> tight_cylinder(const Support& support, const RayBlock& ra
   }
   if (distance.empty()) return std::nullopt;
   Support s = support;
-  s.radius_mm = (1.0 + kSlack) * all_but(distance, missed);
-  // A line meets the cylinder if it enters the mantle below the upper end and leaves it above the lower one.
+  s.radius_mm = (1.0 + kRelativeTolerance) * all_but(distance, missed);
+  // A line hits the cylinder if it enters the lateral surface below the upper end and leaves it above the
+  // lower one.
   std::vector<double> enters, leaves;
   for (const Ray& ray : local) {
-    const auto z = inside_mantle(ray, s.radius_mm);
+    const auto z = inside_lateral(ray, s.radius_mm);
     if (!z) continue;
     enters.push_back((*z)[0]);
     leaves.push_back(-(*z)[1]);
   }
   if (enters.empty()) return std::nullopt;
   const double top = all_but(enters, missed), bottom = -all_but(leaves, missed);
-  const double half = 0.5 * (1.0 + kSlack) * (top - bottom);
+  const double half = 0.5 * (1.0 + kRelativeTolerance) * (top - bottom);
   if (!(half > 0.0 && s.radius_mm > 0.0)) return std::nullopt;
   const Frame& f = support.world_from_support;
   s.half_size_mm = {s.radius_mm, s.radius_mm, half};
@@ -86,7 +87,7 @@ std::optional<Support> tightened(const Support& support, const RayBlock& rays, d
   }
   if (distance.empty()) return std::nullopt;
   Support s = support;
-  s.radius_mm = (1.0 + kSlack) * all_but(distance, missed);
+  s.radius_mm = (1.0 + kRelativeTolerance) * all_but(distance, missed);
   return s.radius_mm > 0.0 ? std::optional(s) : std::nullopt;
 }
 

@@ -40,8 +40,8 @@ std::vector<float> band_ends(const WavelengthTable& all) {
 }
 
 /// Do the lines of rays foretell their bands? Bands `band` of `rays`; every third ray is held out.
-bool foretold(const RayBlock& rays, const std::vector<std::size_t>& band, std::size_t bands,
-              const BoundedSupport& on, double tolerance_mm) {
+bool predicted_by_bands(const RayBlock& rays, const std::vector<std::size_t>& band, std::size_t bands,
+                        const BoundedSupport& on, double tolerance_mm) {
   constexpr double kClearGain = 4.0, kMinGain = 0.002, kRatioFloor = 0.05;
   std::vector<std::vector<double>> density;
   std::vector<double> share(bands, 0.0);
@@ -134,7 +134,7 @@ ColourBands colour_bands(const RayBlock& rays, std::span<const float> nm, const 
       chosen.append(rays, k);
       band.push_back(bands.band(nm[k]));
     }
-    if (!foretold(chosen, band, n, on, tolerance_mm)) bands.cuts_nm.clear();
+    if (!predicted_by_bands(chosen, band, n, on, tolerance_mm)) bands.cuts_nm.clear();
   }
   if (bands.cuts_nm.empty()) {
     bands.tables = {all};

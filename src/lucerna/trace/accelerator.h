@@ -57,7 +57,7 @@ std::unique_ptr<Accelerator> make_emulated_accelerator();
 /// driver or no device.
 std::vector<std::unique_ptr<Accelerator>> cuda_accelerators();
 /// One line that says why cuda_accelerators() is empty; empty where it is not.
-std::string why_no_cuda();
+std::string cuda_unavailable_reason();
 /// Throws InputError, saying why, where there is no CUDA device.
 void require_cuda();
 

@@ -8,8 +8,8 @@
 #include "lucerna/trace/accelerator.h"
 #include "lucerna/trace/accelerator_error.h"
 #include "lucerna/trace/block_sums.cuh"
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/trace_kernel.h"
-#include "lucerna/trace/units.h"
 
 namespace lucerna {
 
@@ -38,15 +38,15 @@ __global__ void rebuild_level_kernel(const __grid_constant__ HierarchyView h, in
 /// One block of kThreads threads.
 __global__ void bounds_kernel(const __grid_constant__ HierarchyView h, std::size_t leaves) {
   __shared__ double lows[kThreads], highs[kThreads];
-  __shared__ float steepness[kThreads];
+  __shared__ float gradient_bound[kThreads];
   FieldBounds bounds = no_bounds();
   for (std::size_t i = threadIdx.x; i < leaves; i += kThreads) widen(bounds, h, i);
   lows[threadIdx.x] = bounds.low;
   highs[threadIdx.x] = bounds.high;
-  steepness[threadIdx.x] = bounds.steepness;
+  gradient_bound[threadIdx.x] = bounds.gradient_bound;
   __syncthreads();
   if (threadIdx.x != 0) return;
-  for (unsigned i = 1; i < kThreads; ++i) widen(bounds, {lows[i], highs[i], steepness[i]});
+  for (unsigned i = 1; i < kThreads; ++i) widen(bounds, {lows[i], highs[i], gradient_bound[i]});
   *h.bounds = bounds;
 }
 
@@ -166,7 +166,7 @@ std::vector<std::unique_ptr<Accelerator>> cuda_accelerators() {
   return all;
 }
 
-std::string why_no_cuda() {
+std::string cuda_unavailable_reason() {
   std::string why;
   device_count(why);
   return why;

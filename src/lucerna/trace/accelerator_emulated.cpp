@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#define LUCERNA_ONE_LANE
+#define LUCERNA_SCALAR
 #include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <new>
 
 #include "lucerna/trace/accelerator.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/trace_kernel.h"
-#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

@@ -11,7 +11,7 @@ void throw_accelerator_error(const char* name, const char* what) {
 }
 
 void require_cuda() {
-  if (const std::string why = why_no_cuda(); !why.empty())
+  if (const std::string why = cuda_unavailable_reason(); !why.empty())
     throw InputError("no CUDA device: " + why, ErrorCause::unsupported, "device");
 }
 

@@ -5,6 +5,6 @@
 namespace lucerna {
 
 std::vector<std::unique_ptr<Accelerator>> cuda_accelerators() { return {}; }
-std::string why_no_cuda() { return "this program was built without CUDA"; }
+std::string cuda_unavailable_reason() { return "this program was built without CUDA"; }
 
 }  // namespace lucerna

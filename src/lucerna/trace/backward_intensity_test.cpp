@@ -11,7 +11,7 @@
 #include "lucerna/core/file.h"
 #include "lucerna/project.h"
 #include "lucerna/trace.h"
-#include "lucerna/trace_figures.h"
+#include "lucerna/trace_metrics.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {
@@ -41,7 +41,7 @@ TEST(BackwardIntensityStatistical, TipsOfBeamsAreExact) {
     SCOPED_TRACE(radius_mm);
     const Project project = disk_in_paraboloid(radius_mm);
     const TraceResult traced = trace(project.scene, {.last_ray = 1 << 20});
-    const FarFieldMetrics m = trace_figures(traced, project.scene).far_fields[0].metrics;
+    const FarFieldMetrics m = trace_metrics(traced, project.scene).far_fields[0].metrics;
     const double truth = axis_cd(radius_mm);
     ASSERT_TRUE(m.peak);
     EXPECT_LT(m.axis_cd.standard_error, 0.004 * truth);
@@ -49,7 +49,7 @@ TEST(BackwardIntensityStatistical, TipsOfBeamsAreExact) {
     EXPECT_NEAR(m.peak->cd.mean, truth, 3.0 * m.peak->cd.standard_error + 0.002 * truth);
     EXPECT_EQ(m.axis_radius_deg, 0.0);
     // By counted cells alone the error is as large as the tip that they cannot see.
-    const FarFieldMetrics counted = trace_figures(traced).far_fields[0].metrics;
+    const FarFieldMetrics counted = trace_metrics(traced).far_fields[0].metrics;
     EXPECT_GT(counted.axis_radius_deg, 0.0);
     EXPECT_NEAR(counted.axis_cd.mean, truth, 4.0 * counted.axis_cd.standard_error);
     EXPECT_NEAR(counted.peak->cd.mean, truth, 4.0 * counted.peak->cd.standard_error);
@@ -78,7 +78,7 @@ TEST(BackwardIntensityStatistical, NarrowBeamsDoNotDependOnTheGrid) {
   for (const std::size_t i : {0u, 1u}) {
     project.scene.far_fields[0].gamma_step_deg = i == 0 ? 1.0 : 0.25;
     const TraceResult traced = trace(project.scene, {.last_ray = 1 << 20});
-    const auto plane = trace_figures(traced, project.scene).far_fields[0].metrics.planes[0];
+    const auto plane = trace_metrics(traced, project.scene).far_fields[0].metrics.planes[0];
     beam[i] = plane.beam_of_maximum;
     field[i] = plane.field_of_maximum;
   }

@@ -109,11 +109,11 @@ double rays_per_second(const Scene& scene, const TraceOptions& options, std::uin
   return static_cast<double>(rays) / std::max(t, 1e-9);
 }
 
-BenchmarkFigures run_benchmark(const BenchmarkScene& s, int cells, const std::shared_ptr<const RaySet>& rays,
+BenchmarkMetrics run_benchmark(const BenchmarkScene& s, int cells, const std::shared_ptr<const RaySet>& rays,
                                Progress& progress) {
   const auto go_on = [&] { progress.step("bench", 0, 0); };
   const Scene scene = benchmark_scene(s, rays);
-  BenchmarkFigures f;
+  BenchmarkMetrics f;
   f.scene = s.name;
   f.cells = cells;
   f.threads = ThreadLimit::current();
@@ -137,8 +137,8 @@ BenchmarkFigures run_benchmark(const BenchmarkScene& s, int cells, const std::sh
   const ThreadLimit one(1);
   f.rays_per_cpu_s = rays_per_second(scene, options, f.rays, cpu_seconds);
   go_on();
-  if (!EmbreeYardstick::available()) return f;
-  const EmbreeYardstick embree(*field);
+  if (!EmbreeBaseline::available()) return f;
+  const EmbreeBaseline embree(*field);
   std::vector<double> bins(std::size_t{360} * 181);
   const double t =
       best_of(2, cpu_seconds, [&] { embree.trace(rays->rays, s.focal_mm, kBenchmarkBounces, bins); });

@@ -24,7 +24,8 @@ struct BenchmarkScene {
 /// para (f 15), wavy (f 15, pillows of 0.4 mm), deep (f 5, the same pillows).
 std::span<const BenchmarkScene> benchmark_scenes();
 
-/// `n` rays in random order from the mantle of a cylinder (radius 1 mm, length 6 mm) into all directions.
+/// `n` rays in random order from the lateral surface of a cylinder (radius 1 mm, length 6 mm) into all
+/// directions.
 std::shared_ptr<const RaySet> benchmark_rays(std::size_t n);
 
 /// The rays about the mirror's focus, reflectance 0.9, Type C bins of one degree.
@@ -45,13 +46,13 @@ double rays_per_second(const Scene& scene, const TraceOptions& options, std::uin
 /// Embree 3 on the triangles of a height field, one thread. Its shell is vectorised as far as its interface
 /// lets it: rays go in packets of 16 in structure-of-arrays form, and reflection and binning use the kernels
 /// of our own tracer.
-class EmbreeYardstick {
+class EmbreeBaseline {
  public:
   /// Builds its hierarchy. The field must outlive it. InputError if the program was built without Embree.
-  explicit EmbreeYardstick(const HeightField& field);
-  ~EmbreeYardstick();
-  EmbreeYardstick(const EmbreeYardstick&) = delete;
-  EmbreeYardstick& operator=(const EmbreeYardstick&) = delete;
+  explicit EmbreeBaseline(const HeightField& field);
+  ~EmbreeBaseline();
+  EmbreeBaseline(const EmbreeBaseline&) = delete;
+  EmbreeBaseline& operator=(const EmbreeBaseline&) = delete;
 
   static bool available();
   double build_s() const { return build_s_; }
@@ -66,7 +67,7 @@ class EmbreeYardstick {
 };
 
 /// What `lucerna bench` says of one scene at one size.
-struct BenchmarkFigures {
+struct BenchmarkMetrics {
   std::string scene, isa;
   int cells = 0, threads = 0;
   std::uint64_t rays = 0;
@@ -83,7 +84,7 @@ struct BenchmarkFigures {
 };
 
 /// Measures; takes about ten traces' time. Progress is only asked whether to stop (Interrupted).
-BenchmarkFigures run_benchmark(const BenchmarkScene& scene, int cells,
+BenchmarkMetrics run_benchmark(const BenchmarkScene& scene, int cells,
                                const std::shared_ptr<const RaySet>& rays, Progress& progress = no_progress());
 
 }  // namespace lucerna

@@ -65,7 +65,7 @@ struct BodyView {
 
 /// All bodies of a scene: what light straight from the source meets, and what all other light does.
 struct BodiesView {
-  TriangleTreeView direct, returning;
+  TriangleBvhView direct, returning;
   const BodyView* bodies = nullptr;
   std::size_t count = 0;
 };
@@ -73,7 +73,7 @@ struct BodiesView {
 /// As BodyTracer::first_hit.
 LUCERNA_HD inline std::optional<BodyHit> first_body(const BodiesView& v, const Ray& ray, double t_max_mm,
                                                     bool returning) {
-  const TriangleTreeView& tree = returning ? v.returning : v.direct;
+  const TriangleBvhView& tree = returning ? v.returning : v.direct;
   const TriangleHit hit =
       first_triangle(tree, ray.origin_mm, ray.direction.vec(), returning ? kBodyStart : 0.0, t_max_mm);
   if (hit.triangle < 0) return std::nullopt;

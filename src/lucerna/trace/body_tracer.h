@@ -29,7 +29,7 @@ class BodyTracer {
 
   bool empty() const { return count_ == 0; }
 
-  /// The first body within (0, t_max_mm) of a ray in the luminaire frame; `returning`: the ray met something
+  /// The first body within (0, t_max_mm) of a ray in the luminaire frame; `returning`: the ray hit something
   /// before. Starts that lie on a triangle are stepped over by a thousandth of a millimetre (float32).
   std::optional<BodyHit> first_hit(const Ray& ray, double t_max_mm, bool returning) const;
 

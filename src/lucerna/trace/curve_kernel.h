@@ -23,9 +23,9 @@ struct CurveView {
   double overlap_mm;  ///< pieces are taken this much longer: far above rounding, far below a wavelength
 };
 
-/// Where a ray meets the curve.
+/// Where a ray hits the curve.
 struct CurveHit {
-  bool met = false, front = true;
+  bool is_hit = false, front = true;
   double t = 0.0;
   Vec3 normal;  ///< unit, towards the reflecting side
 };
@@ -34,11 +34,11 @@ struct CurveHit {
 /// (rho, z) with rho^2 = a t^2 + 2 b t + c; rho falls until t = turn_ and rises from there.
 class CurveWalk {
  public:
-  /// `slack_mm` > 0: the ray was just reflected here and starts within this distance of the curve, its
+  /// `tolerance_mm` > 0: the ray was just reflected here and starts within this distance of the curve, its
   /// numbers being rounded; it is put a hair in front of it.
-  LUCERNA_HD CurveWalk(const CurveView& view, const Vec3& o, const Vec3& d, double slack_mm)
+  LUCERNA_HD CurveWalk(const CurveView& view, const Vec3& o, const Vec3& d, double tolerance_mm)
       : v_(view), o_(o), d_(d) {
-    if (slack_mm > 0.0) settle(slack_mm);
+    if (tolerance_mm > 0.0) offset_start(tolerance_mm);
     a_ = d_.x * d_.x + (v_.trough ? 0.0 : d_.y * d_.y);
     b_ = o_.x * d_.x + (v_.trough ? 0.0 : o_.y * d_.y);
     c_ = o_.x * o_.x + (v_.trough ? 0.0 : o_.y * o_.y);
@@ -55,7 +55,7 @@ class CurveWalk {
         i = node.skip;
         continue;
       }
-      if (node.piece >= 0) meet(v_.pieces[node.piece]);
+      if (node.piece >= 0) intersect_piece(v_.pieces[node.piece]);
       ++i;
     }
     return best_;
@@ -126,14 +126,15 @@ class CurveWalk {
   }
   LUCERNA_HD static bool in_front(const Value& v) { return v.f >= 0.0; }
 
-  /// Puts the start a hair in front of the piece that it is within `slack` of: more than what a neighbour's
-  /// curve is off this piece's tangent there. The second step takes off what the first leaves where the
-  /// curve bends.
-  LUCERNA_HD void settle(double slack) {
+  /// Puts the start a hair in front of the piece that it is within `tolerance` of: more than what a
+  /// neighbour's curve is off this piece's tangent there. The second step takes off what the first leaves
+  /// where the curve bends.
+  LUCERNA_HD void offset_start(double tolerance) {
     const double across = to_axis();
     for (std::int32_t i = 0; i < v_.node_count;) {
       const CurveNode& n = v_.nodes[i];
-      if (o_.z < n.z0 - slack || o_.z > n.z1 + slack || across < n.r0 - slack || across > n.r1 + slack) {
+      if (o_.z < n.z0 - tolerance || o_.z > n.z1 + tolerance || across < n.r0 - tolerance ||
+          across > n.r1 + tolerance) {
         i = n.skip;
         continue;
       }
@@ -141,21 +142,21 @@ class CurveWalk {
       if (n.piece < 0) continue;
       const CurvePiece& p = v_.pieces[n.piece];
       const double m = p.along_z ? o_.z : across;
-      if (m < smaller(p.from, p.to) - slack || m > larger(p.from, p.to) + slack) continue;
-      if (!step_in_front(p, slack)) continue;
-      step_in_front(p, slack);
+      if (m < smaller(p.from, p.to) - tolerance || m > larger(p.from, p.to) + tolerance) continue;
+      if (!step_in_front(p, tolerance)) continue;
+      step_in_front(p, tolerance);
       return;
     }
   }
 
   /// Moves the start along the normal of the piece beside it to a hair in front of its tangent there; false
-  /// if it is farther than `slack` from it.
-  LUCERNA_HD bool step_in_front(const CurvePiece& p, double slack) {
+  /// if it is farther than `tolerance` from it.
+  LUCERNA_HD bool step_in_front(const CurvePiece& p, double tolerance) {
     const double across = to_axis(), hair = 100.0 * v_.overlap_mm;
     const double s = parameter(p.along_z ? p.z : p.r, p.from, p.to, p.along_z ? o_.z : across);
     const Vec3 n = normal(p, s, o_.x, o_.y, across);
     const double off = (across - cubic(p.r, s)) * flat_normal(p, s) + (o_.z - cubic(p.z, s)) * n.z;
-    if (std::fabs(off) > slack) return false;
+    if (std::fabs(off) > tolerance) return false;
     o_ += (hair - off) * n;
     return true;
   }
@@ -180,7 +181,7 @@ class CurveWalk {
 
   /// Looks for hits with one piece: the ray's part beside it is cut where the ray turns, so that rho is
   /// monotone in each part.
-  LUCERNA_HD void meet(const CurvePiece& p) {
+  LUCERNA_HD void intersect_piece(const CurvePiece& p) {
     const double low = smaller(p.from, p.to) - v_.overlap_mm, high = larger(p.from, p.to) + v_.overlap_mm;
     if (p.along_z) {
       if (d_.z == 0.0) {

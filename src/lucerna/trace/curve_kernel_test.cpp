@@ -182,7 +182,7 @@ TEST(CurveKernel, NothingLeavesAClosedSphere) {
 }
 
 // In a sphere every reflection turns the point about the same axis by twice the angle between ray and wall:
-// 50 reflections in a row, whispering ones too, stay on the formula, and no ray meets its own start. Each hit
+// 50 reflections in a row, whispering ones too, stay on the formula, and no ray hits its own start. Each hit
 // is put a hair inside the wall, which turns the next one by more; the formula has that too. What is left is
 // the spline's normal, right to 5e-7: should it err to one side k times, the place is off by 2 R 5e-7 k^2;
 // and its height, right to 1e-9.

@@ -225,9 +225,9 @@ TEST(Detector, TentsDealEveryUnitToTheFourNeighbours) {
   for (int i = 0; i < 2000; ++i) {
     const double c = 360.0 * rng.uniform(), gamma = i % 5 == 0 ? (i % 2) * 180.0 : 180.0 * rng.uniform();
     std::vector<std::int64_t> bins(grid.size());
-    const std::int64_t units = 1 + static_cast<std::int64_t>(rng.bits() % 100'000'000);
-    grid.add_tent(direction_from_type_c({radians(c), radians(gamma)}), units, bins.data());
-    EXPECT_EQ(std::accumulate(bins.begin(), bins.end(), std::int64_t{0}), units);
+    const std::int64_t quanta = 1 + static_cast<std::int64_t>(rng.bits() % 100'000'000);
+    grid.add_tent(direction_from_type_c({radians(c), radians(gamma)}), quanta, bins.data());
+    EXPECT_EQ(std::accumulate(bins.begin(), bins.end(), std::int64_t{0}), quanta);
     double mean_gamma = 0.0;
     for (std::size_t k = 0; k < bins.size(); ++k) {
       if (bins[k] == 0) continue;
@@ -237,9 +237,9 @@ TEST(Detector, TentsDealEveryUnitToTheFourNeighbours) {
       if (gamma > 1.0 && gamma < 179.0) {
         EXPECT_LE(std::abs(std::remainder(node_c - c, 360.0)), 30.0 + 1e-9);
       }
-      mean_gamma += node_gamma * static_cast<double>(bins[k]) / static_cast<double>(units);
+      mean_gamma += node_gamma * static_cast<double>(bins[k]) / static_cast<double>(quanta);
     }
-    EXPECT_NEAR(mean_gamma, gamma, 1e-6 + 30.0 / static_cast<double>(units)) << "tents keep the mean angle";
+    EXPECT_NEAR(mean_gamma, gamma, 1e-6 + 30.0 / static_cast<double>(quanta)) << "tents keep the mean angle";
   }
 }
 

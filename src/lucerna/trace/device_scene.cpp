@@ -12,10 +12,10 @@
 #include "lucerna/trace/facet_mirror.h"
 #include "lucerna/trace/far_field_grid.h"
 #include "lucerna/trace/field_view.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/glass_tracer.h"
 #include "lucerna/trace/plane_bins.h"
-#include "lucerna/trace/triangle_tree.h"
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/triangle_bvh.h"
 
 namespace lucerna {
 
@@ -94,8 +94,8 @@ void DeviceScene::add_bodies(const Scene& scene) {
                       corners.empty() ? nullptr : put(corners.data(), corners.size())});
   }
   const auto tree = [&](bool returning) {
-    const TriangleTree made(scene.bodies, returning);
-    TriangleTreeView v = made.view();
+    const TriangleBvh made(scene.bodies, returning);
+    TriangleBvhView v = made.view();
     v.nodes = put(v.nodes, made.nodes().size());
     v.triangles = put(v.triangles, made.triangles().size());
     return v;
@@ -110,8 +110,8 @@ void DeviceScene::add_bodies(const Scene& scene) {
 void DeviceScene::add_glasses(const Scene& scene) {
   if (scene.glasses.empty()) return;
   const GlassTracer glasses(scene.glasses);
-  view_.plates = put(glasses.plates().data(), glasses.plates().size());
-  view_.plate_count = glasses.plates().size();
+  view_.cover_glasses = put(glasses.cover_glasses().data(), glasses.cover_glasses().size());
+  view_.cover_glass_count = glasses.cover_glasses().size();
   view_.features |= kObstacles;
 }
 
@@ -182,7 +182,7 @@ HierarchyView DeviceScene::add_field(const HeightField& field, double away_mm, F
   buffers_.emplace_back(accelerator_, field.nodes().size() * sizeof(FieldNode));
   h.nodes = buffers_.back().as<FieldNode>();
   buffers_.emplace_back(accelerator_, field.leaf_kinds().size() * sizeof(float));
-  h.steepness = buffers_.back().as<float>();
+  h.gradient_bound = buffers_.back().as<float>();
   buffers_.emplace_back(accelerator_, sizeof(FieldBounds));
   h.bounds = buffers_.back().as<FieldBounds>();
   std::copy(field.level_offsets().begin(), field.level_offsets().end(), h.offsets);
@@ -204,7 +204,7 @@ void DeviceScene::rebuild(std::size_t m) {
   bands_[m] = {bounds.low, bounds.high};
   mirrors_[m].field.low = static_cast<float>(bounds.low);
   mirrors_[m].field.high = static_cast<float>(bounds.high);
-  mirrors_[m].field.steepness = bounds.steepness;
+  mirrors_[m].field.gradient_bound = bounds.gradient_bound;
   if (device_mirrors_ == nullptr) return;
   accelerator_.upload(0, device_mirrors_ + m, &mirrors_[m], sizeof(MirrorView));
   accelerator_.wait(0);

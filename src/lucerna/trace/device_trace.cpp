@@ -11,7 +11,7 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/parallel.h"
 #include "lucerna/trace/device_scene.h"
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 
 namespace lucerna {
 
@@ -44,7 +44,7 @@ class SharedProgress {
 };
 
 /// The rays that left in one accelerator's range.
-struct Kept {
+struct ChunkRays {
   RayBlock rays;
   std::vector<OutRun> runs;
 };
@@ -84,23 +84,23 @@ class Chunk {
       draw(v.sequence);
       v.sent = sent_view(send<float>(sent_, kSentColumns * max_rays_));
     }
-    if (keeps_rays()) {
+    if (retains_rays()) {
       v.out_rays = out_.device.as<OutRay>();
       accelerator_.fill(stream_, v.out_rays, 0xff, rays_at_max() * sizeof(OutRay));
     }
     accelerator_.trace(stream_, v);
-    if (keeps_rays()) {
+    if (retains_rays()) {
       accelerator_.download(stream_, out_.host.as<void>(), v.out_rays, rays_at_max() * sizeof(OutRay));
     }
   }
 
   /// Waits for the chunk that was started, if any, and takes what it kept. Returns its rays.
-  std::uint64_t finish(Kept& kept) {
+  std::uint64_t finish(ChunkRays& retained) {
     if (blocks_ == 0) return 0;
     accelerator_.wait(stream_);
     std::uint64_t rays = 0;
     for (std::uint32_t r = 0; r < run_begin()[blocks_]; ++r) rays += runs()[r].count;
-    if (keeps_rays()) take_kept(kept);
+    if (retains_rays()) take_rays(retained);
     blocks_ = 0;
     return rays;
   }
@@ -112,7 +112,7 @@ class Chunk {
 
   std::uint32_t* run_begin() { return run_begin_.host.as<std::uint32_t>(); }
   RunView* runs() { return runs_.host.as<RunView>(); }
-  bool keeps_rays() const { return out_.host.bytes() > 0; }
+  bool retains_rays() const { return out_.host.bytes() > 0; }
   std::size_t rays_at_max() const { return blocks_ * kBlockRays; }
 
   template <class T>
@@ -164,17 +164,17 @@ class Chunk {
     });
   }
 
-  void take_kept(Kept& kept) {
+  void take_rays(ChunkRays& retained) {
     const OutRay* const out = out_.host.as<OutRay>();
     for (std::uint32_t b = 0; b < blocks_; ++b) {
       const OutRay* ray = out + b * kBlockRays;
       for (std::uint32_t r = run_begin()[b]; r < run_begin()[b + 1]; ++r) {
-        const std::uint32_t before = static_cast<std::uint32_t>(kept.rays.size());
+        const std::uint32_t before = static_cast<std::uint32_t>(retained.rays.size());
         for (std::uint32_t i = 0; i < runs()[r].count; ++i, ++ray) {
-          if (!std::isnan(ray->weight)) append(*ray, kept.rays);
+          if (!std::isnan(ray->weight)) append(*ray, retained.rays);
         }
-        const std::uint32_t left = static_cast<std::uint32_t>(kept.rays.size()) - before;
-        if (left > 0) kept.runs.push_back({first_block_ + b, runs()[r].source, left});
+        const std::uint32_t left = static_cast<std::uint32_t>(retained.rays.size()) - before;
+        if (left > 0) retained.runs.push_back({first_block_ + b, runs()[r].source, left});
       }
     }
   }
@@ -201,25 +201,26 @@ class Chunk {
 };
 
 /// Traces a range on one accelerator; adds its sums to `replicates`.
-Kept trace_range(Accelerator& accelerator, const Scene& scene, const RayNumbering& numbering,
-                 const TraceOptions& options, const Range& range, std::vector<Tally>& replicates,
-                 SharedProgress& progress) {
+ChunkRays trace_range(Accelerator& accelerator, const Scene& scene, const RayNumbering& numbering,
+                      const TraceOptions& options, const Range& range, std::vector<Tally>& replicates,
+                      SharedProgress& progress) {
   const DeviceScene device(accelerator, scene, numbering, options);
   std::vector<Chunk> chunks;
   for (int s = 0; s < Accelerator::kStreams; ++s)
     chunks.emplace_back(accelerator, s, scene, device, numbering);
-  Kept kept;
+  ChunkRays retained;
   std::size_t next = 0;
   const std::uint64_t step = accelerator.chunk_blocks();
   for (std::uint64_t block = range.first_block(); block < range.end_block(); block += step) {
     // The oldest chunk comes first, so kept rays are in the order of their numbers.
     Chunk& chunk = chunks[next++ % chunks.size()];
-    progress.add(chunk.finish(kept));
+    progress.add(chunk.finish(retained));
     chunk.start(block, std::min(block + step, range.end_block()), range);
   }
-  for (std::size_t i = 0; i < chunks.size(); ++i) progress.add(chunks[next++ % chunks.size()].finish(kept));
+  for (std::size_t i = 0; i < chunks.size(); ++i)
+    progress.add(chunks[next++ % chunks.size()].finish(retained));
   device.add_to(replicates);
-  return kept;
+  return retained;
 }
 
 }  // namespace
@@ -231,7 +232,7 @@ void run_on(const Accelerators& accelerators, const Scene& scene, const RayNumbe
   const std::uint64_t blocks = Range{result.first_ray, result.last_ray}.end_block() -
                                Range{result.first_ray, result.last_ray}.first_block();
   SharedProgress shared(progress, result.last_ray - result.first_ray);
-  std::vector<Kept> kept(n);
+  std::vector<ChunkRays> retained(n);
   std::vector<std::vector<Tally>> replicates(n, result.replicates);
   std::vector<std::exception_ptr> failed(n);
   const auto work = [&](std::size_t i) {
@@ -242,7 +243,7 @@ void run_on(const Accelerators& accelerators, const Scene& scene, const RayNumbe
     const Range range{border(i), i + 1 == n ? result.last_ray : border(i + 1)};
     if (range.first >= range.last) return;
     try {
-      kept[i] = trace_range(*accelerators[i], scene, numbering, options, range, replicates[i], shared);
+      retained[i] = trace_range(*accelerators[i], scene, numbering, options, range, replicates[i], shared);
     } catch (...) {
       failed[i] = std::current_exception();
     }
@@ -257,8 +258,8 @@ void run_on(const Accelerators& accelerators, const Scene& scene, const RayNumbe
   for (std::size_t i = 0; i < n; ++i) {
     // Each began with the (empty) sums of `result`.
     for (std::size_t r = 0; r < result.replicates.size(); ++r) result.replicates[r] += replicates[i][r];
-    result.out_rays.append(kept[i].rays);
-    result.out_runs.insert(result.out_runs.end(), kept[i].runs.begin(), kept[i].runs.end());
+    result.out_rays.append(retained[i].rays);
+    result.out_runs.insert(result.out_runs.end(), retained[i].runs.begin(), retained[i].runs.end());
   }
 }
 

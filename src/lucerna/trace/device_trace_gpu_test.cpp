@@ -24,7 +24,7 @@ class DeviceTraceGpu : public testing::Test {
  protected:
   void SetUp() override {
     devices_ = cuda_accelerators();
-    if (devices_.empty()) GTEST_SKIP() << why_no_cuda();
+    if (devices_.empty()) GTEST_SKIP() << cuda_unavailable_reason();
     RecordProperty("device", devices_.front()->name());
   }
   /// Ten million rays of a scene on the CPU and here.

@@ -13,7 +13,7 @@
 #include "lucerna/source/cluster_compress.h"
 #include "lucerna/trace/body_tracer.h"
 #include "lucerna/trace/device_scene.h"
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "tests/support/device_scenes.h"
 #include "tests/support/random_rays.h"
 
@@ -148,7 +148,7 @@ TEST(DeviceTrace, BodiesAgreeRayByRayWithEmbree) {
       EXPECT_NEAR(a.absorbed[cause].second.mean, b.absorbed[cause].second.mean, 1e-3 * 800.0);
     }
     if (i > 0) continue;
-    // A lamp whose body also meets the light that it sends is another scene.
+    // A lamp whose body also hits the light that it sends is another scene.
     Scene blocked = scene;
     blocked.bodies[0].only_returning_light = false;
     EXPECT_LT(trace_on(emulated(), blocked, options).out_rays.size(), device.out_rays.size() / 2);
@@ -236,7 +236,7 @@ double largest_difference(const TraceResult& a, const TraceResult& b) {
     for (std::size_t d = 0; d < a.replicates[r].bins.size(); ++d) {
       for (std::size_t i = 0; i < a.replicates[r].bins[d].size(); ++i) {
         const auto difference = a.replicates[r].bins[d][i] - b.replicates[r].bins[d][i];
-        max = std::max(max, std::abs(static_cast<double>(difference)) / kUnitsPerRay);
+        max = std::max(max, std::abs(static_cast<double>(difference)) / kQuantaPerRay);
       }
     }
   }
@@ -346,8 +346,8 @@ TEST(DeviceScene, TreesAreThoseOfTheHeightField) {
 TEST(DeviceTrace, CudaWithoutADeviceIsAnErrorAndAutomaticTracesOnTheCpu) {
   if (!cuda_accelerators().empty()) GTEST_SKIP() << "there is a CUDA device";
   const Scene scene = scene_of(cylinder());
-  EXPECT_FALSE(why_no_cuda().empty());
-  EXPECT_EQ(why_no_cuda().find('\n'), std::string::npos);
+  EXPECT_FALSE(cuda_unavailable_reason().empty());
+  EXPECT_EQ(cuda_unavailable_reason().find('\n'), std::string::npos);
   EXPECT_THROW(trace(scene, {.last_ray = 5000, .cells = 64, .device = TraceDevice::cuda}), InputError);
   const TraceResult on_cpu = trace(scene, {.last_ray = 5000, .cells = 64});
   const TraceResult automatic =

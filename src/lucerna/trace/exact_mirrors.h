@@ -32,19 +32,19 @@ LUCERNA_HD inline ExactHit exact_hit(double t, bool front, const Vec3& normal) {
 
 LUCERNA_HD inline ExactHit curve_hit(const CurveView& curve, const Vec3& o, const Vec3& d, bool on_mirror) {
   const CurveNode& all = curve.nodes[0];
-  const double slack = on_mirror ? kStartRounding * (all.r1 + larger_size(all.z0, all.z1)) : 0.0;
-  const CurveHit hit = CurveWalk(curve, o, d, slack).run();
-  return hit.met ? exact_hit(hit.t, hit.front, hit.normal) : ExactHit{};
+  const double tolerance = on_mirror ? kStartRounding * (all.r1 + larger_size(all.z0, all.z1)) : 0.0;
+  const CurveHit hit = CurveWalk(curve, o, d, tolerance).run();
+  return hit.is_hit ? exact_hit(hit.t, hit.front, hit.normal) : ExactHit{};
 }
 
 LUCERNA_HD inline ExactHit facet_hit(const FacetView& facets, const Vec3& o, const Vec3& d, bool on_mirror) {
   const double size = facets.half_x + facets.half_y + larger_size(facets.low, facets.high);
-  const FacetHit hit = meet_facets(facets, o, d, on_mirror ? kStartRounding * size : 0.0);
-  return hit.met ? exact_hit(hit.t, hit.front, {-hit.dzdx, -hit.dzdy, 1.0}) : ExactHit{};
+  const FacetHit hit = intersect_facets(facets, o, d, on_mirror ? kStartRounding * size : 0.0);
+  return hit.is_hit ? exact_hit(hit.t, hit.front, {-hit.dzdx, -hit.dzdy, 1.0}) : ExactHit{};
 }
 
 /// The same for the n rays of a batch.
-void meet_curve(const CurveView& curve, const LocalRays& rays, std::size_t n, LocalHits& hits);
-void meet_facets(const FacetView& facets, const LocalRays& rays, std::size_t n, LocalHits& hits);
+void intersect_curve(const CurveView& curve, const LocalRays& rays, std::size_t n, LocalHits& hits);
+void intersect_facets(const FacetView& facets, const LocalRays& rays, std::size_t n, LocalHits& hits);
 
 }  // namespace lucerna

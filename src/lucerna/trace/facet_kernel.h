@@ -26,7 +26,7 @@ struct FacetView {
 };
 
 struct FacetHit {
-  bool met = false, front = true;
+  bool is_hit = false, front = true;
   double t = 0.0;
   double dzdx = 0.0, dzdy = 0.0;
 };
@@ -50,26 +50,26 @@ LUCERNA_HD inline std::int32_t facet_of(double x, double pitch, std::int32_t fir
   return i < 0.0 ? 0 : (i >= count ? count - 1 : static_cast<std::int32_t>(i));
 }
 
-/// Puts a start that lies within `slack` of a facet a hair in front of it, and in front of the neighbours
+/// Puts a start that lies within `tolerance` of a facet a hair in front of it, and in front of the neighbours
 /// that are as near: beside an edge it may have been rounded over any of them.
-LUCERNA_HD inline void settle_on_facets(const FacetView& v, double slack, Vec3& o) {
+LUCERNA_HD inline void offset_from_facets(const FacetView& v, double tolerance, Vec3& o) {
   double min = 1e300;
-  for (const double sy : {-slack, slack}) {
-    for (const double sx : {-slack, slack}) {
+  for (const double sy : {-tolerance, tolerance}) {
+    for (const double sx : {-tolerance, tolerance}) {
       const std::int32_t ix = facet_of(o.x + sx, v.pitch, v.first_column, v.columns);
       const std::int32_t iy = facet_of(o.y + sy, v.pitch, v.first_row, v.rows);
       const Facet& k = v.facets[iy * v.columns + ix];
       const double f = along_ray(v, ix, iy, o, {0.0, 0.0, 0.0}).c;
       const double steep = 1.0 + std::fabs(k.dzdx) + std::fabs(k.dzdy);
-      if (std::fabs(f) <= 4.0 * slack * steep) min = std::fmin(min, f);
+      if (std::fabs(f) <= 4.0 * tolerance * steep) min = std::fmin(min, f);
     }
   }
   if (min < 1e300) o.z += v.hair_mm - min;
 }
 
-/// `slack_mm` > 0: the ray was just reflected here and its start is rounded by that much. A ray goes through
-/// the steps between facets: they have no walls.
-LUCERNA_HD inline FacetHit meet_facets(const FacetView& v, Vec3 o, const Vec3& d, double slack_mm) {
+/// `tolerance_mm` > 0: the ray was just reflected here and its start is rounded by that much. A ray goes
+/// through the steps between facets: they have no walls.
+LUCERNA_HD inline FacetHit intersect_facets(const FacetView& v, Vec3 o, const Vec3& d, double tolerance_mm) {
   double t0 = 0.0, t1 = 1e300;
   const auto clip = [&t0, &t1](double start, double step, double low, double high) {
     if (step == 0.0) {
@@ -82,9 +82,9 @@ LUCERNA_HD inline FacetHit meet_facets(const FacetView& v, Vec3 o, const Vec3& d
   };
   clip(o.x, d.x, -v.half_x, v.half_x);
   clip(o.y, d.y, -v.half_y, v.half_y);
-  clip(o.z, d.z, v.low - slack_mm, v.high + slack_mm);
+  clip(o.z, d.z, v.low - tolerance_mm, v.high + tolerance_mm);
   if (!(t0 <= t1)) return {};
-  if (slack_mm > 0.0 && t0 == 0.0) settle_on_facets(v, slack_mm, o);
+  if (tolerance_mm > 0.0 && t0 == 0.0) offset_from_facets(v, tolerance_mm, o);
   std::int32_t ix = facet_of(o.x + t0 * d.x, v.pitch, v.first_column, v.columns);
   std::int32_t iy = facet_of(o.y + t0 * d.y, v.pitch, v.first_row, v.rows);
   for (double t = t0; t <= t1;) {

@@ -68,10 +68,10 @@ TEST(FacetKernel, MeetsTheNearestFacet) {
     for (int i = 0; i < 1500; ++i) {
       const Ray ray{{100.0 * rng.uniform() - 50.0, 100.0 * rng.uniform() - 50.0, 70.0 * rng.uniform() - 20.0},
                     random_direction(rng)};
-      const FacetHit hit = meet_facets(facets.view(), ray.origin_mm, ray.direction.vec(), 0.0);
+      const FacetHit hit = intersect_facets(facets.view(), ray.origin_mm, ray.direction.vec(), 0.0);
       const auto expected = nearest_of_all(mirror, ray);
-      differ += hit.met != expected.has_value();  // two roots within a 400th of a facet
-      if (!hit.met || !expected) continue;
+      differ += hit.is_hit != expected.has_value();  // two roots within a 400th of a facet
+      if (!hit.is_hit || !expected) continue;
       ++hits;
       EXPECT_NEAR(hit.t, *expected, 1e-9);
       const Vec3 p = ray.at(hit.t);
@@ -85,15 +85,15 @@ TEST(FacetKernel, MeetsTheNearestFacet) {
   }
 }
 
-// Edges are exact: a hundredth of a micrometre on either side of one, light meets the facet of that side.
+// Edges are exact: a hundredth of a micrometre on either side of one, light hits the facet of that side.
 TEST(FacetKernel, EdgesAreSharp) {
   const Reflector mirror = facets_on_paraboloid(HUGE_VAL, Aperture::circle(90.0));
   const FacetMirror facets(*faceted(mirror), mirror.aperture);
   for (int i = -5; i <= 5; ++i) {
     for (const double side : {-1e-5, 1e-5}) {
       const Vec3 o{7.0 * i + side, 3.5, 60.0};
-      const FacetHit hit = meet_facets(facets.view(), o, {0.0, 0.0, -1.0}, 0.0);
-      ASSERT_TRUE(hit.met);
+      const FacetHit hit = intersect_facets(facets.view(), o, {0.0, 0.0, -1.0}, 0.0);
+      ASSERT_TRUE(hit.is_hit);
       EXPECT_NEAR(hit.dzdx, (7.0 * i + (side > 0.0 ? 3.5 : -3.5)) / 30.0, 1e-12);
     }
   }
@@ -113,11 +113,11 @@ TEST(FacetKernel, RoundedStartsDoNotMeetTheirOwnFacet) {
     const double z = k.z_mm + k.dzdx * (inside - 17.5) + k.dzdy * (y - 7.0 * std::floor(y / 7.0) - 3.5);
     const Vec3 o{x, y, z + 4e-6 * (rng.uniform() - 0.5)};
     const Direction d = Direction::from({rng.uniform() - 0.5, rng.uniform() - 0.5, 1.0});
-    const FacetHit exact = meet_facets(facets.view(), {inside, y, z + 1e-8}, d.vec(), 0.0);
-    const FacetHit hit = meet_facets(facets.view(), o, d.vec(), 1e-5);
-    ASSERT_EQ(hit.met, exact.met) << i;
-    checked += hit.met;
-    if (hit.met) {
+    const FacetHit exact = intersect_facets(facets.view(), {inside, y, z + 1e-8}, d.vec(), 0.0);
+    const FacetHit hit = intersect_facets(facets.view(), o, d.vec(), 1e-5);
+    ASSERT_EQ(hit.is_hit, exact.is_hit) << i;
+    checked += hit.is_hit;
+    if (hit.is_hit) {
       EXPECT_NEAR(hit.t, exact.t, 1e-3);
     }
   }

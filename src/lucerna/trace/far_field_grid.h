@@ -48,9 +48,9 @@ class FarFieldGrid {
   static FarFieldGrid counted(const FarFieldDetector& detector);
 
   LUCERNA_HD bool tent() const { return tent_; }
-  /// Deals `units` to the four grid angles about `d`, by tents in C and in gamma; their sum is exact.
+  /// Deals `quanta` to the four grid angles about `d`, by tents in C and in gamma; their sum is exact.
   /// Additions are atomic_add's.
-  LUCERNA_HD void add_tent(const Direction& d, std::int64_t units, std::int64_t* bins) const;
+  LUCERNA_HD void add_tent(const Direction& d, std::int64_t quanta, std::int64_t* bins) const;
 
  private:
   std::size_t c_count_, gamma_count_;
@@ -58,7 +58,7 @@ class FarFieldGrid {
   bool tent_;
 };
 
-LUCERNA_HD inline void FarFieldGrid::add_tent(const Direction& d, std::int64_t units,
+LUCERNA_HD inline void FarFieldGrid::add_tent(const Direction& d, std::int64_t quanta,
                                               std::int64_t* bins) const {
   const TypeCAngles a = type_c_angles(d);
   const double u = a.c_rad * per_c_rad_, v = a.gamma_rad * per_gamma_rad_;
@@ -67,9 +67,9 @@ LUCERNA_HD inline void FarFieldGrid::add_tent(const Direction& d, std::int64_t u
   const auto share = [](std::int64_t whole, double part) {
     return static_cast<std::int64_t>(std::llround(static_cast<double>(whole) * std::clamp(part, 0.0, 1.0)));
   };
-  const std::int64_t next = share(units, u - static_cast<double>(c));
+  const std::int64_t next = share(quanta, u - static_cast<double>(c));
   const std::size_t columns[2] = {c, (c + 1) % c_count_};
-  const std::int64_t parts[2] = {units - next, next};
+  const std::int64_t parts[2] = {quanta - next, next};
   for (std::size_t k = 0; k < 2; ++k) {
     const std::int64_t outer = share(parts[k], v - static_cast<double>(g));
     std::int64_t* const bin = bins + columns[k] * gamma_count_ + g;

@@ -17,10 +17,10 @@ inline constexpr float kFarStart = 1e12f;
 inline constexpr float kNoDirection = 1e-20f;
 
 /// What a ray must fall or rise faster than the surface: the rounding of both slopes, many times over.
-inline constexpr float kSlopeSlack = 1e-4f;
+inline constexpr float kSlopeTolerance = 1e-4f;
 /// Of a falling ray: guesses by the planes of leaf squares, and the most steps on the surface itself before
 /// it is sent down the tree like any other.
-inline constexpr int kPlaneGuesses = 2, kMaxFalls = 6;
+inline constexpr int kPlaneGuesses = 2, kMaxDescents = 6;
 
 /// 1 / d. A ray that runs along a grid line belongs to the cells towards the middle of the grid, `inward` of
 /// it: so it is in the grid on its borders too.
@@ -75,12 +75,12 @@ class Packet {
   }
 
   LUCERNA_HD LaneHits finish() {
-    while (any(falling_ | node_ | leaf_ | met_)) {
-      if (any(falling_)) fall();
+    while (any(descending_ | node_ | leaf_ | bracketed_)) {
+      if (any(descending_)) descend();
       while (any(node_)) node_step();
       while (any(leaf_)) leaf_step();
       // Lanes that cross the surface wait here for the others: Newton's steps then serve all at once.
-      if (!any(node_) && any(met_)) settle();
+      if (!any(node_) && any(bracketed_)) refine();
     }
     return {hit_t_, hit_gx_, hit_gy_, hit_state_, 1.0f, shift_};
   }
@@ -96,9 +96,9 @@ class Packet {
   };
 
   /// Height of the ray over the quadric at distance t.
-  LUCERNA_HD Float over(Float t) const { return fma(fma(u2_, t, u1_), t, u0_); }
+  LUCERNA_HD Float height_over(Float t) const { return fma(fma(u2_, t, u1_), t, u0_); }
   /// How fast that grows.
-  LUCERNA_HD Float rise(Float t) const { return fma(2.0f * u2_, t, u1_); }
+  LUCERNA_HD Float slope_over(Float t) const { return fma(2.0f * u2_, t, u1_); }
   LUCERNA_HD Float middle() const { return 0.5f * (field_->low + field_->high); }
   LUCERNA_HD Float half() const { return 0.5f * (field_->high - field_->low); }
 
@@ -126,18 +126,19 @@ class Packet {
     const Mask up = Float(0.0f) < u2_;
     const Float sign = select(up, -1.0f, 1.0f);
     const Float a = min(sign * u2_, -1e-30f), b = sign * u1_, c = sign * u0_;
-    const Float high = half() + field_->slack + sign * middle(),
-                low = Float(0.0f) - half() - field_->slack + sign * middle();
+    const Float high = half() + field_->tolerance + sign * middle(),
+                low = Float(0.0f) - half() - field_->tolerance + sign * middle();
     const Roots upper = roots(a, b, c - high), lower = roots(a, b, c - low);
     const Float first_end = select(upper.exist, upper.low, lower.high);
     begin_ = max(lower.low, t0);
     end_ = select(lower.exist, min(first_end, t1), -1.0f);
     next_begin_ = max(upper.high, t0);
     next_end_ = select(upper.exist & lower.exist, min(lower.high, t1), -1.0f);
-    node_ = leaf_ = met_ = falling_ = mask_of(0);
-    steepest_ = field_->steepness * sqrt(dx_ * dx_ + dy_ * dy_) + kSlopeSlack;
+    node_ = leaf_ = bracketed_ = descending_ = mask_of(0);
+    max_slope_ = field_->gradient_bound * sqrt(dx_ * dx_ + dy_ * dy_) + kSlopeTolerance;
     // What was just reflected and rises faster than any of the surface does not come back in this interval.
-    const Mask rising = on_mirror_ & (begin_ <= Float(0.0f)) & (steepest_ < min(rise(begin_), rise(end_)));
+    const Mask rising =
+        on_mirror_ & (begin_ <= Float(0.0f)) & (max_slope_ < min(slope_over(begin_), slope_over(end_)));
     end_ = select(rising, -1.0f, end_);
     start(lanes);
   }
@@ -155,8 +156,8 @@ class Packet {
   /// Moves starts along their rays to where these enter the box about the mirror, so that all that follows is
   /// rounded as numbers of the mirror's size are, from however far a ray may come.
   LUCERNA_HD void start_at_the_box(Float over_region) {
-    const float z0 = field_->q0 - field_->reach + field_->low - field_->slack,
-                z1 = field_->q0 + field_->reach + field_->high + field_->slack;
+    const float z0 = field_->q0 - field_->reach + field_->low - field_->tolerance,
+                z1 = field_->q0 + field_->reach + field_->high + field_->tolerance;
     const Float idz = reciprocal_of(dz_, 0.5f * (z0 + z1) - oz_);
     const Float enter = max(over_region, min((Float(z0) - oz_) * idz, (Float(z1) - oz_) * idz));
     shift_ = select((Float(0.0f) < enter) & (enter < Float(kFarStart)) & ~on_mirror_, enter, 0.0f);
@@ -172,26 +173,27 @@ class Packet {
     end_ = select(empty, next_end_, end_);
     next_end_ = select(empty, -1.0f, next_end_);
     m = m & (begin_ < end_);
-    // A ray that falls faster than any of the surface does meets it once or not at all.
+    // A ray that falls faster than any of the surface does hits it once or not at all.
     const Mask starts = on_mirror_ & (begin_ <= Float(0.0f));
-    const Mask falls = m & ~starts & (max(rise(begin_), rise(end_)) < Float(0.0f) - steepest_);
-    if (any(falls)) guess(falls);
-    if (any(m & ~falls)) walk(m & ~falls);
+    const Mask descends =
+        m & ~starts & (max(slope_over(begin_), slope_over(end_)) < Float(0.0f) - max_slope_);
+    if (any(descends)) guess(descends);
+    if (any(m & ~descends)) walk(m & ~descends);
   }
 
   /// Sends the lanes of `m` down the tree from the beginning of their interval.
   LUCERNA_HD void walk(Mask m) {
     t_ = select(m, begin_, t_);
-    const Float u = over(t_) - middle();
+    const Float u = height_over(t_) - middle();
     // On which side of the surface the ray is: plain outside the band, else it must be looked up; a ray just
     // reflected is on the front.
     Float side = u;
-    const Mask inside = m & (abs(u) < half() + 0.5f * field_->slack);
+    const Mask inside = m & (abs(u) < half() + 0.5f * field_->tolerance);
     const Mask reflected = on_mirror_ & (t_ <= Float(0.0f));
     if (any(inside & ~reflected)) {
       Int ix, iy;
       cell_at(t_, ix, iy);
-      side = select(inside, over(t_) - surface(t_, ix, iy).z, side);
+      side = select(inside, height_over(t_) - surface(t_, ix, iy).z, side);
     }
     side_ = select(m, select(reflected | (Float(0.0f) <= side), 1.0f, -1.0f), side_);
     set_end(m);
@@ -208,12 +210,12 @@ class Packet {
     node_ = node_ | m;
   }
 
-  /// Where the lanes of `m`, which fall, may meet the surface, by the planes of leaf squares.
+  /// Where the lanes of `m`, which fall, may hit the surface, by the planes of leaf squares.
   LUCERNA_HD void guess(Mask m) {
     Float t = 0.5f * (begin_ + end_);
     for (int i = 0; i < kPlaneGuesses; ++i) t = closer(t, leaf_plane(t));
     t_ = select(m, t, t_);
-    falling_ = falling_ | m;
+    descending_ = descending_ | m;
     Int ix, iy;
     cell_at(t, ix, iy);
     ask_for_cell(ix, iy, m);
@@ -226,24 +228,24 @@ class Packet {
     prefetch(field_->vertices, first + row, m);
   }
 
-  /// Settles the lanes of falling_: the ray's height over the surface falls all through the interval, so that
-  /// Newton's method finds the only zero or that there is none.
-  LUCERNA_HD void fall() {
+  /// Settles the lanes of descending_: the ray's height over the surface falls all through the interval, so
+  /// that Newton's method finds the only zero or that there is none.
+  LUCERNA_HD void descend() {
     Float t = t_;
     Int ix, iy;
     cell_at(t, ix, iy);
     Cell k = cell(ix, iy);
     // Lanes stop one by one, each where it would alone: a ray's hit must not depend on its neighbours.
-    Mask moving = falling_, met = mask_of(0), none = mask_of(0);
-    for (int i = 0; i < kMaxFalls && any(moving); ++i) {
+    Mask moving = descending_, converged = mask_of(0), none = mask_of(0);
+    for (int i = 0; i < kMaxDescents && any(moving); ++i) {
       const Piece p = piece(k, t, ix, iy);
-      const Float f = over(t) - p.z;
-      const Mask close = abs(f) <= Float(field_->slack);
+      const Float f = height_over(t) - p.z;
+      const Mask close = abs(f) <= Float(field_->tolerance);
       const Mask apart = ((t <= begin_) & (f < Float(0.0f))) | ((end_ <= t) & (Float(0.0f) < f));
-      met = met | (moving & close);
+      converged = converged | (moving & close);
       none = none | (moving & apart & ~close);
       t = select(moving, closer(t, p), t);
-      moving = moving & ~(met | none);
+      moving = moving & ~(converged | none);
       Int jx, jy;
       cell_at(t, jx, jy);
       const Mask elsewhere = moving & ~((ix == jx) & (iy == jy));
@@ -252,9 +254,9 @@ class Packet {
       iy = select(elsewhere, jy, iy);
       k = cell(ix, iy);
     }
-    falling_ = mask_of(0);
-    side_ = select(met, 1.0f, side_);
-    const Mask over_now = (met & ~hit(met, t, piece(k, t, ix, iy))) | none;
+    descending_ = mask_of(0);
+    side_ = select(converged, 1.0f, side_);
+    const Mask over_now = (converged & ~hit(converged, t, piece(k, t, ix, iy))) | none;
     end_ = select(over_now, -1.0f, end_);
     if (any(over_now)) start(over_now);
     if (any(moving)) walk(moving);
@@ -262,8 +264,8 @@ class Packet {
 
   /// One of Newton's steps towards where the ray meets `p`, within the interval.
   LUCERNA_HD Float closer(Float t, const Piece& p) const {
-    const Float f = over(t) - p.z, df = rise(t) - p.gx * dx_ - p.gy * dy_;
-    return min(max(t - f / min(df, Float(0.0f) - kSlopeSlack), begin_), end_);
+    const Float f = height_over(t) - p.z, df = slope_over(t) - p.gx * dx_ - p.gy * dy_;
+    return min(max(t - f / min(df, Float(0.0f) - kSlopeTolerance), begin_), end_);
   }
 
   /// The plane of the leaf square at t; none where that has no mirror.
@@ -280,7 +282,8 @@ class Packet {
 
   /// Does the ray leave the band on the other side at the end of its interval?
   LUCERNA_HD void set_end(Mask m) {
-    const Mask beyond = side_ * (over(end_) - middle()) < Float(0.0f) - half() - 0.5f * field_->slack;
+    const Mask beyond =
+        side_ * (height_over(end_) - middle()) < Float(0.0f) - half() - 0.5f * field_->tolerance;
     crosses_ = (crosses_ & ~m) | (beyond & m);
   }
 
@@ -312,19 +315,19 @@ class Packet {
     // its sign.
     const Float length = te - t_, sag = 0.25f * k2 * length * length;
     const Float below = max(sag, 0.0f), above = max(Float(0.0f) - sag, 0.0f);
-    const Float reach = e + field_->slack;
+    const Float reach = e + field_->tolerance;
     const Mask skip = node_ & ((e < Float(0.0f)) | (reach < min(va, vb) - below));
     const Mask enter = node_ & ~skip;
 
     // Nearer: forward to where the ray can first touch the slab; at a leaf also back to where it is surely
     // through.
-    const Float per_fall = length / max(va - vb, 1e-30f);
+    const Float per_descent = length / max(va - vb, 1e-30f);
     const Mask ahead = enter & (reach < va - below);
     const Mask down = enter & (level_ == Int(0));
     const Mask through = down & (vb + above < Float(0.0f) - reach) & (vb < va);
-    leaf_end_ = select(down, select(through, fma(va + above + reach, per_fall, t_), end_), leaf_end_);
+    leaf_end_ = select(down, select(through, fma(va + above + reach, per_descent, t_), end_), leaf_end_);
     leaf_crosses_ = (leaf_crosses_ & ~down) | (down & (through | crosses_));
-    t_ = select(ahead, min(fma(va - below - reach, per_fall, t_), te), t_);
+    t_ = select(ahead, min(fma(va - below - reach, per_descent, t_), te), t_);
     Int cx, cy;
     cell_at(t_, cx, cy);
     const Int last = shift_left(Int(1), level_) - Int(1);
@@ -345,13 +348,13 @@ class Packet {
 
   /// On which side of the surface the lanes of `m` are at t.
   LUCERNA_HD void look_at_side(Mask m, Float t) {
-    // Outside a round rim and on the way out, no ray meets the mirror again.
+    // Outside a round rim and on the way out, no ray hits the mirror again.
     const Float x = fma(t, dx_, ox_), y = fma(t, dy_, oy_);
     m = m & ((x * dx_ + y * dy_ < Float(0.0f)) | (x * x + y * y < Float(field_->half_x * field_->half_x)));
     if (!any(m)) return;
     Int ix, iy;
     cell_at(t, ix, iy);
-    side_ = select(m, select(surface(t, ix, iy).z <= over(t), 1.0f, -1.0f), side_);
+    side_ = select(m, select(surface(t, ix, iy).z <= height_over(t), 1.0f, -1.0f), side_);
     set_end(m);
   }
 
@@ -384,12 +387,12 @@ class Packet {
   LUCERNA_HD void finish_if_out(Mask m, Float t) {
     const Mask outside =
         (bx_ < Int(0)) | (by_ < Int(0)) | (Int(field_->blocks - 1) < bx_) | (Int(field_->blocks - 1) < by_);
-    const Mask over = m & (outside | (end_ <= t));
-    if (!any(over)) return;
-    node_ = node_ & ~over;
-    leaf_ = leaf_ & ~over;
-    end_ = select(over, -1.0f, end_);
-    start(over);
+    const Mask height_over = m & (outside | (end_ <= t));
+    if (!any(height_over)) return;
+    node_ = node_ & ~height_over;
+    leaf_ = leaf_ & ~height_over;
+    end_ = select(height_over, -1.0f, end_);
+    start(height_over);
   }
 
   LUCERNA_HD void leaf_step() {
@@ -404,17 +407,18 @@ class Packet {
     Mask cross = ends & leaf_crosses_;
     const Mask border = leaf_ & ~ends;
     if (any(border)) {
-      const Float f = side_ * (over(segment) - border_height(segment, by_x, gx, gy));
-      // A border lets a ray be under the surface by the slack, and so does a hit behind it: where a reflected
-      // ray starts, twice as much is let through, or it would meet its start for ever.
-      const Mask starts = on_mirror_ & (segment < Float(512.0f * field_->slack));
-      cross = cross | (border & (f < Float(0.0f) - select(starts, 2.0f * field_->slack, field_->slack)));
+      const Float f = side_ * (height_over(segment) - border_height(segment, by_x, gx, gy));
+      // A border lets a ray be under the surface by the tolerance, and so does a hit behind it: where a
+      // reflected ray starts, twice as much is let through, or it would hit its start for ever.
+      const Mask starts = on_mirror_ & (segment < Float(512.0f * field_->tolerance));
+      cross =
+          cross | (border & (f < Float(0.0f) - select(starts, 2.0f * field_->tolerance, field_->tolerance)));
     }
     const Mask over_now = ends & ~cross;
     const Mask go = border & ~cross;
-    met_ = met_ | cross;
+    bracketed_ = bracketed_ | cross;
     leaf_ = leaf_ & ~cross;
-    met_end_ = select(cross, segment, met_end_);
+    bracket_end_ = select(cross, segment, bracket_end_);
     t_ = select(go, segment, t_);
     ix_ = select(go & by_x, ix_ + select(right, Int(1), Int(-1)), ix_);
     iy_ = select(go & ~by_x, iy_ + select(north, Int(1), Int(-1)), iy_);
@@ -471,7 +475,7 @@ class Packet {
     return {k[0][0],      k[0][3],      k[2][0],      k[2][3],      sx * k[0][1], sx * k[1][2],
             sx * k[2][1], sx * k[3][2], sy * k[0][2], sy * k[1][3], sy * k[2][2], sy * k[3][3]};
   }
-  LUCERNA_HD static void bend(Float u, Float a, Float b, Float& value, Float& slope) {
+  LUCERNA_HD static void edge_deviation(Float u, Float a, Float b, Float& value, Float& slope) {
     const Float w = Float(1.0f) - u;
     value = u * w * (w * a - u * b);
     slope = w * (Float(1.0f) - 3.0f * u) * a - u * (Float(2.0f) - 3.0f * u) * b;
@@ -482,28 +486,28 @@ class Packet {
     const Float um = Float(1.0f) - u, vm = Float(1.0f) - v;
     const Float south = k.z10 - k.z00, north = k.z11 - k.z01, west = k.z01 - k.z00, east = k.z11 - k.z10;
     Float s, ds, n, dn, w, dw, e, de;
-    bend(u, k.p00 - south, k.p10 - south, s, ds);
-    bend(u, k.p01 - north, k.p11 - north, n, dn);
-    bend(v, k.q00 - west, k.q01 - west, w, dw);
-    bend(v, k.q10 - east, k.q11 - east, e, de);
+    edge_deviation(u, k.p00 - south, k.p10 - south, s, ds);
+    edge_deviation(u, k.p01 - north, k.p11 - north, n, dn);
+    edge_deviation(v, k.q00 - west, k.q01 - west, w, dw);
+    edge_deviation(v, k.q10 - east, k.q11 - east, e, de);
     return {vm * (k.z00 + u * south + s) + v * (k.z01 + u * north + n) + um * w + u * e,
             (vm * (south + ds) + v * (north + dn) - w + e) * (1.0f / field_->step_x),
             (um * (west + dw) + u * (east + de) - s + n) * (1.0f / field_->step_y)};
   }
   LUCERNA_HD Piece surface(Float t, Int ix, Int iy) const { return piece(cell(ix, iy), t, ix, iy); }
 
-  /// The lanes of met_ cross the surface between t_ and met_end_: finds where, by Newton's method in that
-  /// bracket.
-  LUCERNA_HD void settle() {
-    const Mask m = met_;
-    const Float segment = met_end_;
-    met_ = mask_of(0);
+  /// The lanes of bracketed_ cross the surface between t_ and bracket_end_: finds where, by Newton's method
+  /// in that bracket.
+  LUCERNA_HD void refine() {
+    const Mask m = bracketed_;
+    const Float segment = bracket_end_;
+    bracketed_ = mask_of(0);
     const Cell k = cell(min(max(ix_, Int(0)), Int(field_->blocks * 8 - 1)),
                         min(max(iy_, Int(0)), Int(field_->blocks * 8 - 1)));
     Float t = 0.5f * (t_ + segment);
     for (int i = 0; i < 3; ++i) {
       const Piece p = piece(k, t, ix_, iy_);
-      const Float f = over(t) - p.z, df = fma(2.0f * u2_, t, u1_) - p.gx * dx_ - p.gy * dy_;
+      const Float f = height_over(t) - p.z, df = fma(2.0f * u2_, t, u1_) - p.gx * dx_ - p.gy * dy_;
       t = min(max(t - f / select(abs(df) < Float(1e-20f), 1e-20f, df), t_), segment);
     }
     const Piece p = piece(k, t, ix_, iy_);
@@ -536,10 +540,10 @@ class Packet {
   Float ox_, oy_, oz_, dx_, dy_, dz_, idx_, idy_, shift_;
   Float u0_, u1_, u2_;
   Float begin_, end_, next_begin_, next_end_;
-  Float steepest_;
-  Float t_ = 0.0f, side_ = 1.0f, leaf_end_ = 0.0f, met_end_ = 0.0f;
+  Float max_slope_;
+  Float t_ = 0.0f, side_ = 1.0f, leaf_end_ = 0.0f, bracket_end_ = 0.0f;
   Int level_{0}, bx_{0}, by_{0}, ix_{0}, iy_{0};
-  Mask on_mirror_, falling_, node_, leaf_, met_, crosses_ = mask_of(0), leaf_crosses_ = mask_of(0);
+  Mask on_mirror_, descending_, node_, leaf_, bracketed_, crosses_ = mask_of(0), leaf_crosses_ = mask_of(0);
   Float hit_t_, hit_gx_, hit_gy_;
   Int hit_state_;
 };

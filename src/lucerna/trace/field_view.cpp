@@ -30,12 +30,12 @@ FieldView view_of(const HeightField& field, double away_mm) {
   v.low = static_cast<float>(field.band().low_mm);
   v.high = static_cast<float>(field.band().high_mm);
   v.rim = static_cast<float>(field.rim_mm());
-  v.steepness = field.steepness();
+  v.gradient_bound = field.gradient_bound();
   // Heights of ray and quadric are sums of a few float32 terms of this size; their rounding is about an ulp
   // each.
   const double x = std::abs(field.region().x0_mm), y = std::abs(field.region().y0_mm);
   const double extent = std::min(x, y), height = std::abs(q.at(x, y).z_mm) + std::abs(q.at(-x, y).z_mm);
-  v.slack = static_cast<float>(4e-7 * (extent + height + away_mm));
+  v.tolerance = static_cast<float>(4e-7 * (extent + height + away_mm));
   const auto far_x = static_cast<float>(std::max(x, std::abs(field.region().x1_mm)));
   const auto far_y = static_cast<float>(std::max(y, std::abs(field.region().y1_mm)));
   v.reach = std::abs(q.cx) * far_x + std::abs(q.cy) * far_y + std::abs(q.cxx) * far_x * far_x +

@@ -8,7 +8,7 @@
 namespace lucerna {
 
 /// `field` as kernels read it; points into it. `away_mm`: how far the mirror's frame is from the origin of
-/// the frame that rays are handed over in; what that rounds off a start counts as slack.
+/// the frame that rays are handed over in; what that rounds off a start counts as tolerance.
 FieldView view_of(const HeightField& field, double away_mm = 0.0);
 
 /// `frame` (outer from inner) as kernels read it.

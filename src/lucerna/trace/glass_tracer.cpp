@@ -9,7 +9,7 @@ namespace lucerna {
 
 namespace {
 
-PlateView view_of(const CoverGlass& g) {
+CoverGlassView view_of(const CoverGlass& g) {
   return {g.aperture.shape() == ApertureShape::circle,
           g.aperture.half_x_mm(),
           g.aperture.half_y_mm(),
@@ -36,7 +36,7 @@ void check(const CoverGlass& glass) {
 }
 
 GlassShares glass_shares(const CoverGlass& glass, double cos_incidence) {
-  const PlateAtAngle at = plate_at_angle(view_of(glass), cos_incidence);
+  const CoverGlassAtAngle at = cover_glass_at_angle(view_of(glass), cos_incidence);
   const double r = 0.5 * (at.s.reflected + at.p.reflected), t = 0.5 * (at.s.transmitted + at.p.transmitted);
   return {r, t, 1.0 - r - t};
 }
@@ -44,7 +44,7 @@ GlassShares glass_shares(const CoverGlass& glass, double cos_incidence) {
 GlassTracer::GlassTracer(const std::vector<CoverGlass>& glasses) {
   for (const CoverGlass& g : glasses) {
     check(g);
-    plates_.push_back({view_of(g), g.world_from_glass, g.world_from_glass.inverse()});
+    cover_glasses_.push_back({view_of(g), g.world_from_glass, g.world_from_glass.inverse()});
   }
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lucerna/scene.h"
-#include "lucerna/trace/plate_kernel.h"
+#include "lucerna/trace/cover_glass_kernel.h"
 
 namespace lucerna {
 
@@ -15,22 +15,22 @@ class GlassTracer {
   /// Throws InputError as `check` does.
   explicit GlassTracer(const std::vector<CoverGlass>& glasses);
 
-  bool empty() const { return plates_.empty(); }
+  bool empty() const { return cover_glasses_.empty(); }
   /// As kernels read them.
-  const std::vector<PlacedPlate>& plates() const { return plates_; }
+  const std::vector<PlacedCoverGlass>& cover_glasses() const { return cover_glasses_; }
 
   /// The first plate within [0, t_max_mm) of a ray in the luminaire frame. O(plates).
   std::optional<GlassHit> first_hit(const Ray& ray, double t_max_mm) const {
-    return first_plate(plates_.data(), plates_.size(), ray, t_max_mm);
+    return first_cover_glass(cover_glasses_.data(), cover_glasses_.size(), ray, t_max_mm);
   }
 
-  /// What becomes of the ray there. `key.bounce` counts all that the ray met before, plates included.
+  /// What becomes of the ray there. `key.bounce` counts all that the ray hit before, plates included.
   GlassPassage pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key) const {
-    return through_plate(plates_[hit.glass], ray, hit, key);
+    return through_cover_glass(cover_glasses_[hit.glass], ray, hit, key);
   }
 
  private:
-  std::vector<PlacedPlate> plates_;
+  std::vector<PlacedCoverGlass> cover_glasses_;
 };
 
 }  // namespace lucerna

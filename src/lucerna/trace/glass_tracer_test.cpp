@@ -45,8 +45,8 @@ TEST(CoverGlass, SharesSumToOneAndNothingPassesAtGrazing) {
 }
 
 TEST(CoverGlass, BrewstersAngleReturnsNoParallelLight) {
-  const PlateView plate{true, 50.0, 50.0, 4.0, 1.5, 0.0};
-  const PlateAtAngle at = plate_at_angle(plate, std::cos(std::atan(1.5)));
+  const CoverGlassView cover_glass{true, 50.0, 50.0, 4.0, 1.5, 0.0};
+  const CoverGlassAtAngle at = cover_glass_at_angle(cover_glass, std::cos(std::atan(1.5)));
   EXPECT_NEAR(at.p.reflected, 0.0, 1e-30);
   EXPECT_NEAR(at.p.transmitted, 1.0, 1e-15);
   EXPECT_GT(at.s.reflected, 0.2);
@@ -54,13 +54,14 @@ TEST(CoverGlass, BrewstersAngleReturnsNoParallelLight) {
 
 // Light let through at once leaves beside its line by d sin(i) (1 - cos(i) / (n cos(t))).
 TEST(CoverGlass, ShiftsALineByItsThickness) {
-  const PlateView plate{true, 50.0, 50.0, 4.0, 1.5, 0.0};
+  const CoverGlassView cover_glass{true, 50.0, 50.0, 4.0, 1.5, 0.0};
   for (const double angle : {0.0, 20.0, 50.0, 80.0}) {
     const Ray ray = ray_down(angle, {-3.0, 1.0, 10.0});
-    const PlateEntry entry = plate_entry(plate, ray.origin_mm, ray.direction.vec());
-    ASSERT_TRUE(entry.met && !entry.edge);
+    const CoverGlassEntry entry = cover_glass_entry(cover_glass, ray.origin_mm, ray.direction.vec());
+    ASSERT_TRUE(entry.is_hit && !entry.edge);
     EXPECT_NEAR(ray.at(entry.t_mm).z, 4.0, 1e-13);
-    const PlateOutcome out = pass_plate(plate, ray.origin_mm, ray.direction.vec(), entry, 0.0, 0.0);
+    const CoverGlassOutcome out =
+        pass_cover_glass(cover_glass, ray.origin_mm, ray.direction.vec(), entry, 0.0, 0.0);
     ASSERT_TRUE(out.transmitted);
     EXPECT_EQ(out.direction.z, ray.direction.z());
     EXPECT_EQ(out.origin_mm.z, 0.0);
@@ -74,10 +75,10 @@ TEST(CoverGlass, ShiftsALineByItsThickness) {
 // The order of a pass is drawn as often as the series says: mean number of ways through the glass, against
 // the sum over orders. 1e-6 false alarms at 4.9 sigma; always one way (no inter-reflection) is 60 sigma off.
 TEST(CoverGlassStatistical, WaysThroughTheGlassFollowTheSeries) {
-  const PlateView plate{true, 5000.0, 5000.0, 4.0, 2.5, 0.02};
+  const CoverGlassView cover_glass{true, 5000.0, 5000.0, 4.0, 2.5, 0.02};
   const Ray ray = ray_down(30.0, {0.0, 0.0, 4.0});
-  const PlateEntry entry = plate_entry(plate, {0, 0, 5.0}, ray.direction.vec());
-  const PlateAtAngle at = plate_at_angle(plate, std::abs(ray.direction.z()));
+  const CoverGlassEntry entry = cover_glass_entry(cover_glass, {0, 0, 5.0}, ray.direction.vec());
+  const CoverGlassAtAngle at = cover_glass_at_angle(cover_glass, std::abs(ray.direction.z()));
   const double unit = 4.0 * 0.5 / (2.5 * at.cos_inside);  // sideways, one way
   double expected[2] = {0.0, 0.0};
   for (const PlateShares& s : {at.s, at.p}) {
@@ -93,8 +94,9 @@ TEST(CoverGlassStatistical, WaysThroughTheGlassFollowTheSeries) {
   const double start = 0.5 * entry.t_mm;
   for (int i = 0; i < n; ++i) {
     const double u = rng.uniform(), v = rng.uniform();
-    const PlateOutcome out = pass_plate(plate, {0, 0, 5.0}, ray.direction.vec(), entry, u, v);
-    const double ways = (out.origin_mm.x - start) / unit * 2.0 * out.kept;
+    const CoverGlassOutcome out =
+        pass_cover_glass(cover_glass, {0, 0, 5.0}, ray.direction.vec(), entry, u, v);
+    const double ways = (out.origin_mm.x - start) / unit * 2.0 * out.throughput;
     sum[out.transmitted ? 1 : 0] += ways;
     square[out.transmitted ? 1 : 0] += ways * ways;
   }
@@ -114,7 +116,7 @@ TEST(CoverGlass, RimIsBlackAndStartsInsideAreFree) {
   ASSERT_TRUE(side);
   EXPECT_NEAR(side->t_mm, 10.0, 1e-12);
   EXPECT_TRUE(side->edge);
-  EXPECT_EQ(glass.pass({{60.0, 0.0, 2.0}, Direction::from({-1.0, 0.0, 0.0})}, *side, {}).kept, 0.0);
+  EXPECT_EQ(glass.pass({{60.0, 0.0, 2.0}, Direction::from({-1.0, 0.0, 0.0})}, *side, {}).throughput, 0.0);
   EXPECT_FALSE(glass.first_hit({{0.0, 0.0, 2.0}, Direction::from({0.1, 0.0, 1.0})}, 1e9));
   EXPECT_FALSE(glass.first_hit({{0.0, 0.0, 4.0}, Direction::from({0.1, 0.0, 1.0})}, 1e9)) << "leaves a face";
   EXPECT_FALSE(glass.first_hit({{51.0, 0.0, 9.0}, Direction::from({0.0, 0.0, -1.0})}, 1e9));
@@ -122,13 +124,13 @@ TEST(CoverGlass, RimIsBlackAndStartsInsideAreFree) {
   const Ray steep = ray_down(80.0, {49.5, 0.0, 4.0});
   const auto hit = glass.first_hit({steep.at(-1.0), steep.direction}, 1e9);
   ASSERT_TRUE(hit);
-  int kept = 0;
+  int throughput = 0;
   for (std::uint64_t i = 0; i < 200; ++i) {
     const GlassPassage p = glass.pass({steep.at(-1.0), steep.direction}, *hit, {1, i, 0});
-    EXPECT_FALSE(p.kept > 0.0 && p.transmitted);
-    kept += p.kept > 0.0;
+    EXPECT_FALSE(p.throughput > 0.0 && p.transmitted);
+    throughput += p.throughput > 0.0;
   }
-  EXPECT_GT(kept, 20) << "reflected outside";
+  EXPECT_GT(throughput, 20) << "reflected outside";
 }
 
 TEST(CoverGlass, RectanglesHaveCorners) {

@@ -29,7 +29,7 @@ namespace {
 using test::available_kernels;
 using test::random_direction;
 
-/// Mirrors that no grid stands for: both tracers work on the exact shape.
+/// Mirrors that no grid represents: both tracers work on the exact shape.
 std::vector<Reflector> exact_mirrors() {
   const Reflector base = conic_reflector(ConicPreset::parabola, 15.0, 0.0, Aperture::circle(90.0, 12.0));
   std::vector<ProfileKnot> arc;
@@ -44,9 +44,9 @@ std::vector<Reflector> exact_mirrors() {
           profile_trough(arc, Aperture::rectangle(40.0, 70.0))};
 }
 
-/// What a mirror's hits are judged by.
-struct Yardstick {
-  /// How far the fast tracer's surface may be off: for grids the sagitta of a cell and the slack that its
+/// What a mirror's hits are evaluated by.
+struct HitTolerance {
+  /// How far the fast tracer's surface may be off: for grids the sagitta of a cell and the tolerance that its
   /// borders have (FieldView), else rounding to float.
   double off_mm = 0.0;
   /// Reach of the aperture in x, for a plain statement of how far a hit is from a rim.
@@ -62,10 +62,10 @@ struct Yardstick {
 
 struct HitCounts {
   std::size_t rays = 0, hits = 0;
-  /// Disagreements by cause: one of both meets the mirror within the yardstick of a rim; one grazes it
-  /// (closer to the tangent plane than the yardstick can tell); none of these.
+  /// Disagreements by cause: one of both hits the mirror within the tolerance of a rim; one grazes it
+  /// (closer to the tangent plane than the tolerance can tell); none of these.
   std::size_t rim = 0, grazing = 0, unexplained = 0;
-  /// Rays that start nearer to the mirror than the yardstick and differ: on which side they start is not
+  /// Rays that start nearer to the mirror than the tolerance and differ: on which side they start is not
   /// said.
   std::size_t starts = 0;
   double squares_deg2 = 0.0;  ///< of the angle between normals
@@ -94,17 +94,18 @@ std::ostream& operator<<(std::ostream& out, const HitCounts& c) {
 }
 
 /// A hit of any tracer.
-struct Met {
+struct MirrorHit {
   int state = kMiss;
   double t = 0.0;
   Direction normal;
 };
 
-void judge(const Yardstick& y, const Ray& ray, const Met& fast, const Met& other, HitCounts& c) {
+void classify(const HitTolerance& y, const Ray& ray, const MirrorHit& fast, const MirrorHit& other,
+              HitCounts& c) {
   ++c.rays;
   c.hits += other.state != kMiss;
   if (fast.state == kMiss && other.state == kMiss) return;
-  const auto cosine = [&](const Met& m) { return std::abs(dot(ray.direction, m.normal)); };
+  const auto cosine = [&](const MirrorHit& m) { return std::abs(dot(ray.direction, m.normal)); };
   if (fast.state == other.state) {
     const double apart = std::abs(fast.t - other.t);
     if (apart * std::max(cosine(fast), cosine(other)) <= y.off_mm) {
@@ -112,13 +113,13 @@ void judge(const Yardstick& y, const Ray& ray, const Met& fast, const Met& other
       return;
     }
   }
-  for (const Met* m : {&fast, &other}) {
+  for (const MirrorHit* m : {&fast, &other}) {
     if (m->state != kMiss && m->t * cosine(*m) <= y.off_mm) {
       ++c.starts;
       return;
     }
   }
-  for (const Met* m : {&fast, &other}) {
+  for (const MirrorHit* m : {&fast, &other}) {
     if (m->state == kMiss) continue;
     // Off by so much in height, a hit moves by that over the cosine along the ray.
     if (y.from_rim_mm(ray.at(m->t)) <= y.off_mm / std::max(1e-3, cosine(*m)) + 1e-5) {
@@ -126,7 +127,7 @@ void judge(const Yardstick& y, const Ray& ray, const Met& fast, const Met& other
       return;
     }
   }
-  for (const Met* m : {&fast, &other}) {
+  for (const MirrorHit* m : {&fast, &other}) {
     // A chord of a surface that bends with a radius of 4 mm or more dips by its angle squared times 2 mm.
     if (m->state != kMiss && std::pow(cosine(*m), 2) * 2.0 <= 2.0 * y.off_mm) {
       ++c.grazing;
@@ -159,7 +160,7 @@ void for_rays(std::uint64_t seed, std::size_t first, std::size_t last, const Int
     for (std::size_t i = 0; i < n; ++i) {
       const Vec3 d{in->dx[i], in->dy[i], in->dz[i]};
       const Ray ray{{in->x[i], in->y[i], in->z[i]}, Direction::from(d)};
-      Met fast;
+      MirrorHit fast;
       fast.state = out->state[i];
       if (fast.state != kMiss) {
         fast.t = static_cast<double>(out->t[i]) * length(d);
@@ -199,14 +200,15 @@ template <class Intersect>
 HitCounts against_reference(const Reflector& mirror, double off_mm, std::size_t rays,
                             const Intersect& intersect) {
   const ReferenceTracer reference(mirror, 7);
-  const Yardstick y{off_mm + kRounding, mirror.aperture};
+  const HitTolerance y{off_mm + kRounding, mirror.aperture};
   HitCounts sum;
   std::mutex mutex;
   parallel_blocks(rays, 64 * kBatch, [&](std::size_t first, std::size_t last) {
     HitCounts c;
-    for_rays(11, first, last, intersect, [&](const Ray& ray, const Met& fast) {
+    for_rays(11, first, last, intersect, [&](const Ray& ray, const MirrorHit& fast) {
       const auto hit = reference.first_hit(ray);
-      judge(y, ray, fast, hit ? Met{hit->front ? kFront : kBack, hit->t_mm, hit->normal} : Met{}, c);
+      classify(y, ray, fast,
+               hit ? MirrorHit{hit->front ? kFront : kBack, hit->t_mm, hit->normal} : MirrorHit{}, c);
     });
     const std::lock_guard lock(mutex);
     sum += c;
@@ -237,7 +239,7 @@ std::shared_ptr<const Mesh> triangles_of(const HeightField& field) {
 }
 
 /// First hit with the triangles inside the aperture: those outside are stepped through.
-Met embree_hit(const BodyTracer& tracer, const Aperture& aperture, Ray ray) {
+MirrorHit embree_hit(const BodyTracer& tracer, const Aperture& aperture, Ray ray) {
   double gone = 0.0;
   for (int i = 0; i < 20; ++i) {
     const auto hit = tracer.first_hit(ray, std::numeric_limits<float>::max(), false);
@@ -259,8 +261,8 @@ HitCounts against_embree(const Kernels& kernels, const Reflector& mirror, int ce
   Body body;
   body.mesh = triangles_of(field);
   const BodyTracer tracer({body});
-  const Yardstick y{cell_sagitta_mm(mirror, cells) + static_cast<double>(view.slack) + kRounding,
-                    mirror.aperture};
+  const HitTolerance y{cell_sagitta_mm(mirror, cells) + static_cast<double>(view.tolerance) + kRounding,
+                       mirror.aperture};
   HitCounts sum;
   std::mutex mutex;
   const auto intersect = [&](const LocalRays& in, std::size_t n, LocalHits& out) {
@@ -268,8 +270,8 @@ HitCounts against_embree(const Kernels& kernels, const Reflector& mirror, int ce
   };
   parallel_blocks(rays, 64 * kBatch, [&](std::size_t first, std::size_t last) {
     HitCounts c;
-    for_rays(11, first, last, intersect, [&](const Ray& ray, const Met& fast) {
-      judge(y, ray, fast, embree_hit(tracer, mirror.aperture, ray), c);
+    for_rays(11, first, last, intersect, [&](const Ray& ray, const MirrorHit& fast) {
+      classify(y, ray, fast, embree_hit(tracer, mirror.aperture, ray), c);
     });
     const std::lock_guard lock(mutex);
     sum += c;
@@ -282,7 +284,7 @@ HitCounts field_against_reference(const Kernels& kernels, const Reflector& mirro
   const HeightField field(mirror, cells);
   const FieldView view = view_of(field);
   return against_reference(
-      mirror, cell_sagitta_mm(mirror, cells) + static_cast<double>(view.slack), rays,
+      mirror, cell_sagitta_mm(mirror, cells) + static_cast<double>(view.tolerance), rays,
       [&](const LocalRays& in, std::size_t n, LocalHits& out) { kernels.intersect(view, in, n, out); });
 }
 
@@ -290,13 +292,13 @@ HitCounts exact_against_reference(const Reflector& mirror, std::size_t rays) {
   if (mirror.curve) {
     const CurveView view = view_of(*mirror.curve, mirror.aperture);
     return against_reference(mirror, 0.0, rays, [&](const LocalRays& in, std::size_t n, LocalHits& out) {
-      meet_curve(view, in, n, out);
+      intersect_curve(view, in, n, out);
     });
   }
   const FacetMirror facets(*faceted(mirror), mirror.aperture);
   const FacetView view = facets.view();
   return against_reference(mirror, 0.0, rays, [&](const LocalRays& in, std::size_t n, LocalHits& out) {
-    meet_facets(view, in, n, out);
+    intersect_facets(view, in, n, out);
   });
 }
 

@@ -27,8 +27,8 @@ struct FieldView {
   float reach;                      ///< the quadric stays within this of q0 over the region
   float low, high;                  ///< band of heights over the quadric
   float rim;                        ///< cells of a round mirror end within this distance of the axis
-  float steepness;                  ///< no gradient over the quadric is longer, as far as the rim
-  float slack;                      ///< rounding of a height over the quadric
+  float gradient_bound;             ///< no gradient over the quadric is longer, as far as the rim
+  float tolerance;                  ///< rounding of a height over the quadric
   bool round;                       ///< aperture: a circle of half_x, or a rectangle
   float half_x, half_y, hole;       ///< half sizes and the hole's radius
 };
@@ -74,9 +74,9 @@ struct RayArrays {
 };
 
 /// What becomes of a ray: the number of the mirror that reflects it, or one of these.
-enum : int32_t { kLeaves = -1, kGone = -2, kOnBody = -3 };
+enum : int32_t { kEscaped = -1, kTerminated = -2, kHitObstacle = -3 };
 
-/// What one mirror does to the rays of a batch, in units (units.h) and in numbers of rays.
+/// What one mirror does to the rays of a batch, in quanta (flux_quanta.h) and in numbers of rays.
 struct MirrorSums {
   int64_t face, back;  ///< absorbed by its reflectance, and by its back
   int64_t lost;        ///< of rays that would be reflected once too often
@@ -101,17 +101,18 @@ struct Kernels {
   void (*reflect)(const FrameView& world_from_local, const LocalRays& rays, const LocalHits& hits, size_t n,
                   WorldRays& out, float* cosine);
   /// Rays of a source, numbered and in the luminaire frame, n <= kBatch; `ray_flux` is what a weight of 1
-  /// carries, in mean rays. Returns their flux in units; `all_finite` says whether all numbers are.
+  /// carries, in mean rays. Returns their flux in quanta; `all_finite` says whether all numbers are.
   int64_t (*enter)(const FrameView& world_from_source, const RayArrays& in, size_t n, double ray_flux,
                    WorldRays& out, bool& all_finite);
-  /// Takes off what mirror `mirror` absorbs of the rays that it meets and notes their fates, which stay as
-  /// they are where it meets none. Ray i was reflected reflections[i] times, `max` is all that it may be; a
+  /// Takes off what mirror `mirror` absorbs of the rays that it meets and notes their statuses, which stay as
+  /// they are where it hits none. Ray i was reflected reflections[i] times, `max` is all that it may be; a
   /// front reflects kept[i] of it.
-  MirrorSums (*settle_fates)(const LocalHits& hits, const int32_t* reflections, int32_t max,
-                             const double* kept, int32_t mirror, size_t n, float* flux, int32_t* fate);
+  MirrorSums (*resolve_hits)(const LocalHits& hits, const int32_t* reflections, int32_t max,
+                             const double* throughput, int32_t mirror, size_t n, float* flux,
+                             int32_t* status);
   /// Moves the rays that leave behind the `out_count` of `out`, drops those that are gone, and closes the
-  /// gaps; returns how many stay. Reads n fates and no more; whole vectors of the rays.
-  size_t (*part)(WorldRays& rays, const int32_t* fate, size_t n, WorldRays& out, size_t& out_count);
+  /// gaps; returns how many stay. Reads n statuses and no more; whole vectors of the rays.
+  size_t (*compact)(WorldRays& rays, const int32_t* status, size_t n, WorldRays& out, size_t& out_count);
   /// Type C cell of each direction, as FarFieldGrid::cell has it.
   void (*far_field_cells)(const WorldRays& rays, size_t n, int32_t c_count, int32_t gamma_count,
                           int32_t* cell);

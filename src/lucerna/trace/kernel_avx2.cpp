@@ -6,7 +6,7 @@ namespace lucerna {
 
 const Kernels& avx2_kernels() {
   static constexpr Kernels kernels{"avx2", to_local,     intersect, reflect_rays,
-                                   enter,  settle_fates, part,      far_field_cells};
+                                   enter,  resolve_hits, compact,   far_field_cells};
   return kernels;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#define LUCERNA_ONE_LANE
+#define LUCERNA_SCALAR
 #include "lucerna/trace/field_kernel.h"
 #include "lucerna/trace/wavefront_kernel.h"
 
@@ -7,7 +7,7 @@ namespace lucerna {
 
 const Kernels& scalar_kernels() {
   static constexpr Kernels kernels{"scalar", to_local,     intersect, reflect_rays,
-                                   enter,    settle_fates, part,      far_field_cells};
+                                   enter,    resolve_hits, compact,   far_field_cells};
   return kernels;
 }
 

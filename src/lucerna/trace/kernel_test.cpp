@@ -18,8 +18,8 @@
 #include "lucerna/random.h"
 #include "lucerna/trace/far_field_grid.h"
 #include "lucerna/trace/field_view.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/reference_tracer.h"
-#include "lucerna/trace/units.h"
 #include "tests/support/available_kernels.h"
 #include "tests/support/random_direction.h"
 #include "tests/support/test_mirrors.h"
@@ -168,15 +168,16 @@ TEST(Kernels, FinishedLanesReadWithinTheArrays) {
   }
 }
 
-// An array of fates may end with the last of them, wherever in a vector that is.
+// An array of statuses may end with the last of them, wherever in a vector that is.
 TEST(Kernels, PartingReadsNoFateBehindTheLast) {
-  const std::vector<std::int32_t> all(40, kLeaves);
+  const std::vector<std::int32_t> all(40, kEscaped);
   for (const Kernels* kernels : available_kernels()) {
     for (std::size_t n = 1; n <= all.size(); ++n) {
-      const Fenced fates(all.data(), n);
+      const Fenced statuses(all.data(), n);
       auto rays = std::make_unique<WorldRays>(), out = std::make_unique<WorldRays>();
       std::size_t out_count = 0;
-      EXPECT_EQ(kernels->part(*rays, fates.data(), n, *out, out_count), 0u) << kernels->isa << ", " << n;
+      EXPECT_EQ(kernels->compact(*rays, statuses.data(), n, *out, out_count), 0u)
+          << kernels->isa << ", " << n;
       EXPECT_EQ(out_count, n) << kernels->isa;
     }
   }
@@ -330,11 +331,11 @@ Disagreements compare(const Kernels& kernels, const FieldView& a, const FieldVie
 }
 
 /// What skips the tree because it falls or rises faster than the surface, against what the tree finds;
-/// `bound` is said to be the surface's steepness.
+/// `bound` is said to be the surface's gradient bound.
 Disagreements against_tree(const Kernels& kernels, const HeightField& field, float bound) {
   FieldView tried = view_of(field), by_tree = tried;
-  tried.steepness = bound;
-  by_tree.steepness = 1e9F;
+  tried.gradient_bound = bound;
+  by_tree.gradient_bound = 1e9F;
   return compare(kernels, tried, by_tree, 20);
 }
 
@@ -345,10 +346,10 @@ TEST(Kernels, WhatSkipsTheTreeMeetsWhatTheTreeFinds) {
   for (FieldVertex& v : rough.vertices()) v.z_mm = static_cast<float>(2.0 * rng.uniform());
   rough.rebuild();
   for (const Kernels* kernels : available_kernels()) {
-    Disagreements all = against_tree(*kernels, rough, rough.steepness());
+    Disagreements all = against_tree(*kernels, rough, rough.gradient_bound());
     for (const Reflector& mirror : height_fields()) {
       const HeightField field(mirror, 256);
-      all += against_tree(*kernels, field, field.steepness());
+      all += against_tree(*kernels, field, field.gradient_bound());
     }
     EXPECT_GT(all.hits, 30000u);
     EXPECT_GT(all.reflected, 5000u);
@@ -371,7 +372,7 @@ TEST(Kernels, RaysEnterInTheLuminairesFrameAndNothingIsMissed) {
   for (const Kernels* kernels : available_kernels()) {
     auto out = std::make_unique<WorldRays>();
     bool all_finite = false;
-    const std::int64_t units = kernels->enter(turned, arrays, kRays, 0.75, *out, all_finite);
+    const std::int64_t quanta = kernels->enter(turned, arrays, kRays, 0.75, *out, all_finite);
     EXPECT_TRUE(all_finite);
     double flux = 0.0;
     for (std::size_t i = 0; i < kRays; ++i) {
@@ -386,7 +387,7 @@ TEST(Kernels, RaysEnterInTheLuminairesFrameAndNothingIsMissed) {
       EXPECT_EQ(out->mirror[i], -1);
       flux += static_cast<double>(out->flux[i]);
     }
-    EXPECT_NEAR(static_cast<double>(units), flux * kUnitsPerRay, kRays);
+    EXPECT_NEAR(static_cast<double>(quanta), flux * kQuantaPerRay, kRays);
     for (const std::size_t lane : {std::size_t{0}, std::size_t{100}, kRays - 1}) {
       for (std::size_t a = 0; a < 6; ++a) {
         const float before = std::exchange(in[a][lane], a % 2 == 0 ? NAN : INFINITY);
@@ -403,14 +404,14 @@ TEST(Kernels, FatesAddUpAndPartingKeepsTheOrder) {
   Rng rng(8, 0);
   auto hits = std::make_unique<LocalHits>();
   auto rays = std::make_unique<WorldRays>();
-  std::vector<std::int32_t> reflections(kRays), fate(kRays);
-  std::vector<double> kept(kRays);
+  std::vector<std::int32_t> reflections(kRays), status(kRays);
+  std::vector<double> throughput(kRays);
   for (std::size_t i = 0; i < kRays; ++i) {
     hits->state[i] = static_cast<std::int32_t>(3.0 * rng.uniform());
     reflections[i] = static_cast<std::int32_t>(3.0 * rng.uniform());
-    fate[i] = i % 7 == 0 ? 4 : kLeaves;  // some met mirror 4 before
-    if (fate[i] == 4) hits->state[i] = kMiss;
-    kept[i] = rng.uniform();
+    status[i] = i % 7 == 0 ? 4 : kEscaped;  // some met mirror 4 before
+    if (status[i] == 4) hits->state[i] = kMiss;
+    throughput[i] = rng.uniform();
     rays->flux[i] = static_cast<float>(2.0 * rng.uniform());
     rays->number[i] = static_cast<std::int32_t>(1000 + i);
     for (float* array : {rays->x, rays->y, rays->z, rays->dx, rays->dy, rays->dz})
@@ -418,32 +419,33 @@ TEST(Kernels, FatesAddUpAndPartingKeepsTheOrder) {
   }
   for (const Kernels* kernels : available_kernels()) {
     auto now = std::make_unique<WorldRays>(*rays);
-    std::vector<std::int32_t> fates = fate;
-    const MirrorSums sums =
-        kernels->settle_fates(*hits, reflections.data(), 2, kept.data(), 5, kRays, now->flux, fates.data());
+    std::vector<std::int32_t> statuses = status;
+    const MirrorSums sums = kernels->resolve_hits(*hits, reflections.data(), 2, throughput.data(), 5, kRays,
+                                                  now->flux, statuses.data());
     double before = 0.0, after = 0.0;
     std::int64_t lost_rays = 0, reflected = 0;
     std::vector<std::size_t> stay, leave;
     for (std::size_t i = 0; i < kRays; ++i) {
       before += static_cast<double>(rays->flux[i]);
       const bool front = hits->state[i] == kFront, last = front && reflections[i] == 2;
-      const std::int32_t expected = hits->state[i] == kMiss ? fate[i] : front && !last ? 5 : kGone;
-      ASSERT_EQ(fates[i], expected) << kernels->isa << ", ray " << i;
-      EXPECT_FLOAT_EQ(now->flux[i], rays->flux[i] * (expected == 5 ? static_cast<float>(kept[i]) : 1.0F));
-      if (expected != kGone) after += static_cast<double>(now->flux[i]);
+      const std::int32_t expected = hits->state[i] == kMiss ? status[i] : front && !last ? 5 : kTerminated;
+      ASSERT_EQ(statuses[i], expected) << kernels->isa << ", ray " << i;
+      EXPECT_FLOAT_EQ(now->flux[i],
+                      rays->flux[i] * (expected == 5 ? static_cast<float>(throughput[i]) : 1.0F));
+      if (expected != kTerminated) after += static_cast<double>(now->flux[i]);
       lost_rays += last;
       reflected += expected == 5;
       if (expected >= 0) stay.push_back(i);
-      if (expected == kLeaves) leave.push_back(i);
+      if (expected == kEscaped) leave.push_back(i);
     }
     EXPECT_EQ(sums.lost_rays, lost_rays);
     EXPECT_EQ(sums.reflections, reflected);
-    EXPECT_NEAR(static_cast<double>(sums.face + sums.back + sums.lost), (before - after) * kUnitsPerRay,
+    EXPECT_NEAR(static_cast<double>(sums.face + sums.back + sums.lost), (before - after) * kQuantaPerRay,
                 2.0 * kRays);
     auto out = std::make_unique<WorldRays>();
     const WorldRays settled = *now;
     std::size_t out_count = 2;
-    ASSERT_EQ(kernels->part(*now, fates.data(), kRays, *out, out_count), stay.size()) << kernels->isa;
+    ASSERT_EQ(kernels->compact(*now, statuses.data(), kRays, *out, out_count), stay.size()) << kernels->isa;
     ASSERT_EQ(out_count, 2 + leave.size());
     const auto same = [&](const WorldRays& a, std::size_t i, std::size_t of) {
       return a.number[i] == settled.number[of] && a.x[i] == settled.x[of] && a.y[i] == settled.y[of] &&
@@ -452,7 +454,7 @@ TEST(Kernels, FatesAddUpAndPartingKeepsTheOrder) {
     };
     for (std::size_t k = 0; k < stay.size(); ++k) {
       EXPECT_TRUE(same(*now, k, stay[k])) << kernels->isa << ", ray " << k;
-      EXPECT_EQ(now->mirror[k], fates[stay[k]]);
+      EXPECT_EQ(now->mirror[k], statuses[stay[k]]);
     }
     for (std::size_t k = 0; k < leave.size(); ++k) EXPECT_TRUE(same(*out, 2 + k, leave[k])) << kernels->isa;
   }

@@ -11,20 +11,20 @@
 #include "lucerna/source/adaptive_view.h"
 #include "lucerna/source/cluster_view.h"
 #include "lucerna/trace/body_kernel.h"
+#include "lucerna/trace/cover_glass_kernel.h"
 #include "lucerna/trace/curve_kernel.h"
 #include "lucerna/trace/facet_kernel.h"
 #include "lucerna/trace/far_field_grid.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/kernel.h"
 #include "lucerna/trace/plane_bins.h"
-#include "lucerna/trace/plate_kernel.h"
-#include "lucerna/trace/units.h"
 
 namespace lucerna {
 
 // What a launch of the tracing kernel reads and writes: plain data and pointers into the accelerator's
 // memory.
 
-/// Sums of one replicate, in units or counts.
+/// Sums of one replicate, in quanta or counts.
 enum LedgerSum : std::int32_t {
   kRays,
   kReflections,
@@ -122,8 +122,8 @@ struct LaunchView {
   const FarFieldView* far_fields = nullptr;
   const PlaneView* planes = nullptr;
   BodiesView bodies;
-  const PlacedPlate* plates = nullptr;
-  std::uint64_t plate_count = 0;
+  const PlacedCoverGlass* cover_glasses = nullptr;
+  std::uint64_t cover_glass_count = 0;
 
   /// kReplicates times bins_per_replicate, and times kLedgerSums.
   std::int64_t* bins = nullptr;
@@ -140,7 +140,7 @@ struct LaunchView {
 /// What a height field's leaves hold together, over its quadric (HeightField).
 struct FieldBounds {
   double low = 0.0, high = 0.0;
-  float steepness = 0.0F;
+  float gradient_bound = 0.0F;
 };
 
 /// The tree over a height field, to be made again from its vertices.
@@ -149,7 +149,7 @@ struct HierarchyView {
   FieldNode* nodes = nullptr;
   const LeafKind* leaf_kinds = nullptr;
   /// By leaf square.
-  float* steepness = nullptr;
+  float* gradient_bound = nullptr;
   FieldBounds* bounds = nullptr;
   std::int32_t offsets[16] = {};
   std::int32_t cells = 0, levels = 0;

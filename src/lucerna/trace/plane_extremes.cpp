@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "lucerna/trace/jackknifed_units.h"
+#include "lucerna/trace/jackknifed_quanta.h"
 
 namespace lucerna {
 

@@ -57,7 +57,7 @@ std::span<const ProjectKey> project_keys();
 /// Null if there is none.
 const ProjectKey* find_key(std::span<const ProjectKey> keys, std::string_view table, std::string_view key);
 
-/// The unit that the ending of the key's name stands for, as "mm"; empty for pure numbers, words and files.
+/// The unit that the ending of the key's name represents, as "mm"; empty for pure numbers, words and files.
 std::string_view unit_of(std::string_view key);
 
 /// "a", "a or b", "a, b or c", of words with a blank between them.

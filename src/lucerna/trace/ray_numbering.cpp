@@ -32,7 +32,7 @@ std::vector<std::uint64_t> source_shares(const std::vector<PlacedSource>& source
 
 }  // namespace
 
-SourceWord::SourceWord(const std::vector<std::uint64_t>& shares) {
+SourceInterleaving::SourceInterleaving(const std::vector<std::uint64_t>& shares) {
   // Huffman's order joins the two least shares first, so large ones sit near the root, where rounding is
   // least.
   using Entry = std::pair<std::uint64_t, std::size_t>;
@@ -56,7 +56,7 @@ SourceWord::SourceWord(const std::vector<std::uint64_t>& shares) {
   }
 }
 
-std::uint64_t SourceWord::count(std::size_t source, std::uint64_t n) const {
+std::uint64_t SourceInterleaving::count(std::size_t source, std::uint64_t n) const {
   if (source + 1 == nodes_.size()) return n;
   const Node& node = nodes_[source];
   const Node& parent = nodes_[node.parent];

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lucerna/scene.h"
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 
 namespace lucerna {
 
@@ -13,10 +13,10 @@ namespace lucerna {
 /// by whole shares alone, in a balanced word: of the first n numbers, source s has n * share(s) / sum of
 /// shares to within 1 + log2(number of sources), and exactly share(s) of the first sum of shares. Built as a
 /// binary tree of two-letter balanced words, so that a count costs O(log sources). Thread safe.
-class SourceWord {
+class SourceInterleaving {
  public:
   /// At least one share; each > 0; their sum below 2^62.
-  explicit SourceWord(const std::vector<std::uint64_t>& shares);
+  explicit SourceInterleaving(const std::vector<std::uint64_t>& shares);
 
   std::uint64_t total() const { return nodes_.back().total; }
   std::uint64_t share(std::size_t source) const { return nodes_[source].total; }
@@ -55,7 +55,7 @@ class RayNumbering {
 
   /// Rays of a run whose number is not given: the sum of all shares.
   std::uint64_t default_count() const { return word_.total(); }
-  const SourceWord& word() const { return word_; }
+  const SourceInterleaving& word() const { return word_; }
   /// Flux of a ray of weight 1 of `source`, in units of the run's mean ray.
   double ray_flux(std::size_t source) const { return streams_[source].ray_flux; }
 
@@ -69,7 +69,7 @@ class RayNumbering {
     std::uint64_t slot;
     double ray_flux;
   };
-  SourceWord word_;
+  SourceInterleaving word_;
   std::vector<Stream> streams_;
   std::uint64_t seed_;
 };

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <set>
 
-#include "lucerna/trace/units.h"
+#include "lucerna/trace/flux_quanta.h"
 
 namespace lucerna {
 namespace {
@@ -32,13 +32,13 @@ PlacedSource sized(double flux, std::optional<std::uint64_t> rays = std::nullopt
   return {std::make_shared<SizedSource>(flux, rays), {}, std::nullopt};
 }
 
-TEST(SourceWord, EveryPrefixIsBalancedAndTheWholeIsExact) {
+TEST(SourceInterleaving, EveryPrefixIsBalancedAndTheWholeIsExact) {
   for (const std::vector<std::uint64_t>& shares : {std::vector<std::uint64_t>{7},
                                                    {3, 5},
                                                    {1, 1, 1},
                                                    {100, 3, 1, 40, 17},
                                                    std::vector<std::uint64_t>(31, 9)}) {
-    const SourceWord word(shares);
+    const SourceInterleaving word(shares);
     const double bound = 1.0 + std::log2(static_cast<double>(shares.size()));
     std::vector<std::uint64_t> before(shares.size(), 0);
     for (std::uint64_t n = 0; n <= 3 * word.total(); ++n) {

@@ -8,10 +8,10 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/trace/body_tracer.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/glass_tracer.h"
 #include "lucerna/trace/ray_numbering.h"
 #include "lucerna/trace/reference_tracer.h"
-#include "lucerna/trace/units.h"
 
 namespace lucerna {
 
@@ -41,7 +41,7 @@ std::optional<WorldHit> nearest_hit(const std::vector<PlacedTracer>& mirrors, co
   return best;
 }
 
-/// What rays can meet.
+/// What rays can hit.
 struct Obstacles {
   std::vector<PlacedTracer> mirrors;
   const std::vector<Body>& bodies;
@@ -107,7 +107,7 @@ class PathWalk {
   bool pass(const GlassHit& hit) {
     const Vec3 in = ray_.at(hit.t_mm);
     const GlassPassage passage = obstacles_.glass_tracer.pass(ray_, hit, key_);
-    if (!(passage.kept > 0.0)) return end_at(in, RayEnd::glass);
+    if (!(passage.throughput > 0.0)) return end_at(in, RayEnd::glass);
     if (!passage.transmitted && reflections_ == max_bounces_) return end_at(in, RayEnd::bounce_limit);
     const CoverGlass& glass = obstacles_.glasses[hit.glass];
     const Vec3 z = glass.world_from_glass.vector({0.0, 0.0, 1.0});

@@ -43,7 +43,7 @@ TEST(RayPaths, BodiesStopOrReflect) {
   Scene scene = collimator();
   Body shield;
   shield.name = "shield";
-  // A square below everything: all that leaves downwards meets it.
+  // A square below everything: all that leaves downwards hits it.
   auto mesh = std::make_shared<Mesh>();
   mesh->vertices_mm = {{-500, -500, -40}, {500, -500, -40}, {500, 500, -40}, {-500, 500, -40}};
   mesh->triangles = {{0, 1, 2}, {0, 2, 3}};

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <limits>
 
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/reference_tracer.h"
 #include "lucerna/trace/slope_error.h"
 #include "lucerna/trace/trace_engine.h"
-#include "lucerna/trace/units.h"
 
 namespace lucerna {
 
@@ -37,7 +37,7 @@ class ReferenceEngine final : public TraceEngine {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       trace_ray(
           source.world_from_source.ray(rays.ray(i)),
-          std::llround(static_cast<double>(rays.weight[i]) * numbering_.ray_flux(run.source) * kUnitsPerRay),
+          std::llround(static_cast<double>(rays.weight[i]) * numbering_.ray_flux(run.source) * kQuantaPerRay),
           {run.sequence_seed, run.first + i, 0}, scratch, tally);
     }
   }
@@ -70,9 +70,9 @@ class ReferenceEngine final : public TraceEngine {
     ++tally.lost_rays[static_cast<std::size_t>(cause)];
   }
 
-  /// Counts what a surface keeps of `energy` when it passes `kept` on, and returns it.
-  static std::int64_t absorb(std::int64_t energy, double kept, std::size_t cause, Tally& tally) {
-    const std::int64_t absorbed = energy - std::llround(static_cast<double>(energy) * kept);
+  /// Counts what a surface keeps of `energy` when it passes `throughput` on, and returns it.
+  static std::int64_t absorb(std::int64_t energy, double throughput, std::size_t cause, Tally& tally) {
+    const std::int64_t absorbed = energy - std::llround(static_cast<double>(energy) * throughput);
     tally.absorbed[cause] += absorbed;
     return absorbed;
   }
@@ -86,14 +86,14 @@ class ReferenceEngine final : public TraceEngine {
         return lose(LostCause::not_finite, energy, tally);
       const Nearest n = nearest(ray);
       const auto body = bodies().first_hit(ray, n.hit.t_mm, bounce > 0);
-      if (const auto plate = glasses().first_hit(ray, body ? body->t_mm : n.hit.t_mm)) {
-        const GlassPassage passage = glasses().pass(ray, *plate, key);
-        if (!passage.transmitted && passage.kept > 0.0) {
+      if (const auto cover_glass = glasses().first_hit(ray, body ? body->t_mm : n.hit.t_mm)) {
+        const GlassPassage passage = glasses().pass(ray, *cover_glass, key);
+        if (!passage.transmitted && passage.throughput > 0.0) {
           if (bounce == max_bounces_) return lose(LostCause::bounce_limit, energy, tally);
           ++bounce;
           ++tally.reflections;
         }
-        energy -= absorb(energy, passage.kept, glass_cause(plate->glass), tally);
+        energy -= absorb(energy, passage.throughput, glass_cause(cover_glass->glass), tally);
         if (energy == 0) return;
         ray = passage.ray;
         continue;

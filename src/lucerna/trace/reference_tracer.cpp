@@ -138,14 +138,14 @@ ReferenceTracer::ReferenceTracer(const Reflector& reflector, int levels) : refle
 
 std::optional<MirrorHit> ReferenceTracer::first_hit_with_curve(const Ray& ray) const {
   const CurveHit hit = CurveWalk(curve_, ray.origin_mm, ray.direction.vec(), 0.0).run();
-  if (!hit.met) return std::nullopt;
+  if (!hit.is_hit) return std::nullopt;
   const Vec3 off = (hit.front ? offset_mm_ : -offset_mm_) * hit.normal;
   return MirrorHit{hit.t, ray.at(hit.t) + off, Direction::from_unit(hit.normal), hit.front};
 }
 
 std::optional<MirrorHit> ReferenceTracer::first_hit_with_facets(const Ray& ray) const {
-  const FacetHit hit = meet_facets(facets_->view(), ray.origin_mm, ray.direction.vec(), 0.0);
-  if (!hit.met) return std::nullopt;
+  const FacetHit hit = intersect_facets(facets_->view(), ray.origin_mm, ray.direction.vec(), 0.0);
+  if (!hit.is_hit) return std::nullopt;
   const Direction normal = Direction::from({-hit.dzdx, -hit.dzdy, 1.0});
   const Vec3 off = (hit.front ? offset_mm_ : -offset_mm_) * normal.vec();
   return MirrorHit{hit.t, ray.at(hit.t) + off, normal, hit.front};

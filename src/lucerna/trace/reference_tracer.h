@@ -10,7 +10,7 @@
 
 namespace lucerna {
 
-/// Where a ray meets a mirror, in the mirror's frame.
+/// Where a ray hits a mirror, in the mirror's frame.
 struct MirrorHit {
   /// Distance along the ray.
   double t_mm = 0.0;
@@ -34,7 +34,7 @@ class ReferenceTracer {
   /// cell.
   explicit ReferenceTracer(const Reflector& reflector, int levels = 8);
 
-  /// The first point in [0, infinity) where `ray` (in the mirror's frame) meets the mirror; nothing if it
+  /// The first point in [0, infinity) where `ray` (in the mirror's frame) hits the mirror; nothing if it
   /// passes by or through the hole.
   std::optional<MirrorHit> first_hit(const Ray& ray) const;
 

@@ -76,13 +76,13 @@ Ray tricky(std::size_t i, const Reflector& mirror) {
 }
 
 /// What becomes of a ray in double.
-struct Fate {
+struct PathSummary {
   int reflections = 0;
   double min_cosine = 1.0, max_cosine = 0.0;  ///< of incidence
   double min_chord_mm = HUGE_VAL;             ///< between reflections
 };
-Fate follow(const ReferenceTracer& mirror, Ray ray, int max_reflections) {
-  Fate f;
+PathSummary follow(const ReferenceTracer& mirror, Ray ray, int max_reflections) {
+  PathSummary f;
   while (f.reflections < max_reflections) {
     const auto hit = mirror.first_hit(ray);
     if (!hit || !hit->front) break;
@@ -110,14 +110,14 @@ std::shared_ptr<RaySet> tricky_rays(const Reflector& mirror, std::size_t n, std:
   auto set = std::make_shared<RaySet>();
   set->header.set_flux(1.0);
   set->rays.resize(n, 0);
-  std::size_t kept = 0;
+  std::size_t retained = 0;
   endless = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    set->rays.set(kept, tricky(i, mirror));
-    set->rays.weight[kept] = 1.0F;
-    const Fate f = follow(tracer, set->rays.ray(kept), 500);
-    if (f.reflections < 500 && f.min_cosine > 1e-3 && !runs_along(mirror, set->rays.ray(kept))) {
-      ++kept;
+    set->rays.set(retained, tricky(i, mirror));
+    set->rays.weight[retained] = 1.0F;
+    const PathSummary f = follow(tracer, set->rays.ray(retained), 500);
+    if (f.reflections < 500 && f.min_cosine > 1e-3 && !runs_along(mirror, set->rays.ray(retained))) {
+      ++retained;
       continue;
     }
     if (f.reflections < 500) continue;
@@ -126,7 +126,7 @@ std::shared_ptr<RaySet> tricky_rays(const Reflector& mirror, std::size_t n, std:
     EXPECT_TRUE(mirror.curve || f.max_cosine < 3e-3) << i << ": " << f.max_cosine;
     EXPECT_TRUE(i % 10 == 4 || i % 10 == 6) << i << ": it comes from outside";
   }
-  set->rays.resize(kept, 0);
+  set->rays.resize(retained, 0);
   return set;
 }
 
@@ -209,7 +209,7 @@ TEST(Robustness, RaysThroughTheHoleNearlyAlongTheMirror) {
 
 // Small mirrors that are nearly their quadric, so that its band is all there is to hit, and sources far away
 // beside their size. (Heights used to be rounded as those of the rays' starts: 2 % of the hits were missed,
-// and some rays met the back.)
+// and some rays hit the back.)
 TEST(Robustness, SmallMirrorsAreMetFromFarAway) {
   EmitterOptions lamp;
   lamp.kind = EmitterKind::sphere;

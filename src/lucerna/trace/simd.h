@@ -10,8 +10,8 @@
 
 #include "lucerna/host_device.h"
 
-#if defined(LUCERNA_ONE_LANE) || defined(__CUDACC__)
-#include "lucerna/trace/one_lane.h"
+#if defined(LUCERNA_SCALAR) || defined(__CUDACC__)
+#include "lucerna/trace/scalar_float.h"
 #elif defined(__AVX512F__) || defined(__AVX2__)
 #include <immintrin.h>
 #endif
@@ -19,9 +19,9 @@
 namespace lucerna {
 namespace {
 
-#if defined(LUCERNA_ONE_LANE) || defined(__CUDACC__)
+#if defined(LUCERNA_SCALAR) || defined(__CUDACC__)
 
-// one_lane.h has them.
+// scalar_float.h has them.
 
 #elif defined(__AVX512F__)
 
@@ -386,7 +386,7 @@ inline Int float_bits(Float a) {
 
 #endif
 
-#if (defined(__AVX2__) || defined(__AVX512F__)) && !defined(LUCERNA_ONE_LANE) && !defined(__CUDACC__)
+#if (defined(__AVX2__) || defined(__AVX512F__)) && !defined(LUCERNA_SCALAR) && !defined(__CUDACC__)
 /// p[r][i] .. p[r][i + 3] of every lane, for each r.
 template <int kRows>
 inline void gather4(const float* const (&p)[kRows], Int i, Float (&out)[kRows][4]) {
@@ -432,7 +432,7 @@ LUCERNA_HD inline bool any(Mask a) { return bits(a) != 0; }
 /// Asks for the cache lines of p[i] in the lanes of `m`, which will be read soon. Nothing on a GPU.
 LUCERNA_HD inline void prefetch([[maybe_unused]] const float* p, [[maybe_unused]] Int i,
                                 [[maybe_unused]] Mask m) {
-#if !defined(LUCERNA_ONE_LANE) && !defined(__CUDACC__)
+#if !defined(LUCERNA_SCALAR) && !defined(__CUDACC__)
   alignas(64) int32_t k[kLanes];
   store(k, i);
   asm("" : "+m"(k));

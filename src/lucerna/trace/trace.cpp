@@ -10,9 +10,9 @@
 #include "lucerna/core/parallel.h"
 #include "lucerna/trace/device_trace.h"
 #include "lucerna/trace/far_field_grid.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/ray_numbering.h"
 #include "lucerna/trace/trace_engine.h"
-#include "lucerna/trace/units.h"
 
 namespace lucerna {
 
@@ -26,22 +26,22 @@ constexpr std::uint64_t kTaskBlocks = 512;
 constexpr std::uint64_t kRowRays = kTaskBlocks * kReplicates * kBlockRays;
 
 /// The rays that left in one task, with what puts them into the order of their numbers.
-struct KeptRays {
+struct RetainedRays {
   RayBlock rays;
   std::vector<OutRun> runs;
 };
 
 /// Joins the rays of all tasks of `trace`: every row of tasks holds its blocks by replicate.
-void order_rays(const std::vector<KeptRays>& tasks, TraceResult& result) {
+void order_rays(const std::vector<RetainedRays>& tasks, TraceResult& result) {
   std::size_t total = 0;
-  for (const KeptRays& task : tasks) total += task.rays.size();
+  for (const RetainedRays& task : tasks) total += task.rays.size();
   result.out_rays.reserve(total);
   std::uint64_t block = result.first_ray / kRowRays * kTaskBlocks * kReplicates;
   for (std::size_t row = 0; row < tasks.size(); row += kReplicates) {
     std::array<std::size_t, kReplicates> next{}, at{};
     for (std::uint64_t k = 0; k < kTaskBlocks * kReplicates; ++k, ++block) {
       const std::size_t r = k % kReplicates;
-      const KeptRays& task = tasks[row + r];
+      const RetainedRays& task = tasks[row + r];
       for (; next[r] < task.runs.size() && task.runs[next[r]].block == block; ++next[r]) {
         const OutRun& run = task.runs[next[r]];
         for (std::uint32_t i = 0; i < run.rays; ++i) result.out_rays.append(task.rays, at[r]++);
@@ -150,7 +150,7 @@ TraceResult trace_on_cpu(const Scene& scene, const RayNumbering& numbering, cons
   std::uint64_t done = 0;
   const std::uint64_t first_row = result.first_ray / kRowRays;
   const std::uint64_t rows = (result.last_ray - 1) / kRowRays + 1 - first_row;
-  std::vector<KeptRays> kept(keep_rays ? rows * kReplicates : 0);
+  std::vector<RetainedRays> retained(keep_rays ? rows * kReplicates : 0);
   parallel_blocks(rows * kReplicates, 1, [&](std::size_t task, std::size_t) {
     const std::uint64_t replicate = task % kReplicates;
     const std::uint64_t row_begin = (first_row + task / kReplicates) * kRowRays;
@@ -172,12 +172,12 @@ TraceResult trace_on_cpu(const Scene& scene, const RayNumbering& numbering, cons
       }
     }
     const std::lock_guard lock(mutex);
-    if (keep_rays) kept[task] = {std::move(scratch.out_rays), std::move(out_runs)};
+    if (keep_rays) retained[task] = {std::move(scratch.out_rays), std::move(out_runs)};
     result.replicates[replicate] += tally;
     done += tally.rays;
     progress.step("trace", done, result.last_ray - result.first_ray);
   });
-  order_rays(kept, result);
+  order_rays(retained, result);
   return result;
 }
 

@@ -10,10 +10,10 @@
 #include "lucerna/trace.h"
 #include "lucerna/trace/body_tracer.h"
 #include "lucerna/trace/far_field_grid.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/glass_tracer.h"
 #include "lucerna/trace/plane_bins.h"
 #include "lucerna/trace/ray_numbering.h"
-#include "lucerna/trace/units.h"
 
 namespace lucerna {
 
@@ -62,19 +62,19 @@ class TraceEngine {
            std::any_of(far_fields_.begin(), far_fields_.end(), [](const auto& f) { return f.tent(); });
   }
 
-  /// Gives the last leg of a ray to all detectors but far fields of hard bins. `units` is what it carries.
-  void leave(const Ray& ray, std::int64_t units, TraceScratch& scratch, Tally& tally) const {
+  /// Gives the last leg of a ray to all detectors but far fields of hard bins. `quanta` is what it carries.
+  void leave(const Ray& ray, std::int64_t quanta, TraceScratch& scratch, Tally& tally) const {
     for (std::size_t d = 0; d < far_fields_.size(); ++d) {
-      if (far_fields_[d].tent()) far_fields_[d].add_tent(ray.direction, units, tally.bins[d].data());
+      if (far_fields_[d].tent()) far_fields_[d].add_tent(ray.direction, quanta, tally.bins[d].data());
     }
     for (std::size_t i = 0; i < planes_.size(); ++i) {
-      if (const auto cell = planes_[i].cell(ray)) tally.bins[far_fields_.size() + i][*cell] += units;
+      if (const auto cell = planes_[i].cell(ray)) tally.bins[far_fields_.size() + i][*cell] += quanta;
     }
     if (!keep_rays_) return;
     RayBlock& out = scratch.out_rays;
     out.resize(out.size() + 1);
     out.set(out.size() - 1, ray);
-    out.weight.back() = static_cast<float>(static_cast<double>(units) / kUnitsPerRay);
+    out.weight.back() = static_cast<float>(static_cast<double>(quanta) / kQuantaPerRay);
   }
 
   const BodyTracer& bodies() const { return bodies_; }

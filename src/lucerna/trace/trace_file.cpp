@@ -13,8 +13,8 @@
 #include "lucerna/core/error.h"
 #include "lucerna/core/file.h"
 #include "lucerna/trace/far_field_grid.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/ray_numbering.h"
-#include "lucerna/trace/units.h"
 
 namespace lucerna {
 

@@ -4,7 +4,7 @@
 // What becomes of one ray, from its number to the bins: the body of the GPU's tracing kernel. Included by
 // what is compiled for one lane only (simd.h): the CUDA kernels, and the CPU's stand-in for them
 // (accelerator_emulated.cpp), which runs the same functions in a loop. Plain data in flat arrays; sums are
-// the whole units of units.h, so that the order of adding does not matter.
+// the whole quanta of flux_quanta.h, so that the order of adding does not matter.
 
 #include <cfloat>
 #include <type_traits>
@@ -12,9 +12,9 @@
 #include "lucerna/core/atomic_add.h"
 #include "lucerna/trace/exact_mirrors.h"
 #include "lucerna/trace/field_kernel.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/launch_view.h"
 #include "lucerna/trace/slope_error.h"
-#include "lucerna/trace/units.h"
 
 namespace lucerna {
 namespace {
@@ -22,7 +22,7 @@ namespace {
 /// The sums of the ledger that one thread makes.
 struct Counters {
   std::int64_t sum[kLedgerSums] = {};
-  LUCERNA_HD void add(LedgerSum which, std::int64_t units) { sum[which] += units; }
+  LUCERNA_HD void add(LedgerSum which, std::int64_t quanta) { sum[which] += quanta; }
 };
 
 /// A ray as a source emits it: float32 as in a ray file, in the source's frame.
@@ -60,11 +60,11 @@ LUCERNA_HD inline Ray world_ray(const LaneRays& ray) {
   return {{ray.x.v, ray.y.v, ray.z.v}, Direction::from({ray.dx.v, ray.dy.v, ray.dz.v})};
 }
 
-LUCERNA_HD LUCERNA_HD_CALL inline void deal_to_tents(const LaunchView& v, const Direction& d,
-                                                     std::int64_t units, std::int64_t* bins) {
+LUCERNA_HD LUCERNA_HD_CALL inline void add_to_tents(const LaunchView& v, const Direction& d,
+                                                    std::int64_t quanta, std::int64_t* bins) {
   for (std::int32_t i = 0; i < v.far_field_count; ++i) {
     const FarFieldView& far = v.far_fields[i];
-    if (far.grid.tent()) far.grid.add_tent(d, units, bins + far.first_bin);
+    if (far.grid.tent()) far.grid.add_tent(d, quanta, bins + far.first_bin);
   }
 }
 
@@ -73,20 +73,21 @@ template <SceneFeatures kFeatures>
 LUCERNA_HD inline void detect(const LaunchView& v, const LaneRays& ray, float flux, std::uint32_t replicate,
                               std::size_t place) {
   std::int64_t* const bins = v.bins + replicate * v.bins_per_replicate;
-  const std::int64_t units = units_of(flux);
+  const std::int64_t quanta = quanta_of(flux);
   for (std::int32_t d = 0; d < v.far_field_count; ++d) {
     const FarFieldView& far = v.far_fields[d];
     if constexpr ((kFeatures & kTents) != 0) {
       if (far.grid.tent()) continue;  // below
     }
     atomic_add(bins + far.first_bin + far_field_cell(ray.dx, ray.dy, ray.dz, far.c_count, far.gamma_count).v,
-               units);
+               quanta);
   }
   if ((kFeatures & kTents) == 0 && v.plane_count == 0 && v.out_rays == nullptr) return;
   const Ray leg = world_ray(ray);
-  if constexpr ((kFeatures & kTents) != 0) deal_to_tents(v, leg.direction, units, bins);
+  if constexpr ((kFeatures & kTents) != 0) add_to_tents(v, leg.direction, quanta, bins);
   for (std::int32_t d = 0; d < v.plane_count; ++d) {
-    if (const auto cell = v.planes[d].bins.cell(leg)) atomic_add(bins + v.planes[d].first_bin + *cell, units);
+    if (const auto cell = v.planes[d].bins.cell(leg))
+      atomic_add(bins + v.planes[d].first_bin + *cell, quanta);
   }
   if (v.out_rays == nullptr) return;
   v.out_rays[place] = {ray.x.v,
@@ -95,22 +96,22 @@ LUCERNA_HD inline void detect(const LaunchView& v, const LaneRays& ray, float fl
                        static_cast<float>(leg.direction.x()),
                        static_cast<float>(leg.direction.y()),
                        static_cast<float>(leg.direction.z()),
-                       static_cast<float>(static_cast<double>(units) / kUnitsPerRay)};
+                       static_cast<float>(static_cast<double>(quanta) / kQuantaPerRay)};
 }
 
-LUCERNA_HD LUCERNA_HD_CALL inline ExactHit meet_exact(const MirrorView& mirror, const Vec3& o, const Vec3& d,
-                                                      bool on_mirror) {
+LUCERNA_HD LUCERNA_HD_CALL inline ExactHit intersect_exact(const MirrorView& mirror, const Vec3& o,
+                                                           const Vec3& d, bool on_mirror) {
   return mirror.curve.node_count > 0 ? curve_hit(mirror.curve, o, d, on_mirror)
                                      : facet_hit(mirror.facets, o, d, on_mirror);
 }
 
 /// First hit of a ray in a mirror's frame with that mirror.
 template <SceneFeatures kFeatures>
-LUCERNA_HD inline LaneHits meet(const MirrorView& mirror, const LaneRays& local) {
+LUCERNA_HD inline LaneHits intersect_mirror(const MirrorView& mirror, const LaneRays& local) {
   if constexpr ((kFeatures & kExactMirrors) != 0) {
     if (mirror.curve.node_count > 0 || mirror.facets.columns > 0) {
-      const ExactHit hit = meet_exact(mirror, {local.x.v, local.y.v, local.z.v},
-                                      {local.dx.v, local.dy.v, local.dz.v}, local.on_mirror.m);
+      const ExactHit hit = intersect_exact(mirror, {local.x.v, local.y.v, local.z.v},
+                                           {local.dx.v, local.dy.v, local.dz.v}, local.on_mirror.m);
       return {hit.t, hit.gx, hit.gy, Int(hit.state), hit.gz};
     }
   }
@@ -129,7 +130,7 @@ LUCERNA_HD inline FirstHit first_hit(const LaunchView& v, const LaneRays& ray, s
   for (std::int32_t m = 0; m < v.mirror_count; ++m) {
     LaneRays local = in_frame(v.mirrors[m].mirror_from_world, ray);
     local.on_mirror = {m == last};
-    const LaneHits hit = meet<kFeatures>(v.mirrors[m], local);
+    const LaneHits hit = intersect_mirror<kFeatures>(v.mirrors[m], local);
     if (hit.state.v == kMiss || (first.mirror >= 0 && !(hit.t().v < first.hit.t().v))) continue;
     first.mirror = m;
     first.local = local;
@@ -152,52 +153,53 @@ LUCERNA_HD inline bool all_finite(const LaneRays& r) {
 }
 
 /// What becomes of a ray at what is no mirror.
-struct Encounter {
-  bool met = false;
-  bool reflected = false;  ///< else it was let through
-  double kept = 0.0;       ///< share of its flux that goes on; 0: it ends here
-  std::int32_t cause = 0;  ///< that keeps the rest
-  Ray ray;                 ///< after it
+struct ObstacleHit {
+  bool is_hit = false;
+  bool reflected = false;   ///< else it was let through
+  double throughput = 0.0;  ///< share of its flux that goes on; 0: it ends here
+  std::int32_t cause = 0;   ///< that keeps the rest
+  Ray ray;                  ///< after it
 };
 
-LUCERNA_HD LUCERNA_HD_CALL inline std::optional<BodyHit> meet_bodies(const LaunchView& v, const Ray& ray,
-                                                                     double nearest_mm, bool returning) {
+LUCERNA_HD LUCERNA_HD_CALL inline std::optional<BodyHit> intersect_bodies(const LaunchView& v, const Ray& ray,
+                                                                          double nearest_mm, bool returning) {
   return first_body(v.bodies, ray, nearest_mm, returning);
 }
 
 /// The first thing that is no mirror before `nearest_mm`. `reflections`: how often the ray was reflected
 /// before.
-LUCERNA_HD LUCERNA_HD_CALL inline Encounter meet_obstacles(const LaunchView& v, const Ray& ray,
-                                                           double nearest_mm, int reflections,
-                                                           const ReflectionKey& key) {
+LUCERNA_HD LUCERNA_HD_CALL inline ObstacleHit intersect_obstacles(const LaunchView& v, const Ray& ray,
+                                                                  double nearest_mm, int reflections,
+                                                                  const ReflectionKey& key) {
   std::optional<BodyHit> hit;
-  if (v.bodies.count > 0) hit = meet_bodies(v, ray, nearest_mm, reflections > 0);
+  if (v.bodies.count > 0) hit = intersect_bodies(v, ray, nearest_mm, reflections > 0);
   if (hit) nearest_mm = hit->t_mm;
-  if (const auto plate = first_plate(v.plates, v.plate_count, ray, nearest_mm)) {
-    const GlassPassage passage = through_plate(v.plates[plate->glass], ray, *plate, key);
-    return {true, passage.kept > 0.0 && !passage.transmitted, passage.kept,
-            static_cast<std::int32_t>(v.bodies.count + plate->glass), passage.ray};
+  if (const auto cover_glass = first_cover_glass(v.cover_glasses, v.cover_glass_count, ray, nearest_mm)) {
+    const GlassPassage passage =
+        through_cover_glass(v.cover_glasses[cover_glass->glass], ray, *cover_glass, key);
+    return {true, passage.throughput > 0.0 && !passage.transmitted, passage.throughput,
+            static_cast<std::int32_t>(v.bodies.count + cover_glass->glass), passage.ray};
   }
   if (!hit) return {};
   const BodyView& body = v.bodies.bodies[hit->body];
-  const double kept =
+  const double throughput =
       reflectance_at(body.reflectance, body.reflectance_entries, -dot(ray.direction, hit->normal));
-  Encounter e{true, true, kept, static_cast<std::int32_t>(hit->body), {}};
-  if (kept > 0.0) {
+  ObstacleHit e{true, true, throughput, static_cast<std::int32_t>(hit->body), {}};
+  if (throughput > 0.0) {
     e.ray = {ray.at(hit->t_mm), reflected_off(body.slope_error_mrad, ray.direction, *hit, key)};
   }
   return e;
 }
 
 /// Takes `1 - kept` off `flux`; returns what that is.
-LUCERNA_HD inline std::int64_t absorb(float& flux, double kept) {
-  const std::int64_t before = units_of(flux);
-  flux = static_cast<float>(static_cast<double>(flux) * kept);
-  return before - units_of(flux);
+LUCERNA_HD inline std::int64_t absorb(float& flux, double throughput) {
+  const std::int64_t before = quanta_of(flux);
+  flux = static_cast<float>(static_cast<double>(flux) * throughput);
+  return before - quanta_of(flux);
 }
 
 LUCERNA_HD inline void lose_to_bounce_limit(float flux, Counters& counters) {
-  counters.add(kLostBounceLimit, units_of(flux));
+  counters.add(kLostBounceLimit, quanta_of(flux));
   counters.add(kLostBounceLimitRays, 1);
 }
 
@@ -205,22 +207,23 @@ LUCERNA_HD inline void lose_to_bounce_limit(float flux, Counters& counters) {
 template <SceneFeatures kFeatures>
 LUCERNA_HD inline void follow(const LaunchView& v, LaneRays ray, float flux, ReflectionKey key,
                               std::uint32_t replicate, std::size_t place, Counters& counters) {
-  constexpr bool kMeetsOthers = (kFeatures & kObstacles) != 0;
+  constexpr bool kHasObstacles = (kFeatures & kObstacles) != 0;
   std::int32_t last = -1;
   // All that a ray meets counts as a bounce; without glass each is a reflection.
   for (int bounce = 0, reflections = 0;; ++bounce) {
-    if constexpr (!kMeetsOthers) reflections = bounce;
+    if constexpr (!kHasObstacles) reflections = bounce;
     FirstHit first = first_hit<kFeatures>(v, ray, last);
     key.bounce = bounce;
-    if constexpr (kMeetsOthers) {
+    if constexpr (kHasObstacles) {
       const double nearest =
           first.mirror < 0 ? static_cast<double>(FLT_MAX) : static_cast<double>(first.hit.t().v);
-      const Encounter e = meet_obstacles(v, world_ray(ray), nearest, reflections, key);
-      if (e.met) {
+      const ObstacleHit e = intersect_obstacles(v, world_ray(ray), nearest, reflections, key);
+      if (e.is_hit) {
         if (e.reflected && reflections == v.max_bounces) return lose_to_bounce_limit(flux, counters);
         const std::size_t copy = replicate * kCauseCopies + place % kCauseCopies;
-        atomic_add(v.causes + copy * static_cast<std::size_t>(v.cause_count) + e.cause, absorb(flux, e.kept));
-        if (e.kept == 0.0) return;
+        atomic_add(v.causes + copy * static_cast<std::size_t>(v.cause_count) + e.cause,
+                   absorb(flux, e.throughput));
+        if (e.throughput == 0.0) return;
         ray = emitted(e.ray).ray;
         last = -1;
         if (e.reflected) {
@@ -231,19 +234,19 @@ LUCERNA_HD inline void follow(const LaunchView& v, LaneRays ray, float flux, Ref
       }
     }
     if (first.mirror < 0) {
-      counters.add(reflections == 0 ? kOutDirect : kOutReflected, units_of(flux));
+      counters.add(reflections == 0 ? kOutDirect : kOutReflected, quanta_of(flux));
       detect<kFeatures>(v, ray, flux, replicate, place);
       return;
     }
     const MirrorView& mirror = v.mirrors[first.mirror];
-    if (first.hit.state.v == kBack) return counters.add(kAbsorbedBack, units_of(flux));
+    if (first.hit.state.v == kBack) return counters.add(kAbsorbedBack, quanta_of(flux));
     if (reflections == v.max_bounces) return lose_to_bounce_limit(flux, counters);
     if (mirror.slope_error_rad > 0.0) tilt(mirror.slope_error_rad, key, first.hit);
     Float cosine;
     ray = in_frame(mirror.world_from_mirror, reflected(first.local, first.hit, cosine));
-    const double kept =
+    const double throughput =
         reflectance_at(mirror.reflectance, mirror.reflectance_entries, static_cast<double>(cosine.v));
-    counters.add(kAbsorbedFace, absorb(flux, kept));
+    counters.add(kAbsorbedFace, absorb(flux, throughput));
     counters.add(kReflections, 1);
     ++reflections;
     last = first.mirror;
@@ -266,10 +269,10 @@ LUCERNA_HD inline void trace_number(const LaunchView& v, std::size_t block, std:
     const Emitted e = emit(v, run, i, place);
     const LaneRays ray = in_frame(source.world_from_source, e.ray);
     const float flux = static_cast<float>(static_cast<double>(e.weight) * source.ray_flux);
-    counters.add(kEmitted, units_of(flux));
+    counters.add(kEmitted, quanta_of(flux));
     counters.add(kRays, 1);
     if (!all_finite(ray)) {
-      counters.add(kLostNotFinite, units_of(flux));
+      counters.add(kLostNotFinite, quanta_of(flux));
       return counters.add(kLostNotFiniteRays, 1);
     }
     const std::uint32_t replicate = static_cast<std::uint32_t>((v.first_block + block) % kReplicates);
@@ -297,7 +300,7 @@ LUCERNA_HD inline void rebuild_node(const HierarchyView& h, int level, std::size
   if (h.leaf_kinds[i] != LeafKind::beyond)
     leaf = field_leaf(h.vertices, h.cells, h.step_x, h.step_y, i % n, i / n);
   *out = h.leaf_kinds[i] == LeafKind::mirror ? leaf.slab : FieldNode{};
-  h.steepness[i] = leaf.steepness;
+  h.gradient_bound[i] = leaf.gradient_bound;
 }
 
 /// Bounds of nothing, to be widened.
@@ -306,13 +309,15 @@ LUCERNA_HD inline FieldBounds no_bounds() { return {DBL_MAX, -DBL_MAX, 0.0F}; }
 LUCERNA_HD inline void widen(FieldBounds& bounds, const FieldBounds& by) {
   bounds.low = by.low < bounds.low ? by.low : bounds.low;
   bounds.high = by.high > bounds.high ? by.high : bounds.high;
-  bounds.steepness = by.steepness > bounds.steepness ? by.steepness : bounds.steepness;
+  bounds.gradient_bound =
+      by.gradient_bound > bounds.gradient_bound ? by.gradient_bound : bounds.gradient_bound;
 }
 
 /// Widens `bounds` by what leaf `i` of a field holds.
 LUCERNA_HD inline void widen(FieldBounds& bounds, const HierarchyView& h, std::size_t i) {
   const FieldNode& leaf = h.nodes[i];
-  bounds.steepness = h.steepness[i] > bounds.steepness ? h.steepness[i] : bounds.steepness;
+  bounds.gradient_bound =
+      h.gradient_bound[i] > bounds.gradient_bound ? h.gradient_bound[i] : bounds.gradient_bound;
   if (leaf.e < 0.0F) return;
   const double reach = static_cast<double>(field_reach(leaf, h.step_x, h.step_y));
   const double a = static_cast<double>(leaf.a);

@@ -9,7 +9,7 @@
 #include "lucerna/trace.h"
 #include "lucerna/trace/far_field_counts.h"
 #include "lucerna/trace/far_field_grid.h"
-#include "lucerna/trace/jackknifed_units.h"
+#include "lucerna/trace/jackknifed_quanta.h"
 
 namespace lucerna {
 

@@ -5,8 +5,8 @@
 
 #include "lucerna/core/error.h"
 #include "lucerna/trace.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/node_noise.h"
-#include "lucerna/trace/units.h"
 
 namespace lucerna {
 
@@ -92,7 +92,7 @@ NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const No
     const auto rays = [&] { return sum ? sum->last_ray - sum->first_ray : 0; };
     for (;;) {
       const std::uint64_t round = sum ? next_round(rays()) : kFirstRound;
-      // A trace that was stopped within a round is judged at the round's end only, as it would have been.
+      // A trace that was stopped within a round is evaluated at the round's end only, as it would have been.
       const bool at_round = sum && next_round(rays() - 1) == rays();
       if (at_round) {
         out.noise = node_noise(*sum);

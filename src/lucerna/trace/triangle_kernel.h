@@ -28,7 +28,7 @@ struct TreeTriangle {
   std::uint32_t body, number;
 };
 
-struct TriangleTreeView {
+struct TriangleBvhView {
   const TriangleNode* nodes = nullptr;
   const TreeTriangle* triangles = nullptr;
   std::int32_t node_count = 0;
@@ -51,9 +51,9 @@ LUCERNA_HD inline Vec3 normal_of(const TreeTriangle& k) {
 }
 
 /// A ray as boxes are tested with it.
-struct BoxRay {
+struct BvhRay {
   float o[3], inverse[3];
-  LUCERNA_HD BoxRay(const Vec3& origin, const Vec3& d) {
+  LUCERNA_HD BvhRay(const Vec3& origin, const Vec3& d) {
     const double from[3] = {origin.x, origin.y, origin.z}, along[3] = {d.x, d.y, d.z};
     for (int i = 0; i < 3; ++i) {
       o[i] = static_cast<float>(from[i]);
@@ -76,11 +76,11 @@ struct BoxRay {
   }
 };
 
-/// Moves `best` to triangle number `i` if the ray meets it in (t_min, best.t). Which side of an edge the ray
+/// Moves `best` to triangle number `i` if the ray hits it in (t_min, best.t). Which side of an edge the ray
 /// passes on is told from the edge's ends alone, and exactly opposite for the triangle beyond it: a ray
 /// cannot pass between two triangles that share their corners.
-LUCERNA_HD inline void meet_triangle(const TreeTriangle& k, std::int32_t i, const Vec3& o, const Vec3& d,
-                                     double t_min, TriangleHit& best) {
+LUCERNA_HD inline void intersect_triangle(const TreeTriangle& k, std::int32_t i, const Vec3& o, const Vec3& d,
+                                          double t_min, TriangleHit& best) {
   const Vec3 a = corner_of(k, 0) - o, b = corner_of(k, 1) - o, c = corner_of(k, 2) - o;
   const double u = dot(cross(c, b), d), v = dot(cross(a, c), d), w = dot(cross(b, a), d);
   const bool some_below = u < 0.0 || v < 0.0 || w<0.0, some_above = u> 0.0 || v > 0.0 || w > 0.0;
@@ -93,11 +93,11 @@ LUCERNA_HD inline void meet_triangle(const TreeTriangle& k, std::int32_t i, cons
 }
 
 /// The first triangle in (t_min, t_max).
-LUCERNA_HD inline TriangleHit first_triangle(const TriangleTreeView& tree, const Vec3& o, const Vec3& d,
+LUCERNA_HD inline TriangleHit first_triangle(const TriangleBvhView& tree, const Vec3& o, const Vec3& d,
                                              double t_min, double t_max) {
   TriangleHit best;
   best.t = t_max;
-  const BoxRay ray(o, d);
+  const BvhRay ray(o, d);
   for (std::int32_t i = 0; i < tree.node_count;) {
     const TriangleNode node = tree.nodes[i];
     if (ray.misses(node, static_cast<float>(best.t) * 1.000001F)) {
@@ -106,7 +106,7 @@ LUCERNA_HD inline TriangleHit first_triangle(const TriangleTreeView& tree, const
     }
     const std::int32_t first = static_cast<std::int32_t>(node.leaf / kLeafCounts);
     const std::int32_t end = first + static_cast<std::int32_t>(node.leaf % kLeafCounts);
-    for (std::int32_t k = first; k < end; ++k) meet_triangle(tree.triangles[k], k, o, d, t_min, best);
+    for (std::int32_t k = first; k < end; ++k) intersect_triangle(tree.triangles[k], k, o, d, t_min, best);
     ++i;
   }
   return best;

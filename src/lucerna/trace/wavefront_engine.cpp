@@ -15,9 +15,9 @@
 #include "lucerna/trace/facet_mirror.h"
 #include "lucerna/trace/far_field_grid.h"
 #include "lucerna/trace/field_view.h"
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/slope_error.h"
 #include "lucerna/trace/trace_engine.h"
-#include "lucerna/trace/units.h"
 
 namespace lucerna {
 
@@ -95,13 +95,13 @@ class WavefrontEngine final : public TraceEngine {
     /// for all rays still on their way.
     std::array<int, kBatch> reflections;
   };
-  struct Meeting {
+  struct MirrorHits {
     LocalRays rays;
     LocalHits hits;
   };
 
   static void lose(LostCause cause, float flux, Tally& tally) {
-    tally.lost[static_cast<std::size_t>(cause)] += units_of(flux);
+    tally.lost[static_cast<std::size_t>(cause)] += quanta_of(flux);
     ++tally.lost_rays[static_cast<std::size_t>(cause)];
   }
 
@@ -116,33 +116,33 @@ class WavefrontEngine final : public TraceEngine {
     tally.emitted += kernels_.enter(view_of(frame), arrays, n, ray_flux, out, all_finite);
     tally.rays += n;
     if (all_finite) return n;
-    alignas(64) std::int32_t fate[kBatch];
+    alignas(64) std::int32_t status[kBatch];
     for (std::size_t i = 0; i < n; ++i) {
       const bool finite =
           std::isfinite(in.x_mm[i] + in.y_mm[i] + in.z_mm[i] + in.kx[i] + in.ky[i] + in.kz[i]);
-      fate[i] = finite ? 0 : kGone;
+      status[i] = finite ? 0 : kTerminated;
       if (!finite) lose(LostCause::not_finite, out.flux[i], tally);
     }
     WorldRays none;
     std::size_t none_count = 0;
-    const std::size_t stay = kernels_.part(out, fate, n, none, none_count);
+    const std::size_t stay = kernels_.compact(out, status, n, none, none_count);
     for (std::size_t i = 0; i < stay; ++i) out.mirror[i] = -1;
     return stay;
   }
 
   void follow(Batch& batch, std::size_t n, const SourceRun& run, TraceScratch& scratch, Tally& tally) const {
-    const auto memory = std::make_unique_for_overwrite<Meeting[]>(mirrors_.size());
-    const std::span<Meeting> meetings(memory.get(), mirrors_.size());
+    const auto memory = std::make_unique_for_overwrite<MirrorHits[]>(mirrors_.size());
+    const std::span<MirrorHits> mirror_hits(memory.get(), mirrors_.size());
     for (int bounce = 0; n > 0; ++bounce) {
       const std::size_t left_before = batch.out_count;
-      meet(batch.rays, n, meetings);
-      if (!bodies().empty()) meet_bodies(batch, n, bounce, meetings);
-      if (!glasses().empty()) meet_glasses(batch, n, meetings);
+      intersect_mirrors(batch.rays, n, mirror_hits);
+      if (!bodies().empty()) intersect_bodies(batch, n, bounce, mirror_hits);
+      if (!glasses().empty()) intersect_cover_glasses(batch, n, mirror_hits);
       for (std::size_t m = 0; m < mirrors_.size(); ++m) {
         if (mirrors_[m].slope_error_rad > 0.0)
-          tilt(mirrors_[m].slope_error_rad, batch.rays, n, run, bounce, meetings[m].hits);
+          tilt(mirrors_[m].slope_error_rad, batch.rays, n, run, bounce, mirror_hits[m].hits);
       }
-      n = sort_out(batch, n, meetings, {run.sequence_seed, run.first, bounce}, tally);
+      n = resolve_interactions(batch, n, mirror_hits, {run.sequence_seed, run.first, bounce}, tally);
       count_leaving(batch, left_before, bounce, tally);
     }
     detect(batch.out, batch.out_count, scratch, tally);
@@ -152,7 +152,7 @@ class WavefrontEngine final : public TraceEngine {
   void count_leaving(const Batch& batch, std::size_t first, int bounce, Tally& tally) const {
     std::int64_t direct = 0, all = 0;
     for (std::size_t i = first; i < batch.out_count; ++i) {
-      const std::int64_t u = units_of(batch.out.flux[i]);
+      const std::int64_t u = quanta_of(batch.out.flux[i]);
       all += u;
       direct += reflections(batch, batch.out, i, bounce) == 0 ? u : 0;
     }
@@ -169,7 +169,7 @@ class WavefrontEngine final : public TraceEngine {
       kernels_.far_field_cells(out, n, static_cast<std::int32_t>(grid.c_count()),
                                static_cast<std::int32_t>(grid.gamma_count()), cell);
       std::int64_t* const bins = tally.bins[d].data();
-      for (std::size_t i = 0; i < n; ++i) bins[cell[i]] += units_of(out.flux[i]);
+      for (std::size_t i = 0; i < n; ++i) bins[cell[i]] += quanta_of(out.flux[i]);
     }
     if (!looks_at_places()) return;
     // Rays leave after different numbers of reflections; by number they are in the order they were emitted
@@ -181,7 +181,7 @@ class WavefrontEngine final : public TraceEngine {
     for (std::size_t k = 0; k < n; ++k) {
       const std::size_t i = order[k];
       leave({{out.x[i], out.y[i], out.z[i]}, Direction::from({out.dx[i], out.dy[i], out.dz[i]})},
-            units_of(out.flux[i]), scratch, tally);
+            quanta_of(out.flux[i]), scratch, tally);
     }
   }
 
@@ -201,23 +201,23 @@ class WavefrontEngine final : public TraceEngine {
     }
   }
 
-  /// First hits with every mirror; where a ray meets several, all but the nearest become misses.
-  void meet(const WorldRays& rays, std::size_t n, std::span<Meeting> meetings) const {
+  /// First hits with every mirror; where a ray hits several, all but the nearest become misses.
+  void intersect_mirrors(const WorldRays& rays, std::size_t n, std::span<MirrorHits> mirror_hits) const {
     for (std::size_t m = 0; m < mirrors_.size(); ++m) {
       kernels_.to_local(mirrors_[m].mirror_from_world, rays, n, static_cast<std::int32_t>(m),
-                        meetings[m].rays);
+                        mirror_hits[m].rays);
       if (mirrors_[m].curve.node_count > 0) {
-        meet_curve(mirrors_[m].curve, meetings[m].rays, n, meetings[m].hits);
+        intersect_curve(mirrors_[m].curve, mirror_hits[m].rays, n, mirror_hits[m].hits);
       } else if (mirrors_[m].facets.columns > 0) {
-        meet_facets(mirrors_[m].facets, meetings[m].rays, n, meetings[m].hits);
+        intersect_facets(mirrors_[m].facets, mirror_hits[m].rays, n, mirror_hits[m].hits);
       } else {
-        kernels_.intersect(mirrors_[m].field, meetings[m].rays, n, meetings[m].hits);
+        kernels_.intersect(mirrors_[m].field, mirror_hits[m].rays, n, mirror_hits[m].hits);
       }
     }
     for (std::size_t m = 1; m < mirrors_.size(); ++m) {
       for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t k = 0; k < m; ++k) {
-          LocalHits &a = meetings[k].hits, &b = meetings[m].hits;
+          LocalHits &a = mirror_hits[k].hits, &b = mirror_hits[m].hits;
           if (a.state[i] == kMiss || b.state[i] == kMiss) continue;
           (b.t[i] < a.t[i] ? a : b).state[i] = kMiss;
         }
@@ -226,31 +226,31 @@ class WavefrontEngine final : public TraceEngine {
   }
 
   /// First hits with bodies; mirrors behind them become misses.
-  void meet_bodies(Batch& batch, std::size_t n, int bounce, std::span<Meeting> meetings) const {
+  void intersect_bodies(Batch& batch, std::size_t n, int bounce, std::span<MirrorHits> mirror_hits) const {
     for (std::size_t i = 0; i < n; ++i) {
       double nearest = std::numeric_limits<float>::max();
-      for (const Meeting& m : meetings) {
+      for (const MirrorHits& m : mirror_hits) {
         if (m.hits.state[i] != kMiss) nearest = std::min(nearest, static_cast<double>(m.hits.t[i]));
       }
       const bool returning = reflections(batch, batch.rays, i, bounce) > 0;
       batch.body[i] = bodies().first_hit(ray_of(batch.rays, i), nearest, returning);
       if (!batch.body[i]) continue;
-      for (Meeting& m : meetings) m.hits.state[i] = kMiss;
+      for (MirrorHits& m : mirror_hits) m.hits.state[i] = kMiss;
     }
   }
 
   /// First hits with cover glasses; mirrors and bodies behind them become misses.
-  void meet_glasses(Batch& batch, std::size_t n, std::span<Meeting> meetings) const {
+  void intersect_cover_glasses(Batch& batch, std::size_t n, std::span<MirrorHits> mirror_hits) const {
     for (std::size_t i = 0; i < n; ++i) {
       double nearest = std::numeric_limits<float>::max();
-      for (const Meeting& m : meetings) {
+      for (const MirrorHits& m : mirror_hits) {
         if (m.hits.state[i] != kMiss) nearest = std::min(nearest, static_cast<double>(m.hits.t[i]));
       }
       if (!bodies().empty() && batch.body[i]) nearest = std::min(nearest, batch.body[i]->t_mm);
       batch.glass[i] = glasses().first_hit(ray_of(batch.rays, i), nearest);
       if (!batch.glass[i]) continue;
       if (!bodies().empty()) batch.body[i].reset();
-      for (Meeting& m : meetings) m.hits.state[i] = kMiss;
+      for (MirrorHits& m : mirror_hits) m.hits.state[i] = kMiss;
     }
   }
 
@@ -270,10 +270,10 @@ class WavefrontEngine final : public TraceEngine {
   }
 
   /// Takes `1 - kept` off the flux of a ray.
-  static void absorb(float& flux, double kept, std::size_t cause, Tally& tally) {
-    const std::int64_t before = units_of(flux);
-    flux = static_cast<float>(static_cast<double>(flux) * kept);
-    tally.absorbed[cause] += before - units_of(flux);
+  static void absorb(float& flux, double throughput, std::size_t cause, Tally& tally) {
+    const std::int64_t before = quanta_of(flux);
+    flux = static_cast<float>(static_cast<double>(flux) * throughput);
+    tally.absorbed[cause] += before - quanta_of(flux);
   }
 
   static void put(WorldRays& rays, std::size_t i, const Ray& ray) {
@@ -285,59 +285,59 @@ class WavefrontEngine final : public TraceEngine {
     rays.dz[i] = static_cast<float>(ray.direction.z());
   }
 
-  /// Sends ray `i` through the cover glass it met; returns what sort_out notes of it.
-  std::int32_t leave_glass(Batch& batch, std::size_t i, ReflectionKey key, Tally& tally) const {
+  /// Sends ray `i` through the cover glass it hit; returns what resolve_interactions notes of it.
+  std::int32_t transmit(Batch& batch, std::size_t i, ReflectionKey key, Tally& tally) const {
     WorldRays& rays = batch.rays;
     const GlassHit& hit = *batch.glass[i];
     const int bounce = key.bounce;
     key.ray += static_cast<std::uint64_t>(rays.number[i]);
     const GlassPassage passage = glasses().pass(ray_of(rays, i), hit, key);
-    const bool reflected = passage.kept > 0.0 && !passage.transmitted;
-    if (reflected && !may_reflect(batch, i, bounce, tally)) return kGone;
-    absorb(rays.flux[i], passage.kept, glass_cause(hit.glass), tally);
-    if (passage.kept == 0.0) return kGone;
+    const bool reflected = passage.throughput > 0.0 && !passage.transmitted;
+    if (reflected && !may_reflect(batch, i, bounce, tally)) return kTerminated;
+    absorb(rays.flux[i], passage.throughput, glass_cause(hit.glass), tally);
+    if (passage.throughput == 0.0) return kTerminated;
     if (reflected) ++tally.reflections;
     put(rays, i, passage.ray);
-    return kOnBody;
+    return kHitObstacle;
   }
 
   static Ray ray_of(const WorldRays& rays, std::size_t i) {
     return {{rays.x[i], rays.y[i], rays.z[i]}, Direction::from({rays.dx[i], rays.dy[i], rays.dz[i]})};
   }
 
-  /// Absorbs or reflects ray `i` where it met a body; returns what sort_out notes of it.
-  std::int32_t leave_body(Batch& batch, std::size_t i, ReflectionKey key, Tally& tally) const {
+  /// Absorbs or reflects ray `i` where it hit a body; returns what resolve_interactions notes of it.
+  std::int32_t reflect_off_body(Batch& batch, std::size_t i, ReflectionKey key, Tally& tally) const {
     WorldRays& rays = batch.rays;
     const BodyHit& hit = *batch.body[i];
     const int bounce = key.bounce;
     key.ray += static_cast<std::uint64_t>(rays.number[i]);
-    if (!may_reflect(batch, i, bounce, tally)) return kGone;
+    if (!may_reflect(batch, i, bounce, tally)) return kTerminated;
     const Ray ray = ray_of(rays, i);
-    const double kept = scene_.bodies[hit.body].reflectance.at(-dot(ray.direction, hit.normal));
-    absorb(rays.flux[i], kept, kMirrorLosses + hit.body, tally);
-    if (kept == 0.0) return kGone;
+    const double throughput = scene_.bodies[hit.body].reflectance.at(-dot(ray.direction, hit.normal));
+    absorb(rays.flux[i], throughput, kMirrorLosses + hit.body, tally);
+    if (throughput == 0.0) return kTerminated;
     ++tally.reflections;
     put(rays, i, {ray.at(hit.t_mm), reflected_off(scene_.bodies[hit.body], ray.direction, hit, key)});
-    return kOnBody;
+    return kHitObstacle;
   }
 
-  /// Reflects what met mirror `m`, less what that absorbs, and notes its fate; `reflected` is how often
+  /// Reflects what met mirror `m`, less what that absorbs, and notes its status; `reflected` is how often
   /// before.
-  void reflect_off(std::size_t m, const Meeting& meeting, std::size_t n, const std::int32_t* reflected,
-                   Batch& batch, std::int32_t* fate, Tally& tally) const {
-    const LocalHits& hits = meeting.hits;
-    kernels_.reflect(mirrors_[m].world_from_mirror, meeting.rays, hits, n, batch.rays, batch.cosine);
-    alignas(64) double kept[kBatch];
+  void reflect_off(std::size_t m, const MirrorHits& at_mirror, std::size_t n, const std::int32_t* reflected,
+                   Batch& batch, std::int32_t* status, Tally& tally) const {
+    const LocalHits& hits = at_mirror.hits;
+    kernels_.reflect(mirrors_[m].world_from_mirror, at_mirror.rays, hits, n, batch.rays, batch.cosine);
+    alignas(64) double throughput[kBatch];
     const Reflectance& reflectance = *mirrors_[m].reflectance;
     if (reflectance.is_constant()) {
-      std::fill_n(kept, n, reflectance.at(1.0));
+      std::fill_n(throughput, n, reflectance.at(1.0));
     } else {
       for (std::size_t i = 0; i < n; ++i) {
-        kept[i] = hits.state[i] == kFront ? reflectance.at(static_cast<double>(batch.cosine[i])) : 1.0;
+        throughput[i] = hits.state[i] == kFront ? reflectance.at(static_cast<double>(batch.cosine[i])) : 1.0;
       }
     }
-    const MirrorSums sums = kernels_.settle_fates(hits, reflected, max_bounces_, kept,
-                                                  static_cast<std::int32_t>(m), n, batch.rays.flux, fate);
+    const MirrorSums sums = kernels_.resolve_hits(hits, reflected, max_bounces_, throughput,
+                                                  static_cast<std::int32_t>(m), n, batch.rays.flux, status);
     tally.absorbed[static_cast<std::size_t>(MirrorLoss::face)] += sums.face;
     tally.absorbed[static_cast<std::size_t>(MirrorLoss::back)] += sums.back;
     const auto limit = static_cast<std::size_t>(LostCause::bounce_limit);
@@ -348,27 +348,27 @@ class WavefrontEngine final : public TraceEngine {
 
   /// Reflects what was reflected, moves what leaves to `out`, and closes the gaps; returns how many rays
   /// stay.
-  std::size_t sort_out(Batch& batch, std::size_t n, std::span<const Meeting> meetings,
-                       const ReflectionKey& first, Tally& tally) const {
+  std::size_t resolve_interactions(Batch& batch, std::size_t n, std::span<const MirrorHits> mirror_hits,
+                                   const ReflectionKey& first, Tally& tally) const {
     const int bounce = first.bounce;
     WorldRays& rays = batch.rays;
-    alignas(64) std::int32_t fate[kBatch], reflected[kBatch];
+    alignas(64) std::int32_t status[kBatch], reflected[kBatch];
     for (std::size_t i = 0; i < n; ++i) {
-      fate[i] = kLeaves;
+      status[i] = kEscaped;
       reflected[i] = reflections(batch, rays, i, bounce);
     }
     for (std::size_t m = 0; m < mirrors_.size(); ++m)
-      reflect_off(m, meetings[m], n, reflected, batch, fate, tally);
+      reflect_off(m, mirror_hits[m], n, reflected, batch, status, tally);
     for (std::size_t i = 0; !glasses().empty() && i < n; ++i) {
-      if (fate[i] >= 0) ++batch.reflections[static_cast<std::size_t>(rays.number[i])];
+      if (status[i] >= 0) ++batch.reflections[static_cast<std::size_t>(rays.number[i])];
     }
     for (std::size_t i = 0; !bodies().empty() && i < n; ++i) {
-      if (batch.body[i]) fate[i] = leave_body(batch, i, first, tally);
+      if (batch.body[i]) status[i] = reflect_off_body(batch, i, first, tally);
     }
     for (std::size_t i = 0; !glasses().empty() && i < n; ++i) {
-      if (batch.glass[i]) fate[i] = leave_glass(batch, i, first, tally);
+      if (batch.glass[i]) status[i] = transmit(batch, i, first, tally);
     }
-    return kernels_.part(rays, fate, n, batch.out, batch.out_count);
+    return kernels_.compact(rays, status, n, batch.out, batch.out_count);
   }
 
   const Scene& scene_;

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// What happens to a batch of rays between their meetings with mirrors: how they enter, what becomes of them
+// What happens to a batch of rays between their hits with mirrors: how they enter, what becomes of them
 // at a reflection, and the closing of gaps. Included by the kernel_*.cpp files only, see simd.h. Loops
-// without branches, because every other ray meets the mirror: the compiler makes vectors of them.
+// without branches, because every other ray hits the mirror: the compiler makes vectors of them.
 
+#include "lucerna/trace/flux_quanta.h"
 #include "lucerna/trace/kernel.h"
 #include "lucerna/trace/simd.h"
-#include "lucerna/trace/units.h"
 
 namespace lucerna {
 namespace {
 
 inline int64_t enter(const FrameView& k, const RayArrays& in, size_t n, double ray_flux, WorldRays& out,
                      bool& all_finite) {
-  int64_t units = 0;
+  int64_t quanta = 0;
   int32_t odd = 0;
   for (size_t i = 0; i < n; ++i) {
     const float x = in.x[i], y = in.y[i], z = in.z[i], dx = in.dx[i], dy = in.dy[i], dz = in.dz[i];
@@ -31,48 +31,49 @@ inline int64_t enter(const FrameView& k, const RayArrays& in, size_t n, double r
   }
   for (size_t i = 0; i < n; ++i) {
     out.flux[i] = static_cast<float>(static_cast<double>(in.weight[i]) * ray_flux);
-    units += units_of(out.flux[i]);
+    quanta += quanta_of(out.flux[i]);
   }
   all_finite = odd == 0;
-  return units;
+  return quanta;
 }
 
-inline MirrorSums settle_fates(const LocalHits& hits, const int32_t* reflections, int32_t max,
-                               const double* kept, int32_t mirror, size_t n, float* flux, int32_t* fate) {
+inline MirrorSums resolve_hits(const LocalHits& hits, const int32_t* reflections, int32_t max,
+                               const double* throughput, int32_t mirror, size_t n, float* flux,
+                               int32_t* status) {
   MirrorSums sum{};
   for (size_t i = 0; i < n; ++i) {
     const int32_t front = hits.state[i] == kFront ? 1 : 0, back = hits.state[i] == kBack ? 1 : 0;
     const int32_t last = reflections[i] == max ? front : 0, goes_on = front - last;
-    const float after = static_cast<float>(static_cast<double>(flux[i]) * kept[i]);
-    const int64_t units = units_of(flux[i]);
+    const float after = static_cast<float>(static_cast<double>(flux[i]) * throughput[i]);
+    const int64_t quanta = quanta_of(flux[i]);
     flux[i] = goes_on != 0 ? after : flux[i];
-    sum.face += units - units_of(flux[i]);
-    sum.back += back != 0 ? units : 0;
-    sum.lost += last != 0 ? units : 0;
+    sum.face += quanta - quanta_of(flux[i]);
+    sum.back += back != 0 ? quanta : 0;
+    sum.lost += last != 0 ? quanta : 0;
     sum.lost_rays += last;
     sum.reflections += goes_on;
-    const int32_t met = goes_on != 0 ? mirror : static_cast<int32_t>(kGone);
-    fate[i] = hits.state[i] == kMiss ? fate[i] : met;
+    const int32_t next = goes_on != 0 ? mirror : static_cast<int32_t>(kTerminated);
+    status[i] = hits.state[i] == kMiss ? status[i] : next;
   }
   return sum;
 }
 
-/// The n fates at `fate`, in the first lanes: an array of them may end with the last.
-inline Int load_fates(const int32_t* fate, size_t n) {
-  if (n >= static_cast<size_t>(kLanes)) return load(fate);
+/// The n statuses at `status`, in the first lanes: an array of them may end with the last.
+inline Int load_status(const int32_t* status, size_t n) {
+  if (n >= static_cast<size_t>(kLanes)) return load(status);
   alignas(64) int32_t lanes[kLanes];
   for (size_t i = 0; i < static_cast<size_t>(kLanes); ++i)
-    lanes[i] = i < n ? fate[i] : static_cast<int32_t>(kGone);
+    lanes[i] = i < n ? status[i] : static_cast<int32_t>(kTerminated);
   return load(lanes);
 }
 
-inline size_t part(WorldRays& rays, const int32_t* fate, size_t n, WorldRays& out, size_t& out_count) {
+inline size_t compact(WorldRays& rays, const int32_t* status, size_t n, WorldRays& out, size_t& out_count) {
   size_t stay = 0;
   for (size_t i = 0; i < n; i += static_cast<size_t>(kLanes)) {
     const size_t rest = n - i;
     const Mask lanes = mask_of(rest >= static_cast<size_t>(kLanes) ? (1u << kLanes) - 1u : (1u << rest) - 1u);
-    const Int f = load_fates(fate + i, rest);
-    const Mask leaves = lanes & (f == Int(kLeaves)), stays = lanes & ~(leaves | (f == Int(kGone)));
+    const Int f = load_status(status + i, rest);
+    const Mask leaves = lanes & (f == Int(kEscaped)), stays = lanes & ~(leaves | (f == Int(kTerminated)));
     // Whole vectors are written: what is behind the last lane is written over by the next, or padding.
     const auto move = [&](auto array) {
       const auto v = load(rays.*array + i);
