@@ -20,8 +20,8 @@
 #include "lucerna/ray_comparison.h"
 #include "lucerna/ray_file.h"
 #include "lucerna/source.h"
-#include "lucerna/source/adaptive_compress.h"
-#include "lucerna/source/draw_rays.h"
+#include "lucerna/source/adaptive/compression/adaptive_compress.h"
+#include "lucerna/source/emitters/draw_rays.h"
 #include "own_sources.h"
 
 using namespace lucerna;

@@ -11,8 +11,8 @@
 
 #include "lucerna/bounding_surface.h"
 #include "lucerna/ray_comparison.h"
-#include "lucerna/source/adaptive_compress.h"
-#include "lucerna/source/draw_rays.h"
+#include "lucerna/source/adaptive/compression/adaptive_compress.h"
+#include "lucerna/source/emitters/draw_rays.h"
 #include "own_sources.h"
 
 using namespace lucerna;

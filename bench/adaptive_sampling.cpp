@@ -10,8 +10,8 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "lucerna/core/error.h"
-#include "lucerna/source/adaptive_model.h"
+#include "lucerna/core/io/error.h"
+#include "lucerna/source/adaptive/sampling/adaptive_model.h"
 
 using namespace lucerna;
 

@@ -16,13 +16,13 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/parallel.h"
+#include "lucerna/core/parallel/parallel.h"
 #include "lucerna/project.h"
 #include "lucerna/random.h"
 #include "lucerna/trace.h"
-#include "lucerna/trace/backward_estimator.h"
-#include "lucerna/trace/far_field_counts.h"
-#include "lucerna/trace/node_noise.h"
+#include "lucerna/trace/backward/backward_estimator.h"
+#include "lucerna/trace/result/far_field_counts.h"
+#include "lucerna/trace/result/node_noise.h"
 
 namespace {
 

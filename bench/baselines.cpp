@@ -13,11 +13,11 @@
 #include "light_field.h"
 #include "lucerna/ray_comparison.h"
 #include "lucerna/ray_file.h"
-#include "lucerna/rayset/subset.h"
+#include "lucerna/rayset/data/subset.h"
 #include "lucerna/source.h"
-#include "lucerna/source/adaptive_compress.h"
-#include "lucerna/source/cluster_compress.h"
-#include "lucerna/source/draw_rays.h"
+#include "lucerna/source/adaptive/compression/adaptive_compress.h"
+#include "lucerna/source/clusters/cluster_compress.h"
+#include "lucerna/source/emitters/draw_rays.h"
 #include "own_sources.h"
 
 namespace {

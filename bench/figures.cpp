@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "lucerna/core/parallel.h"
+#include "lucerna/core/parallel/parallel.h"
 #include "lucerna/project.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace_metrics.h"

@@ -13,12 +13,12 @@
 #include <utility>
 #include <vector>
 
-#include "lucerna/reflector/faceted_surface.h"
-#include "lucerna/reflector/height_field.h"
-#include "lucerna/source/adaptive_compress.h"
-#include "lucerna/source/draw_rays.h"
-#include "lucerna/trace/device_scene.h"
-#include "lucerna/trace/device_trace.h"
+#include "lucerna/optics/height_field/height_field.h"
+#include "lucerna/optics/shapes/faceted_surface.h"
+#include "lucerna/source/adaptive/compression/adaptive_compress.h"
+#include "lucerna/source/emitters/draw_rays.h"
+#include "lucerna/trace/device/device_scene.h"
+#include "lucerna/trace/device/device_trace.h"
 #include "trace_scenes.h"
 
 namespace {

@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/error.h"
+#include "lucerna/core/io/error.h"
 #include "lucerna/source.h"
-#include "lucerna/source/adaptive_compress.h"
-#include "lucerna/source/alias_table.h"
-#include "lucerna/source/nfl.h"
-#include "lucerna/source/support.h"
+#include "lucerna/source/adaptive/charts/support.h"
+#include "lucerna/source/adaptive/compression/adaptive_compress.h"
+#include "lucerna/source/clusters/alias_table.h"
+#include "lucerna/source/file/nfl.h"
 
 namespace lucerna::bench {
 

@@ -14,12 +14,12 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/file.h"
-#include "lucerna/core/parallel.h"
-#include "lucerna/design/continuation_schedule.h"
-#include "lucerna/design/design.h"
-#include "lucerna/design/initial_guesses.h"
-#include "lucerna/design/optimizer.h"
+#include "lucerna/core/io/file.h"
+#include "lucerna/core/parallel/parallel.h"
+#include "lucerna/design/fit/continuation_schedule.h"
+#include "lucerna/design/initial/initial_guesses.h"
+#include "lucerna/design/run/design.h"
+#include "lucerna/design/search/optimizer.h"
 
 using namespace lucerna;
 

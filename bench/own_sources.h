@@ -11,7 +11,7 @@
 #include "lucerna/geometry.h"
 #include "lucerna/ray_comparison.h"
 #include "lucerna/source.h"
-#include "lucerna/source/warp.h"
+#include "lucerna/source/emitters/warp.h"
 
 namespace lucerna::bench {
 

@@ -14,15 +14,15 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/file.h"
-#include "lucerna/core/parallel.h"
-#include "lucerna/core/png.h"
+#include "lucerna/core/image/png.h"
+#include "lucerna/core/io/file.h"
+#include "lucerna/core/parallel/parallel.h"
 #include "lucerna/ray_comparison.h"
 #include "lucerna/ray_file.h"
-#include "lucerna/rayset/view_picture.h"
+#include "lucerna/rayset/comparison/view_picture.h"
 #include "lucerna/source.h"
-#include "lucerna/source/cluster_compress.h"
-#include "lucerna/source/draw_rays.h"
+#include "lucerna/source/clusters/cluster_compress.h"
+#include "lucerna/source/emitters/draw_rays.h"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <numbers>
 
-#include "lucerna/core/parallel.h"
+#include "lucerna/core/parallel/parallel.h"
 #include "lucerna/random.h"
 #include "lucerna/ray_file.h"
 

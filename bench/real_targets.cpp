@@ -23,20 +23,20 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/file.h"
-#include "lucerna/design/bounds.h"
-#include "lucerna/design/design.h"
-#include "lucerna/design/design_metrics.h"
-#include "lucerna/design/design_run.h"
-#include "lucerna/design/validation.h"
-#include "lucerna/design/window.h"
+#include "lucerna/core/io/file.h"
+#include "lucerna/design/evaluation/window.h"
+#include "lucerna/design/run/design.h"
+#include "lucerna/design/run/design_metrics.h"
+#include "lucerna/design/run/design_run.h"
+#include "lucerna/design/validation/bounds.h"
+#include "lucerna/design/validation/validation.h"
 #include "lucerna/photometric_file.h"
 #include "lucerna/random.h"
 #include "lucerna/source.h"
-#include "lucerna/source/adaptive_compress.h"
+#include "lucerna/source/adaptive/compression/adaptive_compress.h"
 #include "lucerna/source_model.h"
 #include "lucerna/trace.h"
-#include "lucerna/trace/accelerator.h"
+#include "lucerna/trace/device/accelerator.h"
 #include "synthetic_targets.h"
 
 using namespace lucerna;

@@ -9,10 +9,10 @@
 #include <cmath>
 #include <vector>
 
-#include "lucerna/core/parallel.h"
+#include "lucerna/core/parallel/parallel.h"
 #include "lucerna/source.h"
-#include "lucerna/trace/far_field_grid.h"
-#include "lucerna/trace/trace_engine.h"
+#include "lucerna/trace/detectors/far_field_grid.h"
+#include "lucerna/trace/engines/trace_engine.h"
 
 namespace {
 

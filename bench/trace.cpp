@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "lucerna/core/parallel.h"
-#include "lucerna/trace/benchmark.h"
-#include "lucerna/trace/kernel.h"
-#include "lucerna/trace/reference_tracer.h"
+#include "lucerna/core/parallel/parallel.h"
+#include "lucerna/trace/benchmark/benchmark.h"
+#include "lucerna/trace/engines/reference_tracer.h"
+#include "lucerna/trace/kernels/kernel.h"
 
 namespace {
 

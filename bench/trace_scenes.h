@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "lucerna/bounding_surface.h"
-#include "lucerna/trace/benchmark.h"
+#include "lucerna/trace/benchmark/benchmark.h"
 
 namespace bench {
 

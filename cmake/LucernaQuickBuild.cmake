@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# What makes building quicker and changes nothing that is built: ccache where it is installed; else the sources of a folder are
+# What makes building quicker and changes nothing that is built: ccache where it is installed; else the sources of a room are
 # compiled up to 24 at a time (a unity build), which halves what a first build costs. With a cache they stay apart, for who builds often.
-# Names in unnamed namespaces are therefore unique within a folder (tests/tree_test.cpp).
+# Names in unnamed namespaces are therefore unique within a room (tests/tree_test.cpp).
 find_program(LUCERNA_CCACHE ccache)
 if(LUCERNA_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${LUCERNA_CCACHE}")
@@ -11,17 +11,21 @@ if(CMAKE_CXX_COMPILER_LAUNCHER)
 else()
   set(lucerna_unity_default ON)
 endif()
-option(LUCERNA_UNITY "Compile the sources of a folder together, up to 24 at a time" ${lucerna_unity_default})
+option(LUCERNA_UNITY "Compile the sources of a room together, up to 24 at a time" ${lucerna_unity_default})
 
-# lucerna_unity(TARGET): groups its sources by folder. Sources that have compiler options of their own stay alone.
+# lucerna_unity(TARGET): groups its sources by room of src/lucerna, others by folder. Sources that have compiler options of their own stay alone.
 function(lucerna_unity target)
   if(NOT LUCERNA_UNITY)
     return()
   endif()
   get_target_property(sources ${target} SOURCES)
   foreach(source IN LISTS sources)
-    get_filename_component(folder "${source}" DIRECTORY)
-    get_filename_component(folder "${folder}" NAME)
+    if(source MATCHES ".*/src/lucerna/([a-z]+)/")
+      set(folder ${CMAKE_MATCH_1})
+    else()
+      get_filename_component(folder "${source}" DIRECTORY)
+      get_filename_component(folder "${folder}" NAME)
+    endif()
     list(APPEND folders ${folder})
     list(APPEND sources_of_${folder} "${source}")
   endforeach()

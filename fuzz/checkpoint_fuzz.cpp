@@ -4,8 +4,8 @@
 #include <string>
 
 #include "fuzz/memory_file.h"
-#include "lucerna/core/error.h"
-#include "lucerna/design/checkpoint.h"
+#include "lucerna/core/io/error.h"
+#include "lucerna/design/search/checkpoint.h"
 
 namespace {
 

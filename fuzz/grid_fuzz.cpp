@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "fuzz/memory_file.h"
-#include "lucerna/core/error.h"
-#include "lucerna/core/number_table.h"
-#include "lucerna/photometry/illuminance_map.h"
-#include "lucerna/reflector/height_map.h"
+#include "lucerna/core/io/error.h"
+#include "lucerna/core/io/number_table.h"
+#include "lucerna/optics/height_field/height_map.h"
+#include "lucerna/photometry/formats/illuminance_map.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "lucerna/core/error.h"
+#include "lucerna/core/io/error.h"
 #include "lucerna/photometric_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "fuzz/memory_file.h"
-#include "lucerna/core/error.h"
+#include "lucerna/core/io/error.h"
 #include "lucerna/mesh.h"
 
 namespace {

@@ -10,10 +10,10 @@
 #include <memory>
 #include <string_view>
 
-#include "lucerna/core/error.h"
-#include "lucerna/source/adaptive_model.h"
-#include "lucerna/source/cluster_model.h"
-#include "lucerna/source/nfl.h"
+#include "lucerna/core/io/error.h"
+#include "lucerna/source/adaptive/sampling/adaptive_model.h"
+#include "lucerna/source/clusters/cluster_model.h"
+#include "lucerna/source/file/nfl.h"
 
 namespace {
 

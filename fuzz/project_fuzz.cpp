@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a project file, with what [target] and [design] ask for: a scene, or InputError.
 #include "fuzz/memory_file.h"
-#include "lucerna/core/error.h"
-#include "lucerna/design/design_problem.h"
+#include "lucerna/core/io/error.h"
+#include "lucerna/design/run/design_problem.h"
 #include "lucerna/project.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "fuzz/memory_file.h"
-#include "lucerna/core/error.h"
+#include "lucerna/core/io/error.h"
 #include "lucerna/ray_file.h"
 
 #if !defined(LUCERNA_FUZZ_FORMAT)

@@ -8,9 +8,9 @@
 #include <string>
 
 #include "fuzz/memory_file.h"
-#include "lucerna/core/error.h"
-#include "lucerna/report/trace_folder.h"
-#include "lucerna/trace/trace_file.h"
+#include "lucerna/core/io/error.h"
+#include "lucerna/results/folders/trace_file.h"
+#include "lucerna/results/folders/trace_folder.h"
 
 namespace {
 

@@ -8,9 +8,9 @@
 #include <map>
 #include <span>
 
-#include "lucerna/core/file.h"
-#include "lucerna/core/sha256.h"
-#include "lucerna/design/design.h"
+#include "lucerna/core/io/file.h"
+#include "lucerna/core/io/sha256.h"
+#include "lucerna/design/run/design.h"
 #include "lucerna/source.h"
 #include "lucerna/source_model.h"
 #include "lucerna/trace_metrics.h"

@@ -3,7 +3,7 @@
 // reported; a preset that misses it would miss ours.
 #include <cstdio>
 
-#include "lucerna/core/parallel.h"
+#include "lucerna/core/parallel/parallel.h"
 
 int main() {
   std::size_t sum = 0;

@@ -15,8 +15,8 @@
 #include <numbers>
 
 #include "lucerna/cad.h"
-#include "lucerna/core/file.h"
-#include "lucerna/reflector/smooth_shape.h"
+#include "lucerna/core/io/file.h"
+#include "lucerna/optics/shapes/smooth_shape.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {

@@ -20,21 +20,142 @@ namespace {
 
 using Layers = std::map<std::string, std::set<std::string>>;
 
-/// Which folder may include which: the table of ARCHITECTURE.md. A folder may always include itself.
+/// Which room (the first folder below src/lucerna) may include which: the table of ARCHITECTURE.md. A room
+/// may always include itself.
 const Layers kMayInclude{
     {"core", {}},
-    {"rayset", {"core"}},
-    {"photometry", {"core"}},
-    {"source", {"core", "rayset"}},
-    {"reflector", {"core"}},
-    {"trace", {"core", "rayset", "photometry", "source", "reflector"}},
-    {"design", {"core", "rayset", "photometry", "source", "reflector", "trace"}},
-    {"report", {"core", "rayset", "photometry", "source", "reflector", "trace", "design"}},
-    {"cli", {"core", "rayset", "photometry", "source", "reflector", "trace", "design", "report"}},
+    {"simd", {"core"}},
+    {"rayset", {"core", "simd"}},
+    {"photometry", {"core", "simd"}},
+    {"optics", {"core", "simd"}},
+    {"source", {"core", "simd", "rayset"}},
+    {"trace", {"core", "simd", "rayset", "photometry", "optics", "source"}},
+    {"project", {"core", "simd", "rayset", "photometry", "optics", "source", "trace"}},
+    {"design", {"core", "simd", "rayset", "photometry", "optics", "source", "trace", "project"}},
+    {"results", {"core", "simd", "rayset", "photometry", "optics", "source", "trace", "project", "design"}},
+    {"report",
+     {"core", "simd", "rayset", "photometry", "optics", "source", "trace", "project", "design", "results"}},
+    {"cli",
+     {"core", "simd", "rayset", "photometry", "optics", "source", "trace", "project", "design", "results",
+      "report"}},
 };
 
-/// The folder of src/lucerna that each public header (include/lucerna) belongs to: what it defines is
-/// implemented there, and it may be included where that folder may.
+/// The sub-rooms of each room, and which of the others each may include: rooms without one are not divided.
+const std::map<std::string, Layers> kSubRooms{
+    {"core",
+     {
+         {"cpu", {}},
+         {"io", {}},
+         {"image", {"io"}},
+         {"math", {}},
+         {"parallel", {}},
+         {"random", {"io"}},
+     }},
+    {"rayset",
+     {
+         {"comparison", {}},
+         {"data", {}},
+         {"formats/common", {}},
+         {"formats/asap", {"formats/common"}},
+         {"formats/lighttools", {"formats/common"}},
+         {"formats/speos", {"formats/common"}},
+         {"formats/zemax", {"formats/common"}},
+         {"formats/text", {"formats/common", "formats/lighttools", "formats/zemax"}},
+         {"formats/tm25", {"formats/common"}},
+         {"statistics", {"data"}},
+         {"files",
+          {"data", "formats/asap", "formats/lighttools", "formats/speos", "formats/text", "formats/tm25",
+           "formats/zemax", "statistics"}},
+     }},
+    {"photometry",
+     {
+         {"binning", {}},
+         {"data", {}},
+         {"comparison", {"binning", "data"}},
+         {"formats", {"data"}},
+         {"metrics", {"binning"}},
+     }},
+    {"optics",
+     {
+         {"shapes", {}},
+         {"cad", {"shapes"}},
+         {"height_field", {}},
+         {"mesh", {}},
+     }},
+    {"source",
+     {
+         {"emitters", {}},
+         {"adaptive/charts", {"emitters"}},
+         {"adaptive/tree", {"adaptive/charts"}},
+         {"adaptive/search", {"adaptive/charts", "adaptive/tree"}},
+         {"adaptive/mixture", {"adaptive/search"}},
+         {"file", {}},
+         {"adaptive/sampling", {"adaptive/charts", "adaptive/mixture", "adaptive/tree", "emitters", "file"}},
+         {"adaptive/codec", {"adaptive/sampling", "adaptive/tree", "file"}},
+         {"adaptive/compression", {"adaptive/mixture", "adaptive/sampling", "adaptive/search", "file"}},
+         {"clusters", {"file"}},
+         {"model", {"adaptive/compression", "adaptive/sampling", "clusters", "emitters", "file"}},
+     }},
+    {"trace",
+     {
+         {"detectors", {}},
+         {"tally", {}},
+         {"kernels", {"detectors", "tally"}},
+         {"engines", {"detectors", "kernels", "tally"}},
+         {"backward", {"detectors", "engines", "kernels"}},
+         {"benchmark", {"kernels"}},
+         {"device", {"detectors", "engines", "kernels", "tally"}},
+         {"result", {"detectors"}},
+         {"metrics", {"backward", "result"}},
+         {"run", {"detectors", "device", "engines", "result", "tally"}},
+         {"scene", {"detectors"}},
+     }},
+    {"project",
+     {
+         {"schema", {}},
+         {"sections", {"schema"}},
+         {"template", {}},
+     }},
+    {"design",
+     {
+         {"shape", {}},
+         {"evaluation", {"shape"}},
+         {"problem", {"evaluation", "shape"}},
+         {"solver", {"evaluation", "problem", "shape"}},
+         {"constraints", {"problem", "solver"}},
+         {"fit", {"constraints", "evaluation", "problem", "shape", "solver"}},
+         {"initial", {"constraints", "evaluation", "fit", "shape"}},
+         {"optimizers", {}},
+         {"search", {"constraints", "fit", "initial", "optimizers", "shape"}},
+         {"validation", {"evaluation", "problem", "shape", "solver"}},
+         {"run", {"constraints", "evaluation", "fit", "problem", "search", "validation"}},
+     }},
+    {"results",
+     {
+         {"metrics", {}},
+         {"svg", {}},
+         {"json", {"metrics", "svg"}},
+         {"folders", {"json", "svg"}},
+         {"comparison", {"folders", "svg"}},
+     }},
+    {"report",
+     {
+         {"html", {}},
+     }},
+    {"cli",
+     {
+         {"parse", {}},
+         {"output", {"parse"}},
+         {"commands", {"output", "parse"}},
+         {"manual", {"commands", "parse"}},
+     }},
+};
+
+/// Files that lie directly in a room which has sub-rooms.
+const std::set<std::string> kDirectly{"cli/main.cpp"};
+
+/// The room of src/lucerna that each public header (include/lucerna) belongs to: what it defines is
+/// implemented there, and it may be included where that room may.
 const std::map<std::string, std::string> kPublicHeaders{
     {"error.h", "core"},
     {"estimate.h", "core"},
@@ -56,16 +177,16 @@ const std::map<std::string, std::string> kPublicHeaders{
     {"bounding_surface.h", "rayset"},
     {"source.h", "source"},
     {"source_model.h", "source"},
-    {"cad.h", "reflector"},
-    {"mesh.h", "reflector"},
-    {"reflector.h", "reflector"},
+    {"cad.h", "optics"},
+    {"mesh.h", "optics"},
+    {"reflector.h", "optics"},
     {"detectors.h", "trace"},
-    {"project.h", "trace"},
+    {"project.h", "project"},
     {"scene.h", "trace"},
     {"trace.h", "trace"},
     {"trace_metrics.h", "trace"},
     {"design.h", "design"},
-    {"comparison.h", "report"},
+    {"comparison.h", "results"},
     {"report.h", "report"},
     {"lucerna.h", "cli"},  // all of them
 };
@@ -83,12 +204,26 @@ std::vector<fs::path> source_files() {
 
 bool is_public(const fs::path& file) { return file.parent_path().parent_path().filename() == "include"; }
 
-/// The folder that a file belongs to; empty if it is in none that is known.
-std::string folder_of(const fs::path& file) {
-  if (!is_public(file)) return file.parent_path().filename();
+/// Where a file of ours is below its top folder: "trace/kernels/kernel.h".
+fs::path place_of(const fs::path& file) {
+  return file.lexically_relative(lucerna::test::source_dir() / "src/lucerna");
+}
+
+/// The room that a file belongs to; empty if it is in none that is known.
+std::string room_of(const fs::path& file) {
+  if (!is_public(file)) return place_of(file).begin()->string();
   const auto found = kPublicHeaders.find(file.filename());
   return found == kPublicHeaders.end() ? "" : found->second;
 }
+
+/// The folders between room and file: "" for "cli/main.cpp", "formats/tm25" for "rayset/formats/tm25/tm25.h".
+std::string sub_room_of(const fs::path& place) {
+  const std::string folders = place.parent_path().generic_string();
+  const std::size_t slash = folders.find('/');
+  return slash == std::string::npos ? "" : folders.substr(slash + 1);
+}
+
+bool is_test(const fs::path& file) { return file.stem().string().ends_with("_test"); }
 
 std::vector<std::string> lines_of(const fs::path& file) {
   std::ifstream in(file);
@@ -97,7 +232,8 @@ std::vector<std::string> lines_of(const fs::path& file) {
   return lines;
 }
 
-/// What a line includes: `lucerna/core/vec.h`, `vector`; empty for any other line. `open`: the quote before.
+/// What a line includes: `lucerna/core/math/vec.h`, `vector`; empty for any other line. `open`: the quote
+/// before.
 std::string included(const std::string& line, char open) {
   const std::size_t word = line.find_first_not_of(" \t");
   if (word == std::string::npos || line[word] != '#') return "";
@@ -106,8 +242,8 @@ std::string included(const std::string& line, char open) {
   return found.empty() ? "" : found.front();
 }
 
-/// The folder of an include of ours; empty for any other line.
-std::string included_folder(const std::string& line) {
+/// The room of an include of ours; empty for any other line.
+std::string included_room(const std::string& line) {
   const std::string path = included(line, '"');
   if (!path.starts_with("lucerna/")) return "";
   const std::string rest = path.substr(8);
@@ -127,13 +263,12 @@ std::vector<std::string> not_public(const std::vector<std::string>& lines) {
   return bad;
 }
 
-/// The folders that `lines` include and `folder` may not.
-std::vector<std::string> forbidden_includes(const std::string& folder,
-                                            const std::vector<std::string>& lines) {
+/// The lines whose includes `room` may not have.
+std::vector<std::string> forbidden_includes(const std::string& room, const std::vector<std::string>& lines) {
   std::vector<std::string> bad;
   for (const std::string& line : lines) {
-    const std::string to = included_folder(line);
-    if (!to.empty() && to != folder && !kMayInclude.at(folder).contains(to)) bad.push_back(line);
+    const std::string to = included_room(line);
+    if (!to.empty() && to != room && !kMayInclude.at(room).contains(to)) bad.push_back(line);
   }
   return bad;
 }
@@ -142,17 +277,81 @@ TEST(Layering, IncludesPointLeft) {
   const auto files = source_files();
   ASSERT_GT(files.size(), 10u);
   for (const fs::path& file : files) {
-    const std::string folder = folder_of(file);
-    ASSERT_TRUE(kMayInclude.contains(folder)) << file << " is in no known folder";
-    for (const auto& line : forbidden_includes(folder, lines_of(file))) ADD_FAILURE() << file << ": " << line;
+    const std::string room = room_of(file);
+    ASSERT_TRUE(kMayInclude.contains(room)) << file << " is in no known room";
+    for (const auto& line : forbidden_includes(room, lines_of(file))) ADD_FAILURE() << file << ": " << line;
   }
 }
 
+/// What is wrong with a file's sub-room and with what it includes of its own room. `place` as place_of has
+/// it. Tests may include all of their room.
+std::vector<std::string> faults_within_room(const fs::path& place, const std::vector<std::string>& lines) {
+  const std::string room = place.begin()->string(), sub = sub_room_of(place);
+  const auto known = kSubRooms.find(room);
+  if (known == kSubRooms.end()) return {};
+  if (sub.empty() && !kDirectly.contains(place.generic_string())) return {"lies directly in its room"};
+  if (!sub.empty() && !known->second.contains(sub)) return {sub + " is no sub-room of " + room};
+  std::vector<std::string> bad;
+  for (const std::string& line : lines) {
+    const std::string path = included(line, '"');
+    if (is_test(place) || sub.empty() || !path.starts_with("lucerna/" + room + "/")) continue;
+    const std::string to = sub_room_of(path.substr(8));
+    if (to != sub && !known->second.at(sub).contains(to)) bad.push_back(line);
+  }
+  return bad;
+}
+
+/// True if one can go from a sub-room to itself along what the table allows.
+bool has_cycle(const Layers& table) {
+  std::set<std::string> done;  // those from which no way leads on but to others of these
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const auto& [from, to] : table) {
+      const auto is_done = [&](const std::string& s) { return done.contains(s); };
+      if (!done.contains(from) && std::all_of(to.begin(), to.end(), is_done))
+        changed = done.insert(from).second;
+    }
+  }
+  return done.size() < table.size();
+}
+
+TEST(Layering, SubRoomsIncludeDownward) {
+  std::set<std::string> seen;
+  for (const fs::path& file : source_files()) {
+    if (is_public(file)) continue;
+    const fs::path place = place_of(file);
+    seen.insert(place.parent_path().generic_string());
+    for (const auto& fault : faults_within_room(place, lines_of(file)))
+      ADD_FAILURE() << place << ": " << fault;
+  }
+  for (const auto& [room, table] : kSubRooms) {
+    EXPECT_FALSE(has_cycle(table)) << room;
+    for (const auto& [sub, may_include] : table)
+      EXPECT_TRUE(seen.contains(room + "/" + sub)) << room << " " << sub;
+  }
+}
+
+TEST(Layering, CheckSeesSubRooms) {
+  const std::vector<std::string> up{"#include \"lucerna/trace/run/x.h\""};
+  EXPECT_EQ(faults_within_room("trace/kernels/a.h", up).size(), 1u);
+  EXPECT_TRUE(faults_within_room("trace/kernels/a_test.cpp", up).empty());
+  EXPECT_TRUE(faults_within_room("trace/run/a.h", up).empty());
+  EXPECT_TRUE(faults_within_room("trace/run/a.h", {"#include \"lucerna/trace/engines/x.h\""}).empty());
+  EXPECT_EQ(faults_within_room("rayset/formats/common/a.h", {"#include \"lucerna/rayset/formats/tm25/x.h\""})
+                .size(),
+            1u);
+  EXPECT_EQ(faults_within_room("trace/a.h", {}).size(), 1u);
+  EXPECT_EQ(faults_within_room("trace/other/a.h", {}).size(), 1u);
+  EXPECT_TRUE(faults_within_room("cli/main.cpp", {}).empty());
+  EXPECT_TRUE(has_cycle({{"a", {"b"}}, {"b", {"c"}}, {"c", {"a"}}, {"d", {}}}));
+  EXPECT_FALSE(has_cycle({{"a", {"b", "c"}}, {"b", {"c"}}, {"c", {}}}));
+}
+
 TEST(Layering, CheckSeesABackwardInclude) {
-  EXPECT_EQ(forbidden_includes("core", {"#include \"lucerna/trace/tracer.h\""}).size(), 1u);
+  EXPECT_EQ(forbidden_includes("core", {"#include \"lucerna/trace/run/trace.h\""}).size(), 1u);
   EXPECT_EQ(forbidden_includes("photometry", {"#include \"lucerna/rays.h\""}).size(), 1u);
   EXPECT_TRUE(forbidden_includes("photometry", {"#include \"lucerna/geometry.h\""}).empty());
-  EXPECT_TRUE(forbidden_includes("trace", {"#include \"lucerna/core/vec.h\""}).empty());
+  EXPECT_TRUE(forbidden_includes("trace", {"#include \"lucerna/core/math/vec.h\""}).empty());
 }
 
 // No type or macro of another library reaches who includes ours; private headers are not installed.
@@ -168,8 +367,8 @@ TEST(Layering, PublicHeadersIncludePublicHeadersAndTheStandardLibrary) {
 
 TEST(Layering, CheckSeesWhatIsNotPublic) {
   EXPECT_EQ(not_public({"#include <vector>", "#include <Eigen/Core>", "#include <zstd.h>",
-                        "#include \"lucerna/rays.h\"", "#include \"lucerna/core/file.h\""}),
-            (std::vector<std::string>{"Eigen/Core", "zstd.h", "lucerna/core/file.h"}));
+                        "#include \"lucerna/rays.h\"", "#include \"lucerna/core/io/file.h\""}),
+            (std::vector<std::string>{"Eigen/Core", "zstd.h", "lucerna/core/io/file.h"}));
 }
 
 /// True if all that a header declares stays visible where names are hidden by default: its namespace is
@@ -205,31 +404,32 @@ TEST(Layering, TheUmbrellaHasEveryPublicHeader) {
   for (const auto& [header, folder] : kPublicHeaders) EXPECT_TRUE(listed.contains(header)) << header;
 }
 
-/// Which folders may include a header of another library: the library's own folder of headers, or the header.
+/// Which rooms may include a header of another library: the library's own folder of headers, or the header.
 /// What is not here is the standard library's, the system's or the tests'.
 const Layers kThirdParty{
     {"CLI", {"cli"}},
-    {"Eigen", {"rayset", "photometry", "source", "reflector", "design"}},
+    {"Eigen", {"rayset", "photometry", "optics", "source", "design"}},
     {"cuda_runtime.h", {"trace", "design"}},
     {"embree3", {"trace", "design"}},
-    {"fmt", {"core", "rayset", "photometry", "source", "reflector", "trace", "design", "report", "cli"}},
-    {"immintrin.h", {"trace", "design"}},
+    {"fmt",
+     {"core", "rayset", "photometry", "optics", "source", "trace", "project", "design", "results", "report",
+      "cli"}},
+    {"immintrin.h", {"simd"}},
     {"libqhull_r", {"source"}},
-    {"nlohmann", {"report", "cli"}},
+    {"nlohmann", {"results", "report", "cli"}},
     {"oneapi", {"core"}},
     {"openssl", {"core", "source"}},
     {"pmmintrin.h", {"trace"}},
-    {"toml++", {"trace"}},
+    {"toml++", {"project"}},
     {"xmmintrin.h", {"trace"}},
     {"zlib.h", {"core"}},
-    {"zstd.h", {"source", "trace"}},
+    {"zstd.h", {"source", "results"}},
 };
 const std::set<std::string> kSystemHeaders{"gmock", "gtest",  "stddef.h", "stdint.h",
                                            "sys",   "time.h", "unistd.h"};
 
-/// The headers of other libraries that `lines` include and `folder` may not.
-std::vector<std::string> forbidden_libraries(const std::string& folder,
-                                             const std::vector<std::string>& lines) {
+/// The headers of other libraries that `lines` include and `room` may not.
+std::vector<std::string> forbidden_libraries(const std::string& room, const std::vector<std::string>& lines) {
   std::vector<std::string> bad;
   for (const std::string& line : lines) {
     const std::string header = included(line, '<');
@@ -237,7 +437,7 @@ std::vector<std::string> forbidden_libraries(const std::string& folder,
     if (name == header && !header.ends_with(".h")) continue;
     const auto known = kThirdParty.find(name);
     const bool allowed =
-        known == kThirdParty.end() ? kSystemHeaders.contains(name) : known->second.contains(folder);
+        known == kThirdParty.end() ? kSystemHeaders.contains(name) : known->second.contains(room);
     if (!allowed) bad.push_back(header);
   }
   return bad;
@@ -246,7 +446,7 @@ std::vector<std::string> forbidden_libraries(const std::string& folder,
 TEST(Layering, OtherLibrariesStayInTheirFolders) {
   for (const fs::path& file : source_files()) {
     if (is_public(file)) continue;
-    for (const std::string& header : forbidden_libraries(folder_of(file), lines_of(file)))
+    for (const std::string& header : forbidden_libraries(room_of(file), lines_of(file)))
       ADD_FAILURE() << file << " includes <" << header << ">";
   }
 }
@@ -257,7 +457,7 @@ TEST(Layering, CheckSeesOtherLibraries) {
                                        "#include <unistd.h>"};
   EXPECT_EQ(forbidden_libraries("report", lines),
             (std::vector<std::string>{"toml++/toml.h", "boost/any.hpp"}));
-  EXPECT_EQ(forbidden_libraries("trace", lines), (std::vector<std::string>{"boost/any.hpp"}));
+  EXPECT_EQ(forbidden_libraries("project", lines), (std::vector<std::string>{"boost/any.hpp"}));
 }
 
 TEST(Tree, FilesAreShortAndLicensed) {
@@ -366,16 +566,15 @@ std::vector<std::string> unnamed_names(const std::vector<std::string>& lines) {
   return names;
 }
 
-// Sources of a folder are compiled many at a time (cmake/LucernaQuickBuild.cmake): what each hides from the
+// Sources of a room are compiled many at a time (cmake/LucernaQuickBuild.cmake): what each hides from the
 // others by an unnamed namespace shares one with them then.
-TEST(Tree, UnnamedNamespacesOfAFolderShareNoName) {
+TEST(Tree, UnnamedNamespacesOfARoomShareNoName) {
   std::map<std::string, fs::path> owner;
   for (const fs::path& file : source_files()) {
     if (file.extension() != ".cpp") continue;
-    const bool test = file.stem().string().ends_with("_test");
-    const std::string folder = file.parent_path().filename().string() + (test ? " tests: " : ": ");
+    const std::string room = room_of(file) + (is_test(file) ? " tests: " : ": ");
     for (const std::string& name : unnamed_names(lines_of(file))) {
-      const auto [at, first] = owner.emplace(folder + name, file);
+      const auto [at, first] = owner.emplace(room + name, file);
       if (!first && at->second != file) ADD_FAILURE() << at->first << " is in " << at->second << ", " << file;
     }
   }
@@ -466,6 +665,21 @@ std::vector<std::string> paths_of(const std::string& page) {
   return paths;
 }
 
+/// The private sources that a page names in backquotes by their place below src/lucerna:
+/// `trace/run/trace.cpp`.
+std::vector<std::string> places_of(const std::string& page) {
+  std::vector<std::string> places;
+  for (const auto& [room, may_include] : kMayInclude) {
+    for (const std::string& rest : lucerna::test::between(page, "`" + room + "/", "`")) {
+      const std::string ending = fs::path(rest).extension().string();
+      const bool any = rest.find_first_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") != std::string::npos;  // COMMAND.cpp
+      if (!any && (ending == ".h" || ending == ".cpp" || ending == ".cu"))
+        places.push_back(room + "/" + rest);
+    }
+  }
+  return places;
+}
+
 std::string text_of(const fs::path& file) {
   std::string text;
   for (const std::string& line : lines_of(file)) text += line + "\n";
@@ -493,6 +707,11 @@ TEST(Docs, LinksAndPathsLeadSomewhere) {
       ++seen;
       EXPECT_TRUE(fs::exists(lucerna::test::source_dir() / path)) << page << " names " << path;
     }
+    for (const std::string& place : places_of(text)) {
+      ++seen;
+      EXPECT_TRUE(fs::exists(lucerna::test::source_dir() / "src/lucerna" / place))
+          << page << " names " << place;
+    }
   }
   EXPECT_GT(seen, 20u);
 }
@@ -503,6 +722,10 @@ TEST(Docs, CheckSeesLinksAndPaths) {
       "`scripts/y.sh Z`";
   EXPECT_EQ(links_of(page), (std::vector<std::string>{"docs/a.md"}));
   EXPECT_EQ(paths_of(page), (std::vector<std::string>{"tests/x_test.cpp"}));
+  EXPECT_EQ(
+      places_of(
+          "`trace/run/x.cpp` `cli/commands/COMMAND.cpp` `trace/result.json` `core/io/y.h: f` `core/io/z.h`"),
+      (std::vector<std::string>{"core/io/z.h", "trace/run/x.cpp"}));
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes docs/reference/{cli,errors,project-file,result-json}.md: `make reference`. A test compares them.
-#include "lucerna/cli/reference_pages.h"
-#include "lucerna/core/file.h"
+#include "lucerna/cli/manual/reference_pages.h"
+#include "lucerna/core/io/file.h"
 #include "tests/support/paths.h"
 
 int main() {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "lucerna/core/error.h"
-#include "lucerna/trace/kernel.h"
+#include "lucerna/core/io/error.h"
+#include "lucerna/trace/kernels/kernel.h"
 
 namespace lucerna::test {
 

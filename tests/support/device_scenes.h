@@ -8,9 +8,9 @@
 #include <memory>
 #include <vector>
 
-#include "lucerna/reflector/faceted_surface.h"
+#include "lucerna/optics/shapes/faceted_surface.h"
 #include "lucerna/source.h"
-#include "lucerna/source/draw_rays.h"
+#include "lucerna/source/emitters/draw_rays.h"
 #include "lucerna/trace.h"
 #include "tests/support/meshes.h"
 

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <vector>
 
+#include "lucerna/optics/shapes/spline_surface.h"
 #include "lucerna/random.h"
 #include "lucerna/reflector.h"
-#include "lucerna/reflector/spline_surface.h"
 
 namespace lucerna {
 

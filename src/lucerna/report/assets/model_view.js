@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Luminance images of an embedded source model from any direction, evaluated in the page: no rays, no noise. An adaptive
-// model is looked up line by line of sight (to_chart of source/support.h, then the trees); a clusters model is drawn
+// model is looked up line by line of sight (to_chart of source/adaptive/charts/support.h, then the trees); a clusters model is drawn
 // triangle by triangle, each point with the directional distribution of its nearest cluster. Data: model_arrays.h.
 'use strict';
 lucerna.model = (() => {
@@ -132,7 +132,7 @@ lucerna.model = (() => {
     };
   };
 
-  // direction_code of source/spherical_triangle.h.
+  // direction_code of source/clusters/spherical_triangle.h.
   const directionCode = d => {
     let code = (d[0] < 0 ? 1 : 0) | (d[1] < 0 ? 2 : 0) | (d[2] < 0 ? 4 : 0), a = [1, 0, 0], b = [0, 1, 0], c = [0, 0, 1];
     const p = d.map(Math.abs), between = (x, y) => unit(x.map((v, i) => v + y[i]));

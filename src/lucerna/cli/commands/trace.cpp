@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace.h"
+
+#include <fmt/format.h>
+
+#include "lucerna/cli/commands/commands.h"
+#include "lucerna/cli/output/trace_output.h"
+#include "lucerna/cli/parse/arguments.h"
+#include "lucerna/core/io/error.h"
+#include "lucerna/core/io/file.h"
+#include "lucerna/project.h"
+#include "lucerna/report/html/report_trace.h"
+#include "lucerna/results/folders/trace_file.h"
+#include "lucerna/results/folders/trace_folder.h"
+#include "lucerna/trace/device/accelerator.h"
+
+namespace lucerna::cli {
+
+namespace {
+
+struct TraceArguments {
+  std::string project, output, rays, noise = "1%", time = "60", seed = "1", sequence = "sobol",
+                                     device = "auto", report;
+  bool resume = false;
+};
+
+TraceOptions trace_options(const TraceArguments& a) {
+  TraceOptions options;
+  options.device = trace_device(a.device);
+  if (options.device == TraceDevice::cuda) require_cuda();
+  options.seed = parse_count(a.seed);
+  options.sequence = sequence_kind(a.sequence);
+  if (!a.rays.empty()) {
+    const RayRange range = parse_range(a.rays);
+    options.first_ray = range.first;
+    options.last_ray = range.last;
+  }
+  return options;
+}
+
+/// The trace that is in the folder, if it is one of this project.
+std::optional<TraceResult> stored_trace(const TraceArguments& a, const TraceOrigin& origin) {
+  const std::filesystem::path file = std::filesystem::path(a.output) / kTraceFileName;
+  if (!a.resume || !std::filesystem::exists(file)) return std::nullopt;
+  StoredTrace stored = read_trace_file(file);
+  if (stored.origin.scene_id != origin.scene_id)
+    throw InputError(fmt::format("{}: is a trace of another project, or of other input files", a.output));
+  if (stored.origin.program_version != origin.program_version) {
+    throw InputError(fmt::format("{}: was traced by lucerna {}, this is {}", a.output,
+                                 stored.origin.program_version, origin.program_version));
+  }
+  return std::move(stored.result);
+}
+
+/// `--rays`: exactly those, with what is there already.
+NoiseTrace trace_rays(const Scene& scene, TraceOptions options, std::optional<TraceResult> from,
+                      Session& session) {
+  if (from) {
+    if (options.first_ray != from->first_ray || *options.last_ray < from->last_ray) {
+      throw UsageError(
+          fmt::format("--resume: rays {}:{} are there already", from->first_ray, from->last_ray));
+    }
+    options.first_ray = from->last_ray;
+    options.seed = from->seed;
+    options.sequence = from->sequence;
+  }
+  NoiseTrace out;
+  if (from && options.first_ray == *options.last_ray) {
+    out.result = std::move(*from);
+  } else {
+    out.result = trace(scene, options, session.progress());
+    if (from) out.result = merge(*from, out.result);
+  }
+  return out;
+}
+
+NoiseTrace run_rays(const TraceArguments& a, const Scene& scene, const TraceOptions& options,
+                    const TraceOrigin& origin, Session& session) {
+  std::optional<TraceResult> from = stored_trace(a, origin);
+  if (a.resume && !from) session.note(fmt::format("{}: no trace yet, starting anew", a.output));
+  if (!a.rays.empty()) return trace_rays(scene, options, std::move(from), session);
+  NoiseGoal goal;
+  goal.noise = parse_share(a.noise);
+  goal.max_seconds = parse_number(a.time);
+  NoiseTrace traced = trace_until(scene, options, goal, std::move(from), session.progress());
+  if (traced.end == NoiseEnd::time || traced.end == NoiseEnd::finite_source) {
+    session.note(fmt::format("noise {:.2g} % of the peak, {:.2g} % requested: {}", 100.0 * traced.noise,
+                             100.0 * goal.noise, to_string(traced.end)));
+  }
+  return traced;
+}
+
+void run_trace(const TraceArguments& a, Session& session) {
+  session.start();
+  const TraceOptions options = trace_options(a);
+  const Project project = session.timed("read", [&] { return read_project(a.project, session.progress()); });
+  prepare_folder(a.output, session.force || a.resume);
+  for (const std::string& warning : project.warnings) session.note(warning);
+  for (const auto& input : project.inputs) session.add_input(input);
+  const TraceOrigin origin = session.timed("hash", [&] { return trace_origin(project); });
+  const NoiseTrace traced =
+      session.timed("trace", [&] { return run_rays(a, project.scene, options, origin, session); });
+  const TraceResult& result = traced.result;
+  const TraceMetrics figures = session.timed("figures", [&] { return trace_metrics(result, project.scene); });
+  const auto names = write_trace_output(a.output, result, origin, figures, session);
+  const double seconds = session.seconds("trace");
+  session.print_line(fmt::format(
+      "{}: {} rays in {:.3g} s, {:.3g} M rays/s ({}, {} threads); read {:.3g} s, figures {:.3g} s", a.output,
+      figures.ledger.rays, seconds, 1e-6 * static_cast<double>(figures.ledger.rays) / seconds, result.isa,
+      ThreadLimit::current(), session.seconds("read"), session.seconds("figures")));
+  print_trace_summary(figures, names, session);
+  if (!a.report.empty()) {
+    write_file(a.report, trace_report_html(read_trace_folder(a.output), {.scene = &project.scene}));
+    session.print_line(fmt::format("  report: {}", a.report));
+  }
+}
+
+}  // namespace
+
+void add_trace(CLI::App& app, Session& session, int&) {
+  Command command(app, "trace", "Trace a project's sources through its mirrors");
+  auto arguments = std::make_shared<TraceArguments>();
+  TraceArguments& a = *arguments;
+  command.required("PROJECT", a.project, "Project file (see: lucerna init)");
+  command.required("-o,--output", a.output, "Folder for the results");
+  command.option("--noise", a.noise,
+                 "Trace until no angle above 1 % of the peak has a larger error, as a share of the peak");
+  command.option("--time", a.time, "Seconds after which to stop with the noise that is left");
+  command.option("--rays", a.rays, "Instead: a number of rays, or a range A:B of ray numbers");
+  command.flag("--resume", a.resume, "Go on with the trace in the folder");
+  command.option("--seed", a.seed, "Seed of the random numbers");
+  command.option("--sequence", a.sequence, "random or sobol");
+  command.option("--device", a.device, "cpu, cuda or auto");
+  command.option("--report", a.report, "Also write the report as one HTML file");
+  command.flag("--force", session.force, "Write into a folder that is not empty");
+  session.add_json(command);
+  session.add_common(command);
+  command.on_run([arguments, &session] { run_trace(*arguments, session); });
+}
+
+}  // namespace lucerna::cli

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lucerna/cli/parse/session.h"
+#include "lucerna/results/folders/trace_origin.h"
+#include "lucerna/results/json/trace_json.h"
+
+namespace lucerna::cli {
+
+/// The end of `trace` and `merge`: fills `folder` (files by detector, result.json, the raw sums that `merge`
+/// takes), prints the JSON, and tells of warnings. Returns the names of the files. `seed` and inputs are what
+/// the session's head says.
+std::vector<std::string> write_trace_output(const std::string& folder, const TraceResult& result,
+                                            const TraceOrigin& origin, const TraceMetrics& figures,
+                                            Session& session);
+
+/// The figures as text, and the files.
+void print_trace_summary(const TraceMetrics& figures, const std::vector<std::string>& names,
+                         Session& session);
+
+}  // namespace lucerna::cli

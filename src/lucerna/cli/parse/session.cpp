@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/cli/parse/session.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "lucerna/cli/parse/arguments.h"
+#include "lucerna/core/io/error.h"
+#include "lucerna/core/io/file.h"
+
+namespace lucerna::cli {
+
+namespace {
+
+volatile std::sig_atomic_t stop_signal = 0;
+
+extern "C" void on_stop_signal(int) { stop_signal = 1; }
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+void TerminalProgress::update(std::string_view phase, std::uint64_t done, std::uint64_t total) {
+  if (!visible_) return;
+  const auto now = Clock::now();
+  if (phase != phase_) {
+    phase_ = phase;
+    phase_start_ = now;
+  }
+  if (now - last_draw_ < std::chrono::milliseconds(200)) return;
+  last_draw_ = now;
+  const double elapsed = seconds_since(phase_start_);
+  const double rate = elapsed > 0.0 ? static_cast<double>(done) / elapsed : 0.0;
+  std::string line = fmt::format("{}: {}", phase_, done);
+  if (total > 0) {
+    line =
+        fmt::format("{}: {:3.0f} %", phase_, 100.0 * static_cast<double>(done) / static_cast<double>(total));
+    if (rate > 0.0 && total > done)
+      line += fmt::format(", {:.0f} s left", static_cast<double>(total - done) / rate);
+  }
+  if (rate > 0.0) line += fmt::format(", {:.3g} M/s", 1e-6 * rate);
+  fmt::print(stderr, "\r\033[K{}", line);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+void TerminalProgress::show(const std::string& line) {
+  const auto now = Clock::now();
+  if (!visible_ || now - last_draw_ < std::chrono::milliseconds(200)) return;
+  last_draw_ = now;
+  fmt::print(stderr, "\r\033[K{}", line);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+bool TerminalProgress::stop_requested() const { return stop_signal != 0; }
+
+void TerminalProgress::clear() {
+  if (!drawn_) return;
+  fmt::print(stderr, "\r\033[K");
+  std::fflush(stderr);
+  drawn_ = false;
+}
+
+void Session::add_common(Command& command) {
+  command.option("--threads", threads, "Worker threads (default: all)", 1, 4096);
+  command.flag("--quiet", quiet, "Print no progress and no summary");
+}
+
+void Session::add_json(Command& command) {
+  command.flag("--json", json, "Print one JSON object instead of text");
+}
+
+void Session::add_strict(Command& command) {
+  command.flag("--strict", strict, "Refuse files that need a repair or raise a warning");
+}
+
+void Session::start() {
+  if (threads > 0) limit_ = std::make_unique<ThreadLimit>(threads);
+  progress_ = std::make_unique<TerminalProgress>(!quiet && ::isatty(STDERR_FILENO) == 1);
+  std::signal(SIGINT, on_stop_signal);
+  std::signal(SIGTERM, on_stop_signal);
+}
+
+Session::PhaseTimer::~PhaseTimer() { session.add_seconds(name, seconds_since(start)); }
+
+void Session::add_seconds(const std::string& phase, double seconds) {
+  const auto found =
+      std::find_if(run_.wall_s.begin(), run_.wall_s.end(), [&](const auto& p) { return p.first == phase; });
+  if (found == run_.wall_s.end()) {
+    run_.wall_s.emplace_back(phase, seconds);
+  } else {
+    found->second += seconds;
+  }
+}
+
+void Session::set_command(int argc, char** argv) {
+  run_.command = "lucerna";
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool plain =
+        !word.empty() && word.find_first_of(" \t\n'\"\\$*?[](){}<>|&;`#~!") == std::string::npos;
+    run_.command += plain ? " " + word : " '" + word + "'";
+  }
+}
+
+double Session::seconds(const std::string& phase) const {
+  for (const auto& [name, elapsed] : run_.wall_s) {
+    if (name == phase) return elapsed;
+  }
+  return 0.0;
+}
+
+Json Session::json_head(std::optional<std::uint64_t> seed, const std::string& isa) const {
+  return run_json(run_, seed, isa);
+}
+
+void Session::print_line(const std::string& line) {
+  if (quiet || json) return;
+  if (progress_) progress_->clear();
+  fmt::print("{}\n", line);
+}
+
+void Session::note(const std::string& line) {
+  if (progress_) progress_->clear();
+  fmt::print(stderr, "lucerna: {}\n", line);
+}
+
+void Session::print_json(const Json& object) {
+  if (!json) return;
+  if (progress_) progress_->clear();
+  fmt::print("{}\n", object.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+void prepare_folder(const std::filesystem::path& folder, bool force) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw InputError(fmt::format("{}: cannot make the folder: {}", folder.string(),
+                                 error ? error.message() : "a file of that name is in the way"),
+                     ErrorCause::unwritable);
+  }
+  if (!force && !std::filesystem::is_empty(folder)) {
+    throw InputError(
+        fmt::format("{}: the folder is not empty; choose another or give --force", folder.string()));
+  }
+}
+
+}  // namespace lucerna::cli

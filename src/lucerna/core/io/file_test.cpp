@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/core/io/file.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <set>
+
+#include "lucerna/core/io/error.h"
+#include "tests/support/temp_dir.h"
+
+namespace lucerna {
+namespace {
+
+std::size_t entries(const std::filesystem::path& folder) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+TEST(OutputFile, AppearsOnlyWhenCommitted) {
+  const test::TempDir dir;
+  {
+    OutputFile file(dir / "a");
+    file.write("half");
+  }
+  EXPECT_EQ(entries(dir.path()), 0u);
+  write_file(dir / "a", "old");
+  {
+    OutputFile file(dir / "a");
+    file.write("half");
+  }
+  EXPECT_EQ(read_file(dir / "a", 100), "old");
+  write_file(dir / "a", "new");
+  EXPECT_EQ(read_file(dir / "a", 100), "new");
+  EXPECT_EQ(entries(dir.path()), 1u);
+}
+
+TEST(OutputFile, PatchesWhatWasWritten) {
+  const test::TempDir dir;
+  OutputFile file(dir / "a");
+  file.write("count=? and more");
+  file.patch(6, std::as_bytes(std::span("7", 1)));
+  file.write("!");
+  file.commit();
+  EXPECT_EQ(read_file(dir / "a", 100), "count=7 and more!");
+}
+
+/// The cause of the InputError that `work` throws.
+template <class Work>
+ErrorCause cause_of(const Work& work) {
+  try {
+    work();
+  } catch (const InputError& e) {
+    return e.cause();
+  }
+  return ErrorCause::interrupted;
+}
+
+TEST(OutputFile, AnUnwritablePlaceIsOneClearLine) {
+  const test::TempDir dir;
+  EXPECT_EQ(cause_of([&] { OutputFile(dir / "missing" / "a"); }), ErrorCause::unwritable);
+  EXPECT_EQ(cause_of([&] { OutputFile(dir.path()); }), ErrorCause::unwritable);
+}
+
+TEST(OutputFile, AFullDiskIsToldApart) {
+  const test::TempDir dir;
+  std::filesystem::create_symlink("/dev/full", dir / fmt::format("a.tmp{}", ::getpid()));
+  EXPECT_EQ(cause_of([&] { write_file(dir / "a", "text"); }), ErrorCause::no_space);
+  EXPECT_FALSE(std::filesystem::exists(dir / "a"));
+}
+
+TEST(ErrorCauses, HaveNamesOfTheirOwn) {
+  std::set<std::string_view> names;
+  for (const ErrorCause cause : kErrorCauses) EXPECT_TRUE(names.insert(to_string(cause)).second);
+  EXPECT_FALSE(names.contains(""));
+  EXPECT_EQ(static_cast<std::size_t>(ErrorCause::interrupted) + 1, kErrorCauses.size());
+}
+
+TEST(InputFile, NamesWhatIsMissing) {
+  const test::TempDir dir;
+  EXPECT_EQ(cause_of([&] { InputFile(dir / "none"); }), ErrorCause::not_found);
+  EXPECT_EQ(cause_of([&] { InputFile(dir.path()); }), ErrorCause::unreadable);
+  write_file(dir / "a", "12345");
+  const InputFile file(dir / "a");
+  std::array<std::byte, 4> four{};
+  file.read_at(1, four);
+  EXPECT_EQ(static_cast<char>(four[0]), '2');
+  for (const std::uint64_t offset : {2ull, 5ull, 6ull, ~0ull})
+    EXPECT_THROW(file.read_at(offset, four), InputError);
+  EXPECT_THROW(read_file(dir / "a", 4), InputError);
+}
+
+TEST(Sha256, KnownAnswers) {
+  const test::TempDir dir;
+  write_file(dir / "a", "abc");  // FIPS 180-4 example
+  EXPECT_EQ(sha256_of_file(dir / "a"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  write_file(dir / "b", "");
+  EXPECT_EQ(sha256_of_file(dir / "b"), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+TEST(Check, PrintsConditionAndValues) {
+  const int i = 5, n = 3;
+  try {
+    LUCERNA_CHECK(i < n, "i = {}, n = {}", i, n);
+    FAIL();
+  } catch (const std::logic_error& e) {
+    EXPECT_NE(std::string(e.what()).find("i < n (i = 5, n = 3)"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace lucerna

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lucerna/design/problem/design_limits.h"
+#include "lucerna/design/solver/residual_rows.h"
+
+namespace lucerna {
+
+/// The limits on a mirror's form as costs that a fit can add to its error. At places over the aperture, each
+/// limit costs the square of its excess over a small margin (0.02 mm, 0.01 of slope, 2 % of curvature), from
+/// a margin inside the limit on: a margin too much costs as much as an error of 100 %. What is not linear in
+/// the parameters (curvature) has Gauss-Newton derivatives. Immutable, thread safe.
+class ShapeLimits {
+ public:
+  /// `start` says the aperture and on which side of each keep-out zone the mirror is to stay: where most of
+  /// it is to begin with.
+  ShapeLimits(const DesignLimits& limits, const DesignShape& start);
+
+  bool empty() const { return limits_.empty(); }
+
+  /// The cost of all limits, 0 where all are held; adds its residuals to `rows` unless null.
+  double cost(const DesignShape& shape, ResidualRows* rows) const;
+
+  /// True if every limit itself, without margin, is held on a fine grid.
+  bool held(const DesignShape& shape) const;
+
+  /// The shape itself if it holds the limits; else one near it, of the same knots, that does. Throws
+  /// InputError if there is none, naming the pair of limits that contradict each other.
+  DesignShape nearest(const DesignShape& shape) const;
+
+ private:
+  enum class Kind { height, slope, radius, keep_out };
+  struct Place {
+    double x, y;
+  };
+  /// What keeps the surface away from a zone over one place.
+  struct Wall {
+    Place place;
+    double z_mm;
+    bool below;  ///< the surface must be below z
+  };
+  struct Limit {
+    Kind kind;
+    double value;
+    std::string text;
+    std::vector<Wall> walls;
+  };
+  struct Terms;
+
+  Limit keep_out(const KeepOut& zone, const DesignShape& start) const;
+  bool held(const DesignShape& shape, std::span<const Limit* const> limits) const;
+  /// `per_interval`: places looked at in a knot interval.
+  double cost(const DesignShape& shape, std::span<const Limit* const> limits, int per_interval,
+              ResidualRows* rows) const;
+  /// A shape that holds them, if Gauss-Newton on the costs alone finds one.
+  std::optional<DesignShape> solve(const DesignShape& shape, std::span<const Limit* const> limits) const;
+  std::vector<const Limit*> all() const;
+
+  std::vector<Limit> limits_;
+};
+
+/// Adds weight * (1 - F / reference)^2, F the light in the bins, with its derivative.
+void add_flux_term(const Evaluation& e, double weight, double reference, NormalEquations& equations);
+
+}  // namespace lucerna

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "lucerna/design/evaluation/design_ray_block.h"
+#include "lucerna/progress.h"
+#include "lucerna/rays.h"
+#include "lucerna/trace/engines/ray_numbering.h"
+#include "lucerna/trace/tally/flux_quanta.h"
+
+namespace lucerna {
+
+class Accelerator;
+class BodyShadows;
+class DeviceEvaluator;
+
+/// What blocks of rays are padded to and dealt by, so that the order of summing is fixed.
+inline constexpr std::size_t kDesignTasks = 16;
+
+/// The rays that every evaluation of a design traces again (common random numbers), in the frame of the
+/// mirror. Block b of kBlockRays rays belongs to stream b mod kDesignStreams; within a stream, sources take
+/// their shares by SourceInterleaving and each has a Sobol sequence of its own. Grows on demand and never
+/// changes what is there. 28 bytes per ray. Not thread safe while it grows.
+class DesignRays {
+ public:
+  /// `sources` in the luminaire frame. Throws InputError as `check(Scene)` does for sources.
+  DesignRays(std::vector<PlacedSource> sources, const Frame& mirror_from_world, std::uint64_t seed);
+
+  /// Makes sure that there are at least `n` rays (rounded up to kDesignTasks blocks). Progress phase "rays".
+  void grow(std::uint64_t n, Progress& progress = no_progress());
+
+  std::uint64_t size() const { return block_.size() * kBlockRays; }
+  /// Flux of all sources, in their unit.
+  double flux() const { return flux_; }
+  const std::vector<PlacedSource>& sources() const { return sources_; }
+  FluxUnit unit() const { return sources_.front().rays->flux_unit(); }
+
+  using Block = DesignRayBlock;
+  const Block& block(std::uint64_t b) const { return block_[b]; }
+  /// From now on `evaluate` traces these rays on `accelerator`, which must not be used by another thread
+  /// meanwhile; nothing: on the CPU.
+  void evaluate_on(std::shared_ptr<Accelerator> accelerator);
+  /// Null on the CPU.
+  DeviceEvaluator* device() const { return device_.get(); }
+
+  /// From now on bodies stand in the rays' way, and evaluations are traced on the CPU; null: none.
+  void shade_by(std::shared_ptr<const BodyShadows> shadows) { shadows_ = std::move(shadows); }
+  /// Null without bodies.
+  const BodyShadows* shadows() const { return shadows_.get(); }
+
+  /// A copy of the first `max` rays (whole blocks of them), for what takes ray sets.
+  RayBlock first(std::uint64_t max) const;
+
+ private:
+  void fill(std::uint64_t b);
+
+  std::vector<PlacedSource> sources_;
+  Frame mirror_from_world_;
+  SourceInterleaving word_;
+  std::uint64_t seed_;
+  double flux_ = 0.0;
+  std::vector<double> ray_flux_;
+  std::vector<Block> block_;
+  std::shared_ptr<DeviceEvaluator> device_;
+  std::shared_ptr<const BodyShadows> shadows_;
+};
+
+}  // namespace lucerna

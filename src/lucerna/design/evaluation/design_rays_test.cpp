@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/evaluation/design_rays.h"
+
+#include <gtest/gtest.h>
+
+#include "lucerna/core/parallel/parallel.h"
+#include "lucerna/source.h"
+#include "tests/support/one_at_a_time.h"
+
+namespace lucerna {
+namespace {
+
+TEST(DesignRays, TellProgressOneAtATime) {
+  DesignRays rays({{make_emitter({.kind = EmitterKind::disk}), Frame(), {}}}, Frame(), 1);
+  test::OneAtATime watch;
+  const ThreadLimit limit(4);
+  rays.grow(std::uint64_t{1} << 18, watch);
+  EXPECT_GE(watch.calls, 16);
+  EXPECT_EQ(watch.overlaps, 0);
+  EXPECT_EQ(watch.falls, 0);
+}
+
+}  // namespace
+}  // namespace lucerna

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/fit/free_form_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lucerna/design/fit/approach.h"
+#include "lucerna/design/solver/levenberg_marquardt.h"
+#include "lucerna/design/solver/smoothness_penalty.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Share of a third difference on the axis that counts as roughness.
+constexpr double kSmoothnessAtAxis = 0.02;
+/// Knots for which a level's smoothing is meant, over the aperture's radius: roughness is that of a third
+/// derivative, whatever the knots.
+constexpr double kSmoothingStep = 1.0 / 24.0;
+/// What a mirror of few knots has of a level's smoothing: its knots are its smoothness.
+constexpr double kFewKnots = 1.0 / 300.0;
+/// Longest change of a height in one step, over the mirror's radius: the linear model is not good for more.
+constexpr double kMaxMove = 0.05;
+/// Bins on each side of the widened rectangle out to the horizon; where zones may lie there.
+constexpr int kOuterBins = 8, kZoneBins = 24;
+
+double smoothing_for(const DesignShape& shape, double level_smoothing) {
+  const Aperture& a = shape.aperture();
+  const double step =
+      2.0 * std::max(a.half_x_mm() / shape.intervals_x(), a.half_y_mm() / shape.intervals_y());
+  return level_smoothing * (has_few_knots(shape) ? kFewKnots : 1.0) *
+         std::pow(kSmoothingStep * a.outer_radius_mm() / step, 4);
+}
+
+}  // namespace
+
+FreeFormFit::FreeFormFit(const FitProblem& problem, const FreeFormLevel& level, Progress& progress)
+    : problem_(problem),
+      level_(level),
+      bins_(graded_bins(problem.rectangle, problem.mirror_from_world, level.bins, level.widen,
+                        problem.zones.cells ? kZoneBins : kOuterBins)),
+      target_(problem.target(bins_)),
+      inside_(lucerna::in_rectangle(bins_, problem.rectangle)) {
+  problem_.rays->grow(level_.rays, progress);
+  if (problem_.zones.cells) zones_.emplace(problem_.zones, bins_, level_.rays, level_.zones.weight);
+}
+
+FreeFormPoint FreeFormFit::at(DesignShape shape) const {
+  EvaluationOptions options;
+  options.rays = level_.rays;
+  options.direct_light = problem_.direct_light;
+  options.rim_mm = kRimShare * shape.aperture().outer_radius_mm();
+  options.sparse = true;
+  Evaluation light = evaluate(shape, problem_.reflectance, *problem_.rays, bins_, options);
+  SparseEquations equations = sparse_equations(light, target_, bins_, problem_.mode);
+  equations *= error_weight();
+  if (zones_) zones_->add_to(light, equations);
+  ResidualRows rows;
+  equations.cost +=
+      smoothness_penalty(shape, smoothing_for(shape, level_.smoothing), kSmoothnessAtAxis, &rows);
+  if (problem_.limits) equations.cost += problem_.limits(shape, level_.rays, &rows);
+  rows.add_to(equations);
+  if (problem_.flux_weight > 0.0) {
+    const double missing = 1.0 - inside_.dot(light.flux) / problem_.flux_reference;
+    Eigen::VectorXd slope = light.rows.transpose() * inside_ * (-1.0 / problem_.flux_reference);
+    equations.cost += problem_.flux_weight * missing * missing;
+    equations.gradient += problem_.flux_weight * missing * slope;
+    equations.products.push_back({std::move(slope), problem_.flux_weight});
+  }
+  light.rows.resize(0, 0);
+  return {std::move(shape), std::move(light), std::move(equations)};
+}
+
+bool FreeFormFit::step(FreeFormPoint& now, double& lambda) const {
+  const Eigen::VectorXd from = now.shape.parameters();
+  const double longest = kMaxMove * now.shape.aperture().outer_radius_mm();
+  const LevenbergMarquardtStep step =
+      levenberg_marquardt_step(now, sparse_step_metric(now.shape, now.equations), lambda, longest,
+                               [&](const Eigen::VectorXd& move) { return at(now.shape.with(from + move)); });
+  lambda = step.next_lambda;
+  return step.accepted;
+}
+
+BinError FreeFormFit::error(const FreeFormPoint& point) const {
+  return bin_error(point.light, target_, bins_, problem_.mode);
+}
+
+}  // namespace lucerna

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "lucerna/design/evaluation/window.h"
+
+namespace lucerna {
+
+/// Polar radii of mirrors that throw a point source's light as wanted: entropic optimal transport between
+/// directions of the source and directions wanted, with the cost -log(1 - d . o) (Wang 2004, doi
+/// 10.1007/s00526-003-0239-4), by Sinkhorn's iteration with absorbed scalings (Schmitzer 2019, doi
+/// 10.1137/16M1106018) while the entropy falls. `sign` +1: the mirror is the inner envelope of paraboloids
+/// and its rays cross; -1: the outer one, whose rays spread. Immutable after it is made, thread safe.
+class PointTransport {
+ public:
+  /// Both lists need light; `entropy` is where the iteration ends (the cost's blur: about the product of the
+  /// two lists' cell widths, in rad^2). 1300 x 1300 directions take 0.6 processor seconds.
+  PointTransport(const std::vector<DirectedFlux>& from, std::vector<DirectedFlux> to, double sign,
+                 double entropy);
+
+  /// Polar radius towards a direction from the source, up to a common factor.
+  double radius(const Direction& towards) const;
+
+ private:
+  std::vector<DirectedFlux> to_;
+  double sign_, entropy_;
+  Eigen::VectorXf potential_;  ///< over the entropy, with the logarithm of the share
+  Eigen::Matrix<float, Eigen::Dynamic, 3> wanted_;
+};
+
+}  // namespace lucerna

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/run/design.h"
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/design/constraints/light_limits.h"
+#include "lucerna/design/constraints/limits.h"
+#include "lucerna/design/evaluation/body_shadows.h"
+#include "lucerna/design/evaluation/window.h"
+#include "lucerna/design/fit/approach.h"
+#include "lucerna/design/run/result_check.h"
+#include "lucerna/design/run/search_mirror.h"
+#include "lucerna/design/run/time_budget.h"
+#include "lucerna/project/schema/project_tables.h"
+#include "lucerna/trace/device/accelerator.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Seconds that a validation gets where none are left, and without a limit.
+constexpr double kMinValidation_s = 2.0, kNoLimit = std::numeric_limits<double>::infinity();
+/// Rays that judge a result for which there is no time left.
+constexpr std::uint64_t kMinValidationRays = std::uint64_t{1} << 18;
+/// Rays that measure how much light leaves the mirror to begin with.
+constexpr std::uint64_t kFluxRays = std::uint64_t{1} << 16;
+
+/// All limits as one cost; empty without any. `rays` must outlive it.
+std::function<double(const DesignShape&, std::uint64_t, ResidualRows*)> limits_cost(
+    const DesignProblem& problem, const DesignRays& rays) {
+  const ShapeLimits form(problem.limits, problem.start);
+  const LightLimits light(problem.limits, problem.reflectance);
+  if (form.empty() && light.empty()) return {};
+  // The source is a body too: a limit must not be met by a mirror that has passed it.
+  const double given = share_behind(problem.start, rays);
+  return [form, light, given, &rays](const DesignShape& shape, std::uint64_t n, ResidualRows* rows) {
+    const double past = std::max(0.0, share_behind(shape, rays) - given) / kMaxBehind;
+    return form.cost(shape, rows) + light.cost(shape, rays, n, rows) + past * past;
+  };
+}
+
+/// FNV-1a: tells checkpoints of different problems apart.
+std::string problem_key(const DesignProblem& problem, const DesignOptions& options) {
+  toml::table table = toml_tables(problem.project);
+  if (auto* design = table["design"].as_table()) {
+    design->erase("time_s");
+    design->erase("tolerances");  // a sweep after the fit
+  }
+  std::ostringstream text;
+  text << table << options.seed << ' ' << options.max_rays;
+  // Sums on a device are rounded otherwise: taken up elsewhere, a design would not end at the same bits.
+  if (options.accelerator) text << ' ' << options.accelerator->isa();
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  for (const char c : text.str()) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+  return fmt::format("{:016x}", hash);
+}
+
+}  // namespace
+
+FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& options, DesignRays& rays) {
+  FitProblem fit{&rays, problem.reflectance, {}, target_window(problem), problem.target.mode};
+  fit.seed = options.seed;
+  fit.max_failed_restarts = problem.max_failed_restarts;
+  rays.grow(kFluxRays);
+  if (problem.target.mode == TargetMode::shape) {
+    EvaluationOptions plain;
+    plain.rays = kFluxRays;
+    plain.derivatives = false;
+    const Evaluation start = evaluate(problem.start, problem.reflectance, rays, fit.bins, plain);
+    fit.flux_weight = uses_free_form_search(problem) ? problem.light_weight : kFitFluxWeight;
+    fit.flux_reference = start.reflected + start.direct;
+  }
+  LightLimits(problem.limits, problem.reflectance).check(problem.start, rays);
+  fit.limits = limits_cost(problem, rays);
+  fit.target = target_flux(problem.target, problem.world_from_mirror, rays.flux());
+  fit.rectangle = target_rectangle(problem.target);
+  fit.mirror_from_world = problem.world_from_mirror.inverse();
+  fit.zones = {problem.target.zones, rays.flux(), fit.mirror_from_world, problem.target.zones_only};
+  return fit;
+}
+
+void check(const DesignOptions& options) {
+  constexpr std::uint64_t kFewest = kDesignTasks * kBlockRays;
+  if (options.max_rays >= kFewest) return;
+  throw InputError(
+      fmt::format("{} rays of an evaluation asked for, expected at least {}", options.max_rays, kFewest),
+      ErrorCause::out_of_range, "rays");
+}
+
+DesignResult design(const DesignProblem& problem, const DesignOptions& options, Progress& progress,
+                    const DesignObserver& observer) {
+  check(options);
+  // A validation's ray, without derivatives, takes about half the time of a fit's.
+  TimeBudget time(options.time_s.value_or(problem.time_s), options.validation_rays / 2 + options.rays_after);
+  DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
+  rays.evaluate_on(options.accelerator);
+  rays.shade_by(shadows_of(problem.project.scene, problem.world_from_mirror.inverse()));
+  FitProblem fit_data = fit_problem(problem, options, rays);
+  DesignResult result(problem.start);
+  search_mirror({problem, options, problem_key(problem, options), time, progress, observer}, fit_data,
+                result);
+  result.shape = ShapeLimits(problem.limits, problem.start).nearest(result.shape);
+  std::uint64_t validation_rays = options.validation_rays;
+  if (result.end != DesignTermination::converged) {
+    validation_rays =
+        time.affordable(validation_rays, options.rays_after, std::min(validation_rays, kMinValidationRays));
+  }
+  if (result.end == DesignTermination::interrupted)
+    validation_rays = std::min(validation_rays, kMinValidationRays);
+  // Time stops a validation too, but not before there is an error to show.
+  const double max_s =
+      result.end == DesignTermination::time ? std::max(time.left_s(), kMinValidation_s) : kNoLimit;
+  check_result(problem, options, fit_data, validation_rays, max_s, result, progress);
+  if (options.pareto && result.end != DesignTermination::interrupted) {
+    result.pareto = pareto_front(problem, result.shape, options, progress);
+  }
+  if (options.advise && result.end != DesignTermination::interrupted) {
+    result.advice = advise(problem, result.error, options, progress);
+  }
+  return result;
+}
+
+std::string_view to_string(DesignTermination end) {
+  switch (end) {
+    case DesignTermination::converged:
+      return "converged";
+    case DesignTermination::time:
+      return "time";
+    case DesignTermination::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+std::string history_csv(const std::vector<FitRecord>& history) {
+  std::string csv =
+      "evaluations,candidate,stage,step,rays,total_rays,relative_rms,floor,lambda,accepted,efficiency,in_"
+      "rectangle\n";
+  for (const FitRecord& r : history) {
+    csv += fmt::format("{},{},{},{},{},{},{:.6g},{:.6g},{:.3g},{},{:.6g},{:.6g}\n", r.evaluations,
+                       r.candidate, r.stage, r.step, r.rays, r.total_rays, r.error, r.floor, r.lambda,
+                       r.accepted ? 1 : 0, r.efficiency, r.in_rectangle);
+  }
+  return csv;
+}
+
+}  // namespace lucerna

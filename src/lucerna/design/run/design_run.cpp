@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/run/design_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/trace/device/accelerator.h"
+
+namespace lucerna {
+
+namespace {
+
+/// The result is traced no longer than this share of the time (1 to 10 seconds); and as many rays are set
+/// aside for it, in units of what a trace would take by default.
+constexpr double kFinalTraceShare = 0.1;
+constexpr std::uint64_t kFinalTraceRays = 4;
+
+std::uint64_t rays_after(const DesignProblem& problem) {
+  std::uint64_t rays = kFinalTraceRays * default_ray_count(problem.project.scene);
+  if (problem.tolerances) {
+    rays += problem.tolerances->rays * tolerance_cases(*problem.tolerances, 1).size();
+  }
+  return rays;
+}
+
+/// What `work` returns; `seconds` gets how long it took.
+template <class Work>
+auto timed(double& seconds, const Work& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  auto made = work();
+  seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return made;
+}
+
+/// What users of the library get of it.
+DesignedMirror designed_mirror(const DesignProblem& problem, DesignRun run) {
+  const DesignShape shape = run.result.shape;
+  return {std::move(run.result),
+          shape.reflector(),
+          problem.world_from_mirror,
+          project_text(with_shape(problem, shape)),
+          std::move(run.trace.result),
+          std::move(run.figures.trace),
+          std::move(run.figures.tolerances)};
+}
+
+}  // namespace
+
+std::shared_ptr<Accelerator> design_accelerator(TraceDevice device) {
+  if (device == TraceDevice::cpu) return nullptr;
+  auto found = cuda_accelerators();
+  if (!found.empty()) return std::move(found.front());
+  if (device == TraceDevice::cuda) require_cuda();
+  return nullptr;
+}
+
+DesignRun run_design(const DesignProblem& problem, DesignOptions options, Progress& progress,
+                     const DesignObserver& observer) {
+  options.rays_after = rays_after(problem);
+  double design_s = 0.0;
+  DesignRun run{timed(design_s, [&] { return design(problem, options, progress, observer); })};
+  run.design_s = design_s;
+  const Scene scene = with_shape(problem, run.result.shape).scene;
+  NoiseGoal goal;
+  goal.max_seconds = std::clamp(kFinalTraceShare * options.time_s.value_or(problem.time_s), 1.0, 10.0);
+  run.wanted_noise = goal.noise;
+  run.trace = timed(run.trace_s, [&] { return trace_until(scene, {.seed = options.seed + 1}, goal); });
+  run.figures =
+      timed(run.figures_s, [&] { return design_metrics(problem, run.result, run.trace.result, scene); });
+  if (problem.tolerances && run.result.end != DesignTermination::interrupted) {
+    run.figures.tolerances = timed(run.tolerances_s, [&] {
+      return tolerance_sweep(scene, *problem.tolerances, options.seed + 2, progress);
+    });
+  }
+  return run;
+}
+
+DesignedMirror design(const std::filesystem::path& project, const DesignSettings& settings,
+                      Progress& progress) {
+  DesignProblem problem = design_problem(read_project(project, progress), project);
+  if (settings.tolerances && !problem.tolerances) problem.tolerances = ToleranceRanges{};
+  DesignOptions options;
+  options.seed = settings.seed;
+  options.time_s = settings.time_s;
+  options.max_rays = settings.max_rays;
+  options.validation_rays = 4 * settings.max_rays;
+  options.accelerator = design_accelerator(settings.device);
+  options.pareto = settings.pareto;
+  options.advise = settings.advise;
+  return designed_mirror(problem, run_design(problem, options, progress));
+}
+
+}  // namespace lucerna

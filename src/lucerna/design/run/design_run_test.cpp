@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/run/design_run.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lucerna/cad.h"
+#include "lucerna/core/io/file.h"
+#include "lucerna/photometric_file.h"
+#include "tests/support/temp_dir.h"
+
+namespace lucerna {
+namespace {
+
+/// A spot of 20 degrees at half its peak, from a disk in a mirror of revolution.
+class DesignRuns : public testing::Test {
+ protected:
+  DesignRuns() {
+    PhotometricFile target{uniform_distribution(360.0, 1.0), {}};
+    for (std::size_t g = 0; g < target.distribution.gamma_deg.size(); ++g) {
+      const double gamma = target.distribution.gamma_deg[g] / 10.0;
+      target.distribution.at(0, g) = gamma < 4.0 ? 1000.0 * std::exp2(-gamma * gamma) : 0.0;
+    }
+    write_photometric_file(dir_ / "spot.ldt", target, PhotometricFormat::ldt);
+    write_file(dir_ / "lamp.toml", R"([[source]]
+kind = "disk"
+radius_mm = 1.0
+[[reflector]]
+family = "revolution"
+preset = "parabola"
+focal_mm = 8.0
+diameter_mm = 60.0
+position_mm = [0, 0, 8]
+axis = "-z"
+[target]
+file = "spot.ldt"
+[design]
+time_s = 3
+)");
+  }
+  test::TempDir dir_;
+};
+
+TEST_F(DesignRuns, GiveTheMirrorItsErrorAndItsLight) {
+  DesignSettings settings;
+  settings.max_rays = std::uint64_t{1} << 16;
+  settings.tolerances = true;
+  const DesignedMirror mirror = design(dir_ / "lamp.toml", settings);
+  EXPECT_LT(mirror.error.c48.excess, 0.2 * mirror.start_error.c48.excess);
+  EXPECT_GE(mirror.error.c48.excess + 3.0 * mirror.error.c48.standard_error, mirror.bound.error);
+  ASSERT_FALSE(mirror.light.far_fields.empty());
+  // The validation's mesh and the trace's exact surface send the same light out.
+  const Estimate traced = mirror.light.far_fields.front().metrics.flux;
+  const double flux = mirror.light.ledger.emitted;
+  EXPECT_NEAR(traced.mean / flux, mirror.efficiency.mean,
+              5.0 * std::hypot(traced.standard_error / flux, mirror.efficiency.standard_error) + 1e-3);
+  ASSERT_TRUE(mirror.tolerances.has_value());
+  EXPECT_EQ(mirror.tolerances->cases.front().name, "nominal");
+  EXPECT_FALSE(cad_mesh(mirror.reflector).triangles.empty());
+}
+
+TEST_F(DesignRuns, LeaveAProjectThatMakesTheSameLight) {
+  DesignSettings settings;
+  settings.max_rays = std::uint64_t{1} << 16;
+  const DesignedMirror mirror = design(dir_ / "lamp.toml", settings);
+  write_file(dir_ / "found.toml", mirror.project_text);
+  const Project found = read_project(dir_ / "found.toml");
+  const TraceResult& had = mirror.traced;
+  const TraceResult again = trace(
+      found.scene, {.first_ray = had.first_ray, .last_ray = had.last_ray, .seed = had.seed, .device = {}});
+  // The text rounds the spline's heights.
+  const Ledger a = ledger(had), b = ledger(again);
+  EXPECT_NEAR(a.out_reflected.mean, b.out_reflected.mean, 1e-5 * a.emitted);
+}
+
+TEST_F(DesignRuns, TraceTheResultAndTryTolerancesOnlyWhereAsked) {
+  const DesignProblem problem = design_problem(read_project(dir_ / "lamp.toml"), dir_ / "lamp.toml");
+  DesignOptions options;
+  options.max_rays = std::uint64_t{1} << 14;
+  const DesignRun run = run_design(problem, options);
+  EXPECT_FALSE(run.figures.tolerances.has_value());
+  EXPECT_GT(run.design_s, 0.0);
+  EXPECT_GT(run.trace_s, 0.0);
+  EXPECT_TRUE(run.trace.end == NoiseEnd::time || run.trace.noise <= run.wanted_noise);
+}
+
+}  // namespace
+}  // namespace lucerna

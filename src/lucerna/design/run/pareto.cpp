@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/run/pareto.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/design/evaluation/body_shadows.h"
+#include "lucerna/design/run/design.h"
+#include "lucerna/design/run/search_mirror.h"
+#include "lucerna/design/search/free_form_search.h"
+#include "lucerna/design/validation/validation.h"
+
+namespace lucerna {
+
+namespace {
+
+constexpr std::uint64_t kFitRays = std::uint64_t{1} << 20, kValidationRays = std::uint64_t{1} << 22;
+constexpr int kBins = 96, kMaxParetoSteps = 12, kMaxRefusedSteps = 3;
+/// A step that gains less than this share of the error ends a fit.
+constexpr double kMinGain = 0.01;
+/// The stronger of the two light weights, over the problem's.
+constexpr double kStronger = 10.0;
+/// Vertex distances over the aperture's radius.
+constexpr TransportChoice kChoices[] = {{-1.0, 0.15}, {-1.0, 0.21}, {-1.0, 0.27},
+                                        {-1.0, 0.33}, {-1.0, 0.45}, {1.0, 0.75}};
+constexpr int kIntervals = 48;
+
+DesignShape fitted(const FitProblem& problem, const DesignShape& from, std::uint64_t rays,
+                   Progress& progress) {
+  FreeFormLevel level;
+  level.bins = kBins;
+  level.rays = rays;
+  const FreeFormFit fit(problem, level, progress);
+  FreeFormPoint point = fit.at(from);
+  double lambda = 1e-2;
+  int refused = 0;
+  for (int step = 0; step < kMaxParetoSteps && refused < kMaxRefusedSteps; ++step) {
+    if (progress.stop_requested()) throw Interrupted();
+    const double before = std::sqrt(point.equations.cost);
+    refused = fit.step(point, lambda) ? 0 : refused + 1;
+    if (refused == 0 && std::sqrt(point.equations.cost) > (1.0 - kMinGain) * before) break;
+  }
+  return point.shape;
+}
+
+/// Leaves out what another point beats in error and light.
+std::vector<ParetoPoint> front(const std::vector<ParetoPoint>& all) {
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return all[a].error.in_rectangle.mean > all[b].error.in_rectangle.mean;
+  });
+  std::vector<ParetoPoint> out;
+  for (const std::size_t i : order) {
+    if (out.empty() || all[i].error.c48.excess < out.back().error.c48.excess) out.push_back(all[i]);
+  }
+  return out;
+}
+
+/// Mirrors to begin with: the one that was found, and those of the choices.
+std::vector<DesignShape> guesses(const FitProblem& fit, const DesignShape& found) {
+  std::vector<DesignShape> out{found};
+  const Aperture& a = found.aperture();
+  const int n = std::max(kIntervals, std::max(found.intervals_x(), found.intervals_y()));
+  const DesignShape family = DesignShape::bspline(found.focal_mm(), a, n, n, found.symmetry());
+  for (const TransportChoice& c : kChoices) {
+    const auto start = free_form_guess(fit, family, {c.sign, c.vertex_distance_mm * a.outer_radius_mm()});
+    if (start) out.push_back(*start);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<ParetoPoint> pareto_front(const DesignProblem& problem, const DesignShape& found,
+                                      const DesignOptions& options, Progress& progress) {
+  if (!uses_free_form_search(problem) || problem.target.mode != TargetMode::shape ||
+      problem.target.zones_only) {
+    return {};
+  }
+  DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
+  rays.evaluate_on(options.accelerator);
+  rays.shade_by(shadows_of(problem.project.scene, problem.world_from_mirror.inverse()));
+  FitProblem fit = fit_problem(problem, options, rays);
+  const ErrorBoxes boxes(target_rectangle(problem.target));
+  const std::vector<double> target = box_target(boxes, problem.target, rays.flux());
+  const std::vector<DesignShape> from = guesses(fit, found);
+  std::vector<ParetoPoint> points;
+  for (const DesignShape& start : from) {
+    DesignShape shape = start;
+    for (const double factor : {1.0, kStronger}) {
+      fit.flux_weight = factor * problem.light_weight;
+      shape = fitted(fit, shape, std::min(options.max_rays, kFitRays), progress);
+      Scene scene = problem.project.scene;
+      scene.reflectors.front().reflector = shape.reflector();
+      ValidationOptions o;
+      o.seed = options.seed;
+      o.min_rays = o.max_rays = std::min(options.validation_rays, kValidationRays);
+      points.push_back({fit.flux_weight, shape.at(0.0, 0.0).z_mm - problem.start.at(0.0, 0.0).z_mm,
+                        validate(scene, boxes, target, problem.target.mode, o).error});
+      progress.update("pareto", points.size(), 2 * from.size());
+    }
+  }
+  return front(points);
+}
+
+}  // namespace lucerna

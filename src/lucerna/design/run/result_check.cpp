@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/run/result_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lucerna/cad.h"
+#include "lucerna/design/constraints/light_limits.h"
+#include "lucerna/design/evaluation/body_shadows.h"
+#include "lucerna/design/validation/bounds.h"
+#include "lucerna/design/validation/reach.h"
+#include "lucerna/design/validation/validation.h"
+#include "lucerna/trace/tally/flux_quanta.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Rays that limits on light are checked with, and that the start is validated with, at most.
+constexpr std::uint64_t kLimitRays = std::uint64_t{1} << 20, kStartCheckRays = std::uint64_t{1} << 20;
+/// Of the mesh where few rays are traced: a finer one would cost more than the rays.
+constexpr CadTolerance kCoarseMesh{.chord_mm = 0.01, .slope_deg = 0.5};
+
+/// All limits that are set, against the exported mesh and fresh light.
+std::vector<LimitCheck> checked_limits(const DesignProblem& problem, const DesignShape& shape,
+                                       const DesignRays& rays, std::uint64_t n) {
+  std::vector<LimitCheck> out;
+  const DesignLimits& limits = problem.limits;
+  if (limits.any_on_form()) {
+    CadTolerance tolerance;  // becomes what the mesh keeps
+    const Mesh mesh = cad_mesh_within(shape.reflector(), tolerance);
+    out = check_limits(mesh, limits, tolerance.chord_mm, tolerance.slope_deg);
+  }
+  const LightLimits light(limits, problem.reflectance);
+  if (light.empty()) return out;
+  const LightLimits::Measured found = light.measure(shape, rays, n);
+  if (limits.glare) {
+    const double max = limits.glare->max_per_flux * rays.flux(), has = found.glare_per_flux * rays.flux();
+    out.push_back({"glare " + limits.glare->text, max, has, has <= max});
+  }
+  if (limits.min_efficiency) {
+    out.push_back({"min_efficiency", *limits.min_efficiency, found.efficiency,
+                   found.efficiency >= *limits.min_efficiency});
+  }
+  return out;
+}
+
+/// The light of a shape in the boxes.
+Validation validated(const DesignProblem& problem, const DesignShape& shape, const ErrorBoxes& boxes,
+                     std::span<const double> target, const ValidationOptions& options, Progress& progress) {
+  Scene scene = problem.project.scene;
+  scene.reflectors.front().reflector = shape.reflector();
+  return validate(scene, boxes, target, problem.target.mode, options, progress);
+}
+
+void validate_result(const DesignProblem& problem, const DesignOptions& options, SourceEtendue& etendue,
+                     double sources_flux, std::uint64_t max_rays, double max_s, DesignResult& result,
+                     Progress& progress) {
+  const ErrorBoxes boxes(target_rectangle(problem.target));
+  const std::vector<double> target = box_target(boxes, problem.target, sources_flux);
+  ValidationOptions o;
+  o.seed = options.seed;
+  o.max_rays = max_rays;
+  o.max_s = max_s;
+  o.zones = problem.target.zones.get();
+  if (max_rays < kStartCheckRays) o.tolerance = kCoarseMesh;
+  const Validation v = validated(problem, result.shape, boxes, target, o, progress);
+  result.error = v.error;
+  result.zones = v.zones;
+  result.efficiency = v.efficiency;
+  result.absorbed = v.absorbed;
+  result.back = v.back;
+  result.bodies = v.bodies;
+  result.lost = v.lost;
+  result.validation_s = v.seconds;
+  o.max_rays = std::min(max_rays, kStartCheckRays);
+  o.min_rays = o.max_rays / 8;
+  const Validation start = validated(problem, problem.start, boxes, target, o, progress);
+  result.start_error = start.error;
+  result.start_zones = start.zones;
+  result.bound = design_bound(boxes, target, problem.target.mode, result.error.in_rectangle.mean, etendue,
+                              result.shape, problem.world_from_mirror.ez());
+}
+
+/// Bounds that are missed by less than this in all are as good as met where two mirrors are compared.
+constexpr double kMissingNoise = 0.01;
+
+/// A design is never worse than the mirror that was given: by the zones; where these are alike, by the
+/// printed error, or without a file to compare with by the light in the rectangle.
+bool given_is_better(const DesignProblem& problem, const DesignResult& result) {
+  const double missing = missing_in_zones(result.zones), missing_given = missing_in_zones(result.start_zones);
+  if (std::abs(missing - missing_given) > kMissingNoise) return missing_given < missing;
+  if (problem.target.zones_only) {
+    const Estimate &light = result.error.in_rectangle, &light_given = result.start_error.in_rectangle;
+    return light_given.mean > light.mean + 2.0 * std::hypot(light.standard_error, light_given.standard_error);
+  }
+  const BoxErrorEstimate &found = result.error.c48, &given = result.start_error.c48;
+  return given.excess + 2.0 * std::hypot(given.standard_error, found.standard_error) < found.excess;
+}
+
+/// Only what a figure stands behind.
+void add_remarks(const DesignProblem& problem, DesignResult& result) {
+  const BoxErrorEstimate& e = result.error.c48;
+  if (!problem.target.zones_only && e.excess <= 2.0 * e.standard_error) {
+    result.remarks.push_back(fmt::format(
+        "no error is left that {:.3g} M rays can distinguish from noise: {:.2f} +- {:.2f} %",
+        1e-6 * static_cast<double>(result.error.rays), 100.0 * e.excess, 100.0 * e.standard_error));
+  } else if (const std::string binding = binding_limits(result.limits); !binding.empty()) {
+    result.remarks.push_back(binding);
+  }
+  for (const LimitCheck& c : result.limits) {
+    if (c.held) continue;
+    result.remarks.push_back(
+        fmt::format("limit {} is not held: {:.4g} found, {:.4g} allowed", c.limit, c.found, c.allowed));
+  }
+}
+
+}  // namespace
+
+double share_behind(const DesignShape& shape, const DesignRays& rays) {
+  constexpr std::uint64_t kBlocks = 16;
+  double behind = 0.0, all = 0.0;
+  for (std::uint64_t b = 0; b < std::min(kBlocks, rays.size() / kBlockRays); ++b) {
+    const DesignRays::Block& block = rays.block(b);
+    for (std::size_t i = 0; i < kBlockRays; ++i) {
+      const auto x = static_cast<double>(block.x_mm[i]), y = static_cast<double>(block.y_mm[i]);
+      const auto weight = static_cast<double>(block.weight[i]);
+      all += weight;
+      const bool over = shape.aperture().contains(x, y);
+      if (over && static_cast<double>(block.z_mm[i]) < shape.at(x, y).z_mm) behind += weight;
+    }
+  }
+  return behind / all;
+}
+
+void check_result(const DesignProblem& problem, const DesignOptions& options, const FitProblem& fit,
+                  std::uint64_t max_rays, double max_s, DesignResult& result, Progress& progress) {
+  DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(),
+                  options.seed + 0x9E3779B97F4A7C15ull);
+  rays.evaluate_on(options.accelerator);
+  rays.shade_by(shadows_of(problem.project.scene, problem.world_from_mirror.inverse()));
+  const std::uint64_t limit_rays = std::min(max_rays, kLimitRays);
+  rays.grow(limit_rays, progress);
+  SourceEtendue etendue(rays);
+  validate_result(problem, options, etendue, rays.flux(), max_rays, max_s, result, progress);
+  const bool keep_given = given_is_better(problem, result);
+  if (keep_given) {
+    result.shape = problem.start;
+    validate_result(problem, options, etendue, rays.flux(), max_rays, max_s, result, progress);
+  }
+  result.limits = checked_limits(problem, result.shape, rays, limit_rays);
+  const double behind = share_behind(result.shape, rays), given = share_behind(problem.start, rays);
+  if (behind > given + kMaxBehind) {
+    result.limits.push_back({"source in front of the mirror (share behind it)", given, behind, false});
+  }
+  if (!problem.target.zones_only) {
+    result.remarks = target_reach(rays, etendue, problem.start, fit.bins, fit.target(fit.bins), fit.mode,
+                                  problem.limits.min_efficiency.value_or(0.0))
+                         .statements;
+  }
+  add_remarks(problem, result);
+  if (keep_given)
+    result.remarks.push_back("the given mirror is the result: nothing that was found is better");
+}
+
+}  // namespace lucerna

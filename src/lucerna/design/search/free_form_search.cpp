@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/search/free_form_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/design/fit/approach.h"
+#include "lucerna/random.h"
+
+namespace lucerna {
+
+namespace {
+
+constexpr int kLevels = kFreeFormLevels, kEnd = 2, kMoreRays = 3;
+/// Knots of the rough level, at most.
+constexpr int kRoughIntervals = 32;
+/// The first candidates, over the aperture's radius: mirrors that spread light near the source, and mirrors
+/// whose rays cross farther from it. Others catch too little light or become walls.
+constexpr std::array<TransportChoice, 9> kFirst{{{-1.0, 0.33},
+                                                 {-1.0, 0.27},
+                                                 {-1.0, 0.21},
+                                                 {-1.0, 0.45},
+                                                 {1.0, 0.75},
+                                                 {1.0, 0.92},
+                                                 {1.0, 0.33},
+                                                 {1.0, 0.27},
+                                                 {1.0, 0.45}}};
+/// The given mirror and these.
+constexpr int kFirstCandidates = static_cast<int>(kFirst.size()) + 1;
+/// How many of them are fitted finely.
+constexpr int kFine = 3;
+/// A neighbour of the best goes on where its cost is at most so many times the best's at that level.
+constexpr double kWorthOn = 1.1;
+/// More rays help where the error is less than so many times the noise; else so many neighbours come first.
+constexpr double kNoisy = 1.6;
+constexpr int kNeighboursBefore = 4;
+/// Farthest neighbour of the best: its vertex distance is within this factor.
+constexpr double kFarthest = 1.3;
+/// A candidate that after two rough steps costs so many times the best of the rough level goes no further.
+constexpr double kHopeless = 4.0;
+/// Candidates in a row that have no start, after which there are no others.
+constexpr int kMaxFailed = 8;
+/// Steps in a row, each five times as damped as the one before, after which a level is at its end.
+constexpr int kMaxRefusedInARow = 5;
+/// The squared error at the end is the noise's and this share more.
+constexpr double kNoiseShare = 0.1;
+/// What of the squared error counts where candidates are compared at a level: mirrors that are fitted roughly
+/// come nearer to the target later, but the light that they lose stays lost.
+constexpr std::array<double, kLevels> kErrorShare{0.3, 1.0, 1.0, 1.0};
+/// The given mirror keeps its own knots as long as a level ends below so many times the noise, or near.
+constexpr double kEnoughKnots = 2.0;
+/// A mirror that fits its own rays below their noise still costs so much of what it did.
+constexpr double kMinCostShare = 0.02;
+/// A given mirror that is this near (relative error) goes on alone.
+constexpr double kNear = 0.01;
+/// Least damping: with less, knots that little light tells of fit its noise.
+constexpr double kMinLambda = 1e-5;
+/// Weight of roughness where slopes are measured in half widths of the target's rectangle: where the light is
+/// blurred by the source's size a rough surface costs no light. At a three-hundredth of it slopes jump by a
+/// degree from knot to knot, at the same error.
+constexpr double kSmoothing = 0.03;
+/// Light that a start is made for, in rays.
+constexpr std::uint64_t kStartRays = std::uint64_t{1} << 19;
+constexpr int kStartBins = 36;
+constexpr double kStartWiden = 1.1;
+
+/// How finely each level fits; knots, smoothing and zones are the search's.
+const std::array<FreeFormLevel, kLevels> kLevel{{
+    {.bins = 64, .rays = 1 << 18, .max_steps = 8, .min_gain = 0.1},
+    {.bins = 84, .rays = 1 << 20, .max_steps = 25, .min_gain = 0.05},
+    {.bins = 108, .rays = 1 << 22, .max_steps = 25, .min_gain = 0.015},
+    {.bins = 120, .rays = 1 << 23, .max_steps = 40, .min_gain = 0.005},
+}};
+
+/// Intervals along both sides where the longer has `max`.
+std::pair<int, int> intervals_of(const Aperture& a, int max) {
+  const double x = a.half_x_mm(), y = a.half_y_mm(), longer = std::max(x, y);
+  return {std::max(4, static_cast<int>(std::lround(max * x / longer))),
+          std::max(4, static_cast<int>(std::lround(max * y / longer)))};
+}
+
+}  // namespace
+
+std::optional<DesignShape> free_form_guess(const FitProblem& problem, const DesignShape& family,
+                                           const TransportChoice& choice) {
+  problem.rays->grow(kStartRays);
+  const TentBins bins = graded_bins(problem.rectangle, problem.mirror_from_world, kStartBins, kStartWiden, 0);
+  return transport_guess(
+      {problem.rays, kStartRays, problem.reflectance.max(), problem.direct_light, problem.target(bins), bins},
+      family, choice);
+}
+
+FreeFormSearch::FreeFormSearch(const FitProblem& problem, const DesignShape& given, int max_intervals,
+                               std::uint64_t max_rays, FreeFormState state)
+    : problem_(problem),
+      given_(given),
+      max_intervals_(std::max({max_intervals, given.intervals_x(), given.intervals_y()})),
+      max_rays_(max_rays),
+      state_(std::move(state)) {}
+
+FreeFormLevel FreeFormSearch::level(int number) const {
+  FreeFormLevel out = kLevel[static_cast<std::size_t>(number)];
+  const double half = 0.5 * std::max(problem_.rectangle.width(), problem_.rectangle.height());
+  const int max = number == 0 ? std::min(kRoughIntervals, max_intervals_) : max_intervals_;
+  std::tie(out.intervals_x, out.intervals_y) = intervals_of(given_.aperture(), max);
+  out.rays = std::min(out.rays, max_rays_);
+  out.smoothing = problem_.rectangle.is_plane ? kSmoothing : kSmoothing / (half * half);
+  out.zones = zone_stage(number);
+  return out;
+}
+
+TransportChoice FreeFormSearch::first_choice(int number) const {
+  const TransportChoice& c = kFirst[static_cast<std::size_t>(number) - 1];
+  return {c.sign, c.vertex_distance_mm * given_.aperture().outer_radius_mm()};
+}
+
+bool FreeFormSearch::fixed_to_few_knots() const {
+  return has_few_knots(given_) && max_intervals_ == std::max(given_.intervals_x(), given_.intervals_y());
+}
+
+TransportChoice FreeFormSearch::choice(int number) const {
+  if (number < kFirstCandidates) return first_choice(number);
+  // A neighbour of the best; of the first choice where the given mirror is the best.
+  Rng rng(problem_.seed, static_cast<std::uint64_t>(number), 77);
+  const FreeFormSnapshot* best = best_of(kEnd);
+  const bool of_given = best != nullptr && !best->transport.exists();
+  if (of_given && fixed_to_few_knots()) return {};
+  const TransportChoice about = best != nullptr && !of_given ? best->transport : first_choice(1);
+  const double factor = std::pow(kFarthest, 2.0 * rng.uniform() - 1.0);
+  return {about.sign, factor * about.vertex_distance_mm};
+}
+
+std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormSnapshot& snapshot) {
+  if (snapshot.candidate == 0) return nearer_of_given();
+  if (!snapshot.transport.exists()) return approached(snapshot.candidate);
+  const FreeFormLevel rough = level(0);
+  const DesignShape family = DesignShape::bspline(given_.focal_mm(), given_.aperture(), rough.intervals_x,
+                                                  rough.intervals_y, given_.symmetry());
+  return free_form_guess(problem_, family, snapshot.transport);
+}
+
+DesignShape FreeFormSearch::approached(int restart) {
+  Approached result = approach(problem_, given_, restart, max_rays_);
+  state_.evaluations += result.evaluations;
+  state_.total_rays += result.rays;
+  return std::move(result.shape);
+}
+
+DesignShape FreeFormSearch::nearer_of_given() {
+  if (!fixed_to_few_knots()) return given_;
+  DesignShape near = approached(0);
+  const FreeFormFit fit(problem_, level(0));
+  state_.evaluations += 2;
+  state_.total_rays += 2 * level(0).rays;
+  return fit.at(near).equations.cost < fit.at(given_).equations.cost ? near : given_;
+}
+
+const FreeFormSnapshot* FreeFormSearch::best_of(int level) const {
+  const FreeFormSnapshot* best = nullptr;
+  for (const FreeFormSnapshot& m : state_.done) {
+    if (m.level == level && (best == nullptr || m.cost < best->cost)) best = &m;
+  }
+  return best;
+}
+
+bool FreeFormSearch::was_at(int candidate, int level) const {
+  return std::any_of(state_.done.begin(), state_.done.end(),
+                     [&](const FreeFormSnapshot& m) { return m.candidate == candidate && m.level == level; });
+}
+
+const FreeFormSnapshot* FreeFormSearch::next_promotion() const {
+  const auto best_waiting = [&](int level) {
+    const FreeFormSnapshot* best = nullptr;
+    for (const FreeFormSnapshot& m : state_.done) {
+      if (m.level != level || m.parameters.empty() || was_at(m.candidate, level + 1)) continue;
+      if (best == nullptr || m.cost < best->cost) best = &m;
+    }
+    return best;
+  };
+  const auto count = [&](int level) {
+    return std::count_if(state_.done.begin(), state_.done.end(),
+                         [&](const FreeFormSnapshot& m) { return m.level == level; });
+  };
+  const FreeFormSnapshot* given = best_of(0);
+  const bool near = state_.begun == 1 && given != nullptr && given->cost < kErrorShare[0] * kNear * kNear;
+  if (state_.begun < kFirstCandidates && !near && best_of(kEnd) == nullptr) return nullptr;
+  const FreeFormSnapshot* rough = best_waiting(0);
+  const bool hopeful = rough != nullptr && rough->cost < kHopeless * best_of(0)->cost;
+  if (hopeful && count(1) < (near ? 1 : kFine)) return rough;
+  const FreeFormSnapshot* fine = best_waiting(1);
+  const FreeFormSnapshot* end = best_of(kEnd);
+  if (end == nullptr) return fine;
+  // The best goes on with more rays where noise is a good part of its error, else after some neighbours; then
+  // the others, while they may win, and neighbours.
+  const int neighbours_before = std::min(kNeighboursBefore, problem_.max_failed_restarts);
+  const bool ready = end->error_to_noise < kNoisy || state_.begun >= kFirstCandidates + neighbours_before;
+  if (ready && !was_at(end->candidate, kMoreRays)) return end;
+  if (state_.begun < kFirstCandidates) return nullptr;
+  if (fine != nullptr && fine->cost < kWorthOn * best_of(1)->cost) return fine;
+  if (rough != nullptr && rough->cost < kWorthOn * best_of(0)->cost) return rough;
+  return nullptr;
+}
+
+DesignShape FreeFormSearch::shape_of(const FreeFormSnapshot& snapshot) const {
+  return given_.refined(snapshot.intervals_x, snapshot.intervals_y)
+      .with(Eigen::VectorXd::Map(snapshot.parameters.data(),
+                                 static_cast<Eigen::Index>(snapshot.parameters.size())));
+}
+
+bool FreeFormSearch::knots_suffice(const FreeFormSnapshot& snapshot) const {
+  const double share = kErrorShare[static_cast<std::size_t>(snapshot.level - 1)];
+  return snapshot.error_to_noise < kEnoughKnots || snapshot.cost < share * kNear * kNear;
+}
+
+void FreeFormSearch::begin(const DesignShape& shape, const FreeFormSnapshot& snapshot, Progress& progress) {
+  const FreeFormLevel l = level(snapshot.level);
+  // Knots are refined, never coarsened, and only where something is left to gain.
+  const bool enough = !snapshot.transport.exists() && (snapshot.level == 0 || knots_suffice(snapshot));
+  const bool has = shape.intervals_x() >= l.intervals_x && shape.intervals_y() >= l.intervals_y;
+  const DesignShape fine = enough || has ? shape
+                                         : shape.refined(std::max(shape.intervals_x(), l.intervals_x),
+                                                         std::max(shape.intervals_y(), l.intervals_y));
+  fit_.emplace(problem_, l, progress);
+  point_.emplace(fit_->at(fine));
+  ++state_.evaluations;
+  state_.total_rays += l.rays;
+  state_.now = snapshot;
+  state_.now.intervals_x = fine.intervals_x();
+  state_.now.intervals_y = fine.intervals_y();
+  state_.step = 0;
+  state_.refused = 0;
+  state_.lambda = std::clamp(state_.lambda, 1e-4, 1e-2);
+  state_.costs = {point_->equations.cost};
+}
+
+void FreeFormSearch::choose(Progress& progress) {
+  while (true) {
+    if (const FreeFormSnapshot* snapshot = next_promotion()) {
+      FreeFormSnapshot next = *snapshot;
+      ++next.level;
+      begin(shape_of(next), next, progress);
+      return;
+    }
+    FreeFormSnapshot next;
+    next.candidate = state_.begun++;
+    next.level = 0;
+    if (next.candidate > 0) next.transport = choice(next.candidate);
+    if (const std::optional<DesignShape> start = start_of(next)) {
+      state_.failed = 0;
+      state_.lambda = FreeFormState{}.lambda;
+      begin(*start, next, progress);
+      return;
+    }
+    // Without neighbours to try, the best at the end is all there is.
+    if (++state_.failed >= kMaxFailed) return;
+  }
+}
+
+bool FreeFormSearch::level_ended() const {
+  const FreeFormLevel l = level(state_.now.level);
+  if (state_.step >= l.max_steps || state_.refused >= kMaxRefusedInARow) return true;
+  const std::vector<double>& c = state_.costs;
+  const FreeFormSnapshot* best = best_of(0);
+  if (state_.now.level == 0 && best != nullptr && state_.step >= 2 &&
+      state_.now.cost > kHopeless * best->cost) {
+    return true;
+  }
+  return c.size() >= 3 && std::sqrt(c.back()) > (1.0 - l.min_gain) * std::sqrt(c[c.size() - 3]);
+}
+
+void FreeFormSearch::forget_what_cannot_win() {
+  for (FreeFormSnapshot& m : state_.done) {
+    const FreeFormSnapshot* best = best_of(m.level);
+    const bool passed = was_at(m.candidate, m.level + 1);
+    if (passed || (m.cost > kWorthOn * best->cost && best_of(kMoreRays) != nullptr && m.level < kEnd)) {
+      m.parameters.clear();
+    }
+  }
+}
+
+void FreeFormSearch::finish() {
+  state_.done.push_back(std::move(state_.now));
+  state_.now = {};
+  fit_.reset();
+  point_.reset();
+  forget_what_cannot_win();
+}
+
+FitRecord FreeFormSearch::step(Progress& progress) {
+  FitRecord record;
+  if (!state_.now.exists()) {
+    choose(progress);
+    if (!point_) {  // no candidate is left
+      record.evaluations = state_.evaluations;
+      record.total_rays = state_.total_rays;
+      return record;
+    }
+  } else {
+    if (!point_) {  // taken up again in the middle of a level
+      fit_.emplace(problem_, level(state_.now.level), progress);
+      point_.emplace(fit_->at(shape_of(state_.now)));
+    }
+    record.accepted = fit_->step(*point_, state_.lambda);
+    state_.lambda = std::max(state_.lambda, kMinLambda);
+    ++state_.evaluations;
+    ++state_.step;
+    state_.total_rays += level(state_.now.level).rays;
+    state_.refused = record.accepted ? 0 : state_.refused + 1;
+    if (record.accepted) state_.costs.push_back(point_->equations.cost);
+  }
+  const BinError error = fit_->error(*point_);
+  const Eigen::VectorXd& p = point_->shape.parameters();
+  state_.now.parameters.assign(p.begin(), p.end());
+  const double cost = point_->equations.cost, weight = fit_->error_weight();
+  const double noise = weight * error.floor * error.floor;
+  const double squared = weight * error.relative_rms * error.relative_rms;
+  const double excess = std::max(squared - noise, kMinCostShare * squared);
+  state_.now.cost = kErrorShare[static_cast<std::size_t>(state_.now.level)] * excess + (cost - squared);
+  state_.now.error_to_noise = std::sqrt(cost / std::max(noise, 1e-24));
+  record.stage = state_.now.level;
+  record.step = state_.step;
+  record.candidate = state_.now.candidate;
+  record.rays = point_->light.rays;
+  record.total_rays = state_.total_rays;
+  record.evaluations = state_.evaluations;
+  record.error = error.relative_rms;
+  record.floor = error.floor;
+  record.lambda = state_.lambda;
+  record.efficiency = point_->light.reflected + point_->light.direct;
+  record.in_rectangle = fit_->in_rectangle(*point_);
+  if (level_ended()) finish();
+  return record;
+}
+
+bool FreeFormSearch::done() const {
+  const int neighbours = state_.begun - kFirstCandidates;
+  if (!state_.now.exists() && neighbours >= problem_.max_failed_restarts && next_promotion() == nullptr)
+    return true;
+  if (state_.failed >= kMaxFailed) return true;
+  const FreeFormSnapshot* best = best_of(kMoreRays);
+  return best != nullptr && best->error_to_noise * best->error_to_noise <= 1.0 + kNoiseShare;
+}
+
+std::uint64_t FreeFormSearch::next_rays() const {
+  if (state_.now.exists()) return (point_ ? 1 : 2) * level(state_.now.level).rays;
+  const FreeFormSnapshot* next = next_promotion();
+  return 2 * level(next != nullptr ? next->level + 1 : 0).rays;
+}
+
+DesignShape FreeFormSearch::best() const {
+  const FreeFormSnapshot* best = nullptr;
+  const auto better = [&](const FreeFormSnapshot& m) {
+    return !m.parameters.empty() &&
+           (best == nullptr || m.level > best->level || (m.level == best->level && m.cost < best->cost));
+  };
+  for (const FreeFormSnapshot& m : state_.done) {
+    if (better(m)) best = &m;
+  }
+  // The one at work only gets better; where it has come so far, it counts.
+  if (state_.now.exists() && !state_.now.parameters.empty() &&
+      (best == nullptr || best->candidate == state_.now.candidate || better(state_.now))) {
+    best = &state_.now;
+  }
+  return best != nullptr ? shape_of(*best) : given_;
+}
+
+}  // namespace lucerna

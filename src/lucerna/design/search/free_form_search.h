@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lucerna/design/fit/fit_record.h"
+#include "lucerna/design/fit/free_form_fit.h"
+#include "lucerna/design/initial/transport_guess.h"
+
+namespace lucerna {
+
+/// What a point source's mirror would be for a fit's target, with the knots and the symmetry of `family`; see
+/// transport_guess. Grows the problem's rays.
+std::optional<DesignShape> free_form_guess(const FitProblem& problem, const DesignShape& family,
+                                           const TransportChoice& choice);
+
+/// Rough, fine, to the end; the last is gone through again with more rays.
+inline constexpr int kFreeFormLevels = 4;
+
+/// A candidate that was fitted on a level.
+struct FreeFormSnapshot {
+  int candidate = -1, level = -1;
+  /// What it began with; none: the given mirror, or what an approach made of it.
+  TransportChoice transport{};
+  /// What candidates are compared by: the squared error less its noise (a share of it while the fit is
+  /// rough), and what lost light, limits and roughness cost.
+  double cost = 0.0;
+  /// Error over noise.
+  double error_to_noise = 0.0;
+  int intervals_x = 1, intervals_y = 1;
+  std::vector<double> parameters;
+  bool exists() const { return candidate >= 0; }
+};
+
+/// All that the next step depends on; a checkpoint holds exactly this.
+struct FreeFormState {
+  /// The candidate at work; without parameters: none, the next is chosen.
+  FreeFormSnapshot now;
+  int step = 0, refused = 0;
+  double lambda = 1e-2;
+  std::vector<double> costs;
+  /// Candidates begun so far, and how many in turn had no start.
+  int begun = 0, failed = 0;
+  int evaluations = 0;
+  std::uint64_t total_rays = 0;
+  /// What came to the end of a level, in order; only snapshots that may still be taken up keep parameters.
+  std::vector<FreeFormSnapshot> done;
+};
+
+/// Finds a free form by successive halving: candidates (the given mirror; a point source's mirrors of both
+/// signs at several vertex distances) are fitted roughly, the best of them finely, the best of these to the
+/// end. Then, as long as there is time, the best is fitted on with more rays, before neighbours of it where
+/// noise is a good part of its error and after some of them elsewhere. A given mirror of few knots that is to
+/// have no more is first brought near the target (approach.h). A given mirror keeps its knots as long as they
+/// bring it near the noise or the target. Knots are only ever refined. Every decision depends on the state
+/// alone: a search that is stopped after any step and taken up from its state continues bit-identically.
+class FreeFormSearch {
+ public:
+  /// `given` with its own knots; `max_intervals`: knots along the longer side that the search may refine to
+  /// (those of `given` at least). `max_rays`: of an evaluation. `problem` must outlive it.
+  FreeFormSearch(const FitProblem& problem, const DesignShape& given, int max_intervals,
+                 std::uint64_t max_rays, FreeFormState state = {});
+
+  /// One trial step, or the beginning of a candidate.
+  FitRecord step(Progress& progress = no_progress());
+  /// Nothing is left to gain: the best is at the noise of the most rays, no candidate has a start, or
+  /// FitProblem::max_failed_restarts neighbours have had their turn and none of them is worth going on with.
+  bool done() const;
+  /// Rays that the next step will trace, at most.
+  std::uint64_t next_rays() const;
+
+  /// The best so far: of the finest level that any came to.
+  DesignShape best() const;
+  const FreeFormState& state() const { return state_; }
+
+ private:
+  FreeFormLevel level(int number) const;
+  TransportChoice first_choice(int number) const;
+  /// Whether the given mirror is a matter for `approach`: of few knots, and there are to be no more. Where
+  /// there may be more, mirrors of point sources are as near from the start.
+  bool fixed_to_few_knots() const;
+  /// Whether a given mirror's knots are enough for the next level; `snapshot` has that level already.
+  bool knots_suffice(const FreeFormSnapshot& snapshot) const;
+  /// What a candidate that is not the given mirror begins with.
+  TransportChoice choice(int number) const;
+  /// What an approach from the given mirror leads to. Counts its rays.
+  DesignShape approached(int restart);
+  /// The given mirror, or what an approach makes of it, whichever is nearer to the target.
+  DesignShape nearer_of_given();
+  const FreeFormSnapshot* best_of(int level) const;
+  bool was_at(int candidate, int level) const;
+  /// The next snapshot to be taken up a level; null where a new candidate is to begin.
+  const FreeFormSnapshot* next_promotion() const;
+  void choose(Progress& progress);
+  /// `snapshot`: the candidate, its transport, and the level that begins.
+  void begin(const DesignShape& shape, const FreeFormSnapshot& snapshot, Progress& progress);
+  void finish();
+  bool level_ended() const;
+  std::optional<DesignShape> start_of(const FreeFormSnapshot& snapshot);
+  DesignShape shape_of(const FreeFormSnapshot& snapshot) const;
+  void forget_what_cannot_win();
+
+  const FitProblem& problem_;
+  DesignShape given_;
+  int max_intervals_;
+  std::uint64_t max_rays_;
+  FreeFormState state_;
+  std::optional<FreeFormFit> fit_;
+  std::optional<FreeFormPoint> point_;
+};
+
+}  // namespace lucerna

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/search/free_form_search.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "lucerna/design/search/checkpoint.h"
+#include "lucerna/design/shape/perturbed.h"
+#include "lucerna/random.h"
+#include "lucerna/source.h"
+
+namespace lucerna {
+namespace {
+
+constexpr std::uint64_t kSearchRays = std::uint64_t{1} << 15;
+
+/// A disk of 1 mm that shines down into a mirror of 60 mm, 15 mm above its given vertex.
+DesignRays disk_rays() {
+  EmitterOptions options;
+  options.kind = EmitterKind::disk;
+  options.radius_mm = 0.5;
+  PlacedSource source{make_emitter(options), Frame({1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {0, 0, 15}), {}};
+  return DesignRays({source}, Frame(), 3);
+}
+
+/// A smooth oval beam along +z of the mirror's frame.
+FitProblem oval_problem(DesignRays& rays) {
+  rays.grow(std::uint64_t{1} << 14);
+  FitProblem p{&rays, Reflectance(0.9), {}, TentBins::square(Frame(), 0.6, 48), TargetMode::shape};
+  p.target = [](const TentBins& bins) {
+    const std::vector<double> flux = bins.flux_of([](const Direction& d) {
+      const double u = d.x() / 0.25, v = d.y() / 0.15;
+      return d.z() > 0.0 ? std::exp(-(u * u + v * v)) : 0.0;
+    });
+    return Eigen::VectorXd(
+        Eigen::Map<const Eigen::VectorXd>(flux.data(), static_cast<Eigen::Index>(flux.size())));
+  };
+  p.flux_weight = 0.01;
+  p.flux_reference = 0.9;
+  p.rectangle = {Frame(), false, -0.5, 0.5, -0.3, 0.3};
+  return p;
+}
+
+DesignShape plain() { return DesignShape::bspline(15, Aperture::circle(60, 4), 8, 8); }
+
+/// Error of a shape in bins that the search does not use.
+double error_of(const FitProblem& problem, const DesignShape& shape) {
+  DesignRays fresh = disk_rays();
+  fresh.grow(std::uint64_t{1} << 17);
+  const TentBins bins = graded_bins(problem.rectangle, Frame(), 24, 1.1);
+  EvaluationOptions options;
+  options.rays = std::uint64_t{1} << 17;
+  options.derivatives = false;
+  return bin_error(evaluate(shape, problem.reflectance, fresh, bins, options), problem.target(bins), bins,
+                   problem.mode)
+      .relative_rms;
+}
+
+FreeFormSearch run(const FitProblem& problem, const DesignShape& given, int steps, FreeFormState state = {}) {
+  FreeFormSearch search(problem, given, 16, kSearchRays, std::move(state));
+  for (int i = 0; i < steps && !search.done(); ++i) search.step();
+  return search;
+}
+
+TEST(TransportGuess, IsNearTheTargetForBothSigns) {
+  DesignRays rays = disk_rays();
+  const FitProblem problem = oval_problem(rays);
+  rays.grow(std::uint64_t{1} << 18);
+  const TentBins bins = graded_bins(problem.rectangle, Frame(), 32, 1.1, 0);
+  const TransportProblem transport{&rays, std::uint64_t{1} << 18, 0.9, true, problem.target(bins), bins};
+  const DesignShape family = DesignShape::bspline(15, Aperture::circle(60, 4), 24, 24);
+  EXPECT_GT(error_of(problem, family), 0.8) << "the paraboloid is far off, or the test says nothing";
+  for (const TransportChoice choice : {TransportChoice{-1.0, 10.0}, TransportChoice{1.0, 24.0}}) {
+    const auto start = transport_guess(transport, family, choice);
+    ASSERT_TRUE(start) << choice.sign;
+    EXPECT_NEAR(start->at(0.0, 0.0).z_mm, 15.0 - choice.vertex_distance_mm, 0.3) << choice.sign;
+    EXPECT_LT(error_of(problem, *start), 0.12) << choice.sign;
+  }
+}
+
+TEST(TransportGuess, IsNothingWhereNoMirrorCanBe) {
+  DesignRays rays = disk_rays();
+  const FitProblem problem = oval_problem(rays);
+  const TentBins bins = graded_bins(problem.rectangle, Frame(), 32, 1.1, 0);
+  const TransportProblem transport{&rays, rays.size(), 0.9, true, problem.target(bins), bins};
+  EXPECT_FALSE(transport_guess(transport, plain(), {1.0, 3.0})) << "it would close before it reaches the rim";
+}
+
+TEST(FittedToPoints, GoesThroughASmoothSurfaceAndBeyondItsPoints) {
+  std::vector<SurfacePointWeight> points;
+  const auto height = [](double x, double y) { return 0.02 * x * x + 0.01 * y * y - 0.03 * x * y - 4.0; };
+  for (double x = -25; x <= 25; x += 0.5) {
+    for (double y = -25; y <= 25; y += 0.5) {
+      if (x * x + y * y < 625) points.push_back({x, y, height(x, y), 1.0});
+    }
+  }
+  const DesignShape fitted = fitted_to_points(DesignShape::bspline(15, Aperture::circle(60), 20, 20), points);
+  EXPECT_NEAR(fitted.at(3.0, -7.0).z_mm, height(3.0, -7.0), 1e-6);
+  EXPECT_NEAR(fitted.at(29.0, 0.0).z_mm, height(29.0, 0.0), 1e-3) << "quadratics have no third differences";
+}
+
+TEST(FreeFormSearch, ReachesAFarTargetFromThePlainParaboloid) {
+  DesignRays rays = disk_rays();
+  const FitProblem problem = oval_problem(rays);
+  const FreeFormSearch search = run(problem, plain(), 60);
+  EXPECT_LT(error_of(problem, search.best()), 0.06);  // 32 k rays fitted: half of it is their noise
+}
+
+TEST(FreeFormSearch, EndsAtTheSameBitsHoweverOftenItWasStopped) {
+  DesignRays rays = disk_rays();
+  const FitProblem problem = oval_problem(rays);
+  const std::string whole = checkpoint_text(run(problem, plain(), 40).state(), "key");
+  FreeFormState state;
+  for (const int steps : {1, 2, 13, 14, 10}) {
+    DesignRays others = disk_rays();
+    const FitProblem again = oval_problem(others);
+    state = parse_search_checkpoint(checkpoint_text(run(again, plain(), steps, state).state(), "key"), "key");
+  }
+  EXPECT_EQ(checkpoint_text(state, "key"), whole);
+}
+
+// Neighbours are made about the best, which may be a neighbour itself: that once never ended.
+TEST(FreeFormSearch, ANeighbourThatIsTheBestHasNeighbours) {
+  DesignRays rays = disk_rays();
+  FitProblem problem = oval_problem(rays);
+  problem.max_failed_restarts = 1000;
+  FreeFormState state = run(problem, plain(), 20).state();
+  state.now = {};
+  state.step = 0;
+  FreeFormSnapshot best = state.done.back();
+  best.candidate = 12;
+  best.transport = {1.0, 22.0};
+  best.cost = 1e-9;
+  best.error_to_noise = 10.0;
+  state.done.clear();
+  for (int level = 0; level < 4; ++level) {
+    best.level = level;
+    state.done.push_back(best);
+  }
+  state.begun = 13;
+  const FreeFormSearch search = run(problem, plain(), 1, state);
+  EXPECT_GE(search.state().now.candidate, 13);
+  EXPECT_EQ(search.state().now.transport.sign, 1.0);
+  EXPECT_NEAR(search.state().now.transport.vertex_distance_mm, 22.0, 0.31 * 22.0);
+}
+
+// No ray hits the mirror and none of the rest counts: nothing tells of any parameter.
+TEST(FreeFormSearch, EndsAStepThatNoLightTellsOf) {
+  EmitterOptions options;
+  options.kind = EmitterKind::disk;
+  options.radius_mm = 0.5;
+  DesignRays rays({{make_emitter(options), Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 200}), {}}}, Frame(),
+                  3);
+  FitProblem problem = oval_problem(rays);
+  problem.mode = TargetMode::absolute;
+  problem.direct_light = false;
+  FreeFormLevel level;
+  level.rays = kSearchRays;
+  const FreeFormFit fit(problem, level);
+  FreeFormPoint point = fit.at(plain());
+  double lambda = 1e-2;
+  EXPECT_FALSE(fit.step(point, lambda));
+}
+
+TEST(FreeFormSearch, RefusesCheckpointsThatAreCutOrOfAnotherProblem) {
+  DesignRays rays = disk_rays();
+  const FitProblem problem = oval_problem(rays);
+  const std::string text = checkpoint_text(run(problem, plain(), 3).state(), "key");
+  EXPECT_THROW(parse_search_checkpoint(text, "other"), InputError);
+  for (std::size_t n = 0; n + 1 < text.size(); n += 1 + text.size() / 200) {
+    EXPECT_THROW(parse_search_checkpoint(text.substr(0, n), "key"), InputError) << n;
+  }
+}
+
+TEST(FreeFormSearch, NeverEndsWorseThanItsStartAndNeverCoarsensIt) {
+  DesignRays rays = disk_rays();
+  const FitProblem problem = oval_problem(rays);
+  const DesignShape found = run(problem, plain(), 30).best();
+  ASSERT_GE(found.intervals_x(), 16);
+  for (const std::uint64_t seed : {1, 2, 4}) {
+    // Perturbed: from nearly right to far off.
+    const DesignShape given = perturbed(found, 0.01 * static_cast<double>(seed * seed), Rng(seed, 0));
+    const double before = error_of(problem, given);
+    for (const int steps : {1, 12}) {
+      const DesignShape best = run(problem, given, steps).best();
+      EXPECT_GE(best.intervals_x(), given.intervals_x());
+      EXPECT_LT(error_of(problem, best), 1.02 * before + 0.005) << seed << ' ' << steps;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lucerna

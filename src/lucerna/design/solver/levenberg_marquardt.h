@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <utility>
+
+#include "lucerna/design/solver/least_squares.h"
+
+namespace lucerna {
+
+/// What a step of Levenberg-Marquardt came to.
+struct LevenbergMarquardtStep {
+  bool accepted = false;
+  /// Damping of the step that was tried, and of the next.
+  double tried_lambda = 0.0, next_lambda = 0.0;
+};
+
+/// One step of Levenberg-Marquardt, without a state of its own. `now` has `equations` (normal or sparse),
+/// `metric` measures a step; damping begins at `lambda` and grows until no parameter moves by more than
+/// `longest`. `at(move)` evaluates the point there. Where the cost falls, `now` moves and the damping follows
+/// Nielsen's rule; else `now` stays and the damping is five times as strong. Where no damping makes the step
+/// short enough (no light tells of any parameter) nothing is evaluated.
+template <class Point, class Metric, class PointAt>
+LevenbergMarquardtStep levenberg_marquardt_step(Point& now, const Metric& metric, double lambda,
+                                                double longest, const PointAt& at) {
+  constexpr double kRaise = 4.0, kRefused = 5.0;
+  Eigen::VectorXd move = damped_step(now.equations, metric, lambda);
+  while (!(move.cwiseAbs().maxCoeff() <= longest)) {
+    if (lambda >= kMaxLambda) return {false, lambda, kRefused * lambda};
+    lambda *= kRaise;
+    move = damped_step(now.equations, metric, lambda);
+  }
+  Point trial = at(std::as_const(move));
+  if (!(trial.equations.cost < now.equations.cost)) return {false, lambda, kRefused * lambda};
+  const double next = next_lambda(lambda, now.equations, move, trial.equations.cost);
+  now = std::move(trial);
+  return {true, lambda, next};
+}
+
+}  // namespace lucerna

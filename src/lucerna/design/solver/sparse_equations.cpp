@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/solver/sparse_equations.h"
+
+#include <Eigen/LU>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/core/parallel/parallel.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Columns of a sparse matrix one after the other.
+struct Columns {
+  std::vector<int> count, row;
+  std::vector<double> value;
+};
+
+SparseSymmetric joined(const std::vector<Columns>& parts, Eigen::Index n) {
+  std::size_t total = 0;
+  for (const Columns& c : parts) total += c.row.size();
+  SparseSymmetric out(n, n);
+  out.resizeNonZeros(static_cast<Eigen::Index>(total));
+  int at = 0, column = 0;
+  for (const Columns& c : parts) {
+    std::copy(c.row.begin(), c.row.end(), out.innerIndexPtr() + at);
+    std::copy(c.value.begin(), c.value.end(), out.valuePtr() + at);
+    for (const int k : c.count) {
+      out.outerIndexPtr()[column++] = at;
+      at += k;
+    }
+  }
+  out.outerIndexPtr()[column] = at;
+  return out;
+}
+
+}  // namespace
+
+SparseSymmetric squared_rows(const SparseJacobian& j) {
+  const Eigen::SparseMatrix<double> by_column = j;
+  const Eigen::Index n = j.cols();
+  const auto columns_of = [&](std::size_t first, std::size_t last) {
+    Columns out;
+    std::vector<double> sum(static_cast<std::size_t>(n), 0.0);
+    std::vector<char> seen(static_cast<std::size_t>(n), 0);
+    std::vector<int> touched;
+    for (auto p = static_cast<Eigen::Index>(first); p < static_cast<Eigen::Index>(last); ++p) {
+      touched.assign(1, static_cast<int>(p));
+      seen[static_cast<std::size_t>(p)] = 1;
+      for (Eigen::SparseMatrix<double>::InnerIterator b(by_column, p); b; ++b) {
+        const int begin = j.outerIndexPtr()[b.index()], end = j.outerIndexPtr()[b.index() + 1];
+        const int* const row = j.innerIndexPtr();
+        for (int k = static_cast<int>(std::lower_bound(row + begin, row + end, static_cast<int>(p)) - row);
+             k < end; ++k) {
+          const auto q = static_cast<std::size_t>(row[k]);
+          if (seen[q] == 0) {
+            seen[q] = 1;
+            touched.push_back(row[k]);
+          }
+          sum[q] += b.value() * j.valuePtr()[k];
+        }
+      }
+      std::sort(touched.begin(), touched.end());
+      out.count.push_back(static_cast<int>(touched.size()));
+      for (const int q : touched) {
+        out.row.push_back(q);
+        out.value.push_back(sum[static_cast<std::size_t>(q)]);
+        sum[static_cast<std::size_t>(q)] = 0.0;
+        seen[static_cast<std::size_t>(q)] = 0;
+      }
+    }
+    return out;
+  };
+  return joined(parallel_map_blocks<Columns>(static_cast<std::size_t>(n), 64, columns_of), n);
+}
+
+SparseEquations& SparseEquations::operator*=(double weight) {
+  if (weight == 1.0) return *this;
+  cost *= weight;
+  gradient *= weight;
+  hessian *= weight;
+  for (Product& p : products) p.weight *= weight;
+  return *this;
+}
+
+SparseEquations sparse_equations(const Evaluation& e, const Eigen::VectorXd& target, const TentBins& bins,
+                                 TargetMode mode) {
+  const Eigen::VectorXd w = bin_weights(bins);
+  const double norm = w.dot(target.cwiseAbs2());
+  LUCERNA_CHECK(norm > 0.0, "a target without light in its window");
+  const double scale = best_scale(e.flux, target, w, mode), unit = scale / std::sqrt(norm);
+  const Eigen::VectorXd residual = (scale * e.flux - target) / std::sqrt(norm);
+  SparseJacobian j = e.rows;  // of the weighted residuals
+  for (Eigen::Index b = 0; b < j.rows(); ++b) {
+    const double by = unit * std::sqrt(w[b]);
+    for (SparseJacobian::InnerIterator k(j, b); k; ++k) k.valueRef() *= by;
+  }
+  const Eigen::VectorXd root = w.cwiseSqrt();
+  SparseEquations out;
+  out.cost = w.dot(residual.cwiseAbs2());
+  out.gradient = j.transpose() * root.cwiseProduct(residual);
+  out.hessian = squared_rows(j);
+  if (mode == TargetMode::shape) {  // what only scales the result is no improvement
+    const Eigen::VectorXd flux = unit * root.cwiseProduct(e.flux);
+    const double own = flux.squaredNorm();
+    Eigen::VectorXd along = j.transpose() * flux;
+    out.gradient -= along * (flux.dot(root.cwiseProduct(residual)) / own);
+    out.products.push_back({std::move(along), -1.0 / own});
+  }
+  return out;
+}
+
+SparseSymmetric sparse_step_metric(const DesignShape& shape, const SparseEquations& equations) {
+  const auto& spline = std::get<BsplineShape>(shape.family());
+  const Eigen::VectorXd diagonal = equations.hessian.diagonal();
+  const double mean = diagonal.mean();
+  std::vector<Eigen::Triplet<double>> entries;
+  for_each_tilt(spline, [&](int a, int b, double share) {
+    const int i = shape.parameter_of()[static_cast<std::size_t>(a)];
+    const int j = shape.parameter_of()[static_cast<std::size_t>(b)];
+    if (i == j) return;
+    entries.emplace_back(i, i, share * mean);
+    entries.emplace_back(j, j, share * mean);
+    entries.emplace_back(std::max(i, j), std::min(i, j), -share * mean);
+  });
+  const Eigen::VectorXd own = own_share(diagonal);
+  for (Eigen::Index i = 0; i < own.size(); ++i) {
+    entries.emplace_back(static_cast<int>(i), static_cast<int>(i), own[i]);
+  }
+  SparseSymmetric metric(own.size(), own.size());
+  metric.setFromTriplets(entries.begin(), entries.end());
+  return metric;
+}
+
+Eigen::VectorXd damped_step(const SparseEquations& equations, const SparseSymmetric& metric, double lambda) {
+  const SparseSymmetric a = equations.hessian + lambda * metric;
+  const Eigen::SimplicialLLT<SparseSymmetric, Eigen::Lower> solver(a);
+  const Eigen::Index n = a.rows(), k = static_cast<Eigen::Index>(equations.products.size());
+  if (solver.info() != Eigen::Success) return Eigen::VectorXd::Constant(n, std::nan(""));
+  Eigen::MatrixXd right(n, k + 1);
+  right.col(0) = equations.gradient;
+  for (Eigen::Index i = 0; i < k; ++i) right.col(i + 1) = equations.products[static_cast<std::size_t>(i)].v;
+  const Eigen::MatrixXd x = solver.solve(right);
+  Eigen::VectorXd step = x.col(0);
+  if (k > 0) {  // Woodbury
+    Eigen::MatrixXd inner(k, k);
+    Eigen::VectorXd of_gradient(k);
+    for (Eigen::Index i = 0; i < k; ++i) {
+      const SparseEquations::Product& p = equations.products[static_cast<std::size_t>(i)];
+      for (Eigen::Index c = 0; c < k; ++c) inner(i, c) = p.v.dot(x.col(c + 1));
+      inner(i, i) += 1.0 / p.weight;
+      of_gradient[i] = p.v.dot(x.col(0));
+    }
+    step -= x.rightCols(k) * inner.fullPivLu().solve(of_gradient);
+  }
+  return -step;
+}
+
+double next_lambda(double lambda, const SparseEquations& equations, const Eigen::VectorXd& step,
+                   double cost) {
+  double curved = step.dot(equations.hessian.selfadjointView<Eigen::Lower>() * step);
+  for (const SparseEquations::Product& p : equations.products)
+    curved += p.weight * std::pow(p.v.dot(step), 2);
+  return next_lambda(lambda, -(2.0 * equations.gradient.dot(step) + curved), equations.cost - cost);
+}
+
+}  // namespace lucerna

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/validation/mesh_hits.h"
+
+#include <limits>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/trace/kernels/triangle_bvh.h"
+
+#if defined(LUCERNA_EMBREE)
+#include <embree3/rtcore.h>
+#endif
+
+namespace lucerna {
+
+namespace {
+
+class TreeHits final : public MeshHitFinder {
+ public:
+  explicit TreeHits(const std::vector<Body>& meshes) : tree_(meshes, true) {}
+
+  void first_hits(const MeshRays& rays, std::size_t n, MeshHits& hits) const override {
+    const TriangleBvhView view = tree_.view();
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto wide = [](float a, float b, float c) {
+        return Vec3{static_cast<double>(a), static_cast<double>(b), static_cast<double>(c)};
+      };
+      const TriangleHit hit =
+          first_triangle(view, wide(rays.x[i], rays.y[i], rays.z[i]),
+                         wide(rays.dx[i], rays.dy[i], rays.dz[i]), 0.0, std::numeric_limits<float>::max());
+      hits.mesh[i] = kNoMesh;
+      if (hit.triangle < 0) continue;
+      const TreeTriangle& k = view.triangles[hit.triangle];
+      hits.t[i] = static_cast<float>(hit.t);
+      hits.u[i] = static_cast<float>(hit.u);
+      hits.v[i] = static_cast<float>(hit.v);
+      hits.mesh[i] = k.body;
+      hits.triangle[i] = k.number;
+    }
+  }
+
+ private:
+  TriangleBvh tree_;
+};
+
+#if defined(LUCERNA_EMBREE)
+
+class EmbreeHits final : public MeshHitFinder {
+ public:
+  explicit EmbreeHits(const std::vector<Body>& meshes) : device_(rtcNewDevice(nullptr)) {
+    if (device_ == nullptr) throw InputError("Embree gives no device", ErrorCause::unsupported);
+    scene_ = rtcNewScene(device_);
+    for (std::size_t i = 0; i < meshes.size(); ++i) attach(meshes[i], static_cast<unsigned>(i));
+    // Robust: no ray passes between two triangles that share an edge.
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    rtcCommitScene(scene_);
+  }
+  ~EmbreeHits() override {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+  EmbreeHits(const EmbreeHits&) = delete;
+  EmbreeHits& operator=(const EmbreeHits&) = delete;
+
+  void first_hits(const MeshRays& rays, std::size_t n, MeshHits& hits) const override {
+    // One ray at a time: on rays in the order of their directions, a fifth faster than packets of 8 or 16.
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    for (std::size_t i = 0; i < n; ++i) {
+      RTCRayHit q;
+      q.ray.org_x = rays.x[i];
+      q.ray.org_y = rays.y[i];
+      q.ray.org_z = rays.z[i];
+      q.ray.dir_x = rays.dx[i];
+      q.ray.dir_y = rays.dy[i];
+      q.ray.dir_z = rays.dz[i];
+      q.ray.tnear = 0.0F;
+      q.ray.tfar = std::numeric_limits<float>::max();
+      q.ray.time = 0.0F;
+      q.ray.mask = 0xFFFFFFFFU;
+      q.ray.flags = 0;
+      q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(scene_, &context, &q);
+      hits.t[i] = q.ray.tfar;
+      hits.u[i] = q.hit.u;
+      hits.v[i] = q.hit.v;
+      hits.mesh[i] = q.hit.geomID == RTC_INVALID_GEOMETRY_ID ? kNoMesh : q.hit.geomID;
+      hits.triangle[i] = q.hit.primID;
+    }
+  }
+
+ private:
+  void attach(const Body& body, unsigned id) {
+    const Mesh& mesh = *body.mesh;
+    if (mesh.triangles.empty()) return;  // Embree gives no buffer of size 0
+    RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
+                                                          mesh.vertices_mm.size()));
+    auto* t = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangles.size()));
+    if (v == nullptr || t == nullptr) {
+      throw InputError(fmt::format("the mesh of '{}' does not fit the memory", body.name));
+    }
+    for (const Vec3& p : mesh.vertices_mm) {
+      const Vec3 w = body.world_from_body.point(p);
+      for (const double x : {w.x, w.y, w.z}) *v++ = static_cast<float>(x);
+    }
+    for (const auto& triangle : mesh.triangles) {
+      for (const std::uint32_t k : triangle) *t++ = k;
+    }
+    rtcCommitGeometry(g);
+    rtcAttachGeometryByID(scene_, g, id);
+    rtcReleaseGeometry(g);
+  }
+
+  RTCDevice device_;
+  RTCScene scene_;
+};
+
+#endif
+
+}  // namespace
+
+#if defined(LUCERNA_EMBREE)
+bool has_embree() { return true; }
+std::unique_ptr<MeshHitFinder> embree_hits(const std::vector<Body>& meshes) {
+  return std::make_unique<EmbreeHits>(meshes);
+}
+#else
+bool has_embree() { return false; }
+std::unique_ptr<MeshHitFinder> embree_hits(const std::vector<Body>&) {
+  throw InputError("this program was built without Embree");
+}
+#endif
+
+std::unique_ptr<MeshHitFinder> tree_hits(const std::vector<Body>& meshes) {
+  return std::make_unique<TreeHits>(meshes);
+}
+
+}  // namespace lucerna

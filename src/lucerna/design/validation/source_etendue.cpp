@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/validation/source_etendue.h"
+
+#include "lucerna/source/model/model_etendue.h"
+
+namespace lucerna {
+
+namespace {
+
+constexpr std::uint64_t kCurveRays = std::uint64_t{1} << 18;
+
+}  // namespace
+
+SourceEtendue::SourceEtendue(const DesignRays& rays) : rays_(rays.first(kCurveRays)) {
+  if (rays.sources().size() == 1) model_ = dynamic_cast<const SourceModel*>(rays.sources()[0].rays.get());
+}
+
+const EtendueCurve& SourceEtendue::quick() {
+  if (!quick_) quick_ = etendue_curve(rays_);
+  return *quick_;
+}
+
+const EtendueCurve& SourceEtendue::searched() {
+  if (!searched_) searched_ = model_ != nullptr ? etendue_curve(*model_) : searched_etendue_curve(rays_);
+  return *searched_;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/validation/tolerances.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/photometry/metrics/far_field_metrics.h"
+#include "lucerna/random.h"
+#include "lucerna/trace.h"
+#include "lucerna/trace/result/far_field_counts.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Fine enough for beams of a few degrees.
+FarFieldDetector watch() {
+  FarFieldDetector d;
+  d.name = "tolerances";
+  d.c_step_deg = 15.0;
+  d.gamma_step_deg = 1.0;
+  return d;
+}
+
+ToleranceMetrics figures_of(const TraceResult& result) {
+  const FarFieldMetrics m = far_field_metrics(counted_far_field(result, 0), {});
+  ToleranceMetrics f;
+  f.efficiency = out_flux(result).map([&](double x) { return x / result.flux; }).estimate();
+  if (m.peak) f.peak = m.peak->cd;
+  f.centre = m.axis_cd;
+  for (const auto& plane : m.planes) {
+    if (plane.c_deg == 0.0) f.beam_c0_deg = plane.beam_of_maximum;
+    if (plane.c_deg == 90.0) f.beam_c90_deg = plane.beam_of_maximum;
+  }
+  return f;
+}
+
+using Figure = std::function<std::optional<Estimate>(const ToleranceMetrics&)>;
+
+ToleranceSpread spread_of(const std::string& name, const ToleranceSweep& sweep, const Figure& figure) {
+  ToleranceSpread s;
+  s.figure = name;
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  s.nominal = figure(sweep.figures.front()).value_or(Estimate{unknown, unknown});
+  s.min.mean = std::numeric_limits<double>::infinity();
+  s.max.mean = -s.min.mean;
+  double sum = 0.0, squares = 0.0, errors = 0.0;
+  int n = 0;
+  for (std::size_t i = 0; i < sweep.cases.size(); ++i) {
+    const std::optional<Estimate> x = figure(sweep.figures[i]);
+    if (sweep.cases[i].name.rfind("combined", 0) != 0 || !x) continue;
+    sum += x->mean;
+    squares += x->mean * x->mean;
+    errors += x->standard_error;
+    if (x->mean < s.min.mean) s.min = *x;
+    if (x->mean > s.max.mean) s.max = *x;
+    ++n;
+  }
+  if (n == 0) {
+    s.mean = s.min = s.max = {unknown, unknown};
+    return s;
+  }
+  // Of the same rays: the errors go together, and their mean is that of the mean.
+  s.mean = {sum / n, errors / n};
+  s.standard_deviation =
+      n > 1 ? std::sqrt(std::max(0.0, (squares - n * s.mean.mean * s.mean.mean) / (n - 1))) : 0.0;
+  return s;
+}
+
+Vec3 middle(const Scene& scene) {
+  Vec3 sum;
+  for (const PlacedSource& s : scene.sources) sum += s.total_flux() * s.world_from_source.origin_mm();
+  return sum / total_flux(scene.sources);
+}
+
+}  // namespace
+
+ToleranceRanges read_tolerances(TomlReader reader) {
+  ToleranceRanges r;
+  r.source_shift_mm = reader.number("source_shift_mm", r.source_shift_mm);
+  r.source_tilt_deg = reader.number("source_tilt_deg", r.source_tilt_deg);
+  r.slope_error_mrad = reader.number("slope_error_mrad", r.slope_error_mrad);
+  r.reflectance = reader.number("reflectance", r.reflectance);
+  r.samples = static_cast<int>(reader.number("samples", r.samples));
+  r.rays = static_cast<std::uint64_t>(reader.number("rays", static_cast<double>(r.rays)));
+  reader.finish();
+  return r;
+}
+
+std::vector<ToleranceCase> tolerance_cases(const ToleranceRanges& ranges, std::uint64_t seed) {
+  std::vector<ToleranceCase> cases{{"nominal", {}}};
+  const auto both_ways = [&](const std::string& name, double size, const auto& set) {
+    for (const double sign : {1.0, -1.0}) {
+      ToleranceCase c{name + (sign > 0.0 ? "+" : "-"), {}};
+      set(c, sign * size);
+      cases.push_back(std::move(c));
+    }
+  };
+  both_ways("shift_x", ranges.source_shift_mm, [](ToleranceCase& c, double x) { c.shift_mm.x = x; });
+  both_ways("shift_y", ranges.source_shift_mm, [](ToleranceCase& c, double x) { c.shift_mm.y = x; });
+  both_ways("shift_z", ranges.source_shift_mm, [](ToleranceCase& c, double x) { c.shift_mm.z = x; });
+  both_ways("tilt_x", ranges.source_tilt_deg, [](ToleranceCase& c, double x) { c.tilt_x_deg = x; });
+  both_ways("tilt_y", ranges.source_tilt_deg, [](ToleranceCase& c, double x) { c.tilt_y_deg = x; });
+  both_ways("reflectance", ranges.reflectance, [](ToleranceCase& c, double x) { c.reflectance = x; });
+  ToleranceCase slope{"slope_error+", {}};
+  slope.slope_error_mrad = ranges.slope_error_mrad;
+  cases.push_back(slope);
+  for (int i = 1; i <= ranges.samples; ++i) {
+    Rng rng(seed, static_cast<std::uint64_t>(i));
+    const auto even = [&](double size) { return size * (2.0 * rng.uniform() - 1.0); };
+    ToleranceCase c{fmt::format("combined_{}", i), {}};
+    c.shift_mm.x = even(ranges.source_shift_mm);
+    c.shift_mm.y = even(ranges.source_shift_mm);
+    c.shift_mm.z = even(ranges.source_shift_mm);
+    c.tilt_x_deg = even(ranges.source_tilt_deg);
+    c.tilt_y_deg = even(ranges.source_tilt_deg);
+    c.slope_error_mrad = ranges.slope_error_mrad * rng.uniform();
+    c.reflectance = even(ranges.reflectance);
+    cases.push_back(std::move(c));
+  }
+  return cases;
+}
+
+Scene changed(const Scene& scene, const ToleranceCase& change) {
+  Scene out = scene;
+  const Vec3 centre = middle(scene);
+  const Frame turn = Frame::rotation(Direction::from(Vec3{0, 1, 0}), radians(change.tilt_y_deg)) *
+                     Frame::rotation(Direction::from(Vec3{1, 0, 0}), radians(change.tilt_x_deg));
+  const Frame about(turn.ex(), turn.ey(), turn.ez(), centre + change.shift_mm - turn.vector(centre));
+  for (PlacedSource& s : out.sources) s.world_from_source = about * s.world_from_source;
+  for (PlacedReflector& r : out.reflectors) {
+    r.slope_error_mrad = std::hypot(r.slope_error_mrad, change.slope_error_mrad);
+    if (change.reflectance != 0.0) r.reflectance = r.reflectance.shifted(change.reflectance);
+  }
+  return out;
+}
+
+ToleranceSweep tolerance_sweep(const Scene& scene, const ToleranceRanges& ranges, std::uint64_t seed,
+                               Progress& progress) {
+  ToleranceSweep sweep;
+  sweep.ranges = ranges;
+  sweep.cases = tolerance_cases(ranges, seed);
+  TraceOptions options;
+  options.seed = seed;
+  options.last_ray = ranges.rays;
+  Scene plain = scene;
+  plain.far_fields = {watch()};
+  plain.planes.clear();
+  plain.luminances.clear();
+  plain.ray_detectors.clear();
+  for (const ToleranceCase& c : sweep.cases) {
+    if (progress.stop_requested()) throw Interrupted();
+    sweep.figures.push_back(figures_of(trace(changed(plain, c), options)));
+    progress.update("tolerances", sweep.figures.size(), sweep.cases.size());
+  }
+  sweep.spread = {
+      spread_of("efficiency", sweep, [](const ToleranceMetrics& f) { return f.efficiency; }),
+      spread_of("peak", sweep, [](const ToleranceMetrics& f) { return f.peak; }),
+      spread_of("centre", sweep, [](const ToleranceMetrics& f) { return f.centre; }),
+      spread_of("beam_c0_deg", sweep, [](const ToleranceMetrics& f) { return f.beam_c0_deg; }),
+      spread_of("beam_c90_deg", sweep, [](const ToleranceMetrics& f) { return f.beam_c90_deg; }),
+  };
+  return sweep;
+}
+
+std::string tolerances_csv(const ToleranceSweep& sweep) {
+  std::string csv =
+      "case,shift_x_mm,shift_y_mm,shift_z_mm,tilt_x_deg,tilt_y_deg,slope_error_mrad,reflectance";
+  for (const char* figure : {"efficiency", "peak", "centre", "beam_c0_deg", "beam_c90_deg"})
+    csv += fmt::format(",{0},{0}_standard_error", figure);
+  csv += '\n';
+  const auto columns = [](const std::optional<Estimate>& e) {
+    return e ? fmt::format(",{:.6g},{:.2g}", e->mean, e->standard_error) : std::string(",,");
+  };
+  for (std::size_t i = 0; i < sweep.cases.size(); ++i) {
+    const ToleranceCase& c = sweep.cases[i];
+    const ToleranceMetrics& f = sweep.figures[i];
+    csv +=
+        fmt::format("{},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g}", c.name, c.shift_mm.x, c.shift_mm.y,
+                    c.shift_mm.z, c.tilt_x_deg, c.tilt_y_deg, c.slope_error_mrad, c.reflectance);
+    csv += columns(f.efficiency) + columns(f.peak) + columns(f.centre) + columns(f.beam_c0_deg) +
+           columns(f.beam_c90_deg) + '\n';
+  }
+  return csv;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lucerna/design.h"
+#include "lucerna/progress.h"
+#include "lucerna/project/schema/toml_reader.h"
+#include "lucerna/scene.h"
+
+namespace lucerna {
+
+/// Reads [design.tolerances]: the fields above by name. Throws InputError with file, line, key.
+ToleranceRanges read_tolerances(TomlReader reader);
+
+/// The cases: "nominal", "shift_x+", ..., "reflectance-", then "combined_1" and so on, drawn from `seed`.
+std::vector<ToleranceCase> tolerance_cases(const ToleranceRanges& ranges, std::uint64_t seed);
+
+/// The scene of a case. Sources move as one body about the flux-weighted mean of their origins; a reflectance
+/// stays within [0, 1].
+Scene changed(const Scene& scene, const ToleranceCase& change);
+
+/// Traces every case. Progress phase "tolerances", in cases. Throws Interrupted when asked to stop.
+ToleranceSweep tolerance_sweep(const Scene& scene, const ToleranceRanges& ranges, std::uint64_t seed,
+                               Progress& progress = no_progress());
+
+/// One line a case: its changes, its figures.
+std::string tolerances_csv(const ToleranceSweep& sweep);
+
+}  // namespace lucerna

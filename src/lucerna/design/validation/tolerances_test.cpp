@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/validation/tolerances.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lucerna/source.h"
+
+namespace lucerna {
+namespace {
+
+/// A small disk in the focus of a paraboloid that shines down.
+Scene spot() {
+  EmitterOptions emitter;
+  emitter.kind = EmitterKind::disk;
+  emitter.radius_mm = 0.1;
+  Scene scene;
+  scene.sources.push_back({make_emitter(emitter), Frame(), {}});
+  PlacedReflector mirror;
+  mirror.reflector = conic_reflector(ConicPreset::parabola, 10.0, 0.0, Aperture::circle(60));
+  mirror.world_from_reflector = Frame::from_axis(Direction::from(Vec3{0, 0, -1}), 0.0, {0, 0, 10});
+  mirror.reflectance = Reflectance(0.85);
+  scene.reflectors.push_back(mirror);
+  scene.far_fields.emplace_back();
+  return scene;
+}
+
+const ToleranceMetrics& figures(const ToleranceSweep& sweep, const std::string& name) {
+  const auto found = std::find_if(sweep.cases.begin(), sweep.cases.end(),
+                                  [&](const ToleranceCase& c) { return c.name == name; });
+  return sweep.figures.at(static_cast<std::size_t>(found - sweep.cases.begin()));
+}
+
+TEST(Tolerances, TheSweepSeesWhatOpticsSays) {
+  ToleranceRanges ranges;
+  ranges.source_shift_mm = 0.3;
+  ranges.slope_error_mrad = 8.0;
+  ranges.samples = 4;
+  ranges.rays = 1 << 17;
+  const ToleranceSweep sweep = tolerance_sweep(spot(), ranges, 3);
+  const ToleranceMetrics& nominal = sweep.figures.front();
+  EXPECT_EQ(sweep.cases.front().name, "nominal");
+  // The disk looks at the mirror: every ray is reflected once, so efficiency follows the reflectance.
+  EXPECT_NEAR(nominal.efficiency.mean, 0.85, 0.01);
+  EXPECT_NEAR(figures(sweep, "reflectance+").efficiency.mean - nominal.efficiency.mean, 0.02, 2e-3);
+  EXPECT_NEAR(figures(sweep, "reflectance-").efficiency.mean - nominal.efficiency.mean, -0.02, 2e-3);
+  // Slope errors blur, a shift along the axis defocuses: the peak falls. A shift aside leaves the flux.
+  EXPECT_LT(figures(sweep, "slope_error+").peak.mean, 0.9 * nominal.peak.mean);
+  EXPECT_LT(figures(sweep, "shift_z+").peak.mean, nominal.peak.mean);
+  EXPECT_NEAR(figures(sweep, "shift_x+").efficiency.mean, nominal.efficiency.mean, 0.01);
+  // The spot is round: shifts along x and y do the same.
+  EXPECT_NEAR(figures(sweep, "shift_x+").centre.mean, figures(sweep, "shift_y+").centre.mean,
+              0.05 * nominal.centre.mean);
+  for (const ToleranceSpread& s : sweep.spread) {
+    EXPECT_LE(s.min.mean, s.mean.mean + 1e-12) << s.figure;
+    EXPECT_GE(s.max.mean, s.mean.mean - 1e-12) << s.figure;
+  }
+  EXPECT_EQ(sweep.spread[0].figure, "efficiency");
+  const std::string csv = tolerances_csv(sweep);
+  EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), sweep.cases.size() + 1);
+}
+
+TEST(Tolerances, NothingMovesNothing) {
+  ToleranceRanges none{0.0, 0.0, 0.0, 0.0, 2, 1 << 15};
+  const ToleranceSweep sweep = tolerance_sweep(spot(), none, 3);
+  for (const ToleranceMetrics& f : sweep.figures) {
+    EXPECT_EQ(f.efficiency.mean, sweep.figures[0].efficiency.mean);
+    EXPECT_EQ(f.peak.mean, sweep.figures[0].peak.mean);
+    EXPECT_GT(f.peak.standard_error, 0.0);
+  }
+}
+
+TEST(Tolerances, SourcesMoveAsOneBody) {
+  Scene scene = spot();
+  scene.sources.push_back(scene.sources.front());
+  scene.sources[0].world_from_source = Frame::from_axis(Direction(), 0.0, {-2, 0, 0});
+  scene.sources[1].world_from_source = Frame::from_axis(Direction(), 0.0, {2, 0, 0});
+  ToleranceCase c{"", {0.5, 0, 0}};
+  c.tilt_y_deg = 90.0;
+  const Scene moved = changed(scene, c);
+  const Vec3 a = moved.sources[0].world_from_source.origin_mm(),
+             b = moved.sources[1].world_from_source.origin_mm();
+  EXPECT_NEAR(length(a - Vec3{0.5, 0, 2}), 0.0, 1e-12);
+  EXPECT_NEAR(length(b - Vec3{0.5, 0, -2}), 0.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace lucerna

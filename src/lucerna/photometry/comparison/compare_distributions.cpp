@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/core/parallel/parallel.h"
+#include "lucerna/intensity_comparison.h"
+#include "lucerna/photometric_metrics.h"
+#include "lucerna/photometry/binning/binned_intensity.h"
+#include "lucerna/photometry/comparison/transport.h"
+#include "lucerna/photometry/data/resample.h"
+#include "lucerna/random.h"
+
+namespace lucerna {
+
+namespace {
+
+constexpr std::size_t kTransportMasses = 600;
+
+/// Both distributions on the union of their grids.
+struct Common {
+  std::vector<Direction> directions;
+  std::vector<double> weight_sr, a, b;
+};
+
+std::vector<double> union_of(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> all = a;
+  all.insert(all.end(), b.begin(), b.end());
+  std::sort(all.begin(), all.end());
+  std::vector<double> result;
+  for (const double angle : all) {
+    if (result.empty() || angle - result.back() > 1e-6) result.push_back(angle);
+  }
+  return result;
+}
+
+/// Planes of both; a rotational grid alone would not resolve a tilt, so there are at least 24.
+std::vector<double> union_planes(const IntensityDistribution& a, const IntensityDistribution& b) {
+  std::vector<double> planes = union_of(a.c_deg, b.c_deg);
+  if (planes.size() >= 24) return planes;
+  std::vector<double> regular;
+  for (int c = 0; c < 24; ++c) regular.push_back(15.0 * c);
+  return union_of(planes, regular);
+}
+
+/// The whole sphere: just beyond a grid that ends with light there is a dark ring.
+std::vector<double> union_gammas(const IntensityDistribution& a, const IntensityDistribution& b) {
+  std::vector<double> gammas = union_of(a.gamma_deg, b.gamma_deg);
+  if (gammas.front() > 0.0) gammas.insert(gammas.begin(), 0.0);
+  if (gammas.back() < 180.0) gammas.push_back(180.0);
+  return gammas;
+}
+
+Common common_grid(const IntensityDistribution& a, const IntensityDistribution& b) {
+  const std::vector<double> planes = union_planes(a, b), gammas = union_gammas(a, b);
+  // The cells of both grids' own rings: a ring next to the dark must not take half of the dark as its cell.
+  Common common;
+  common.weight_sr = intensity_bins(planes, gammas).solid_angle_sr;
+  const double last = std::max(a.gamma_deg.back(), b.gamma_deg.back());
+  const double first = std::min(a.gamma_deg.front(), b.gamma_deg.front());
+  for (const double c : planes) {
+    for (const double g : gammas) {
+      common.directions.push_back(direction_from_type_c({radians(c), radians(g)}));
+      common.a.push_back(intensity_at(a, c, g));
+      common.b.push_back(intensity_at(b, c, g));
+    }
+  }
+  const std::vector<double> bounded = union_of(a.gamma_deg, b.gamma_deg);
+  const std::vector<double> inner = intensity_bins(planes, bounded).solid_angle_sr;
+  for (std::size_t c = 0, i = 0; c < planes.size(); ++c) {
+    std::size_t k = c * bounded.size();
+    for (const double g : gammas) {
+      if (g >= first && g <= last) common.weight_sr[i] = inner[k++];
+      ++i;
+    }
+  }
+  return common;
+}
+
+struct CommonSums {
+  double difference = 0.0, reference = 0.0, both = 0.0;
+  double rms() const { return std::sqrt(difference / reference); }
+};
+
+CommonSums sums_of(const Common& common, bool weighted) {
+  CommonSums sums;
+  for (std::size_t i = 0; i < common.a.size(); ++i) {
+    const double w = weighted ? common.weight_sr[i] : 1.0, d = common.a[i] - common.b[i],
+                 s = common.a[i] + common.b[i];
+    sums.difference += w * d * d;
+    sums.reference += w * common.a[i] * common.a[i];
+    sums.both += w * s * s;
+  }
+  return sums;
+}
+
+/// Shares of the unit flux per cell.
+std::vector<double> shares(const std::vector<double>& cd, const std::vector<double>& weight) {
+  std::vector<double> share(cd.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < cd.size(); ++i) sum += share[i] = cd[i] * weight[i];
+  for (double& each : share) each /= sum;
+  return share;
+}
+
+/// Wasserstein-1 with a metric cost depends on the difference only: what both have in one place stays there.
+double wasserstein_of(const Common& common, const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<DirectionMass> surplus, want;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double d = a[i] - b[i];
+    if (d > 1e-15) surplus.push_back({common.directions[i], d});
+    if (d < -1e-15) want.push_back({common.directions[i], -d});
+  }
+  return degrees(transport_cost_rad(clustered(std::move(surplus), kTransportMasses),
+                                    clustered(std::move(want), kTransportMasses)));
+}
+
+double noise_floor_of(const IntensityDistribution& d, std::span<const double> error, const Common& common) {
+  if (error.empty()) return 0.0;
+  if (error.size() != d.cd.size())
+    throw InputError(fmt::format("{} standard errors for {} values", error.size(), d.cd.size()));
+  IntensityDistribution variance = d;
+  for (std::size_t i = 0; i < error.size(); ++i) variance.cd[i] = error[i] * error[i];
+  double sum = 0.0;
+  for (std::size_t i = 0; i < common.a.size(); ++i)
+    sum += common.weight_sr[i] * intensity_in(variance, common.directions[i]);
+  return sum;
+}
+
+/// Relative RMS with the test turned by `rotation` (rad).
+double rotated_rms(const Common& common, const IntensityDistribution& test, const Vec3& rotation) {
+  double difference = 0.0, reference = 0.0;
+  for (std::size_t i = 0; i < common.a.size(); ++i) {
+    const double d = common.a[i] - intensity_in(test, rotated_by(common.directions[i], -rotation));
+    difference += common.weight_sr[i] * d * d;
+    reference += common.weight_sr[i] * common.a[i] * common.a[i];
+  }
+  return std::sqrt(difference / reference);
+}
+
+/// Nelder and Mead's simplex (1965) for three parameters, `start` with edges of `size`.
+template <class F>
+std::pair<Vec3, double> minimise(F&& f, const Vec3& start, double size, int evaluations) {
+  std::array<std::pair<double, Vec3>, 4> simplex;
+  const Vec3 edges[] = {{}, {size, 0, 0}, {0, size, 0}, {0, 0, size}};
+  for (std::size_t i = 0; i < 4; ++i) simplex[i] = {f(start + edges[i]), start + edges[i]};
+  const auto sort = [&] {
+    std::sort(simplex.begin(), simplex.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  };
+  for (int used = 4; used < evaluations; ++used) {
+    sort();
+    if (length(simplex[3].second - simplex[0].second) < 1e-6) break;
+    const Vec3 centre = (simplex[0].second + simplex[1].second + simplex[2].second) / 3.0;
+    const auto cost_at = [&](double t) {
+      const Vec3 x = centre + t * (simplex[3].second - centre);
+      return std::pair{f(x), x};
+    };
+    const auto reflected = cost_at(-1.0);
+    if (reflected.first < simplex[0].first) {
+      const auto further = cost_at(-2.0);
+      simplex[3] = further.first < reflected.first ? further : reflected;
+    } else if (reflected.first < simplex[2].first) {
+      simplex[3] = reflected;
+    } else if (const auto inside = cost_at(0.5); inside.first < simplex[3].first) {
+      simplex[3] = inside;
+    } else {
+      for (std::size_t i = 1; i < 4; ++i) {
+        const Vec3 x = 0.5 * (simplex[0].second + simplex[i].second);
+        simplex[i] = {f(x), x};
+      }
+    }
+  }
+  sort();
+  return {simplex[0].second, simplex[0].first};
+}
+
+/// Only cells that matter: those that hold the reference's or the test's light, at most `limit` of them.
+Common thinned(const Common& common, std::size_t limit) {
+  if (common.a.size() <= limit) return common;
+  Common result;
+  const std::size_t stride = (common.a.size() + limit - 1) / limit;
+  for (std::size_t i = 0; i < common.a.size(); i += stride) {
+    result.directions.push_back(common.directions[i]);
+    result.weight_sr.push_back(common.weight_sr[i]);
+    result.a.push_back(common.a[i]);
+    result.b.push_back(common.b[i]);
+  }
+  return result;
+}
+
+Alignment aligned(const Common& common, const IntensityDistribution& test) {
+  const Common few = thinned(common, 12000);
+  const auto f = [&](const Vec3& rotation) { return rotated_rms(few, test, rotation); };
+  // Quarter turns first: the two conventions for C0 differ by one.
+  Vec3 start;
+  double best = f(start);
+  for (const double turn : {90.0, 180.0, -90.0}) {
+    const Vec3 rotation{0.0, 0.0, radians(turn)};
+    const double rms = f(rotation);
+    if (rms < 0.98 * best) {
+      best = rms;
+      start = rotation;
+    }
+  }
+  auto [rotation, rms] = minimise(f, start, radians(2.0), 160);
+  if (rms > best) rotation = start;
+  const double last = rotated_rms(common, test, rotation), none = rotated_rms(common, test, {});
+  Alignment result;
+  if (none <= last) rotation = {};
+  result.relative_rms = std::min(none, last);
+  const Direction nadir = rotated_by(Direction::from_unit({0.0, 0.0, -1.0}), rotation);
+  const TypeCAngles to = type_c_angles(nadir);
+  result.tilt_deg = degrees(to.gamma_rad);
+  result.tilt_toward_c_deg = result.tilt_deg > 0.0 ? degrees(to.c_rad) : 0.0;
+  result.turn_deg = degrees(rotation.z);
+  return result;
+}
+
+void check_comparable(const IntensityDistribution& reference, const IntensityDistribution& test) {
+  for (const auto& [name, d] : {std::pair{"reference", &reference}, std::pair{"test", &test}}) {
+    if (const std::string fault = grid_fault(*d); !fault.empty())
+      throw InputError(fmt::format("{}: {}", name, fault));
+    if (!(peak_intensity(*d).cd > 0.0)) throw InputError(fmt::format("{}: no light to compare", name));
+  }
+  if (reference.unit != test.unit) throw InputError("one distribution is in cd, the other in W/sr");
+}
+
+}  // namespace
+
+double wasserstein_deg(const IntensityDistribution& a, const IntensityDistribution& b) {
+  check_comparable(a, b);
+  const Common common = common_grid(a, b);
+  return wasserstein_of(common, shares(common.a, common.weight_sr), shares(common.b, common.weight_sr));
+}
+
+namespace {
+
+/// Copies of which the scatter is taken.
+constexpr std::size_t kCopies = 8;
+
+/// All figures but those of noise and alignment.
+DistributionComparison compared(const Common& common, const IntensityDistribution& reference,
+                                const IntensityDistribution& test) {
+  const CommonSums weighted = sums_of(common, true), plain = sums_of(common, false);
+  DistributionComparison result;
+  result.relative_rms = weighted.rms();
+  result.bergen_fit = 100.0 * (1.0 - std::sqrt(weighted.difference / weighted.both));
+  result.bergen_fit_unweighted = 100.0 * (1.0 - std::sqrt(plain.difference / plain.both));
+  result.flux_ratio = total_flux(test) / total_flux(reference);
+  result.peak_ratio = peak_intensity(test).cd / peak_intensity(reference).cd;
+  const std::vector<double> a = shares(common.a, common.weight_sr), b = shares(common.b, common.weight_sr);
+  result.wasserstein_deg = wasserstein_of(common, a, b);
+  double apart = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) apart += std::abs(a[i] - b[i]);
+  result.overlap = 1.0 - 0.5 * apart;
+  return result;
+}
+
+/// The values moved by their errors, evenly distributed with that standard deviation; none below 0.
+IntensityDistribution moved(const IntensityDistribution& d, std::span<const double> error,
+                            std::uint64_t seed) {
+  IntensityDistribution out = d;
+  for (std::size_t i = 0; i < error.size(); ++i) {
+    Rng rng(seed, i);
+    out.cd[i] = std::max(0.0, out.cd[i] + std::sqrt(3.0) * (2.0 * rng.uniform() - 1.0) * error[i]);
+  }
+  return out;
+}
+
+ComparisonErrors errors_of(const IntensityDistribution& reference, const IntensityDistribution& test,
+                           const CompareOptions& options) {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  if (options.reference_error_cd.empty() && options.test_error_cd.empty())
+    return {unknown, unknown, unknown, unknown, unknown, unknown, unknown};
+  std::vector<DistributionComparison> copies(kCopies);
+  parallel_blocks(kCopies, 1, [&](std::size_t k, std::size_t) {
+    const IntensityDistribution a = moved(reference, options.reference_error_cd, 2 * k + 1),
+                                b = moved(test, options.test_error_cd, 2 * k + 2);
+    copies[k] = compared(common_grid(a, b), a, b);
+  });
+  const auto scatter = [&](double DistributionComparison::*figure) {
+    double mean = 0.0, squares = 0.0;
+    for (const auto& c : copies) mean += c.*figure / kCopies;
+    for (const auto& c : copies) squares += (c.*figure - mean) * (c.*figure - mean);
+    return std::sqrt(squares / (kCopies - 1.0));
+  };
+  using C = DistributionComparison;
+  return {scatter(&C::relative_rms), scatter(&C::bergen_fit), scatter(&C::bergen_fit_unweighted),
+          scatter(&C::flux_ratio),   scatter(&C::peak_ratio), scatter(&C::wasserstein_deg),
+          scatter(&C::overlap)};
+}
+
+}  // namespace
+
+DistributionComparison compare_distributions(const IntensityDistribution& reference,
+                                             const IntensityDistribution& test,
+                                             const CompareOptions& options) {
+  check_comparable(reference, test);
+  const Common common = common_grid(reference, test);
+  DistributionComparison result = compared(common, reference, test);
+  const double signal = sums_of(common, true).reference;
+  const double noise = noise_floor_of(reference, options.reference_error_cd, common) +
+                       noise_floor_of(test, options.test_error_cd, common);
+  result.noise_floor = std::sqrt(noise / signal);
+  result.excess = std::sqrt(std::max(0.0, result.relative_rms * result.relative_rms - noise / signal));
+  result.errors = errors_of(reference, test, options);
+  if (options.align) result.alignment = aligned(common, test);
+  return result;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/intensity_comparison.h"
+#include "lucerna/photometric_metrics.h"
+#include "lucerna/photometry/comparison/transport.h"
+#include "lucerna/photometry/data/resample.h"
+#include "lucerna/random.h"
+
+namespace lucerna {
+namespace {
+
+IntensityDistribution filled_grid(const std::function<double(double c, double g)>& cd, double c_step = 10.0,
+                                  double g_step = 2.0) {
+  IntensityDistribution d = uniform_distribution(c_step, g_step);
+  for (std::size_t c = 0; c < d.c_deg.size(); ++c) {
+    for (std::size_t g = 0; g < d.gamma_deg.size(); ++g) d.at(c, g) = cd(radians(d.c_deg[c]), d.gamma_deg[g]);
+  }
+  return d;
+}
+
+IntensityDistribution dirac(std::size_t c, std::size_t g) {
+  IntensityDistribution d = uniform_distribution(5.0, 1.0);
+  const bool pole = g == 0 || g == 180;
+  for (std::size_t i = 0; i < d.c_deg.size(); ++i) {
+    if (pole || i == c) d.at(i, g) = 100.0;
+  }
+  return d;
+}
+
+IntensityDistribution spot() {
+  return filled_grid(
+      [](double c, double g) {
+        return 1000.0 * std::exp(-g * g / 200.0) * (1.0 + 0.3 * std::sin(radians(g)) * std::cos(2.0 * c));
+      },
+      5.0, 1.0);
+}
+
+// The design's bar: within 0.1 degree at any angle.
+TEST(Wasserstein, TwoDiracsAreAsFarAsTheirAngle) {
+  const std::size_t pairs[][4] = {{0, 0, 0, 1},    {0, 0, 0, 90},  {0, 0, 0, 180},  {3, 20, 40, 70},
+                                  {0, 89, 36, 91}, {7, 45, 8, 45}, {10, 3, 50, 177}};
+  for (const auto& p : pairs) {
+    const auto at = [](std::size_t c, std::size_t g) {
+      return direction_from_type_c({radians(5.0 * static_cast<double>(c)), radians(static_cast<double>(g))});
+    };
+    const double angle = degrees(angle_between(at(p[0], p[1]), at(p[2], p[3])));
+    EXPECT_NEAR(wasserstein_deg(dirac(p[0], p[1]), dirac(p[2], p[3])), angle, 1e-6);
+  }
+}
+
+// A point at 10 degrees (the spot's sigma) beside the great circle of the tilt moves 1 - cos(10 deg) = 1.5 %
+// less than the tilt, and none moves more.
+TEST(Wasserstein, TiltMovesTheLightByItsAngle) {
+  for (const double tilt : {0.5, 2.0, 10.0, 60.0}) {
+    const double distance = wasserstein_deg(spot(), rotated(spot(), {radians(tilt), 0.0, 0.0}));
+    EXPECT_LT(distance, tilt + 0.02);
+    EXPECT_GT(distance, tilt * (1.0 - 0.02) - 0.02);
+  }
+}
+
+// Against all permutations: of equal masses the best matching is the optimum.
+TEST(Wasserstein, SimplexFindsTheBestMatching) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Rng rng(3, seed);
+    const auto direction = [&] {
+      const double z = 2.0 * rng.uniform() - 1.0, phi = 6.28 * rng.uniform(), s = std::sqrt(1.0 - z * z);
+      return Direction::from({s * std::cos(phi), s * std::sin(phi), z});
+    };
+    std::vector<DirectionMass> from(6), to(6);
+    for (auto& each : from) each = {direction(), 0.5};
+    for (auto& each : to) each = {direction(), 0.5};
+    std::vector<std::size_t> order{0, 1, 2, 3, 4, 5};
+    double best = 1e9;
+    do {
+      double cost = 0.0;
+      for (std::size_t i = 0; i < 6; ++i)
+        cost += 0.5 * angle_between(from[i].direction, to[order[i]].direction);
+      best = std::min(best, cost);
+    } while (std::next_permutation(order.begin(), order.end()));
+    EXPECT_NEAR(transport_cost_rad(from, to), best, 1e-6 * best) << seed;
+  }
+}
+
+TEST(Wasserstein, UnequalMassesSplit) {
+  const Direction x = Direction::from({1.0, 0.0, 0.0}), y = Direction::from({0.0, 1.0, 0.0}), z;
+  // 3 at x goes 1 to y, 2 to z: a quarter circle each.
+  EXPECT_NEAR(transport_cost_rad({{x, 3.0}}, {{y, 1.0}, {z, 2.0}}), 3.0 * radians(90.0), 1e-8);
+  EXPECT_NEAR(transport_cost_rad({{x, 1.0}, {y, 2.0}}, {{y, 1.0}, {x, 2.0}}), radians(90.0), 1e-8);
+}
+
+TEST(CompareDistributions, EqualIsEqual) {
+  const DistributionComparison same = compare_distributions(spot(), spot());
+  EXPECT_EQ(same.relative_rms, 0.0);
+  EXPECT_EQ(same.bergen_fit, 100.0);
+  EXPECT_EQ(same.flux_ratio, 1.0);
+  EXPECT_EQ(same.wasserstein_deg, 0.0);
+  EXPECT_EQ(same.overlap, 1.0);
+  EXPECT_EQ(same.alignment->tilt_deg, 0.0);
+}
+
+TEST(CompareDistributions, ScaleShowsInFluxAndRmsButNotInShape) {
+  IntensityDistribution brighter = spot();
+  scale(brighter, 1.01);
+  const DistributionComparison c = compare_distributions(spot(), brighter);
+  EXPECT_NEAR(c.relative_rms, 0.01, 1e-12);
+  EXPECT_NEAR(c.bergen_fit, 100.0 * (1.0 - 0.01 / 2.01), 1e-9);
+  EXPECT_NEAR(c.flux_ratio, 1.01, 1e-12);
+  EXPECT_NEAR(c.peak_ratio, 1.01, 1e-12);
+  EXPECT_NEAR(c.wasserstein_deg, 0.0, 1e-9);
+  EXPECT_NEAR(c.overlap, 1.0, 1e-12);
+}
+
+TEST(CompareDistributions, GridsNeedNotAgree) {
+  const IntensityDistribution coarse =
+      filled_grid([](double, double g) { return 100.0 - 0.5 * g; }, 30.0, 10.0);
+  const IntensityDistribution fine = filled_grid([](double, double g) { return 100.0 - 0.5 * g; }, 7.5, 1.5);
+  const DistributionComparison c = compare_distributions(coarse, fine);
+  EXPECT_NEAR(c.relative_rms, 0.0, 1e-12);
+  EXPECT_NEAR(c.wasserstein_deg, 0.0, 1e-9);
+}
+
+TEST(CompareDistributions, AlignmentFindsTiltAndTurn) {
+  const auto street = filled_grid(
+      [](double c, double g) {
+        return g < 90.0 ? 100.0 * std::cos(radians(g)) + 400.0 * std::exp(-std::pow((g - 55.0) / 12.0, 2.0)) *
+                                                             std::pow(0.5 + 0.5 * std::sin(c + 0.4), 3.0)
+                        : 0.0;
+      },
+      5.0, 1.0);
+  // B = A tilted by 1.5 degrees; to fit, it must go back.
+  const DistributionComparison tilted =
+      compare_distributions(street, rotated(street, {radians(1.5), 0.0, 0.0}));
+  EXPECT_GT(tilted.relative_rms, 0.03);
+  EXPECT_NEAR(tilted.alignment->tilt_deg, 1.5, 0.05);
+  EXPECT_NEAR(tilted.alignment->tilt_toward_c_deg, 270.0, 3.0);
+  EXPECT_LT(tilted.alignment->relative_rms, 0.25 * tilted.relative_rms);
+  const DistributionComparison turned =
+      compare_distributions(street, rotated(street, {0.0, 0.0, radians(90.0)}));
+  EXPECT_NEAR(turned.alignment->turn_deg, -90.0, 0.1);
+  EXPECT_LT(turned.alignment->relative_rms, 0.01);
+}
+
+TEST(CompareDistributionsStatistical, NoiseFloorIsWhatNoiseGives) {
+  const IntensityDistribution truth =
+      filled_grid([](double, double g) { return g < 90.0 ? 500.0 * std::cos(radians(g)) : 0.0; }, 15.0, 5.0);
+  IntensityDistribution noisy = truth;
+  std::vector<double> error(truth.cd.size());
+  for (std::size_t i = 0; i < error.size(); ++i) {
+    Rng rng(11, i);
+    double normal = -6.0;
+    for (int k = 0; k < 12; ++k) normal += rng.uniform();
+    error[i] = 0.02 * truth.cd[i];
+    noisy.cd[i] = truth.cd[i] + error[i] * normal;
+  }
+  const DistributionComparison c =
+      compare_distributions(truth, noisy, {.test_error_cd = error, .align = false});
+  EXPECT_NEAR(c.noise_floor, 0.02, 1e-6);
+  EXPECT_NEAR(c.relative_rms / c.noise_floor, 1.0, 0.25);  // 5 sigma for about 400 cells
+  EXPECT_FALSE(c.alignment);
+}
+
+TEST(CompareDistributions, RefusesWhatCannotBeCompared) {
+  IntensityDistribution watts = spot();
+  watts.unit = FluxUnit::watt;
+  EXPECT_THROW(compare_distributions(spot(), watts), InputError);
+  EXPECT_THROW(compare_distributions(spot(), uniform_distribution(90.0, 10.0)), InputError);
+}
+
+}  // namespace
+}  // namespace lucerna

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/photometric_file.h"
+
+namespace lucerna {
+
+/// Decimals that give the largest value `peak` the wanted number of significant digits, between 0 and 9.
+int decimals_for(double peak, int digits);
+
+/// A number as photometric files want it: no exponent, no trailing zeros, '.' for the decimals; `decimals` <
+/// 0 gives the shortest text that reads back to the same double.
+std::string number_text(double value, int decimals);
+
+/// `text` on one line: control characters become blanks, blanks at the ends go.
+std::string one_line(std::string_view text);
+
+/// The file's text as UTF-8: a byte order mark goes, what is not UTF-8 is read as Windows-1252, a ^Z ends the
+/// file.
+std::string decoded_text(std::string_view bytes);
+
+/// Lines of `text` at CR LF, LF or CR, without the ends. They point into `text`. A last line end makes no
+/// empty line.
+std::vector<std::string_view> lines_of(std::string_view text);
+
+/// `text` without blanks, tabs and other control characters at both ends.
+std::string_view trimmed(std::string_view text);
+
+/// The whole of `text` as a finite number: sign, digits, '.', exponent of any length; nothing else ("nan",
+/// "inf", "0x").
+std::optional<double> number_from(std::string_view text);
+
+/// Collects what a reader repairs, and refuses instead when strict.
+class RepairLog {
+ public:
+  /// `name` is what errors call the file.
+  RepairLog(std::string name, bool strict) : name_(std::move(name)), strict_(strict) {}
+
+  /// One repair at `line` (from 1; 0 = whole file). Throws InputError if strict.
+  template <class... Args>
+  void repair(std::size_t line, fmt::format_string<Args...> text, Args&&... args) {
+    std::string what = fmt::format(text, std::forward<Args>(args)...);
+    if (strict_) fail_text(line, what);
+    repairs.push_back({Fault::Severity::warning, line, std::move(what)});
+  }
+
+  template <class... Args>
+  void note(std::size_t line, fmt::format_string<Args...> text, Args&&... args) {
+    notes.push_back({Fault::Severity::note, line, fmt::format(text, std::forward<Args>(args)...)});
+  }
+
+  /// Throws InputError "name: line N: text".
+  template <class... Args>
+  [[noreturn]] void fail(std::size_t line, fmt::format_string<Args...> text, Args&&... args) const {
+    fail_text(line, fmt::format(text, std::forward<Args>(args)...));
+  }
+
+  std::vector<Fault> repairs, notes;
+
+ private:
+  [[noreturn]] void fail_text(std::size_t line, const std::string& what) const {
+    throw_input_error(name_, line > 0 ? fmt::format("line {}", line) : std::string(), "{}", what);
+  }
+
+  std::string name_;
+  bool strict_;
+};
+
+}  // namespace lucerna

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/photometry/metrics/far_field_metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lucerna/core/parallel/parallel.h"
+#include "lucerna/photometry/metrics/peak_estimate.h"
+#include "lucerna/photometry/metrics/radius_choice.h"
+#include "lucerna/photometry/metrics/section_estimate.h"
+
+namespace lucerna {
+
+namespace {
+
+constexpr double kDark = 0.002;    // far below every threshold
+constexpr double kCutOff = 0.025;  // photometric practice: less than 2.5 % of the maximum
+/// A section is smoothed by no more than this share of the lobe's half width.
+constexpr double kSmoothing = 0.25;
+/// Of intensities that are read at fixed directions; a goniophotometer's detector has half of it.
+constexpr double kGlareRadius_deg = 2.5;
+/// The brightest direction is looked for this share of the lobe's half width about those that the cells show.
+constexpr double kPeakSearch = 0.15;
+/// Arcs of C0 and C90 below this are measured by `exact`. Their ends are looked for within this share of
+/// them.
+constexpr double kNarrowArc_deg = 20.0, kArcWindow = 0.25;
+/// Beyond this a peak's C is not determined.
+constexpr double kTurned_deg = 90.0;
+/// Narrower than the beam is wide, wide enough for its axis where no peak was found.
+constexpr double kAxisRadius_deg = 2.5;
+
+Jackknife share(const Jackknife& x, double factor) {
+  return x.map([factor](double v) { return factor * v; });
+}
+
+/// The angles of one pair of planes, and how far 2.5 % of the peak reach.
+struct PlaneResult {
+  FarFieldMetrics::Plane plane;
+  std::optional<Jackknife> reach;
+};
+
+/// The arc where a share of `full` is reached. Kernels widen narrow ones: there `exact` looks for the ends.
+std::optional<Estimate> arc_deg(const PointIntensity& exact, double resolution_deg, Section& section,
+                                const Jackknife& full, double share_of_full) {
+  const Jackknife threshold = share(full, share_of_full);
+  const std::optional<Estimate> counted = section.arc_deg(threshold);
+  if (!exact || !counted || counted->mean > kNarrowArc_deg) return counted;
+  const auto near = section.narrowest_arc(threshold.all());
+  const double window_deg =
+      std::max({resolution_deg, 3.0 * counted->standard_error, kArcWindow * counted->mean});
+  const auto ends = exact_arc_deg(
+      exact, [&](double angle) { return section.direction(angle); }, near.value_or(CircleArc{}), window_deg,
+      threshold.estimate());
+  return ends ? *ends : Estimate{counted->mean, std::hypot(counted->standard_error, window_deg)};
+}
+
+PlaneResult measure_plane(const CountedSphere& sphere, double c_deg, double widest_deg, bool up,
+                          const Jackknife& maximum, const Jackknife& centre, const PointIntensity& exact) {
+  Section section(sphere, c_deg, widest_deg, kDark * std::min(maximum.all(), centre.all()));
+  PlaneResult r;
+  r.plane.c_deg = c_deg;
+  const PointIntensity ends = c_deg == 0.0 || c_deg == 90.0 ? exact : PointIntensity{};
+  const auto arc = [&](const Jackknife& full, double share_of_full) {
+    return arc_deg(ends, sphere.resolution_deg(), section, full, share_of_full);
+  };
+  r.plane.beam_of_maximum = arc(maximum, 0.5);
+  r.plane.field_of_maximum = arc(maximum, 0.1);
+  const bool on_axis = centre.all() == maximum.all();
+  r.plane.beam_of_centre = on_axis ? r.plane.beam_of_maximum : arc(centre, 0.5);
+  r.plane.field_of_centre = on_axis ? r.plane.field_of_maximum : arc(centre, 0.1);
+  r.reach = section.reach_deg(share(maximum, kCutOff), up);
+  return r;
+}
+
+void measure_zones(const CountedSphere& sphere, FarFieldMetrics& m) {
+  for (std::size_t zone = 0; zone < m.zonal.size(); ++zone) {
+    const double from = 10.0 * static_cast<double>(zone);
+    m.zonal[zone] = sphere.zone_flux(from, from + 10.0).estimate();
+  }
+  const Jackknife all = sphere.zone_flux(0.0, 180.0), down = sphere.zone_flux(0.0, 90.0);
+  const Jackknife below_60 = sphere.zone_flux(0.0, 60.0);
+  m.flux = all.estimate();
+  m.flux_0_30 = sphere.zone_flux(0.0, 30.0).estimate();
+  m.flux_0_40 = sphere.zone_flux(0.0, 40.0).estimate();
+  m.flux_0_60 = below_60.estimate();
+  m.flux_60_90 = sphere.zone_flux(60.0, 90.0).estimate();
+  m.flux_0_90 = down.estimate();
+  m.flux_90_180 = sphere.zone_flux(90.0, 180.0).estimate();
+  const auto percent = [](const Jackknife& a, const Jackknife& b) {
+    return share(ratio(a, b), 100.0).estimate();
+  };
+  m.cie_flux_code = {percent(sphere.zone_flux(0.0, 41.4), down), percent(below_60, down),
+                     percent(sphere.zone_flux(0.0, 75.5), down), percent(down, all)};
+  constexpr double kBounds[5] = {0.0, 30.0, 60.0, 80.0, 90.0};
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double street = side == 0 ? 90.0 : 270.0;
+      m.bug_zones[4 * side + k] = sphere.half_zone_flux(kBounds[k], kBounds[k + 1], street).estimate();
+    }
+  }
+  m.bug_zones[8] = sphere.zone_flux(90.0, 100.0).estimate();
+  m.bug_zones[9] = sphere.zone_flux(100.0, 180.0).estimate();
+}
+
+void measure_glare(const CountedSphere& sphere, FarFieldMetrics& m) {
+  m.glare_radius_deg = kGlareRadius_deg;
+  for (std::size_t i = 0; i < m.glare_cd.size(); ++i) {
+    const Direction d = direction_from_type_c(
+        {radians(i < 5 ? 0.0 : 90.0), radians(45.0 + 10.0 * static_cast<double>(i % 5))});
+    m.glare_cd[i] = sphere.mean_cd(d, Kernel(kGlareRadius_deg)).estimate();
+  }
+}
+
+/// An estimate that has noise of its own.
+Jackknife independent(const Estimate& e, std::size_t replicates) {
+  return Jackknife(replicates).map([&](double) { return e.mean; }).with_error(e.standard_error);
+}
+
+/// Moves the peak to the brightest direction near those that the cells show. It is as well known as it was,
+/// and no better than it has moved.
+void refine_peak(const PointIntensity& exact, const Direction& axis, FoundPeak& p) {
+  p.bright.push_back(axis);
+  const PointPeak best = brightest_point(exact, p.bright, kPeakSearch * p.half_width_deg);
+  const TypeCAngles at = type_c_angles(best.direction);
+  const double moved_deg = degrees(angle_between(best.direction, p.direction));
+  p.direction_error_deg = std::hypot(p.direction_error_deg, moved_deg);
+  if (p.gamma_deg)
+    p.gamma_deg = Estimate{degrees(at.gamma_rad), std::hypot(p.gamma_deg->standard_error, moved_deg)};
+  const double c_moved_deg = moved_deg / std::max(std::sin(at.gamma_rad), 1e-9);
+  if (p.c_deg && c_moved_deg > kTurned_deg) p.c_deg.reset();
+  if (p.c_deg) p.c_deg = Estimate{degrees(at.c_rad), std::hypot(p.c_deg->standard_error, c_moved_deg)};
+  p.direction = best.direction;
+  p.cd = best.cd;
+  p.values = independent(best.cd, p.values.replicates());
+  p.radius_deg = p.c_radius_deg = 0.0;
+}
+
+Jackknife exact_axis(const PointIntensity& exact, const Direction& axis, std::size_t replicates,
+                     FarFieldMetrics& m) {
+  m.axis_cd = precise_intensity(exact, axis);
+  m.axis_radius_deg = 0.0;
+  return independent(m.axis_cd, replicates);
+}
+
+/// Kernels from the lobe's own scale down to the counted cells'. Returns the axis without each replicate.
+Jackknife measure_axis(const CountedSphere& sphere, const Direction& axis, FarFieldMetrics& m) {
+  const double finest = sphere.resolution_deg();
+  // Never so wide that what a parabola leaves out of the lobe shows, nor over an edge.
+  const double widest = m.peak ? std::min(kSmoothing * m.peak->half_width_deg, 0.5 * m.peak->nearest_side_deg)
+                               : kAxisRadius_deg;
+  RadiusChoice choice;
+  std::vector<double> radii_deg{std::max(finest, widest)};
+  for (;; radii_deg.push_back(0.5 * radii_deg.back())) {
+    const Jackknife value = sphere.fit(axis, Kernel(radii_deg.back())).coefficients[0];
+    choice.add(value, value.estimate().standard_error);
+    if (choice.complete() || 0.5 * radii_deg.back() < finest) break;
+  }
+  if (choice.size() == 1 && !choice.complete()) {
+    radii_deg.push_back(0.5 * finest);
+    const Jackknife value = sphere.mean_cd(axis, Kernel(radii_deg.back()));
+    choice.add(value, value.estimate().standard_error);
+  }
+  const RadiusChoice::Choice best = choice.best();
+  m.axis_radius_deg = radii_deg[best.index];
+  m.axis_cd = best.estimate();
+  return best.values;
+}
+
+/// The reach of the plane where the light reaches furthest.
+std::optional<Estimate> furthest(const std::vector<PlaneResult>& results) {
+  std::vector<Jackknife> reaches;
+  for (const PlaneResult& r : results) {
+    if (r.reach) reaches.push_back(*r.reach);
+  }
+  return reaches.empty() ? std::nullopt : std::optional(largest(reaches).estimate);
+}
+
+}  // namespace
+
+FarFieldMetrics far_field_metrics(const CountedSphere& sphere, std::span<const double> planes_deg,
+                                  const PointIntensity& exact) {
+  FarFieldMetrics m;
+  measure_zones(sphere, m);
+  measure_glare(sphere, m);
+  std::optional<FoundPeak> peak = peak_estimate(sphere);
+  m.axis_gamma_deg = m.flux_90_180.mean > m.flux_0_90.mean ? 180.0 : 0.0;
+  const Direction axis = Direction::from_unit({0.0, 0.0, m.axis_gamma_deg == 0.0 ? -1.0 : 1.0});
+  if (peak && exact) refine_peak(exact, axis, *peak);
+  m.peak = peak;
+  const Jackknife centre =
+      exact ? exact_axis(exact, axis, sphere.replicates(), m) : measure_axis(sphere, axis, m);
+  std::vector<double> planes{0.0, 90.0};
+  for (const double c : planes_deg) {
+    if (c < 180.0) planes.push_back(c);
+  }
+  std::sort(planes.begin(), planes.end());
+  planes.erase(std::unique(planes.begin(), planes.end()), planes.end());
+  const double widest = m.peak ? kSmoothing * m.peak->half_width_deg : kAxisRadius_deg;
+  const Jackknife maximum = peak ? peak->values : Jackknife(sphere.replicates());
+  std::vector<PlaneResult> results(planes.size());
+  parallel_blocks(planes.size(), 1, [&](std::size_t i, std::size_t) {
+    results[i] = measure_plane(sphere, planes[i], widest, m.axis_gamma_deg == 180.0, maximum, centre, exact);
+  });
+  for (const PlaneResult& r : results) m.planes.push_back(r.plane);
+  m.cut_off_deg = furthest(results);
+  return m;
+}
+
+}  // namespace lucerna

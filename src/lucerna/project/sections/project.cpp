@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/project.h"
+
+#include <sstream>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/project/schema/project_tables.h"
+#include "lucerna/project/schema/toml_reader.h"
+#include "lucerna/project/sections/project_parts.h"
+
+namespace lucerna {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Makes every `file` of the tables absolute, so that the project can be written to another folder.
+void make_files_absolute(toml::table& table, const fs::path& folder) {
+  for (auto&& [key, node] : table) {
+    if (auto* inner = node.as_table()) make_files_absolute(*inner, folder);
+    if (auto* array = node.as_array()) {
+      for (auto&& item : *array) {
+        if (auto* inner = item.as_table()) make_files_absolute(*inner, folder);
+      }
+    }
+    if (key.str() == "file" && node.is_string()) {
+      auto& value = node.as_string()->get();
+      value = fs::absolute(folder / value).lexically_normal().string();
+    }
+  }
+}
+
+/// A source that is partly before and partly behind a mirror reaches through it: nearly always a hole that
+/// was forgotten, or rays that a file has on a surface larger than the mirror allows.
+void check_sources_before_mirrors(Project& project, const std::string& file) {
+  constexpr double kFew = 1e-3;
+  const Scene& scene = project.scene;
+  for (std::size_t s = 0; s < scene.sources.size(); ++s) {
+    for (std::size_t m = 0; m < scene.reflectors.size(); ++m) {
+      const double share = share_behind(scene.sources[s], scene.reflectors[m]);
+      const std::string who =
+          fmt::format("source[{}]: {:.3g} % of its rays start behind reflector[{}]", s, 100.0 * share, m);
+      if (share >= kFew && share <= 1.0 - kFew) {
+        throw InputError(fmt::format("{}: {}: the source reaches through the mirror; expected a "
+                                     "hole_diameter_mm that lets it pass, or another position_mm",
+                                     file, who),
+                         ErrorCause::contradiction);
+      }
+      if (share > 0.0) project.warnings.push_back(fmt::format("{}: {}", file, who));
+    }
+  }
+}
+
+}  // namespace
+
+namespace project_parts {
+
+Frame read_placement(TomlReader& reader) {
+  const Vec3 position = reader.vector("position_mm").value_or(Vec3{});
+  const Direction axis = reader.axis("axis").value_or(Direction());
+  return Frame::from_axis(axis, radians(reader.number("turn_deg", 0.0)), position);
+}
+
+}  // namespace project_parts
+
+Project read_project(const fs::path& path, Progress& progress) {
+  Project project;
+  toml_tables(project) = parse_toml_file(path);
+  project.inputs.push_back(path);
+  TomlReader root(toml_tables(project), path.string(), "");
+  const auto sources = root.tables("source");
+  const auto reflectors = root.tables("reflector");
+  const auto bodies = root.tables("body");
+  const auto detectors = root.tables("detector");
+  // What belongs to `design` alone is read there; here it is only known.
+  root.has("target");
+  root.has("design");
+  root.finish();
+  if (sources.empty()) root.missing("source", "a project needs at least one [[source]]");
+  for (const TomlReader& reader : reflectors) project_parts::read_reflector(reader, project);
+  for (const TomlReader& reader : bodies) project_parts::read_body(reader, project);
+  for (const TomlReader& reader : detectors) project_parts::read_detector(reader, project.scene);
+  if (detectors.empty()) project.scene.far_fields.emplace_back();
+  // Sources last: a wrong key anywhere is told before gigabytes are read.
+  for (const TomlReader& reader : sources)
+    project.scene.sources.push_back(project_parts::read_source(reader, project, progress));
+  try {
+    check(project.scene);
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("{}: {}", path.string(), e.what()), e.cause());
+  }
+  check_sources_before_mirrors(project, path.string());
+  make_files_absolute(toml_tables(project), fs::absolute(path).parent_path());
+  return project;
+}
+
+std::string project_text(const Project& project) {
+  std::ostringstream out;
+  out << toml_tables(project) << '\n';
+  return out.str();
+}
+
+}  // namespace lucerna

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <utility>
+
+#include "lucerna/project/sections/project_parts.h"
+
+namespace lucerna::project_parts {
+
+Reflectance read_reflectance(TomlReader& reader) {
+  return at_key(reader, "reflectance", [&] {
+    if (!reader.has_array("reflectance")) return Reflectance(reader.number("reflectance", 1.0));
+    std::vector<Reflectance::Entry> table;
+    const auto pairs = reader.pairs("reflectance");
+    for (const auto& [angle, value] : *pairs) table.push_back({angle, value});
+    return Reflectance(std::move(table));
+  });
+}
+
+double read_slope_error(TomlReader& reader) { return reader.number("slope_error_mrad", 0.0); }
+
+std::shared_ptr<const Mesh> read_mesh_file(TomlReader& reader, Project& project) {
+  const auto file = reader.file("file");
+  if (!file) reader.missing("file", "an .stl or .obj file");
+  const double scale = reader.number("scale", 1.0);
+  project.inputs.push_back(*file);
+  auto mesh = std::make_shared<Mesh>(read_mesh(*file));
+  for (Vec3& p : mesh->vertices_mm) p = scale * p;
+  return mesh;
+}
+
+std::string read_cause(TomlReader& reader, const Scene& scene, const std::string& otherwise) {
+  if (auto name = reader.text("name")) {
+    if (name->empty()) reader.fail("name", "found an empty name");
+    return *name;
+  }
+  const auto file = reader.file("file");
+  const std::string stem = file ? file->stem().string() : otherwise;
+  const auto taken = [&](const std::string& name) {
+    return name == "mirror" || name == "mirror_back" ||
+           std::any_of(scene.glasses.begin(), scene.glasses.end(),
+                       [&](const CoverGlass& g) { return g.name == name; }) ||
+           std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                       [&](const Body& b) { return b.name == name; });
+  };
+  std::string name = stem;
+  for (int n = 2; taken(name); ++n) name = fmt::format("{}-{}", stem, n);
+  return name;
+}
+
+namespace {
+
+CoverGlass read_glass(TomlReader& reader, const Scene& scene) {
+  if (reader.has("file")) reader.fail("file", "belongs to bodies of triangles; a glass is flat");
+  CoverGlass glass;
+  glass.name = read_cause(reader, scene, glass.name);
+  glass.world_from_glass = read_placement(reader);
+  glass.aperture = read_aperture(reader, std::nullopt);
+  glass.thickness_mm = reader.number("thickness_mm", glass.thickness_mm);
+  glass.refractive_index = reader.number("refractive_index", glass.refractive_index);
+  glass.absorption_per_mm = reader.number("absorption_per_mm", glass.absorption_per_mm);
+  at_key(reader, "role", [&] { check(glass); });
+  return glass;
+}
+
+}  // namespace
+
+void read_body(TomlReader reader, Project& project) {
+  const std::string role = reader.word("role").value_or("absorber");
+  if (role == "glass") {
+    project.scene.glasses.push_back(read_glass(reader, project.scene));
+    return reader.finish();
+  }
+  Body body;
+  body.name = read_cause(reader, project.scene, "body");
+  body.world_from_body = read_placement(reader);
+  body.only_returning_light = role == "lamp";
+  if (role == "mirror") {
+    body.reflectance = reader.has("reflectance") ? read_reflectance(reader) : Reflectance(1.0);
+    body.slope_error_mrad = read_slope_error(reader);
+  }
+  for (const char* key : {"reflectance", "slope_error_mrad"}) {
+    if (role != "mirror" && reader.has(key))
+      reader.fail(key, fmt::format("belongs to role = \"mirror\"; this is {}", role));
+  }
+  const bool may_be_open = reader.flag("open").value_or(false);
+  body.mesh = read_mesh_file(reader, project);
+  if (const std::size_t open = open_edges(*body.mesh); open > 0 && !may_be_open) {
+    reader.fail("file", fmt::format("the mesh is open: {} edges belong to one triangle or to more than two; "
+                                    "expected a closed body (open = true takes it as a sheet)",
+                                    open));
+  }
+  reader.finish();
+  project.scene.bodies.push_back(std::move(body));
+}
+
+}  // namespace lucerna::project_parts

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/project.h"
+#include "lucerna/project/schema/toml_reader.h"
+
+/// The tables of a project file, each read by a file of its own; what `read_project` is made of. All throw
+/// InputErrors with file, line and key.
+namespace lucerna::project_parts {
+
+/// Runs `make`; an InputError from the library's own checks (a radius out of range) gets the key's place in
+/// the file.
+template <class Make>
+auto at_key(const TomlReader& reader, std::string_view key, Make&& make) {
+  try {
+    return make();
+  } catch (const InputError& e) {
+    reader.fail(key, e.what(), e.cause());
+  } catch (const UsageError& e) {
+    reader.fail(key, e.what());
+  }
+}
+
+/// `position_mm`, `axis`, `turn_deg`.
+Frame read_placement(TomlReader& reader);
+
+/// One [[source]]; its file and warnings are added to `project`.
+PlacedSource read_source(TomlReader reader, Project& project, Progress& progress);
+
+/// `file` with `scale` (mm per unit of the file): a mesh that belongs to the project.
+std::shared_ptr<const Mesh> read_mesh_file(TomlReader& reader, Project& project);
+
+/// A number, or [[angle of incidence in degrees, value], ...].
+Reflectance read_reflectance(TomlReader& reader);
+
+/// `slope_error_mrad`, 0 to 1000; 0 if it is not there.
+double read_slope_error(TomlReader& reader);
+
+/// The cause of loss that a body is: `name`, by default its file's name without the ending
+/// (-2, -3, ... where that is taken); `otherwise` if it has no file.
+std::string read_cause(TomlReader& reader, const Scene& scene, const std::string& otherwise);
+
+/// `aperture`, `diameter_mm` or `size_mm`, `hole_diameter_mm`.
+Aperture read_aperture(TomlReader& reader, std::optional<double> default_diameter_mm);
+
+/// One [[body]], added to the scene: a mesh, or a cover glass.
+void read_body(TomlReader reader, Project& project);
+
+/// One [[reflector]], added to the scene; a mesh becomes a body.
+void read_reflector(TomlReader reader, Project& project);
+
+/// One [[detector]], added to the scene.
+void read_detector(TomlReader reader, Scene& scene);
+
+}  // namespace lucerna::project_parts

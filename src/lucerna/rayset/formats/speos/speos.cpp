@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/rayset/formats/speos/speos.h"
+
+#include <cmath>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/rayset/formats/common/little_endian.h"
+#include "lucerna/rayset/formats/common/record_file.h"
+#include "lucerna/rayset/formats/speos/spectrum_sampler.h"
+
+namespace lucerna {
+
+namespace {
+
+constexpr std::size_t kWatts = 0, kVersion = 4, kVersions = 5, kLumens = 24, kSpeosHeaderSize = 28;
+constexpr std::size_t kPlain = 8, kPolarised = 13;
+constexpr float kGreen_nm = 555.0F;  // the peak of V(lambda)
+
+class SpeosWriter final : public RayWriter {
+ public:
+  SpeosWriter(const std::filesystem::path& path, const RaySetHeader& header)
+      : wavelength_(find_column(header.columns, ColumnKind::wavelength_nm)),
+        writer_(path, layout_for(header)) {
+    warnings_ =
+        losses(header, "speos", {.wavelengths = true, .one_wavelength = true, .table = true, .texts = false});
+    if (!wavelength_) choose_wavelengths(header);
+    // Lumen weights with a wavelength each are no watts: then only the lumens may be stated.
+    const bool lumen_only = header.flux_unit == FluxUnit::lumen && (wavelength_ || !header.flux_w);
+    if (lumen_only)
+      warnings_.push_back("speos energies are meant in watt; the lumens of the rays are written");
+    std::vector<std::byte> head(kSpeosHeaderSize);
+    store(head, kWatts, lumen_only ? 0.0F : static_cast<float>(header.flux_w.value_or(0.0)));
+    for (std::size_t v = 0; v < kVersions; ++v) store(head, kVersion + 4 * v, 2.0F);
+    store(head, kLumens, static_cast<float>(header.flux_lm.value_or(0.0)));
+    writer_.write_bytes(head);
+  }
+
+  void write(const RayBlock& block) override {
+    if (wavelength_) return writer_.write_rays(block);
+    RayBlock with = block;
+    with.extra.emplace_back(block.size(), one_);
+    for (std::size_t i = 0; spectrum_ && i < block.size(); ++i)
+      with.extra.back()[i] = (*spectrum_)(writer_.ray_count() + i);
+    writer_.write_rays(with);
+  }
+
+  void finish() override { writer_.file().commit(); }
+
+ private:
+  RecordLayout layout_for(const RaySetHeader& header) const {
+    RecordLayout layout;
+    layout.floats = kPlain;
+    layout.main[6].at = 7;
+    layout.extra.assign(header.columns.size() + (wavelength_ ? 0 : 1), RecordColumn{});
+    layout.extra[wavelength_.value_or(header.columns.size())].at = 6;
+    return layout;
+  }
+
+  void choose_wavelengths(const RaySetHeader& header) {
+    if (!header.spectra.empty() && !header.spectra.front().wavelength_nm.empty()) {
+      spectrum_.emplace(header.spectra.front());
+      warnings_.push_back("the spectral table is written as one wavelength per ray, drawn evenly from it");
+    } else if (!header.wavelength_nm) {
+      warnings_.push_back(fmt::format("no wavelengths are known: {} nm is written for all rays", kGreen_nm));
+    }
+    one_ = header.wavelength_nm.value_or(kGreen_nm);
+  }
+
+  std::optional<std::size_t> wavelength_;
+  std::optional<SpectrumSampler> spectrum_;
+  float one_ = kGreen_nm;
+  RecordWriter writer_;
+};
+
+}  // namespace
+
+bool looks_like_speos(const InputFile& file) {
+  if (file.size() < kSpeosHeaderSize) return false;
+  std::array<std::byte, kSpeosHeaderSize> head{};
+  file.read_at(0, head);
+  const auto version = load<float>(head, kVersion);
+  for (std::size_t v = 1; v < kVersions; ++v) {
+    if (load<float>(head, kVersion + 4 * v) != version) return false;
+  }
+  const auto watts = load<float>(head, kWatts), lumens = load<float>(head, kLumens);
+  return version >= 1.0F && version <= 100.0F && std::isfinite(watts) && watts >= 0.0F &&
+         std::isfinite(lumens) && lumens >= 0.0F;
+}
+
+std::unique_ptr<RayReader> open_speos(InputFile file, const ReadOptions& options) {
+  std::vector<std::byte> head(kSpeosHeaderSize);
+  file.read_at(0, head);
+  if (!looks_like_speos(file)) {
+    throw_input_error(file.name(), fmt::format("byte {}", kVersion),
+                      "five equal version numbers expected, others found");
+  }
+  RayFileFacts facts;
+  facts.format = "speos";
+  const auto version = load<float>(head, kVersion);
+  if (version != 2.0F)
+    facts.warnings.push_back(fmt::format("byte {}: version {} found, 2 expected", kVersion, version));
+  const auto watts = load<float>(head, kWatts), lumens = load<float>(head, kLumens);
+  if (watts > 0.0F) facts.header.flux_w = static_cast<double>(watts);
+  if (lumens > 0.0F) facts.header.flux_lm = static_cast<double>(lumens);
+  facts.header.flux_unit = watts > 0.0F || !(lumens > 0.0F) ? FluxUnit::watt : FluxUnit::lumen;
+  facts.header.columns = {{ColumnKind::wavelength_nm, standard_label(ColumnKind::wavelength_nm)}};
+  RecordLayout layout;
+  layout.first_byte = kSpeosHeaderSize;
+  layout.main[6].at = 7;
+  layout.extra = {{6}};
+  const std::uint64_t bytes = file.size() - kSpeosHeaderSize;
+  const bool polarised = bytes % (4 * kPlain) != 0 && bytes % (4 * kPolarised) == 0;
+  layout.floats = polarised ? kPolarised : kPlain;
+  if (polarised) {
+    for (const char* label : {"ellipse o", "ellipse p", "ellipse q", "ellipse axis ratio", "handedness"}) {
+      layout.extra.push_back({static_cast<int>(kPlain + facts.header.columns.size() - 1)});
+      facts.header.columns.push_back({ColumnKind::additional, label});
+    }
+  }
+  facts.ray_count = bytes / layout.record_bytes();
+  if (const std::uint64_t over = bytes % layout.record_bytes(); over != 0) {
+    const std::string what = fmt::format(
+        "whole rays of 32 bytes expected; the file ends after {} rays and {} bytes", facts.ray_count, over);
+    if (!options.salvage)
+      throw_input_error_for("salvage", file.name(), fmt::format("byte {}", file.size()), "{}", what);
+    facts.warnings.push_back(fmt::format("byte {}: {}: the whole ones are read", file.size(), what));
+  }
+  return std::make_unique<RecordReader>(std::move(file), std::move(facts), std::move(layout),
+                                        options.salvage);
+}
+
+std::unique_ptr<RayWriter> create_speos(const std::filesystem::path& path, const RaySetHeader& header,
+                                        const WriteOptions& options) {
+  if (options.length_unit != "mm")
+    throw UsageError(fmt::format("speos: lengths are mm, not {}", options.length_unit));
+  return std::make_unique<SpeosWriter>(path, header);
+}
+
+}  // namespace lucerna

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/report.h"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/report/html/report_design.h"
+#include "lucerna/report/html/report_trace.h"
+#include "lucerna/report/html/write_model_report.h"
+#include "lucerna/results/folders/trace_results.h"
+#include "lucerna/results/json/model_json.h"
+#include "lucerna/results/json/run_json.h"
+#include "lucerna/source_model.h"
+
+namespace lucerna {
+
+std::vector<std::string> write_trace(const std::filesystem::path& folder, const Project& project,
+                                     const TraceResult& result, std::vector<std::string>* warnings) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw_input_error(folder.string(), "", "cannot make the folder: {}", error.message());
+  nlohmann::ordered_json json = run_json({.inputs = project.inputs}, result.seed, result.isa);
+  std::vector<std::string> lost;
+  return write_trace_results(folder, result, trace_origin(project), trace_metrics(result, project.scene),
+                             json, warnings != nullptr ? *warnings : lost);
+}
+
+void write_report(const std::filesystem::path& input, const std::filesystem::path& html,
+                  const std::vector<std::filesystem::path>& ray_files, Progress& progress) {
+  write_report(input, html, ray_files, RunRecord(), progress);
+}
+
+void write_report(const std::filesystem::path& input, const std::filesystem::path& html,
+                  const std::vector<std::filesystem::path>& ray_files, RunRecord run, Progress& progress) {
+  if (is_source_model(input)) {
+    const auto model = load_source_model(input);
+    run.inputs = ray_files;
+    run.inputs.insert(run.inputs.begin(), input);
+    nlohmann::ordered_json json = run_json(run, std::nullopt);
+    json.update(model_json(*model, input));
+    write_model_report(*model, input, ray_files, std::move(json), html, progress);
+    return;
+  }
+  if (!ray_files.empty()) {
+    throw UsageError(
+        fmt::format("rays to compare with go with a source model, and {} is none", input.string()));
+  }
+  if (std::filesystem::exists(input) && !std::filesystem::is_directory(input)) {
+    throw_input_error(input.string(), "",
+                      "is neither a source model (.nfl) nor the folder of a trace or design");
+  }
+  if (is_design_folder(input)) {
+    write_design_report(input, html);
+  } else {
+    write_trace_report(input, html);
+  }
+}
+
+}  // namespace lucerna

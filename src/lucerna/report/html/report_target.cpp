@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/report/html/report_target.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lucerna/intensity_comparison.h"
+#include "lucerna/photometric_metrics.h"
+#include "lucerna/report/html/grid_map.h"
+#include "lucerna/report/html/html_text.h"
+#include "lucerna/report/html/report_far_field.h"
+#include "lucerna/report/html/report_parts.h"
+#include "lucerna/results/metrics/figure_text.h"
+#include "lucerna/results/svg/svg_curves.h"
+#include "lucerna/results/svg/svg_polar.h"
+#include "lucerna/trace.h"
+
+namespace lucerna {
+
+namespace {
+
+constexpr std::uint64_t kPlaneRays = std::uint64_t{1} << 20;
+constexpr std::size_t kMaxPlaneCells = 128;
+
+/// The factor that fits `wanted` to `found` best: least squares, with weights.
+double best_scale(const std::vector<double>& wanted, const std::vector<double>& found,
+                  const std::vector<double>& weight) {
+  double cross = 0.0, square = 0.0;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    cross += weight[i] * wanted[i] * found[i];
+    square += weight[i] * wanted[i] * wanted[i];
+  }
+  return square > 0.0 ? cross / square : 1.0;
+}
+
+/// The target on the result's grid, in its unit.
+FarFieldTable target_on(const FarFieldTable& result, const DesignTarget& target) {
+  FarFieldTable out{"target", result.distribution, {}};
+  IntensityDistribution& d = out.distribution;
+  std::vector<double> weight(d.cd.size());
+  for (std::size_t c = 0; c < d.c_deg.size(); ++c) {
+    for (std::size_t g = 0; g < d.gamma_deg.size(); ++g) {
+      d.at(c, g) = intensity_at(target.distribution, d.c_deg[c], d.gamma_deg[g]);
+      weight[c * d.gamma_deg.size() + g] = std::sin(radians(d.gamma_deg[g]));
+    }
+  }
+  if (target.mode == TargetMode::absolute) return out;
+  const double scale = best_scale(d.cd, result.distribution.cd, weight);
+  for (double& cd : d.cd) cd *= scale;
+  return out;
+}
+
+std::string sections_plot(HtmlPage& page, const FarFieldTable& result, const FarFieldTable& target) {
+  const IntensityDistribution& d = result.distribution;
+  const bool up = axis_gamma_deg(d) > 90.0;
+  CurvePlot plot{.title = "Sections through the beam",
+                 .below = up ? "angle from zenith" : "angle from nadir",
+                 .x = {.label = "angle, °"},
+                 .y = {.label = d.unit == FluxUnit::lumen ? "intensity, cd" : "intensity, W/sr"}};
+  const double peak = *std::ranges::max_element(d.cd);
+  double reach = 5.0;
+  for (std::size_t i = 0; i < d.cd.size(); ++i) {
+    const double gamma = d.gamma_deg[i % d.gamma_deg.size()];
+    if (d.cd[i] >= 0.01 * peak) reach = std::max(reach, up ? 180.0 - gamma : gamma);
+  }
+  for (const double c : {0.0, 90.0}) {
+    for (const auto* table : {&result, &target}) {
+      Curve curve{.name = fmt::format("{} C{:g}", table == &result ? "result" : "target", c),
+                  .dashed = table == &target};
+      for (int i = -200; i <= 200; ++i) {
+        const double angle = std::min(90.0, 1.1 * reach) * i / 200.0;
+        curve.x.push_back(angle);
+        curve.y.push_back(intensity_at(table->distribution, angle < 0.0 ? c + 180.0 : c,
+                                       up ? 180.0 - std::abs(angle) : std::abs(angle)));
+      }
+      plot.curves.push_back(std::move(curve));
+    }
+  }
+  const std::size_t index = page.append("curves", curves_json(plot));
+  return plot_figure(curves_svg(plot), "target-sections", "Target and result in C0–C180 and C90–C270",
+                     fmt::format("data-curves=\"{}\"", index));
+}
+
+std::string comparison_table(const FarFieldTable& result, const FarFieldTable& target) {
+  const DistributionComparison c = compare_distributions(
+      target.distribution, result.distribution, {.test_error_cd = result.standard_error, .align = false});
+  HtmlTable table{"Result against target over all directions", {"Figure", "Value", "Meaning"}, {}};
+  const auto row = [&](const char* name, const std::string& value, const char* meaning) {
+    table.rows.push_back({name, value, meaning});
+  };
+  const auto percent = [](const Estimate& e) {
+    return figure_text(100.0 * e.mean, 100.0 * e.standard_error) + " %";
+  };
+  row("Relative RMS", percent(c.rms()), "weighted by solid angle");
+  row("Noise floor", fmt::format("{:.2f} %", 100.0 * c.noise_floor),
+      "what the trace's noise alone would give");
+  row("Bergen fit", figure_text(c.bergen_fit, c.errors.bergen_fit), "100 = equal");
+  row("Overlap", percent(c.overlapping()), "of the light in the right place");
+  row("Wasserstein-1", figure_text(c.wasserstein_deg, c.errors.wasserstein_deg) + "°",
+      "mean angle that light would have to move");
+  row("Peak", figure_text(c.peak_ratio, c.errors.peak_ratio), "result over target");
+  row("Flux", figure_text(c.flux_ratio, c.errors.flux_ratio), "result over target");
+  return html_table(table);
+}
+
+void directions_section(HtmlPage& page, const DesignProblem& problem, const FarFieldTable& result) {
+  const FarFieldTable target = target_on(result, problem.target);
+  FarFieldFigure figure = add_far_field(page, result);
+  figure.target = add_far_field(page, target).index;
+  const std::string attributes =
+      fmt::format("data-detector=\"{}\" data-target=\"{}\"", figure.index, *figure.target);
+  std::string out = problem.target.mode == TargetMode::shape
+                        ? "<p>The target's shape counts: it is scaled to fit best.</p>\n"
+                        : "<p>The target counts as it is, in absolute figures.</p>\n";
+  out += "<div class=\"plots\">\n";
+  out += plot_figure(polar_svg(result.distribution, {.title = "Target and result",
+                                                     .reference = &target.distribution,
+                                                     .standard_error = result.standard_error}),
+                     "target-polar", "Polar diagram of result and target", attributes);
+  out += direction_map("target-and-result", figure);
+  out += sections_plot(page, result, target);
+  out += "</div>\n" + comparison_table(result, target);
+  page.section("target", "Target and result", out);
+}
+
+void plane_section(HtmlPage& page, const DesignProblem& problem) {
+  const PlaneTarget& wanted = *problem.target.plane;
+  Scene scene = problem.project.scene;
+  PlaneDetector detector{"target", {wanted.world_from_plane, wanted.size_x_mm, wanted.size_y_mm}};
+  detector.grid.nx = std::min(kMaxPlaneCells, std::max<std::size_t>(wanted.map.nx, 16));
+  detector.grid.ny = std::min(kMaxPlaneCells, std::max<std::size_t>(wanted.map.ny, 16));
+  scene.planes = {detector};
+  scene.luminances.clear();
+  scene.ray_detectors.clear();
+  TraceOptions options;
+  options.seed = 2;
+  options.last_ray = kPlaneRays;
+  const PlaneImage found = illuminance(trace(scene, options, no_progress()), 0);
+  std::vector<double> target;
+  for (std::size_t i = 0; i < detector.grid.size(); ++i)
+    target.push_back(wanted.at(detector.grid.cell_x_mm(i), detector.grid.cell_y_mm(i)));
+  const bool shape = problem.target.mode == TargetMode::shape;
+  const double scale = shape ? best_scale(target, found.value, std::vector<double>(target.size(), 1.0)) : 1.0;
+  for (double& lx : target) lx *= scale;
+
+  GridMap map;
+  map.x_label = "x, mm", map.y_label = "y, mm";
+  map.x_first = -0.5 * wanted.size_x_mm, map.x_last = -map.x_first;
+  map.y_first = -0.5 * wanted.size_y_mm, map.y_last = -map.y_first;
+  map.nx = detector.grid.nx, map.ny = detector.grid.ny;
+  map.unit = found.unit == FluxUnit::lumen ? "lx" : "W/m²";
+  map.size = 250.0;
+  map.range = {0.0, std::max(*std::ranges::max_element(found.value), *std::ranges::max_element(target))};
+  std::string out = fmt::format(
+      "<p>{} The result was traced again with {} rays, noise included.</p>\n<div class=\"trio\">\n",
+      shape ? "The target's shape counts: it is scaled to fit best."
+            : "The target counts as it is, in absolute figures.",
+      kPlaneRays);
+  map.title = "target";
+  map.value = target;
+  out += grid_figure(page, map, "plane-target", "Target illuminance");
+  map.title = "result";
+  map.value = found.value;
+  map.standard_error = found.standard_error;
+  out += grid_figure(page, map, "plane-result", "Illuminance found");
+  map.title = "difference";
+  map.standard_error.clear();
+  for (std::size_t i = 0; i < target.size(); ++i) map.value[i] = found.value[i] - target[i];
+  map.range.reset();
+  map.diverging = true;
+  out += grid_figure(page, map, "plane-difference", "Illuminance found less target");
+  page.section("target", "Target and result", out + "</div>\n");
+}
+
+}  // namespace
+
+void add_target_section(HtmlPage& page, const DesignProblem& problem, const TraceFolder& folder) {
+  if (problem.target.plane) {
+    plane_section(page, problem);
+  } else if (folder.far_fields.empty()) {
+    page.section("target", "Target and result",
+                 "<p>There is no comparison: the project has no far-field detector.</p>\n");
+  } else {
+    directions_section(page, problem, folder.far_fields.front());
+  }
+}
+
+}  // namespace lucerna

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/comparison.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lucerna/error.h"
+#include "lucerna/ray_file.h"
+#include "lucerna/source.h"
+#include "tests/support/temp_dir.h"
+
+namespace lucerna {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write_disk(const fs::path& file, double radius_mm, std::uint64_t seed) {
+  RaySet set;
+  set.header.set_flux(100.0);
+  set.rays.resize(20'000);
+  EmitterOptions options;
+  options.kind = EmitterKind::disk;
+  options.radius_mm = radius_mm;
+  make_emitter(options)->emit(Sequence(SequenceKind::random, seed), 0, set.rays);
+  write_ray_set(file, set, "tm25");
+}
+
+void write_light(const fs::path& file, double spread) {
+  PhotometricFile light;
+  IntensityDistribution& d = light.distribution;
+  d.c_deg = {0.0, 90.0, 180.0, 270.0};
+  for (int gamma = 0; gamma <= 90; gamma += 5) d.gamma_deg.push_back(gamma);
+  d.cd.clear();
+  for (std::size_t c = 0; c < d.c_deg.size(); ++c) {
+    for (const double gamma : d.gamma_deg) d.cd.push_back(1000.0 * std::exp(-gamma / spread));
+  }
+  write_photometric_file(file, light, PhotometricFormat::ldt);
+}
+
+TEST(Comparison, OfRayFilesIsThatOfTheirRays) {
+  const test::TempDir dir;
+  write_disk(dir / "a.tm25ray", 1.0, 1);
+  write_disk(dir / "same.tm25ray", 1.0, 2);
+  write_disk(dir / "wider.tm25ray", 1.5, 2);
+  FileComparisonOptions options;
+  options.cells_um = {300.0};
+  options.pictures = dir.path();
+  const FileComparison same = compare(dir / "a.tm25ray", dir / "same.tm25ray", options);
+  ASSERT_TRUE(same.rays);
+  EXPECT_FALSE(same.light);
+  EXPECT_EQ(same.rays->reference_rays, 20'000u);
+  const RaySetComparison rays =
+      compare_ray_sets(read_ray_set(dir / "a.tm25ray").rays, read_ray_set(dir / "same.tm25ray").rays);
+  EXPECT_EQ(same.rays->views.near.error, rays.near.error);
+  ASSERT_EQ(same.rays->pictures.size(), 1u) << "no light to the side";
+  EXPECT_TRUE(fs::exists(dir / same.rays->pictures[0].file));
+
+  const FileComparison wider = compare(dir / "a.tm25ray", dir / "wider.tm25ray", options);
+  EXPECT_LT(same.rays->views.near.excess, 4.0 * same.rays->views.near.standard_error);
+  EXPECT_GT(wider.rays->views.near.excess, 10.0 * wider.rays->views.near.standard_error);
+  const double ratio = wider.rays->test_etendue.p50_mm2sr / wider.rays->reference_etendue.p50_mm2sr;
+  EXPECT_NEAR(ratio, 2.25, 0.3);
+  ASSERT_EQ(wider.rays->focus_plane.size(), 1u);
+  EXPECT_GT(wider.rays->focus_plane[0].l1, 3.0 * wider.rays->focus_plane[0].floor);
+}
+
+TEST(Comparison, OfLightDistributionsIsThatOfTheirValues) {
+  const test::TempDir dir;
+  write_light(dir / "a.ldt", 20.0);
+  write_light(dir / "b.ldt", 30.0);
+  FileComparisonOptions options;
+  options.pictures = dir.path();
+  const FileComparison equal = compare(dir / "a.ldt", dir / "a.ldt");
+  ASSERT_TRUE(equal.light);
+  EXPECT_FALSE(equal.rays);
+  EXPECT_EQ(equal.light->distributions.relative_rms, 0.0);
+  EXPECT_FALSE(fs::exists(dir / "polar.svg")) << "none without a folder";
+  const FileComparison found = compare(dir / "a.ldt", dir / "b.ldt", options);
+  EXPECT_EQ(found.light->distributions.relative_rms,
+            compare_distributions(read_photometric_file(dir / "a.ldt").distribution,
+                                  read_photometric_file(dir / "b.ldt").distribution)
+                .relative_rms);
+  EXPECT_GT(found.light->boxes.c48.excess, 0.05);
+  EXPECT_TRUE(fs::exists(dir / "polar.svg"));
+}
+
+TEST(Comparison, OfDifferentKindsIsRefused) {
+  const test::TempDir dir;
+  write_light(dir / "a.ldt", 20.0);
+  write_disk(dir / "a.tm25ray", 1.0, 1);
+  EXPECT_THROW(static_cast<void>(compare(dir / "a.ldt", dir / "a.tm25ray")), InputError);
+  EXPECT_THROW(static_cast<void>(compare(dir / "a.tm25ray", dir / "none.tm25ray")), InputError);
+}
+
+}  // namespace
+}  // namespace lucerna

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/source/model/model_etendue.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "lucerna/source.h"
+#include "lucerna/source/adaptive/compression/adaptive_compress.h"
+#include "lucerna/source/clusters/cluster_compress.h"
+#include "lucerna/source/emitters/draw_rays.h"
+
+namespace lucerna {
+namespace {
+
+RaySet rays_of_kind(EmitterKind kind, std::size_t n) {
+  EmitterOptions options;
+  options.kind = kind;
+  const auto source = make_emitter(options);
+  RaySet set;
+  set.header.set_flux(source->flux());
+  set.rays = draw_rays(*source, Sequence(SequenceKind::random, 1), n);
+  return set;
+}
+
+// A Lambertian disk of 1 mm: all of its étendue pi^2 r^2 is equally bright, half of the flux needs half of
+// it.
+TEST(ModelEtendueStatistical, OfADiskIsTheKnownOne) {
+  constexpr double kWhole = std::numbers::pi * std::numbers::pi;
+  const RaySet rays = rays_of_kind(EmitterKind::disk, 30'000);
+  const EtendueCurve adaptive = etendue_curve(*compress_adaptive(rays, {}));
+  EXPECT_NEAR(adaptive.at(0.5) / (0.5 * kWhole), 1.0, 0.05);
+  EXPECT_NEAR(adaptive.at(0.99) / (0.99 * kWhole), 1.0, 0.05);
+  EXPECT_NEAR(searched_etendue_curve(rays.rays).at(0.5) / (0.5 * kWhole), 1.0, 0.06);
+  // Clusters leave steps of luminance, and some light beyond the rim.
+  const EtendueCurve clusters = etendue_curve(*compress_clusters(rays), 1024);
+  EXPECT_NEAR(clusters.at(0.5) / (0.5 * kWhole), 1.0, 0.3);
+  EXPECT_FALSE(clusters.degenerate());
+}
+
+// A coil's étendue is that of its wire's surface, pi times 17.3 mm^2, less where windings overlap; a tree on
+// the plane of the focus finds twice as much, since no box holds a wire.
+TEST(ModelEtendueStatistical, OfACoilNeedsItsSupport) {
+  const RaySet rays = rays_of_kind(EmitterKind::filament, 130'000);
+  const double wire = std::numbers::pi * 17.3, found = searched_etendue_curve(rays.rays).at(0.5);
+  EXPECT_GT(found, 0.35 * wire);
+  EXPECT_LT(found, 0.70 * wire);
+  EXPECT_GT(etendue_curve(rays.rays).at(0.5), 1.5 * found);
+}
+
+TEST(ModelEtendue, IsNoneForRaysFromOnePoint) {
+  EXPECT_TRUE(etendue_curve(*compress_adaptive(rays_of_kind(EmitterKind::point, 5'000), {})).degenerate());
+  EXPECT_TRUE(etendue_curve(*compress_clusters(rays_of_kind(EmitterKind::point, 5'000))).degenerate());
+}
+
+}  // namespace
+}  // namespace lucerna

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/backward/backward_scene.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/trace/kernels/facet_mirror.h"
+
+namespace lucerna {
+
+namespace {
+
+const LuminanceSource* luminance_of(const PlacedSource& source) {
+  const auto* light = dynamic_cast<const LuminanceSource*>(source.rays.get());
+  return light != nullptr && light->has_luminance() ? light : nullptr;
+}
+
+/// A slope error turns where light goes but not how much of a mirror it sees: over the surface's own normal,
+/// a mirror takes light in by the cosine of incidence and gives it off by that of exit.
+struct Reflection {
+  Direction backward;
+  double factor = 0.0;
+};
+
+Reflection reflect_backward(const PlacedReflector& mirror, double slope_error_rad, const Direction& normal,
+                            const Direction& out, const ReflectionKey& key) {
+  const Direction tilted = slope_error_rad > 0.0 ? tilted_normal(normal, slope_error_rad, key) : normal;
+  // Both point away from the surface: where the light goes, and where it came from.
+  const Direction from = Direction::from(2.0 * dot(out, tilted) * tilted.vec() - out.vec());
+  const double cos_out = dot(out, normal), cos_in = dot(from, normal);
+  if (!(cos_out > 0.0 && cos_in > 0.0)) return {from, 0.0};
+  return {from, mirror.reflectance.at(cos_in) * cos_in / cos_out};
+}
+
+}  // namespace
+
+struct BackwardScene::Hit {
+  const Mirror* mirror = nullptr;
+  double t_mm = 0.0;
+  Vec3 point;
+  Direction normal;
+  bool front = true;
+};
+
+std::string no_backward_reason(const Scene& scene) {
+  for (const PlacedSource& s : scene.sources) {
+    if (luminance_of(s) == nullptr) return "a source has no known luminance";
+  }
+  for (const PlacedReflector& r : scene.reflectors) {
+    if (r.reflector.curve) return "a mirror is a swept curve";
+    if (faceted(r.reflector) != nullptr) return "a mirror is faceted";
+  }
+  for (const Body& b : scene.bodies) {
+    if (b.reflectance.max() > 0.0) return "a body reflects";
+  }
+  return scene.glasses.empty() ? "" : "there is a cover glass";
+}
+
+BackwardScene::BackwardScene(const Scene& scene, int max_bounces)
+    : scene_(scene), max_bounces_(max_bounces), bodies_(scene.bodies) {
+  check(scene);
+  const std::string reason = no_backward_reason(scene);
+  if (!reason.empty()) throw InputError("light cannot be followed backward: " + reason);
+  for (const PlacedReflector& r : scene.reflectors) {
+    mirrors_.push_back(
+        {&r, ReferenceTracer(r.reflector), r.world_from_reflector.inverse(), 1e-3 * r.slope_error_mrad});
+  }
+  for (const PlacedSource& s : scene.sources) {
+    sources_.push_back({luminance_of(s), s.world_from_source, s.world_from_source.inverse(), s.total_flux()});
+  }
+}
+
+std::optional<BackwardScene::Hit> BackwardScene::nearest(const Ray& ray) const {
+  std::optional<Hit> best;
+  for (const Mirror& m : mirrors_) {
+    const auto hit = m.tracer.first_hit(m.mirror_from_world.ray(ray));
+    if (!hit || (best && best->t_mm <= hit->t_mm)) continue;
+    const Frame& world_from_mirror = m.placed->world_from_reflector;
+    best = {&m, hit->t_mm, world_from_mirror.point(hit->point_mm), world_from_mirror.direction(hit->normal),
+            hit->front};
+  }
+  return best;
+}
+
+/// Light that starts on the line of `backward` within `reach_mm` of its origin and runs against it.
+double BackwardScene::emitted_on(const Ray& backward, double reach_mm, Scratch& scratch) const {
+  double sum = 0.0;
+  for (const Source& s : sources_) {
+    scratch.clear();
+    const Ray light{backward.origin_mm, Direction::from_unit(-backward.direction.vec())};
+    s.light->add_light_on(s.source_from_world.ray(light), scratch);
+    for (const LineLight& l : scratch) {
+      if (l.start_mm <= 0.0 && -l.start_mm < reach_mm) sum += s.flux * l.pdf_etendue;
+    }
+  }
+  return sum;
+}
+
+double BackwardScene::reflected_luminance(const Mirror& mirror, const Vec3& point, const Direction& normal,
+                                          const Direction& out, ReflectionKey key, Scratch& scratch) const {
+  double sum = 0.0, throughput = 1.0;
+  Hit at{&mirror, 0.0, point, normal, true};
+  Direction leaving = out;
+  for (int reflections = 1; reflections <= max_bounces_; ++reflections) {
+    key.bounce = reflections;
+    const Reflection r =
+        reflect_backward(*at.mirror->placed, at.mirror->slope_error_rad, at.normal, leaving, key);
+    throughput *= r.factor;
+    if (!(throughput > 0.0)) break;
+    const Ray backward{at.point, r.backward};
+    const auto next = nearest(backward);
+    const double mirror_mm = next ? next->t_mm : std::numeric_limits<double>::infinity();
+    // Light that comes straight from a lamp does not see the lamp's own body.
+    const auto body = bodies_.first_hit(backward, mirror_mm, false);
+    sum += throughput * emitted_on(backward, body ? body->t_mm : mirror_mm, scratch);
+    if (!next || !next->front || bodies_.first_hit(backward, mirror_mm, true)) break;
+    at = *next;
+    leaving = Direction::from_unit(-r.backward.vec());
+  }
+  return sum;
+}
+
+bool BackwardScene::escapes(const Vec3& point, const Direction& out, bool returning) const {
+  const Ray ray{point, out};
+  return !nearest(ray) && !bodies_.first_hit(ray, std::numeric_limits<double>::infinity(), returning);
+}
+
+double BackwardScene::direct_luminance(const Source& source, const Ray& ray, Scratch& scratch) const {
+  scratch.clear();
+  source.light->add_light_on(source.source_from_world.ray(ray), scratch);
+  double sum = 0.0;
+  for (const LineLight& l : scratch) {
+    if (escapes(ray.at(l.start_mm), ray.direction, false)) sum += source.flux * l.pdf_etendue;
+  }
+  return sum;
+}
+
+}  // namespace lucerna

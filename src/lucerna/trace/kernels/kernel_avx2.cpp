@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/kernels/field_kernel.h"
+#include "lucerna/trace/kernels/wavefront_kernel.h"
+
+namespace lucerna {
+
+const Kernels& avx2_kernels() {
+  static constexpr Kernels kernels{"avx2", to_local,     intersect, reflect_rays,
+                                   enter,  resolve_hits, compact,   far_field_cells};
+  return kernels;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "lucerna/photometry/metrics/point_intensity.h"
+#include "lucerna/scene.h"
+#include "lucerna/trace/result/far_field_counts.h"
+
+namespace lucerna {
+
+/// Intensity in single directions of a scene by light that is followed backward. Empty where that cannot be
+/// done (`no_backward_reason`), or where it does not find the light that was counted towards the brightest
+/// angle of `field` or the axis (light by many reflections is found by chance). `run_seed` makes runs
+/// independent. The scene must outlive it.
+PointIntensity backward_intensity(const Scene& scene, int max_bounces, std::uint64_t run_seed,
+                                  const CountedFarField& field);
+
+}  // namespace lucerna

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/result/plane_extremes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "lucerna/trace/result/jackknifed_quanta.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Cells that may be the largest of `sign` times the values.
+std::vector<std::size_t> contenders(const PlaneImage& image, double sign) {
+  constexpr std::size_t kMax = 2048;
+  constexpr double kErrors = 6.0;
+  const auto at = [&](std::size_t k) { return sign * image.value[k]; };
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < image.value.size(); ++k) best = at(k) > at(best) ? k : best;
+  std::vector<std::size_t> cells;
+  for (std::size_t k = 0; k < image.value.size(); ++k) {
+    const double error = std::fmax(image.standard_error[k], image.standard_error[best]);
+    if (k == best || at(k) > at(best) - kErrors * error) cells.push_back(k);
+  }
+  if (cells.size() > kMax) {
+    const auto order = [&](std::size_t a, std::size_t b) {
+      return at(a) > at(b) || (at(a) == at(b) && a < b);
+    };
+    std::nth_element(cells.begin(), cells.begin() + kMax, cells.end(), order);
+    cells.resize(kMax);
+    std::sort(cells.begin(), cells.end());
+  }
+  return cells;
+}
+
+/// Figure over flux of a cell: what PlaneImage has, cell by cell.
+struct ImageBins {
+  const TraceResult& result;
+  std::size_t bins;
+  const PlaneImage& image;
+
+  Jackknife value(const JackknifedFlux& flux, std::size_t row, std::size_t cell, double sign) const {
+    const double per_flux = flux.flux(row) > 0.0 ? sign * image.value[cell] / flux.flux(row) : 0.0;
+    return Jackknife({flux.row(row).begin(), flux.row(row).end()}).map([&](double v) {
+      return per_flux * v;
+    });
+  }
+};
+
+/// The largest of `sign` times the values, and its cell.
+LargestFigure extreme(const ImageBins& b, double sign, std::size_t& cell) {
+  const std::vector<std::size_t> cells = contenders(b.image, sign);
+  const JackknifedFlux flux = jackknifed_flux(
+      b.result, cells.size(), [&](const Tally& t, std::size_t k) { return t.bins[b.bins][cells[k]]; });
+  std::vector<Jackknife> values;
+  for (std::size_t k = 0; k < cells.size(); ++k) values.push_back(b.value(flux, k, cells[k], sign));
+  LargestFigure max = largest(values);
+  cell = cells[max.index];
+  return max;
+}
+
+PlaneExtremes extremes(const ImageBins& b) {
+  PlaneExtremes out;
+  std::size_t min_cell = 0;
+  out.max = extreme(b, 1.0, out.max_cell).estimate;
+  const LargestFigure min = extreme(b, -1.0, min_cell);
+  out.min = {-min.estimate.mean, min.estimate.standard_error};
+  const auto& value = b.image.value;
+  const double mean = std::accumulate(value.begin(), value.end(), 0.0) / static_cast<double>(value.size());
+  const JackknifedFlux all = jackknifed_flux(b.result, 1, [&](const Tally& t, std::size_t) {
+    return std::accumulate(t.bins[b.bins].begin(), t.bins[b.bins].end(), std::int64_t{0});
+  });
+  const double per_flux = all.flux(0) > 0.0 ? mean / all.flux(0) : 0.0;
+  const Jackknife means =
+      Jackknife({all.row(0).begin(), all.row(0).end()}).map([&](double v) { return per_flux * v; });
+  out.mean = means.estimate();
+  if (!(mean > 0.0)) return out;
+  const Estimate e = ratio(min.values.map([](double v) { return -v; }), means).estimate();
+  out.uniformity = Estimate{e.mean, std::fmax(e.standard_error, out.min.standard_error / mean)};
+  return out;
+}
+
+}  // namespace
+
+PlaneExtremes illuminance_extremes(const TraceResult& result, std::size_t index, const PlaneImage& image) {
+  return extremes({result, result.far_fields.size() + index, image});
+}
+
+PlaneExtremes luminance_extremes(const TraceResult& result, std::size_t index, const PlaneImage& image) {
+  return extremes({result, result.far_fields.size() + result.planes.size() + index, image});
+}
+
+}  // namespace lucerna

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/trace.h"
+#include "lucerna/trace/result/node_noise.h"
+#include "lucerna/trace/tally/flux_quanta.h"
+
+namespace lucerna {
+
+namespace {
+
+constexpr std::uint64_t kFirstRound = std::uint64_t{1} << 20;
+/// What is traced between two looks at the clock: a fraction of a second on two cores.
+constexpr std::uint64_t kPiece = std::uint64_t{1} << 22;
+
+/// The peak's error is asked for last: it takes longer to find, and most rounds end before.
+bool good_enough(const TraceResult& result, double node_noise, double goal) {
+  return node_noise <= goal && !(peak_noise(result) > 0.5 * goal);
+}
+
+/// The smallest total of the rounds that is above `rays`.
+std::uint64_t next_round(std::uint64_t rays) {
+  std::uint64_t whole = kFirstRound;
+  while (whole <= rays) {
+    if (whole + whole / 2 > rays) return whole + whole / 2;
+    whole *= 2;
+  }
+  return whole;
+}
+
+bool has_finite_source(const Scene& scene) {
+  return std::any_of(scene.sources.begin(), scene.sources.end(),
+                     [](const PlacedSource& s) { return s.rays->ray_count().has_value(); });
+}
+
+/// Adds rays up to `last` to a trace, in pieces; stops early when `stop()`.
+template <class Stop>
+void trace_on_to(std::uint64_t last, const Scene& scene, TraceOptions options,
+                 std::optional<TraceResult>& sum, const Stop& stop, Progress& progress) {
+  std::uint64_t at = sum ? sum->last_ray : options.first_ray;
+  while (at < last) {
+    options.first_ray = at;
+    options.last_ray = at = std::min(last, at + kPiece);
+    TraceResult piece = trace(scene, options, progress);
+    sum = sum ? merge(*sum, piece) : std::move(piece);
+    if (stop()) return;
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(NoiseEnd end) {
+  switch (end) {
+    case NoiseEnd::reached:
+      return "";
+    case NoiseEnd::time:
+      return "the time was over first";
+    case NoiseEnd::rays:
+      return "the rays were used up first";
+    case NoiseEnd::finite_source:
+      return "a ray file has given all its rays; a model of it would have more";
+    case NoiseEnd::no_goal:
+      return "no noise to go by without a far field, or with rays to keep";
+  }
+  return "";
+}
+
+NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const NoiseGoal& goal,
+                       std::optional<TraceResult> from, Progress& progress) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  TraceOptions run = options;
+  if (from) {
+    run.first_ray = from->first_ray;
+    run.seed = from->seed;
+    run.sequence = from->sequence;
+  }
+  const std::uint64_t once = default_ray_count(scene);
+  NoiseTrace out{{}, std::nan(""), NoiseEnd::no_goal};
+  std::optional<TraceResult> sum = std::move(from);
+  if (scene.far_fields.empty() || !scene.ray_detectors.empty() || has_finite_source(scene)) {
+    if (!scene.far_fields.empty() && scene.ray_detectors.empty()) out.end = NoiseEnd::finite_source;
+    trace_on_to(
+        once, scene, run, sum, [] { return false; }, progress);
+  } else {
+    const auto late = [&] {
+      return std::chrono::duration<double>(Clock::now() - start).count() >= goal.max_seconds;
+    };
+    const auto rays = [&] { return sum ? sum->last_ray - sum->first_ray : 0; };
+    for (;;) {
+      const std::uint64_t round = sum ? next_round(rays()) : kFirstRound;
+      // A trace that was stopped within a round is evaluated at the round's end only, as it would have been.
+      const bool at_round = sum && next_round(rays() - 1) == rays();
+      if (at_round) {
+        out.noise = node_noise(*sum);
+        if (good_enough(*sum, out.noise, goal.noise)) {
+          out.end = NoiseEnd::reached;
+          break;
+        }
+      }
+      out.end = NoiseEnd::rays;
+      if (rays() >= std::min(goal.max_rays, kMaxRays)) break;
+      out.end = NoiseEnd::time;
+      if (sum && late()) break;
+      const std::uint64_t first = sum ? sum->first_ray : run.first_ray;
+      const std::uint64_t last = first + std::min({round, goal.max_rays, kMaxRays - first});
+      trace_on_to(last, scene, run, sum, late, progress);
+    }
+  }
+  if (!sum) throw UsageError("no rays to trace");
+  if (std::isnan(out.noise) || out.end != NoiseEnd::reached) out.noise = node_noise(*sum);
+  if (out.end == NoiseEnd::finite_source && out.noise <= goal.noise) out.end = NoiseEnd::reached;
+  out.result = std::move(*sum);
+  return out;
+}
+
+}  // namespace lucerna
