@@ -119,9 +119,9 @@ Jackknife independent(const Estimate& e, std::size_t replicates) {
 
 /// Moves the peak to the brightest direction near those that the cells show. It is as well known as it was,
 /// and no better than it has moved.
-void refine_peak(const PointIntensity& exact, const Direction& axis, FoundPeak& p) {
-  p.bright.push_back(axis);
-  const PointPeak best = brightest_point(exact, p.bright, kPeakSearch * p.half_width_deg);
+void refine_peak(const PointIntensity& exact, const PointPeak& axis, FoundPeak& p) {
+  PointPeak best = brightest_point(exact, p.bright, kPeakSearch * p.half_width_deg);
+  if (axis.cd.mean > best.cd.mean) best = axis;
   const TypeCAngles at = type_c_angles(best.direction);
   const double moved_deg = degrees(angle_between(best.direction, p.direction));
   p.direction_error_deg = std::hypot(p.direction_error_deg, moved_deg);
@@ -184,12 +184,13 @@ FarFieldMetrics far_field_metrics(const CountedSphere& sphere, std::span<const d
   measure_zones(sphere, m);
   measure_glare(sphere, m);
   std::optional<FoundPeak> peak = peak_estimate(sphere);
+  m.peak = peak;  // the lobe's width, for the axis
   m.axis_gamma_deg = m.flux_90_180.mean > m.flux_0_90.mean ? 180.0 : 0.0;
   const Direction axis = Direction::from_unit({0.0, 0.0, m.axis_gamma_deg == 0.0 ? -1.0 : 1.0});
-  if (peak && exact) refine_peak(exact, axis, *peak);
-  m.peak = peak;
   const Jackknife centre =
       exact ? exact_axis(exact, axis, sphere.replicates(), m) : measure_axis(sphere, axis, m);
+  if (peak && exact) refine_peak(exact, {axis, m.axis_cd}, *peak);
+  m.peak = peak;
   std::vector<double> planes{0.0, 90.0};
   for (const double c : planes_deg) {
     if (c < 180.0) planes.push_back(c);

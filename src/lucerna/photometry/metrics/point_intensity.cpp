@@ -16,7 +16,7 @@ namespace {
 constexpr double kPrecise = 0.003;
 constexpr std::uint64_t kFirstSamples = 1024, kMaxSamples = std::uint64_t{1} << 13;
 /// Of each direction that a search looks at; the same random numbers for all, so that most noise cancels.
-constexpr std::uint64_t kSearchSamples = 512, kSearchSeed = 11, kFinalSeed = 23;
+constexpr std::uint64_t kSearchSamples = 256, kSearchSeed = 11, kFinalSeed = 23;
 /// Starts that are searched about, and looked at again by themselves.
 constexpr std::size_t kSearched = 2, kRetained = 2;
 /// A search ends when its step is this share of the radius.
@@ -25,7 +25,7 @@ constexpr int kNeighbours = 6;
 /// Steps into which a window is cut to find a crossing; points of the line through it within a step to either
 /// side.
 constexpr int kWindowSteps = 10, kLinePoints = 8, kMaxLines = 4;
-constexpr std::uint64_t kWindowSamples = 512, kLineSamples = 1024;
+constexpr std::uint64_t kWindowSamples = 256, kLineSamples = 512;
 
 Direction moved(const Direction& from, double angle_rad, double distance_rad) {
   const Frame frame = Frame::from_z(from);
@@ -125,7 +125,7 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
                           double radius_deg) {
   LUCERNA_CHECK(!starts.empty(), "nowhere to start");
   std::vector<Found> found;
-  for (const Direction& d : starts) found.push_back({d, intensity(d, kSearchSamples, kSearchSeed).mean});
+  for (const Direction& d : starts) found.push_back({d, intensity(d, kFirstSamples, kSearchSeed).mean});
   const auto brighter = [](const Found& a, const Found& b) { return a.cd > b.cd; };
   std::stable_sort(found.begin(), found.end(), brighter);
   const std::size_t searched = std::min(kSearched, found.size());
