@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A rate-distortion table for one source: adaptive and clusters at the same sizes, uniform light fields, and
-// plain rays picked from the set; excess in the five views. `bench_rivals --help` has the options.
+// plain rays picked from the set; excess in the five views. `bench_baselines --help` has the options.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
