@@ -130,7 +130,7 @@ std::string run(const std::string& file, std::uint64_t samples) {
   const CountedFarField seen = traced_backward(project.scene, field, cells, samples);
   backward.seconds += processor_seconds();
   backward.error = errors_at(node_intensity(seen), cells, peak);
-  const std::string row =
+  std::string row =
       fmt::format("| {} | {} | {:.3g} s | {:.3g} s | {:.3g} s |", std::filesystem::path(file).stem().string(),
                   cells.size(), forward.seconds_to_goal(), backward.seconds_to_goal(),
                   combined_seconds(forward, backward));

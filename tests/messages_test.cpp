@@ -77,7 +77,7 @@ bool of_the_program(const fs::path& file) {
 TEST(Messages, OfTheLibraryNameNoOptionOfTheProgram) {
   std::size_t literals = 0;
   for (const auto& entry : fs::recursive_directory_iterator(lucerna::test::source_dir() / "src")) {
-    const fs::path file = entry.path();
+    const fs::path& file = entry.path();
     if (file.extension() != ".h" && file.extension() != ".cpp" && file.extension() != ".cu") continue;
     if (of_the_program(file) || file.stem().string().ends_with("_test")) continue;
     for (const std::string& text : literals_of(text_of(file))) {

@@ -67,9 +67,9 @@ std::vector<std::string> commands_in_help() { return listed_below(help_of(""), "
 /// The same text without the marks of man(7).
 std::string without_marks(std::string text) {
   for (const std::string mark : {"\\fB", "\\fI", "\\fR", "\\&"}) {
-    for (std::size_t at; (at = text.find(mark)) != std::string::npos;) text.erase(at, mark.size());
+    for (std::size_t at = 0; (at = text.find(mark)) != std::string::npos;) text.erase(at, mark.size());
   }
-  for (std::size_t at; (at = text.find("\\-")) != std::string::npos;) text.erase(at, 1);
+  for (std::size_t at = 0; (at = text.find("\\-")) != std::string::npos;) text.erase(at, 1);
   return text;
 }
 

@@ -32,6 +32,7 @@ Estimate mean_estimate(std::span<const double> values) {
 }
 
 std::string estimate_text(const Estimate& e, std::string_view unit) {
+  if (e.mean == 0.0 && std::signbit(e.mean)) return estimate_text({0.0, e.standard_error}, unit);
   const std::string tail = unit.empty() ? std::string() : fmt::format(" {}", unit);
   if (!(std::isfinite(e.standard_error) && e.standard_error > 0.0 && std::isfinite(e.mean)))
     return fmt::format("{:.5g}{}", e.mean, tail);

@@ -310,7 +310,7 @@ void choose_radius(const CountedSphere& sphere, const LargestFigure& max, const 
   p.c_radius_deg = shrinks[best.index] * widest.c_radius_deg;
   p.cd = best.estimate();
   p.values = best.values;
-  p.noise_cd = best.noise;
+  p.noise_cd = max.estimate.standard_error;
 }
 
 /// The peak, then candidates in the order of their brightness, as far apart as a radius.

@@ -12,7 +12,7 @@ namespace lucerna {
 /// A peak with `cd.mean` and what it is without each replicate.
 struct FoundPeak : PeakEstimate {
   Jackknife values;
-  /// The part of `cd`'s error that is noise; the rest is bias.
+  /// Noise of the widest kernel, which is wide for the lobe: what a trace can be asked to bring down.
   double noise_cd = 0.0;
   /// Directions further than a radius apart that are nearly as bright, this one first.
   std::vector<Direction> bright;

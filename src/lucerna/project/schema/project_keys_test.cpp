@@ -58,7 +58,7 @@ TEST(ProjectKeys, WordsAndUnits) {
 std::set<std::string> words_of(const char* table, const char* key) {
   std::set<std::string> words;
   std::string text(find_key(project_keys(), table, key)->words);
-  for (std::size_t end; !text.empty(); text.erase(0, end + (end < text.size() ? 1 : 0))) {
+  for (std::size_t end = 0; !text.empty(); text.erase(0, end + (end < text.size() ? 1 : 0))) {
     end = std::min(text.find(' '), text.size());
     words.insert(text.substr(0, end));
   }

@@ -16,7 +16,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kMaxRays = std::uint64_t{1} << 22;
+constexpr std::uint64_t kMaxReportRays = std::uint64_t{1} << 22;
 
 /// A choice of a file's rays, their weights scaled to what all of them carry: `flux` in all.
 void append_choice(RayBlock& out, RayReader& reader, std::uint64_t wanted, std::optional<double> flux,
@@ -50,8 +50,8 @@ void write_model_report(const SourceModel& model, const std::filesystem::path& m
   }
   RayBlock rays;
   for (const auto& reader : readers) {
-    const double part =
-        static_cast<double>(std::min(all, kMaxRays)) / static_cast<double>(std::max<std::uint64_t>(all, 1));
+    const double part = static_cast<double>(std::min(all, kMaxReportRays)) /
+                        static_cast<double>(std::max<std::uint64_t>(all, 1));
     const auto wanted = static_cast<std::uint64_t>(part * static_cast<double>(reader->ray_count()));
     // Only several files need their fluxes: within one the weights are enough.
     const std::optional<double> flux = readers.size() > 1 ? reader->header().flux() : std::nullopt;
