@@ -22,6 +22,8 @@ constexpr double kSmoothing = 0.25;
 constexpr double kGlareRadius_deg = 2.5;
 /// The brightest direction is looked for this share of the lobe's half width about those that the cells show.
 constexpr double kPeakSearch = 0.15;
+/// A wider lobe has more places to be the brightest than a search looks at.
+constexpr double kExactLobe_deg = 10.0;
 /// Arcs of C0 and C90 below this are measured by `exact`. Their ends are looked for within this share of
 /// them.
 constexpr double kNarrowArc_deg = 20.0, kArcWindow = 0.25;
@@ -136,6 +138,15 @@ void refine_peak(const PointIntensity& exact, const PointPeak& axis, FoundPeak& 
   p.radius_deg = p.c_radius_deg = 0.0;
 }
 
+/// What single directions differ by from what kernels show, at the peak and upward on the axis, is in the
+/// peak's error.
+void add_ripples(const PointIntensity& exact, const PointPeak& axis, FoundPeak& p) {
+  const double at_peak = std::abs(precise_intensity(exact, p.direction).mean - p.cd.mean);
+  const double ripple = std::max(at_peak, axis.cd.mean - p.cd.mean);
+  p.cd.standard_error = std::hypot(p.cd.standard_error, ripple);
+  p.values = p.values.with_error(p.cd.standard_error);
+}
+
 Jackknife exact_axis(const PointIntensity& exact, const Direction& axis, std::size_t replicates,
                      FarFieldMetrics& m) {
   m.axis_cd = precise_intensity(exact, axis);
@@ -189,7 +200,11 @@ FarFieldMetrics far_field_metrics(const CountedSphere& sphere, std::span<const d
   const Direction axis = Direction::from_unit({0.0, 0.0, m.axis_gamma_deg == 0.0 ? -1.0 : 1.0});
   const Jackknife centre =
       exact ? exact_axis(exact, axis, sphere.replicates(), m) : measure_axis(sphere, axis, m);
-  if (peak && exact) refine_peak(exact, {axis, m.axis_cd}, *peak);
+  if (peak && exact) {
+    const PointPeak on_axis{axis, m.axis_cd};
+    peak->half_width_deg <= kExactLobe_deg ? refine_peak(exact, on_axis, *peak)
+                                           : add_ripples(exact, on_axis, *peak);
+  }
   m.peak = peak;
   std::vector<double> planes{0.0, 90.0};
   for (const double c : planes_deg) {
