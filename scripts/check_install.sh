@@ -41,9 +41,10 @@ echo "== the shared library's names: all of the headers' functions, nothing but 
 nm -DC --defined-only "$lib/liblucerna.so" | cut -c20- | sed 's/\[abi:cxx11\]//g' >"$work/names"
 ! grep -vE '^(typeinfo (name )?for |vtable for )?lucerna::' "$work/names" || fail "names that are not ours"
 ! grep -E 'Eigen|nlohmann|toml::|tbb::|fmt::' "$work/names" || fail "names of other libraries"
-awk '/^[a-zA-Z\[]/ && /\(/ && !/^(inline|constexpr|static|using|struct|class|enum|namespace|typedef|LUCERNA_HD)/ && before !~ /^template/ {
-       name = $0; sub(/\(.*/, "", name); n = split(name, w, /[ &*]/); print w[n] }
-     { before = $0 }' include/lucerna/*.h | sort -u >"$work/functions"
+sed 's/^\[\[nodiscard\]\] //' include/lucerna/*.h |
+  awk '/^[a-zA-Z]/ && /\(/ && !/^(inline|constexpr|static|using|struct|class|enum|namespace|typedef|LUCERNA_HD)/ && before !~ /^template/ {
+         name = $0; sub(/\(.*/, "", name); n = split(name, w, /[ &*]/); print w[n] }
+       { before = $0 }' | sort -u >"$work/functions"
 [ "$(wc -l <"$work/functions")" -gt 80 ] || fail "the functions of the headers were not found"
 while read -r function; do
   grep -qF "lucerna::$function(" "$work/names" || fail "$function is in a header and not in the shared library"
