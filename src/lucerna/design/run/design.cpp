@@ -22,9 +22,8 @@ namespace lucerna {
 
 namespace {
 
-/// Seconds that a validation gets where none are left, and without a limit.
-constexpr double kMinValidation_s = 2.0, kNoLimit = std::numeric_limits<double>::infinity();
-/// Rays that judge a result for which there is no time left.
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+/// Rays that validate a result for which there is no time left.
 constexpr std::uint64_t kMinValidationRays = std::uint64_t{1} << 18;
 /// Rays that measure how much light leaves the mirror to begin with.
 constexpr std::uint64_t kFluxRays = std::uint64_t{1} << 16;
@@ -57,6 +56,21 @@ std::string problem_key(const DesignProblem& problem, const DesignOptions& optio
   std::uint64_t hash = 0xcbf29ce484222325ull;
   for (const char c : text.str()) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
   return fmt::format("{:016x}", hash);
+}
+
+/// Validates what a search came to, by fewer rays and a shorter time where that was over first.
+void check_result(const FitProblem& fit, const DesignOptions& options, const TimeBudget& time,
+                  ResultCheck& check, DesignResult& result, Progress& progress) {
+  std::uint64_t rays = options.validation_rays;
+  double max_s = kNoLimit;
+  if (result.end != DesignTermination::converged) {
+    const std::uint64_t min = std::min(rays, kMinValidationRays);
+    const double left = time.left_s() - time.rays_after_s();
+    if (result.end == DesignTermination::interrupted) rays = min;
+    while (rays / 2 >= min && check.seconds(rays) > left) rays /= 2;
+    if (result.end == DesignTermination::time) max_s = left;  // the first round of rays it takes anyway
+  }
+  check.fill(fit, rays, max_s, result, progress);
 }
 
 }  // namespace
@@ -94,27 +108,17 @@ void check(const DesignOptions& options) {
 DesignResult design(const DesignProblem& problem, const DesignOptions& options, Progress& progress,
                     const DesignObserver& observer) {
   check(options);
-  // A validation's ray, without derivatives, takes about half the time of a fit's.
-  TimeBudget time(options.time_s.value_or(problem.time_s), options.validation_rays / 2 + options.rays_after);
+  TimeBudget time(options.time_s.value_or(problem.time_s));
   DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
   rays.evaluate_on(options.accelerator);
   rays.shade_by(shadows_of(problem.project.scene, problem.world_from_mirror.inverse()));
-  FitProblem fit_data = fit_problem(problem, options, rays);
+  FitProblem fit = fit_problem(problem, options, rays);
+  ResultCheck result_check(problem, options, progress);
+  time.begin_search(result_check.seconds(options.validation_rays), options.rays_after);
   DesignResult result(problem.start);
-  search_mirror({problem, options, problem_key(problem, options), time, progress, observer}, fit_data,
-                result);
+  search_mirror({problem, options, problem_key(problem, options), time, progress, observer}, fit, result);
   result.shape = ShapeLimits(problem.limits, problem.start).nearest(result.shape);
-  std::uint64_t validation_rays = options.validation_rays;
-  if (result.end != DesignTermination::converged) {
-    validation_rays =
-        time.affordable(validation_rays, options.rays_after, std::min(validation_rays, kMinValidationRays));
-  }
-  if (result.end == DesignTermination::interrupted)
-    validation_rays = std::min(validation_rays, kMinValidationRays);
-  // Time stops a validation too, but not before there is an error to show.
-  const double max_s =
-      result.end == DesignTermination::time ? std::max(time.left_s(), kMinValidation_s) : kNoLimit;
-  check_result(problem, options, fit_data, validation_rays, max_s, result, progress);
+  check_result(fit, options, time, result_check, result, progress);
   if (options.pareto && result.end != DesignTermination::interrupted) {
     result.pareto = pareto_front(problem, result.shape, options, progress);
   }

@@ -22,6 +22,9 @@ namespace lucerna {
 
 namespace {
 
+/// Between the direction that a mirror opens in and the axis of the luminaire nearest to its target's light.
+constexpr double kMaxOpening_deg = 120.0;
+
 /// The paraboloid nearest to a profile: z - z(0) = r^2 / (4 f) in the least-squares sense.
 double nearest_focal(const Profile& profile, double radius) {
   double r4 = 0.0, r2z = 0.0;
@@ -197,6 +200,25 @@ void check_zones_family(const TomlReader& root, const DesignProblem& problem) {
                                   found));
 }
 
+/// A mirror sends no light out of its back: refuses a target that lies there, where nothing else could turn
+/// the light around.
+void check_opening(const TomlReader& root, const DesignProblem& problem) {
+  const Scene& scene = problem.project.scene;
+  const bool others = std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                  [](const Body& b) { return b.reflectance.max() > 0.0; });
+  if (scene.reflectors.size() > 1 || others) return;
+  const Vec3 light = target_rectangle(problem.target.distribution).world_from_rectangle.ez();
+  const double angle_deg =
+      degrees(std::acos(std::clamp(dot(light, problem.world_from_mirror.ez()), -1.0, 1.0)));
+  if (angle_deg <= kMaxOpening_deg) return;
+  root.fail(
+      "target",
+      fmt::format("the target's light goes {:.0f} degrees away from where the mirror opens, expected the "
+                  "mirror's `axis` towards the target",
+                  angle_deg),
+      ErrorCause::contradiction);
+}
+
 }  // namespace
 
 DesignShape start_within(const DesignLimits& limits, const DesignShape& start,
@@ -256,6 +278,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
                         light_weight,
                         tolerances};
   check_zones_family(root, problem);
+  check_opening(root, problem);
   return problem;
 }
 

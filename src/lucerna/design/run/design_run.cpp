@@ -13,9 +13,9 @@ namespace lucerna {
 namespace {
 
 /// The result is traced no longer than this share of the time (1 to 10 seconds); and as many rays are set
-/// aside for it, in units of what a trace would take by default.
+/// aside for it and for the figures, in units of what a trace would take by default.
 constexpr double kFinalTraceShare = 0.1;
-constexpr std::uint64_t kFinalTraceRays = 4;
+constexpr std::uint64_t kFinalTraceRays = 8;
 
 std::uint64_t rays_after(const DesignProblem& problem) {
   std::uint64_t rays = kFinalTraceRays * default_ray_count(problem.project.scene);

@@ -12,6 +12,7 @@
 #include "lucerna/photometric_file.h"
 #include "lucerna/photometric_metrics.h"
 #include "lucerna/photometry/binning/binned_intensity.h"
+#include "lucerna/random.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace/result/far_field_counts.h"
 #include "tests/support/temp_dir.h"
@@ -228,6 +229,7 @@ TEST(Design, TimeMayEndWithinASearch) {
   const DesignResult result = design(p, options);
   EXPECT_EQ(result.end, DesignTermination::time);
   EXPECT_EQ(result.history.size(), 1u);
+  EXPECT_GT(result.rays, 0u);
   EXPECT_GT(result.efficiency.mean, 0.5);
   EXPECT_FALSE(parse_checkpoint(result.checkpoint, result.checkpoint.substr(32, 16)).search_costs.empty());
 }
@@ -282,6 +284,52 @@ TEST(Design, ShapesAFreeFormMirrorAndKeepsItsSymmetry) {
   for (double x = -20; x <= 20; x += 5) {
     EXPECT_NEAR(again.scene.reflectors[0].reflector.surface->at(x, 7).z_mm, result.shape.at(x, 7).z_mm, 1e-9);
   }
+}
+
+/// Any mirror to begin with, of both families and with any time: what comes out is no worse by the printed
+/// error.
+TEST(DesignSlow, NeverEndsWorseThanARandomStart) {
+  const TempDir folder;
+  write_target(folder.path());
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Rng rng(seed, 0);
+    const bool revolution = seed % 2 == 0;
+    DesignProblem p = problem(folder.path(), fmt::format("intervals = {}\n", revolution ? "6" : "[4, 4]"),
+                              fmt::format("{}focal_mm = {}\n",
+                                          revolution ? "family = \"revolution\"\npreset = \"parabola\"\n"
+                                                     : "family = \"bspline\"\n",
+                                          6.0 + 6.0 * rng.uniform()));
+    Eigen::VectorXd parameters = p.start.parameters();
+    for (double& x : parameters) x += 2.0 * rng.uniform() - 1.0;
+    p.start = p.start.with(parameters);
+    DesignOptions options = small();
+    options.seed = seed;
+    options.time_s = 4.0 * rng.uniform();
+    const DesignResult result = design(p, options);
+    const BoxErrorEstimate &found = result.error.c48, &given = result.start_error.c48;
+    EXPECT_LE(found.excess, given.excess + 4.0 * std::hypot(found.standard_error, given.standard_error))
+        << "seed " << seed;
+  }
+}
+
+TEST(DesignProblem, RefusesATargetBehindTheMirror) {
+  const TempDir folder;
+  write_target(folder.path());
+  std::string reversed = mirror("family = \"revolution\"\npreset = \"parabola\"\nfocal_mm = 8\n");
+  reversed.replace(reversed.find("\"-z\""), 4, "\"+z\"");
+  const auto file = folder.path() / "project.toml";
+  write_file(file, kSource + reversed + "[target]\nfile = \"target.ies\"\n");
+  try {
+    design_problem(read_project(file), file);
+    FAIL() << "taken";
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.cause(), ErrorCause::contradiction);
+    EXPECT_THAT(std::string(e.what()), testing::HasSubstr("180 degrees away from where the mirror opens"));
+  }
+  // With another mirror in the scene the light may be turned around.
+  write_file(file,
+             kSource + reversed + reversed + "[target]\nfile = \"target.ies\"\n[design]\nreflector = 0\n");
+  EXPECT_NO_THROW(static_cast<void>(design_problem(read_project(file), file)));
 }
 
 TEST(DesignProblem, NamesWhatIsWrong) {

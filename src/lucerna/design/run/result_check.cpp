@@ -21,6 +21,8 @@ namespace {
 
 /// Rays that limits on light are checked with, and that the start is validated with, at most.
 constexpr std::uint64_t kLimitRays = std::uint64_t{1} << 20, kStartCheckRays = std::uint64_t{1} << 20;
+/// The share of a design's time that the start's validation may take.
+constexpr double kStartShare = 0.05;
 /// Of the mesh where few rays are traced: a finer one would cost more than the rays.
 constexpr CadTolerance kCoarseMesh{.chord_mm = 0.01, .slope_deg = 0.5};
 
@@ -48,41 +50,14 @@ std::vector<LimitCheck> checked_limits(const DesignProblem& problem, const Desig
   return out;
 }
 
-/// The light of a shape in the boxes.
-Validation validated(const DesignProblem& problem, const DesignShape& shape, const ErrorBoxes& boxes,
-                     std::span<const double> target, const ValidationOptions& options, Progress& progress) {
-  Scene scene = problem.project.scene;
-  scene.reflectors.front().reflector = shape.reflector();
-  return validate(scene, boxes, target, problem.target.mode, options, progress);
-}
-
-void validate_result(const DesignProblem& problem, const DesignOptions& options, SourceEtendue& etendue,
-                     double sources_flux, std::uint64_t max_rays, double max_s, DesignResult& result,
-                     Progress& progress) {
-  const ErrorBoxes boxes(target_rectangle(problem.target));
-  const std::vector<double> target = box_target(boxes, problem.target, sources_flux);
-  ValidationOptions o;
-  o.seed = options.seed;
-  o.max_rays = max_rays;
-  o.max_s = max_s;
-  o.zones = problem.target.zones.get();
-  if (max_rays < kStartCheckRays) o.tolerance = kCoarseMesh;
-  const Validation v = validated(problem, result.shape, boxes, target, o, progress);
-  result.error = v.error;
-  result.zones = v.zones;
-  result.efficiency = v.efficiency;
-  result.absorbed = v.absorbed;
-  result.back = v.back;
-  result.bodies = v.bodies;
-  result.lost = v.lost;
-  result.validation_s = v.seconds;
-  o.max_rays = std::min(max_rays, kStartCheckRays);
-  o.min_rays = o.max_rays / 8;
-  const Validation start = validated(problem, problem.start, boxes, target, o, progress);
-  result.start_error = start.error;
-  result.start_zones = start.zones;
-  result.bound = design_bound(boxes, target, problem.target.mode, result.error.in_rectangle.mean, etendue,
-                              result.shape, problem.world_from_mirror.ez());
+/// The scene's sources in the mirror's frame, other rays than those of the search.
+DesignRays check_rays(const DesignProblem& problem, const DesignOptions& options) {
+  const Frame mirror_from_world = problem.world_from_mirror.inverse();
+  DesignRays rays(problem.project.scene.sources, mirror_from_world, options.seed + 0x9E3779B97F4A7C15ull);
+  rays.evaluate_on(options.accelerator);
+  rays.shade_by(shadows_of(problem.project.scene, mirror_from_world));
+  rays.grow(std::min(options.validation_rays, kLimitRays));
+  return rays;
 }
 
 /// Bounds that are missed by less than this in all are as good as met where two mirrors are compared.
@@ -136,32 +111,77 @@ double share_behind(const DesignShape& shape, const DesignRays& rays) {
   return behind / all;
 }
 
-void check_result(const DesignProblem& problem, const DesignOptions& options, const FitProblem& fit,
-                  std::uint64_t max_rays, double max_s, DesignResult& result, Progress& progress) {
-  DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(),
-                  options.seed + 0x9E3779B97F4A7C15ull);
-  rays.evaluate_on(options.accelerator);
-  rays.shade_by(shadows_of(problem.project.scene, problem.world_from_mirror.inverse()));
-  const std::uint64_t limit_rays = std::min(max_rays, kLimitRays);
-  rays.grow(limit_rays, progress);
-  SourceEtendue etendue(rays);
-  validate_result(problem, options, etendue, rays.flux(), max_rays, max_s, result, progress);
-  const bool keep_given = given_is_better(problem, result);
+ResultCheck::ResultCheck(const DesignProblem& problem, const DesignOptions& options, Progress& progress)
+    : problem_(problem),
+      options_(options),
+      rays_(check_rays(problem, options)),
+      etendue_(rays_),
+      boxes_(target_rectangle(problem.target)),
+      target_(box_target(boxes_, problem.target, rays_.flux())) {
+  const std::uint64_t rays = std::min(options.validation_rays, kStartCheckRays);
+  const double max_s = kStartShare * options.time_s.value_or(problem.time_s);
+  start_ = validated(problem.start, rays / 8, rays, max_s, progress);
+  static_cast<void>(bound(problem.start, start_));  // makes the étendue curves that the result's will need
+}
+
+double ResultCheck::seconds(std::uint64_t rays) const {
+  const double per_ray_s = (start_.seconds - start_.mesh_s) / static_cast<double>(start_.rays);
+  return start_.mesh_s + per_ray_s * static_cast<double>(rays);
+}
+
+Validation ResultCheck::validated(const DesignShape& shape, std::uint64_t min_rays, std::uint64_t max_rays,
+                                  double max_s, Progress& progress) const {
+  Scene scene = problem_.project.scene;
+  scene.reflectors.front().reflector = shape.reflector();
+  ValidationOptions o;
+  o.seed = options_.seed;
+  o.min_rays = min_rays;
+  o.max_rays = max_rays;
+  o.max_s = max_s;
+  o.zones = problem_.target.zones.get();
+  if (options_.validation_rays < kStartCheckRays) o.tolerance = kCoarseMesh;
+  return validate(scene, boxes_, target_, problem_.target.mode, o, progress);
+}
+
+DesignBound ResultCheck::bound(const DesignShape& shape, const Validation& light) {
+  return design_bound(boxes_, target_, problem_.target.mode, light.error.in_rectangle.mean, etendue_, shape,
+                      problem_.world_from_mirror.ez());
+}
+
+void ResultCheck::set_error(std::uint64_t max_rays, double max_s, DesignResult& result, Progress& progress) {
+  const Validation v = validated(result.shape, ValidationOptions().min_rays, max_rays, max_s, progress);
+  result.error = v.error;
+  result.zones = v.zones;
+  result.efficiency = v.efficiency;
+  result.absorbed = v.absorbed;
+  result.back = v.back;
+  result.bodies = v.bodies;
+  result.lost = v.lost;
+  result.validation_s = v.seconds;
+  result.start_error = start_.error;
+  result.start_zones = start_.zones;
+  result.bound = bound(result.shape, v);
+}
+
+void ResultCheck::fill(const FitProblem& fit, std::uint64_t max_rays, double max_s, DesignResult& result,
+                       Progress& progress) {
+  set_error(max_rays, max_s, result, progress);
+  const bool keep_given = given_is_better(problem_, result);
   if (keep_given) {
-    result.shape = problem.start;
-    validate_result(problem, options, etendue, rays.flux(), max_rays, max_s, result, progress);
+    result.shape = problem_.start;
+    set_error(max_rays, max_s, result, progress);
   }
-  result.limits = checked_limits(problem, result.shape, rays, limit_rays);
-  const double behind = share_behind(result.shape, rays), given = share_behind(problem.start, rays);
+  result.limits = checked_limits(problem_, result.shape, rays_, rays_.size());
+  const double behind = share_behind(result.shape, rays_), given = share_behind(problem_.start, rays_);
   if (behind > given + kMaxBehind) {
     result.limits.push_back({"source in front of the mirror (share behind it)", given, behind, false});
   }
-  if (!problem.target.zones_only) {
-    result.remarks = target_reach(rays, etendue, problem.start, fit.bins, fit.target(fit.bins), fit.mode,
-                                  problem.limits.min_efficiency.value_or(0.0))
-                         .statements;
+  if (!problem_.target.zones_only) {
+    const Reach reach = target_reach(rays_, etendue_, problem_.start, fit.bins, fit.target(fit.bins),
+                                     fit.mode, problem_.limits.min_efficiency.value_or(0.0));
+    result.remarks.insert(result.remarks.begin(), reach.statements.begin(), reach.statements.end());
   }
-  add_remarks(problem, result);
+  add_remarks(problem_, result);
   if (keep_given)
     result.remarks.push_back("the given mirror is the result: nothing that was found is better");
 }

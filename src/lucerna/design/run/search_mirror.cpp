@@ -42,10 +42,11 @@ class Stop {
 template <class Search>
 void step_until_done(const SearchRun& run, Search& search, Stop& stop, DesignResult& result) {
   while (!search.done() && !stop(search.state().total_rays, search.next_rays())) {
-    const FitRecord record = search.step(run.progress);
-    result.history.push_back(record);
-    run.progress.update("design", static_cast<std::uint64_t>(record.evaluations), 0);
-    if (run.observer) run.observer(record, search.best(), checkpoint_text(search.state(), run.key));
+    const std::optional<FitRecord> record = search.step(run.progress);
+    if (!record) continue;  // a candidate without a start
+    result.history.push_back(*record);
+    run.progress.update("design", static_cast<std::uint64_t>(record->evaluations), 0);
+    if (run.observer) run.observer(*record, search.best(), checkpoint_text(search.state(), run.key));
   }
   result.shape = search.best();
   result.checkpoint = checkpoint_text(search.state(), run.key);
@@ -60,6 +61,9 @@ void search_free_form(const SearchRun& run, const FitProblem& fit, DesignResult&
   const int intervals = run.problem.fixed_knots ? 0 : kMaxFreeIntervals;
   FreeFormSearch search(fit, run.problem.start, intervals, run.options.max_rays, std::move(state));
   step_until_done(run, search, stop, result);
+  if (search.out_of_candidates()) {
+    result.remarks.push_back("ended before its time: no mirror to begin with is left to try");
+  }
 }
 
 void search_coarse_to_fine(const SearchRun& run, FitProblem& fit_data, DesignResult& result) {
@@ -72,6 +76,7 @@ void search_coarse_to_fine(const SearchRun& run, FitProblem& fit_data, DesignRes
   const bool begun = !state.parameters.empty();  // before the fit there may be a search
   const auto watch = [&](const FitRecord& record, const DesignShape& best) {
     result.history.push_back(record);
+    result.rays = record.total_rays;
     if (run.observer) run.observer(record, best, checkpoint_text(state, run.key));
     return !stop(record.total_rays, record.rays);
   };

@@ -237,26 +237,21 @@ void FreeFormSearch::begin(const DesignShape& shape, const FreeFormSnapshot& sna
 }
 
 void FreeFormSearch::choose(Progress& progress) {
-  while (true) {
-    if (const FreeFormSnapshot* snapshot = next_promotion()) {
-      FreeFormSnapshot next = *snapshot;
-      ++next.level;
-      begin(shape_of(next), next, progress);
-      return;
-    }
-    FreeFormSnapshot next;
-    next.candidate = state_.begun++;
-    next.level = 0;
-    if (next.candidate > 0) next.transport = choice(next.candidate);
-    if (const std::optional<DesignShape> start = start_of(next)) {
-      state_.failed = 0;
-      state_.lambda = FreeFormState{}.lambda;
-      begin(*start, next, progress);
-      return;
-    }
-    // Without neighbours to try, the best at the end is all there is.
-    if (++state_.failed >= kMaxFailed) return;
+  if (const FreeFormSnapshot* snapshot = next_promotion()) {
+    FreeFormSnapshot next = *snapshot;
+    ++next.level;
+    begin(shape_of(next), next, progress);
+    return;
   }
+  FreeFormSnapshot next;
+  next.candidate = state_.begun++;
+  next.level = 0;
+  if (next.candidate > 0) next.transport = choice(next.candidate);
+  const std::optional<DesignShape> start = start_of(next);
+  state_.failed = start ? 0 : state_.failed + 1;
+  if (!start) return;
+  state_.lambda = FreeFormState{}.lambda;
+  begin(*start, next, progress);
 }
 
 bool FreeFormSearch::level_ended() const {
@@ -289,15 +284,11 @@ void FreeFormSearch::finish() {
   forget_what_cannot_win();
 }
 
-FitRecord FreeFormSearch::step(Progress& progress) {
+std::optional<FitRecord> FreeFormSearch::step(Progress& progress) {
   FitRecord record;
   if (!state_.now.exists()) {
     choose(progress);
-    if (!point_) {  // no candidate is left
-      record.evaluations = state_.evaluations;
-      record.total_rays = state_.total_rays;
-      return record;
-    }
+    if (!point_) return std::nullopt;
   } else {
     if (!point_) {  // taken up again in the middle of a level
       fit_.emplace(problem_, level(state_.now.level), progress);
@@ -335,11 +326,13 @@ FitRecord FreeFormSearch::step(Progress& progress) {
   return record;
 }
 
+bool FreeFormSearch::out_of_candidates() const { return state_.failed >= kMaxFailed; }
+
 bool FreeFormSearch::done() const {
   const int neighbours = state_.begun - kFirstCandidates;
   if (!state_.now.exists() && neighbours >= problem_.max_failed_restarts && next_promotion() == nullptr)
     return true;
-  if (state_.failed >= kMaxFailed) return true;
+  if (out_of_candidates()) return true;
   const FreeFormSnapshot* best = best_of(kMoreRays);
   return best != nullptr && best->error_to_noise * best->error_to_noise <= 1.0 + kNoiseShare;
 }

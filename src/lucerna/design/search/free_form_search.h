@@ -65,11 +65,13 @@ class FreeFormSearch {
   FreeFormSearch(const FitProblem& problem, const DesignShape& given, int max_intervals,
                  std::uint64_t max_rays, FreeFormState state = {});
 
-  /// One trial step, or the beginning of a candidate.
-  FitRecord step(Progress& progress = no_progress());
+  /// One trial step, or the beginning of a candidate; nothing where that has no start.
+  std::optional<FitRecord> step(Progress& progress = no_progress());
   /// Nothing is left to gain: the best is at the noise of the most rays, no candidate has a start, or
   /// FitProblem::max_failed_restarts neighbours have had their turn and none of them is worth going on with.
   bool done() const;
+  /// It is done because so many candidates in a row have no start.
+  bool out_of_candidates() const;
   /// Rays that the next step will trace, at most.
   std::uint64_t next_rays() const;
 
@@ -95,6 +97,7 @@ class FreeFormSearch {
   bool was_at(int candidate, int level) const;
   /// The next snapshot to be taken up a level; null where a new candidate is to begin.
   const FreeFormSnapshot* next_promotion() const;
+  /// Begins a level of the next candidate, unless it has no start.
   void choose(Progress& progress);
   /// `snapshot`: the candidate, its transport, and the level that begins.
   void begin(const DesignShape& shape, const FreeFormSnapshot& snapshot, Progress& progress);

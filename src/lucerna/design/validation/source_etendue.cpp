@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/design/validation/source_etendue.h"
 
+#include "lucerna/source/emitters/luminance_source.h"
 #include "lucerna/source/model/model_etendue.h"
 
 namespace lucerna {
@@ -9,19 +10,27 @@ namespace {
 
 constexpr std::uint64_t kCurveRays = std::uint64_t{1} << 18;
 
+/// Whether a source's own density makes a curve in less time than its rays do.
+bool has_quick_density(const RaySource& source) {
+  const auto* light = dynamic_cast<const LuminanceSource*>(&source);
+  return light != nullptr && light->has_luminance();
+}
+
 }  // namespace
 
 SourceEtendue::SourceEtendue(const DesignRays& rays) : rays_(rays.first(kCurveRays)) {
-  if (rays.sources().size() == 1) model_ = dynamic_cast<const SourceModel*>(rays.sources()[0].rays.get());
+  if (rays.sources().size() == 1) only_ = rays.sources()[0].rays.get();
 }
 
 const EtendueCurve& SourceEtendue::quick() {
+  if (only_ != nullptr && has_quick_density(*only_)) return searched();
   if (!quick_) quick_ = etendue_curve(rays_);
   return *quick_;
 }
 
 const EtendueCurve& SourceEtendue::searched() {
-  if (!searched_) searched_ = model_ != nullptr ? etendue_curve(*model_) : searched_etendue_curve(rays_);
+  if (!searched_ && only_ != nullptr) searched_ = known_etendue_curve(*only_);
+  if (!searched_) searched_ = searched_etendue_curve(rays_);
   return *searched_;
 }
 

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "lucerna/design/evaluation/design_rays.h"
+#include "lucerna/source.h"
 #include "lucerna/rayset/statistics/etendue_curve.h"
-#include "lucerna/source_model.h"
 
 namespace lucerna {
 
@@ -17,14 +17,16 @@ class SourceEtendue {
   explicit SourceEtendue(const DesignRays& rays);
 
   const RayBlock& rays() const { return rays_; }
-  /// Of the focus plane: can be too large, never far too small, so what it allows is allowed. Half a second.
+  /// Of the focus plane: can be too large, never far too small, so what it allows is allowed. Half a second;
+  /// the searched one where that takes less.
   const EtendueCurve& quick();
-  /// The one to judge by what the quick one forbids (model_etendue.h): of a single source model's own density
-  /// (a tenth of a second), else of a searched support (some seconds).
+  /// The one to judge by what the quick one forbids (model_etendue.h): of a single source's own density where
+  /// it knows it (a tenth of a second), else of a searched support (some seconds).
   const EtendueCurve& searched();
 
  private:
-  const SourceModel* model_ = nullptr;
+  /// The only source, if there is one.
+  const RaySource* only_ = nullptr;
   RayBlock rays_;
   std::optional<EtendueCurve> quick_, searched_;
 };

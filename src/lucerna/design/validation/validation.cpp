@@ -390,7 +390,7 @@ Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const
     r.zones.assign(options.zones != nullptr ? options.zones->size() : 0, 0.0);
   }
   const Clock::time_point traced = Clock::now();
-  const double before_s = seconds_since(start);
+  out.mesh_s = seconds_since(start);
   std::uint64_t next = std::min(kFirstRound, options.max_rays) / kRoundUnit;
   for (std::uint64_t blocks = 0; next > blocks;) {
     trace_round(scene, numbering, meshes, boxes, options.zones, blocks, next, replicates, options.min_rays,
@@ -402,7 +402,7 @@ Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const
       out.zones = check_zones(*options.zones, replicates, total_flux(scene.sources));
     const bool clear = out.error.c48.floor <= 0.5 * out.error.c48.excess && !any_undetermined(out.zones);
     if (progress.stop_requested()) break;
-    next = next_rays(options, out.rays, seconds_since(traced), before_s, clear) / kRoundUnit;
+    next = next_rays(options, out.rays, seconds_since(traced), out.mesh_s, clear) / kRoundUnit;
   }
   set_shares(replicates, out);
   out.seconds = seconds_since(start);

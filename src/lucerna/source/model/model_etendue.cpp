@@ -9,6 +9,7 @@
 #include "lucerna/rayset/data/subset.h"
 #include "lucerna/source/adaptive/compression/adaptive_compress.h"
 #include "lucerna/source/emitters/draw_rays.h"
+#include "lucerna/source/emitters/luminance_source.h"
 
 namespace lucerna {
 
@@ -18,24 +19,38 @@ struct RayDensity {
   double density = 0.0, weight = 0.0;
 };
 
-/// Density of each ray that has flux, falling; nothing where the model has none (rays through one point or
-/// line).
-std::vector<RayDensity> sorted_densities(const SourceModel& model, const RayBlock& rays) {
+/// Density of each ray that has flux, falling.
+template <class Density>
+std::vector<RayDensity> sorted_by(const Density& density, const RayBlock& rays) {
   std::vector<RayDensity> ray_densities(rays.size());
-  if (rays.empty()) return ray_densities;
-  try {
-    model.pdf_etendue(rays.ray(0));
-  } catch (const InputError&) {
-    return {};
-  }
   parallel_blocks(rays.size(), 64, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i)
-      ray_densities[i] = {model.pdf_etendue(rays.ray(i)), static_cast<double>(rays.weight[i])};
+      ray_densities[i] = {density(rays.ray(i)), static_cast<double>(rays.weight[i])};
   });
   std::erase_if(ray_densities, [](const RayDensity& j) { return !(j.weight > 0.0); });
   std::sort(ray_densities.begin(), ray_densities.end(),
             [](const RayDensity& a, const RayDensity& b) { return a.density > b.density; });
   return ray_densities;
+}
+
+/// The same by a model's density; nothing where it has none (rays through one point or line).
+std::vector<RayDensity> sorted_densities(const SourceModel& model, const RayBlock& rays) {
+  if (rays.empty()) return {};
+  try {
+    model.pdf_etendue(rays.ray(0));
+  } catch (const InputError&) {
+    return {};
+  }
+  return sorted_by([&](const Ray& ray) { return model.pdf_etendue(ray); }, rays);
+}
+
+/// All light on the line of a ray: what a mirror sees in it.
+double density_on_line(const LuminanceSource& source, const Ray& ray) {
+  std::vector<LineLight> lights;
+  source.add_light_on(ray, lights);
+  double density = 0.0;
+  for (const LineLight& light : lights) density += light.pdf_etendue;
+  return density;
 }
 
 /// The étendue of regions of falling density from rays drawn from it, their flux from `held_out`.
@@ -66,6 +81,17 @@ EtendueCurve etendue_curve(const SourceModel& model, std::uint64_t rays, std::ui
   const RayBlock drawn =
       draw_rays(model, Sequence(SequenceKind::random, seed), static_cast<std::size_t>(rays));
   const std::vector<RayDensity> density = sorted_densities(model, drawn);
+  return curve_of(density, density);
+}
+
+std::optional<EtendueCurve> known_etendue_curve(const RaySource& source, std::uint64_t rays,
+                                                std::uint64_t seed) {
+  if (const auto* model = dynamic_cast<const SourceModel*>(&source)) return etendue_curve(*model, rays, seed);
+  const auto* light = dynamic_cast<const LuminanceSource*>(&source);
+  if (light == nullptr || !light->has_luminance()) return std::nullopt;
+  const RayBlock drawn =
+      draw_rays(source, Sequence(SequenceKind::random, seed), static_cast<std::size_t>(rays));
+  const auto density = sorted_by([&](const Ray& ray) { return density_on_line(*light, ray); }, drawn);
   return curve_of(density, density);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "lucerna/rayset/statistics/etendue_curve.h"
 #include "lucerna/source_model.h"
@@ -12,6 +13,11 @@ namespace lucerna {
 /// which represents 1 / (rays p) of étendue. Noise: about 1 / sqrt(rays) of each value. Degenerate where the
 /// model has no étendue. Cost: pdf_etendue of each ray; 16,384 rays of a model of clusters take some seconds.
 EtendueCurve etendue_curve(const SourceModel& model, std::uint64_t rays = 16'384, std::uint64_t seed = 1);
+
+/// The same of any source that knows its density: a model, or a source with a luminance (luminance_source.h),
+/// which has it within the noise of the rays and in milliseconds. Nothing for others.
+std::optional<EtendueCurve> known_etendue_curve(const RaySource& source, std::uint64_t rays = 16'384,
+                                                std::uint64_t seed = 1);
 
 /// The curve of a ray set by way of an adaptive model of at most 2^17 of its rays (four trees a chart), whose
 /// support follows a coil or a tube, where the tree of rayset/statistics/etendue_curve.h, on one plane, needs

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <optional>
 
 #include "lucerna/source.h"
 #include "lucerna/source/adaptive/compression/adaptive_compress.h"
@@ -46,6 +47,24 @@ TEST(ModelEtendueStatistical, OfACoilNeedsItsSupport) {
   EXPECT_GT(found, 0.35 * wire);
   EXPECT_LT(found, 0.70 * wire);
   EXPECT_GT(etendue_curve(rays.rays).at(0.5), 1.5 * found);
+}
+
+// Lambertian light of a convex body: all of its étendue, pi times its surface, is equally bright.
+TEST(ModelEtendueStatistical, OfEmittersWithALuminanceIsTheKnownOne) {
+  constexpr double kPi2 = std::numbers::pi * std::numbers::pi;
+  const auto share = [](EmitterKind kind, double whole_mm2sr, double flux) {
+    EmitterOptions options;
+    options.kind = kind;
+    const std::optional<EtendueCurve> curve = known_etendue_curve(*make_emitter(options));
+    return curve ? curve->at(flux) / (flux * whole_mm2sr) : 0.0;
+  };
+  for (const double flux : {0.1, 0.5, 0.99}) {
+    EXPECT_NEAR(share(EmitterKind::disk, kPi2, flux), 1.0, 0.02) << flux;
+    EXPECT_NEAR(share(EmitterKind::sphere, 4.0 * kPi2, flux), 1.0, 0.02) << flux;
+  }
+  EmitterOptions filament;
+  filament.kind = EmitterKind::filament;
+  EXPECT_FALSE(known_etendue_curve(*make_emitter(filament)).has_value());
 }
 
 TEST(ModelEtendue, IsNoneForRaysFromOnePoint) {
