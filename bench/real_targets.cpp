@@ -114,8 +114,8 @@ Validated validated(const Run& run, const DesignProblem& p, const DesignShape& s
   options.max_rays = run.rays;
   Validated out{validate(scene, boxes, target, p.target.mode, options), {}};
   SourceEtendue etendue(rays);
-  out.bound = design_bound(boxes, target, p.target.mode, out.validation.error.in_rectangle.mean, etendue,
-                           shape, p.world_from_mirror.ez());
+  out.bound =
+      design_bound(boxes, target, p.target.mode, out.validation, etendue, shape, p.world_from_mirror.ez());
   return out;
 }
 

@@ -52,8 +52,10 @@ struct DesignError {
 /// What no mirror of an aperture and a height can do better than, whatever its shape.
 struct DesignBound {
   /// Below this no error in 48 x 48 boxes can be: with as much light in the rectangle as was reached by
-  /// shape, with any in absolute mode. 0 where nothing forbids the target.
+  /// shape, with any in absolute mode. 0 where nothing forbids the target. The larger of the two that
+  /// follow: étendue and luminance of the light, and the light that passes the mirror's rim unreflected.
   double error = 0.0;
+  double etendue_error = 0.0, direct_error = 0.0;
   /// Where it binds: the share of the target's light in its brightest boxes, the largest share of the
   /// sources' flux that their étendue can take, and that étendue in mm^2 sr.
   double target_share = 0.0, max_share = 1.0, etendue_mm2sr = 0.0;

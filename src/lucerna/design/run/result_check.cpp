@@ -144,7 +144,7 @@ Validation ResultCheck::validated(const DesignShape& shape, std::uint64_t min_ra
 }
 
 DesignBound ResultCheck::bound(const DesignShape& shape, const Validation& light) {
-  return design_bound(boxes_, target_, problem_.target.mode, light.error.in_rectangle.mean, etendue_, shape,
+  return design_bound(boxes_, target_, problem_.target.mode, light, etendue_, shape,
                       problem_.world_from_mirror.ez());
 }
 

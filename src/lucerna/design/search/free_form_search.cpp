@@ -28,8 +28,12 @@ constexpr std::array<TransportChoice, 9> kFirst{{{-1.0, 0.33},
                                                  {1.0, 0.33},
                                                  {1.0, 0.27},
                                                  {1.0, 0.45}}};
-/// The given mirror and these.
-constexpr int kFirstCandidates = static_cast<int>(kFirst.size()) + 1;
+/// The candidate that is an approach of the given mirror, where the ones before it stay this far from the
+/// target (relative error): a point source's mirror is no guide for a source that is long or wide.
+constexpr int kApproach = 3;
+constexpr double kFarError = 0.15;
+/// The given mirror, its approach and these.
+constexpr int kFirstCandidates = static_cast<int>(kFirst.size()) + 2;
 /// How many of them are fitted finely.
 constexpr int kFine = 3;
 /// A neighbour of the best goes on where its cost is at most so many times the best's at that level.
@@ -113,7 +117,7 @@ FreeFormLevel FreeFormSearch::level(int number) const {
 }
 
 TransportChoice FreeFormSearch::first_choice(int number) const {
-  const TransportChoice& c = kFirst[static_cast<std::size_t>(number) - 1];
+  const TransportChoice& c = kFirst[static_cast<std::size_t>(number < kApproach ? number - 1 : number - 2)];
   return {c.sign, c.vertex_distance_mm * given_.aperture().outer_radius_mm()};
 }
 
@@ -121,13 +125,30 @@ bool FreeFormSearch::fixed_to_few_knots() const {
   return has_few_knots(given_) && max_intervals_ == std::max(given_.intervals_x(), given_.intervals_y());
 }
 
+bool FreeFormSearch::worth_an_approach() const {
+  const FreeFormSnapshot* best = best_of(0);
+  return has_few_knots(given_) && !fixed_to_few_knots() && best != nullptr &&
+         best->cost > kErrorShare[0] * kFarError * kFarError;
+}
+
+bool FreeFormSearch::approach_is_alone() const {
+  const FreeFormSnapshot *approach = nullptr, *other = nullptr;
+  for (const FreeFormSnapshot& m : state_.done) {
+    if (m.level != 0) continue;
+    const FreeFormSnapshot*& best = m.candidate == kApproach ? approach : other;
+    if (best == nullptr || m.cost < best->cost) best = &m;
+  }
+  return approach != nullptr && other != nullptr && other->cost > kHopeless * approach->cost;
+}
+
 TransportChoice FreeFormSearch::choice(int number) const {
+  if (number == kApproach) return {};
   if (number < kFirstCandidates) return first_choice(number);
   // A neighbour of the best; of the first choice where the given mirror is the best.
   Rng rng(problem_.seed, static_cast<std::uint64_t>(number), 77);
   const FreeFormSnapshot* best = best_of(kEnd);
   const bool of_given = best != nullptr && !best->transport.exists();
-  if (of_given && fixed_to_few_knots()) return {};
+  if (of_given && (fixed_to_few_knots() || best->candidate >= kApproach)) return {};
   const TransportChoice about = best != nullptr && !of_given ? best->transport : first_choice(1);
   const double factor = std::pow(kFarthest, 2.0 * rng.uniform() - 1.0);
   return {about.sign, factor * about.vertex_distance_mm};
@@ -135,7 +156,8 @@ TransportChoice FreeFormSearch::choice(int number) const {
 
 std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormSnapshot& snapshot) {
   if (snapshot.candidate == 0) return nearer_of_given();
-  if (!snapshot.transport.exists()) return approached(snapshot.candidate);
+  if (snapshot.candidate == kApproach && !worth_an_approach()) return std::nullopt;
+  if (!snapshot.transport.exists()) return approached(snapshot.candidate - kApproach);
   const FreeFormLevel rough = level(0);
   const DesignShape family = DesignShape::bspline(given_.focal_mm(), given_.aperture(), rough.intervals_x,
                                                   rough.intervals_y, given_.symmetry());
@@ -186,7 +208,8 @@ const FreeFormSnapshot* FreeFormSearch::next_promotion() const {
   };
   const FreeFormSnapshot* given = best_of(0);
   const bool near = state_.begun == 1 && given != nullptr && given->cost < kErrorShare[0] * kNear * kNear;
-  if (state_.begun < kFirstCandidates && !near && best_of(kEnd) == nullptr) return nullptr;
+  const bool alone = approach_is_alone();
+  if (state_.begun < kFirstCandidates && !near && !alone && best_of(kEnd) == nullptr) return nullptr;
   const FreeFormSnapshot* rough = best_waiting(0);
   const bool hopeful = rough != nullptr && rough->cost < kHopeless * best_of(0)->cost;
   if (hopeful && count(1) < (near ? 1 : kFine)) return rough;
@@ -196,7 +219,8 @@ const FreeFormSnapshot* FreeFormSearch::next_promotion() const {
   // The best goes on with more rays where noise is a good part of its error, else after some neighbours; then
   // the others, while they may win, and neighbours.
   const int neighbours_before = std::min(kNeighboursBefore, problem_.max_failed_restarts);
-  const bool ready = end->error_to_noise < kNoisy || state_.begun >= kFirstCandidates + neighbours_before;
+  const bool ready =
+      end->error_to_noise < kNoisy || alone || state_.begun >= kFirstCandidates + neighbours_before;
   if (ready && !was_at(end->candidate, kMoreRays)) return end;
   if (state_.begun < kFirstCandidates) return nullptr;
   if (fine != nullptr && fine->cost < kWorthOn * best_of(1)->cost) return fine;
@@ -218,7 +242,9 @@ bool FreeFormSearch::knots_suffice(const FreeFormSnapshot& snapshot) const {
 void FreeFormSearch::begin(const DesignShape& shape, const FreeFormSnapshot& snapshot, Progress& progress) {
   const FreeFormLevel l = level(snapshot.level);
   // Knots are refined, never coarsened, and only where something is left to gain.
-  const bool enough = !snapshot.transport.exists() && (snapshot.level == 0 || knots_suffice(snapshot));
+  const bool own = snapshot.candidate == 0 || fixed_to_few_knots();
+  const bool enough =
+      !snapshot.transport.exists() && (snapshot.level == 0 || (own && knots_suffice(snapshot)));
   const bool has = shape.intervals_x() >= l.intervals_x && shape.intervals_y() >= l.intervals_y;
   const DesignShape fine = enough || has ? shape
                                          : shape.refined(std::max(shape.intervals_x(), l.intervals_x),

@@ -55,7 +55,8 @@ struct FreeFormState {
 /// signs at several vertex distances) are fitted roughly, the best of them finely, the best of these to the
 /// end. Then, as long as there is time, the best is fitted on with more rays, before neighbours of it where
 /// noise is a good part of its error and after some of them elsewhere. A given mirror of few knots that is to
-/// have no more is first brought near the target (approach.h). A given mirror keeps its knots as long as they
+/// have no more is first brought near the target (approach.h), any other of few knots where no mirror of a
+/// point source comes near. A given mirror keeps its knots as long as they
 /// bring it near the noise or the target. Knots are only ever refined. Every decision depends on the state
 /// alone: a search that is stopped after any step and taken up from its state continues bit-identically.
 class FreeFormSearch {
@@ -82,6 +83,10 @@ class FreeFormSearch {
  private:
   FreeFormLevel level(int number) const;
   TransportChoice first_choice(int number) const;
+  /// Whether an approach of the given mirror may help: it has few knots, and no candidate came near.
+  bool worth_an_approach() const;
+  /// Whether what the approach led to is so much better that no mirror of a point source needs to be tried.
+  bool approach_is_alone() const;
   /// Whether the given mirror is a matter for `approach`: of few knots, and there are to be no more. Where
   /// there may be more, mirrors of point sources are as near from the start.
   bool fixed_to_few_knots() const;

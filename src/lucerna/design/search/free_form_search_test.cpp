@@ -121,6 +121,26 @@ TEST(FreeFormSearch, EndsAtTheSameBitsHoweverOftenItWasStopped) {
   EXPECT_EQ(checkpoint_text(state, "key"), whole);
 }
 
+// The mirror of a point source is no guide for a long one: the given mirror is brought near it instead.
+TEST(FreeFormSearch, OfALongSourceTheGivenMirrorIsBroughtNear) {
+  EmitterOptions options;
+  options.kind = EmitterKind::cylinder;
+  options.radius_mm = 0.5;
+  options.length_mm = 16.0;
+  DesignRays rays({{make_emitter(options), Frame({0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {0, 0, 15}), {}}}, Frame(),
+                  3);
+  const FitProblem problem = oval_problem(rays);
+  FreeFormState state = run(problem, plain(), 50).state();
+  const auto cost = [&](bool approach) {
+    double least = 1e9;
+    for (const FreeFormSnapshot& m : state.done) {
+      if (m.level == 0 && (m.candidate == 3) == approach) least = std::min(least, m.cost);
+    }
+    return least;
+  };
+  EXPECT_LT(cost(true), 0.8 * cost(false));  // 0.57
+}
+
 // Neighbours are made about the best, which may be a neighbour itself: that once never ended.
 TEST(FreeFormSearch, ANeighbourThatIsTheBestHasNeighbours) {
   DesignRays rays = disk_rays();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "lucerna/design/validation/direct_bound.h"
 #include "lucerna/design/validation/reach.h"
 
 namespace lucerna {
@@ -79,21 +80,26 @@ DesignBound etendue_bound(const ErrorBoxes& boxes, std::span<const double> targe
                               : min_over_scale(part, std::min(max, share), part_sr,
                                                share - std::min(max, share), total - part, sr - part_sr);
     const double error = std::sqrt(square / norm2);
-    if (error > bound.error) bound = {error, part / total, max, etendue};
+    if (error > bound.error) bound = {error, error, 0.0, part / total, max, etendue};
   }
   return bound;
 }
 
 DesignBound design_bound(const ErrorBoxes& boxes, std::span<const double> target, TargetMode mode,
-                         double share, SourceEtendue& etendue, const DesignShape& shape, const Vec3& axis) {
+                         const Validation& light, SourceEtendue& etendue, const DesignShape& shape,
+                         const Vec3& axis) {
   const Aperture& a = shape.aperture();
+  const double share = light.error.in_rectangle.mean;
   const double lateral = 2.0 * std::hypot(a.half_x_mm(), a.half_y_mm()) * shape.height_mm();
   const auto bound = [&](const EtendueCurve& curve) {
     return etendue_bound(boxes, target, mode, share, curve, axis, opening_mm2(shape, etendue.rays()),
                          lateral);
   };
-  const DesignBound quick = bound(etendue.quick());
-  return quick.error > 0.0 ? bound(etendue.searched()) : quick;
+  DesignBound out = bound(etendue.quick());
+  if (out.error > 0.0) out = bound(etendue.searched());
+  out.direct_error = direct_light_bound(boxes, target, mode, light.replicates);
+  out.error = std::max(out.etendue_error, out.direct_error);
+  return out;
 }
 
 }  // namespace lucerna

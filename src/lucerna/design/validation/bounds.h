@@ -6,6 +6,7 @@
 #include "lucerna/design/shape/design_shape.h"
 #include "lucerna/design/validation/box_error.h"
 #include "lucerna/design/validation/source_etendue.h"
+#include "lucerna/design/validation/validation.h"
 
 namespace lucerna {
 
@@ -21,9 +22,11 @@ DesignBound etendue_bound(const ErrorBoxes& boxes, std::span<const double> targe
                           double share, const EtendueCurve& curve, const Vec3& axis, double opening_mm2,
                           double lateral_mm2);
 
-/// The same for a mirror's sources and aperture; the height is `shape`'s. The quick curve decides whether
-/// there is anything to bound; the searched one then bounds.
+/// The same for a mirror's sources and aperture, and what its direct light leaves (direct_bound.h): the
+/// larger of the two. The height is `shape`'s, the share that of `light`, which is the shape's. The quick
+/// curve decides whether étendue bounds anything; the searched one then bounds.
 DesignBound design_bound(const ErrorBoxes& boxes, std::span<const double> target, TargetMode mode,
-                         double share, SourceEtendue& etendue, const DesignShape& shape, const Vec3& axis);
+                         const Validation& light, SourceEtendue& etendue, const DesignShape& shape,
+                         const Vec3& axis);
 
 }  // namespace lucerna

@@ -176,12 +176,6 @@ Estimate worst_cell(const Cells& cells, double scale) {
   return {worst.mean / peak, worst.standard_error / peak};
 }
 
-double flux_inside(const BoxSums& sums) {
-  double flux = 0.0;
-  for (std::size_t b = 0; b < ErrorBoxes::kInside; ++b) flux += sums.flux[b];
-  return flux;
-}
-
 /// Deviations of a table's values within their stated errors, by replicate: independent and normal, summing
 /// to 0 over the replicates, such that the scatter of the replicates' mean is that of the table.
 std::vector<IntensityDistribution> deviations(const IntensityDistribution& table,
@@ -221,16 +215,18 @@ std::vector<BoxSums> table_replicates(const ErrorBoxes& boxes, const IntensityDi
   return sums;
 }
 
+void add_cells(const std::vector<double>& cells, std::vector<double>& to) {
+  if (to.empty()) to.assign(cells.size(), 0.0);
+  LUCERNA_CHECK(to.size() == cells.size(), "{} cells and {}", to.size(), cells.size());
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] += cells[i];
+}
+
 }  // namespace
 
 BoxSums& BoxSums::operator+=(const BoxSums& other) {
-  if (flux.empty()) flux.assign(other.flux.size(), 0.0);
-  LUCERNA_CHECK(flux.size() == other.flux.size(), "{} cells and {}", flux.size(), other.flux.size());
-  for (std::size_t i = 0; i < flux.size(); ++i) flux[i] += other.flux[i];
-  if (zones.empty()) zones.assign(other.zones.size(), 0.0);
-  LUCERNA_CHECK(zones.size() == other.zones.size(), "{} cells and {}", zones.size(), other.zones.size());
-  for (std::size_t i = 0; i < zones.size(); ++i) zones[i] += other.zones[i];
-  direct_outside += other.direct_outside;
+  add_cells(other.flux, flux);
+  add_cells(other.direct, direct);
+  add_cells(other.zones, zones);
   emitted += other.emitted;
   out_direct += other.out_direct;
   out_reflected += other.out_reflected;
@@ -240,6 +236,11 @@ BoxSums& BoxSums::operator+=(const BoxSums& other) {
   lost += other.lost;
   rays += other.rays;
   return *this;
+}
+
+double flux_inside(std::span<const double> cells) {
+  const std::size_t count = std::min<std::size_t>(cells.size(), ErrorBoxes::kInside);
+  return std::accumulate(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(count), 0.0);
 }
 
 std::vector<double> box_target(const ErrorBoxes& boxes, const DesignTarget& target, double source_flux) {
@@ -252,9 +253,7 @@ std::vector<double> box_target(const ErrorBoxes& boxes, const DesignTarget& targ
   } else {
     flux = boxes.flux_of(target.distribution);
   }
-  double inside = 0.0;
-  for (std::size_t b = 0; b < ErrorBoxes::kInside; ++b) inside += flux[b];
-  if (!(inside > 0.0)) throw InputError("target: has no light in its rectangle");
+  if (!(flux_inside(flux) > 0.0)) throw InputError("target: has no light in its rectangle");
   if (target.mode == TargetMode::absolute) {
     for (double& f : flux) f /= source_flux;
   }
@@ -281,10 +280,11 @@ DesignError box_error(const ErrorBoxes& boxes, std::span<const double> target,
     if (n == kErrorBoxes) out.worst_cell = worst_cell(cells, out.scale);
   }
   out.outside = estimate(residuals(outside(boxes, target, replicates), out.scale, norm2));
-  out.in_rectangle = replicate_share(replicates, flux_inside);
+  out.in_rectangle = replicate_share(replicates, [](const BoxSums& r) { return flux_inside(r.flux); });
   out.outside_share = replicate_share(
-      replicates, [](const BoxSums& r) { return r.out_direct + r.out_reflected - flux_inside(r); });
-  out.outside_direct = replicate_share(replicates, [](const BoxSums& r) { return r.direct_outside; });
+      replicates, [](const BoxSums& r) { return r.out_direct + r.out_reflected - flux_inside(r.flux); });
+  out.outside_direct =
+      replicate_share(replicates, [](const BoxSums& r) { return r.out_direct - flux_inside(r.direct); });
   return out;
 }
 

@@ -14,12 +14,10 @@ namespace lucerna {
 
 /// What rays of one replicate leave: flux by cell of ErrorBoxes, and by how they ended, in any one unit.
 struct BoxSums {
-  /// Flux that leaves the luminaire, reflected or not.
-  std::vector<double> flux;
-  /// The same by measuring cell of the target's zones (zone_cells.h); empty without zones.
+  /// Flux that leaves the luminaire, and the part of it that met no mirror.
+  std::vector<double> flux, direct;
+  /// Flux that leaves by measuring cell of the target's zones (zone_cells.h); empty without zones.
   std::vector<double> zones;
-  /// The part of it outside the rectangle that met no mirror.
-  double direct_outside = 0.0;
   /// All ends of the emitted flux: emitted = out_direct + out_reflected + absorbed + back + bodies + lost.
   double emitted = 0.0, out_direct = 0.0, out_reflected = 0.0;
   double absorbed = 0.0, back = 0.0, bodies = 0.0, lost = 0.0;
@@ -35,6 +33,9 @@ Estimate replicate_share(std::span<const BoxSums> replicates, const Flux& flux) 
   for (const BoxSums& r : replicates) shares.push_back(flux(r) / r.emitted);
   return mean_estimate(shares);
 }
+
+/// What cells of the boxes hold within the rectangle; 0 where there are none.
+double flux_inside(std::span<const double> cells);
 
 /// The target's flux per cell of the boxes: in its own unit by shape, as shares of `source_flux` in absolute
 /// mode. Throws InputError where the rectangle has no light.

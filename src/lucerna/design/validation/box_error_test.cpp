@@ -74,7 +74,7 @@ TEST(BoxError, LightOutsideIsCountedWithItsDirectPart) {
   const Direction up = Direction::from({0.1, 0.2, 0.9}), aside = Direction::from({0.8, 0.0, -0.6});
   sums.flux[boxes.cell({}, up)] += 0.1 * inside;
   sums.flux[boxes.cell({}, aside)] += 0.3 * inside;
-  sums.direct_outside = sums.out_direct = 0.1 * inside;
+  sums.out_direct = 0.1 * inside;
   sums.out_reflected = 1.3 * inside;
   sums.absorbed = 0.6 * inside;
   sums.emitted = 2.0 * inside;

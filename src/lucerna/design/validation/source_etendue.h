@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "lucerna/design/evaluation/design_rays.h"
-#include "lucerna/source.h"
 #include "lucerna/rayset/statistics/etendue_curve.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 

@@ -263,7 +263,7 @@ class BatchTracer {
     sums.flux[cell] += flux_[i];
     if (zones_ != nullptr) zones_->add(from, along, flux_[i], sums.zones);
     (reflected ? sums.out_reflected : sums.out_direct) += flux_[i];
-    if (!reflected && cell >= ErrorBoxes::kInside) sums.direct_outside += flux_[i];
+    if (!reflected) sums.direct[cell] += flux_[i];
   }
 
   bool off_mirror(std::size_t i, BoxSums& sums) {
@@ -387,6 +387,7 @@ Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const
   replicates.resize(kReplicates);
   for (BoxSums& r : replicates) {
     r.flux.assign(boxes.size(), 0.0);
+    r.direct.assign(boxes.size(), 0.0);
     r.zones.assign(options.zones != nullptr ? options.zones->size() : 0, 0.0);
   }
   const Clock::time_point traced = Clock::now();

@@ -130,7 +130,8 @@ void tolerance_rows(const ToleranceSweep& sweep, std::vector<std::string>& lines
 /// What the bound stands on.
 std::string bound_text(const DesignBound& bound) {
   if (!(bound.error > 0.0))
-    return "etendue and luminance do not forbid the target with this share of the light";
+    return "neither etendue nor direct light forbid the target with this share of the light";
+  if (bound.direct_error >= bound.etendue_error) return "the light that passes the mirror unreflected";
   return fmt::format(
       "the {:.0f} % of the target's light in its brightest boxes have {:.3g} mm2 sr of this aperture "
       "and height, which hold at most {:.0f} % of the sources' light",
@@ -233,6 +234,8 @@ Json error_metrics(const DesignProblem& problem, const DesignResult& result) {
           {"worst_cell", estimate_json(result.error.worst_cell)},
           {"bound",
            {{"error", result.bound.error},
+            {"etendue_error", result.bound.etendue_error},
+            {"direct_error", result.bound.direct_error},
             {"target_share", result.bound.target_share},
             {"max_share", result.bound.max_share},
             {"etendue_mm2sr", result.bound.etendue_mm2sr}}},
