@@ -30,7 +30,8 @@ cp "$packages"/*.deb scripts/demo_data/oval-beam.ldt tests/consumers/ray_file_to
   "$tree/lucerna"
 mount -t proc proc "$tree/proc"
 
-chroot "$tree" sh -eu <<'END'
+# A compiler launcher or flags of ours mean nothing in there.
+env -i PATH="$PATH" HOME=/root chroot "$tree" sh -eu <<'END'
 cd /lucerna
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
 install="apt-get install -y -qq --no-install-recommends"
