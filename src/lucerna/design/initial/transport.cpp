@@ -14,9 +14,11 @@ namespace {
 
 using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Iterations at each entropy, and what the entropy falls by from one to the next.
-constexpr int kIterations = 24;
+/// Iterations at each entropy on the way and at the last, and what it falls by from one to the next.
+constexpr int kIterations = 8, kLastIterations = 24;
 constexpr double kFall = 0.45;
+/// Where the entropy begins: a share of the range of costs, and with a guess so many times its end.
+constexpr double kFirstEntropy = 0.2, kFirstWithGuess = 6.0;
 /// Scalings beyond this (and below its inverse) are absorbed into the potentials: far within a float's range.
 constexpr float kMaxScaling = 1e12f;
 /// Rows of the kernel that one thread works on at a time.
@@ -48,19 +50,19 @@ Eigen::Matrix<float, Eigen::Dynamic, 3> vectors(const std::vector<DirectedFlux>&
 /// Potentials f and g of the coupling a_i b_j exp((f_i + g_j - c_ij) / e).
 class Sinkhorn {
  public:
-  Sinkhorn(Matrix cost, Eigen::VectorXf a, Eigen::VectorXf b)
+  Sinkhorn(Matrix cost, Eigen::VectorXf a, Eigen::VectorXf b, Eigen::VectorXf g)
       : cost_(std::move(cost)),
         a_(std::move(a)),
         b_(std::move(b)),
         f_(Eigen::VectorXf::Zero(a_.size())),
-        g_(Eigen::VectorXf::Zero(b_.size())),
+        g_(std::move(g)),
         kernel_(cost_.rows(), cost_.cols()) {}
 
-  void iterate(float entropy) {
+  void iterate(float entropy, int iterations) {
     entropy_ = entropy;
     soften();
     absorb();
-    for (int i = 0; i < kIterations; ++i) {
+    for (int i = 0; i < iterations; ++i) {
       balance(u_, from_columns(b_.cwiseProduct(v_)));
       balance(v_, from_rows(a_.cwiseProduct(u_)));
       const float max = std::max(u_.maxCoeff(), v_.maxCoeff()), min = std::min(u_.minCoeff(), v_.minCoeff());
@@ -133,16 +135,20 @@ class Sinkhorn {
 }  // namespace
 
 PointTransport::PointTransport(const std::vector<DirectedFlux>& from, std::vector<DirectedFlux> to,
-                               double sign, double entropy)
+                               double sign, double entropy, const Eigen::VectorXf* guess)
     : to_(std::move(to)), sign_(sign), entropy_(entropy), wanted_(vectors(to_)) {
   Matrix cost = vectors(from) * wanted_.transpose();
   cost = (-static_cast<float>(sign)) * (1.0f - cost.array()).max(kMinOpening).log();
   const Eigen::VectorXf b = shares(to_);
   const double range = static_cast<double>(cost.maxCoeff() - cost.minCoeff());
-  Sinkhorn sinkhorn(std::move(cost), shares(from), b);
-  for (double e = 0.2 * range; e > entropy; e *= kFall) sinkhorn.iterate(static_cast<float>(e));
-  sinkhorn.iterate(static_cast<float>(entropy));
-  potential_ = sinkhorn.g().array() / static_cast<float>(entropy) + b.array().max(1e-30f).log();
+  LUCERNA_CHECK(guess == nullptr || guess->size() == b.size(), "{} directions", b.size());
+  Sinkhorn sinkhorn(std::move(cost), shares(from), b,
+                    guess != nullptr ? *guess : Eigen::VectorXf::Zero(b.size()));
+  const double first = guess != nullptr ? kFirstWithGuess * entropy : kFirstEntropy * range;
+  for (double e = first; e > entropy; e *= kFall) sinkhorn.iterate(static_cast<float>(e), kIterations);
+  sinkhorn.iterate(static_cast<float>(entropy), kLastIterations);
+  dual_ = sinkhorn.g();
+  potential_ = dual_.array() / static_cast<float>(entropy) + b.array().max(1e-30f).log();
 }
 
 double PointTransport::radius(const Direction& towards) const {

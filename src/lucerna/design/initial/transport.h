@@ -16,9 +16,14 @@ namespace lucerna {
 class PointTransport {
  public:
   /// Both lists need light; `entropy` is where the iteration ends (the cost's blur: about the product of the
-  /// two lists' cell widths, in rad^2). 1300 x 1300 directions take 0.6 processor seconds.
+  /// two lists' cell widths, in rad^2). 1300 x 1300 directions take 0.6 processor seconds. With `guess`,
+  /// potentials of a transport to the same directions that differs little, the entropy begins near its end:
+  /// a third of the time.
   PointTransport(const std::vector<DirectedFlux>& from, std::vector<DirectedFlux> to, double sign,
-                 double entropy);
+                 double entropy, const Eigen::VectorXf* guess = nullptr);
+
+  /// Of each direction wanted: a guess for another transport.
+  const Eigen::VectorXf& potentials() const { return dual_; }
 
   /// Polar radius towards a direction from the source, up to a common factor.
   double radius(const Direction& towards) const;
@@ -26,7 +31,8 @@ class PointTransport {
  private:
   std::vector<DirectedFlux> to_;
   double sign_, entropy_;
-  Eigen::VectorXf potential_;  ///< over the entropy, with the logarithm of the share
+  Eigen::VectorXf dual_;
+  Eigen::VectorXf potential_;  ///< the same over the entropy, with the logarithm of the share
   Eigen::Matrix<float, Eigen::Dynamic, 3> wanted_;
 };
 

@@ -20,8 +20,9 @@ namespace {
 /// Cells across the source's light, and the rounds in which what the aperture catches is found.
 constexpr int kSourceCells = 40;
 constexpr int kTransportRounds = 4;
-/// Meridians and places along each where the mirror is put together.
-constexpr int kMeridians = 96, kPlaces = 160;
+/// Meridians and places along each where the mirror is put together; fewer where only its edges are asked
+/// for.
+constexpr int kMeridians = 96, kPlaces = 160, kPlacesForEdges = 64;
 /// Beyond the rim the surface is followed so far, over its radius: the spline's edge needs to be held.
 constexpr double kBeyondRim = 1.04;
 /// A mirror that turns back before so much of its radius is none.
@@ -118,16 +119,21 @@ SplitLight split(const TransportProblem& problem, const Vec3& source, const Catc
   return out;
 }
 
-/// What is left for the mirror to make.
-std::vector<DirectedFlux> target_flux(const TransportProblem& problem, const SplitLight& light,
-                                      const Vec3& vertex) {
+/// What is left for the mirror to make: bins that want light, and their light.
+struct WantedLight {
+  std::vector<Eigen::Index> bins;
+  std::vector<DirectedFlux> flux;
+};
+
+WantedLight wanted_light(const TransportProblem& problem, const SplitLight& light, const Vec3& vertex) {
   const double total = problem.reflectance * light.caught_share + light.direct.sum();
   const Eigen::VectorXd flux = (total / problem.target.sum() * problem.target - light.direct).cwiseMax(0.0);
   const double max = flux.maxCoeff();
-  std::vector<DirectedFlux> out;
+  WantedLight out;
   for (Eigen::Index i = 0; i < flux.size(); ++i) {
     if (!(flux[i] > 1e-6 * max)) continue;
-    out.push_back({bin_direction(problem.bins, static_cast<std::size_t>(i), vertex), flux[i]});
+    out.bins.push_back(i);
+    out.flux.push_back({bin_direction(problem.bins, static_cast<std::size_t>(i), vertex), flux[i]});
   }
   return out;
 }
@@ -141,7 +147,7 @@ struct Outline {
 };
 
 Outline outline(const PointTransport& transport, const Aperture& aperture, const Vec3& source,
-                double distance) {
+                double distance, int places) {
   const double scale = distance / transport.radius(Direction::from({0.0, 0.0, -1.0}));
   struct Meridian {
     std::vector<SurfacePointWeight> points;
@@ -153,8 +159,8 @@ Outline outline(const PointTransport& transport, const Aperture& aperture, const
     Meridian out;
     double r_before = 0.0, theta_before = 0.0;
     constexpr double kMaxAngle = 0.9 * std::numbers::pi;
-    for (int k = 0; k < kPlaces; ++k) {
-      const double theta = kMaxAngle * (k + 0.5) / kPlaces;
+    for (int k = 0; k < places; ++k) {
+      const double theta = kMaxAngle * (k + 0.5) / places;
       const Direction d = Direction::from_unit(std::sin(theta) * along + Vec3{0.0, 0.0, -std::cos(theta)});
       const Vec3 at = source + (scale * transport.radius(d)) * d.vec();
       const double r = std::hypot(at.x, at.y);
@@ -200,9 +206,9 @@ DesignShape fitted_to_points(const DesignShape& family, const std::vector<Surfac
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
   double weight = 0.0;
-  const auto add = [&](const auto& index, const auto& value, double target_flux, double w) {
+  const auto add = [&](const auto& index, const auto& value, double height_mm, double w) {
     for (std::size_t i = 0; i < index.size(); ++i) {
-      right[index[i]] += w * value[i] * target_flux;
+      right[index[i]] += w * value[i] * height_mm;
       for (std::size_t j = 0; j < index.size(); ++j) {
         if (index[j] <= index[i]) entries.emplace_back(index[i], index[j], w * value[i] * value[j]);
       }
@@ -255,14 +261,21 @@ std::optional<DesignShape> transport_guess(const TransportProblem& problem, cons
   const Vec3 vertex{0.0, 0.0, source.z - choice.vertex_distance_mm};
   Catch edges = first_catch(aperture, choice.vertex_distance_mm);
   std::optional<Outline> mirror;
+  Eigen::VectorXf potentials = Eigen::VectorXf::Zero(problem.target.size());
   for (int round = 0; round < kTransportRounds; ++round) {
     const SplitLight light = split(problem, source, edges);
-    const std::vector<DirectedFlux> to = target_flux(problem, light, vertex);
-    if (light.caught.size() < 16 || to.size() < 4) return std::nullopt;
+    const WantedLight to = wanted_light(problem, light, vertex);
+    if (light.caught.size() < 16 || to.bins.size() < 4) return std::nullopt;
     const double source_cell = 2.0 * edges.widest() / kSourceCells;
     const double bin = bin_width_rad(problem.bins, vertex);
-    const PointTransport transport(light.caught, to, choice.sign, 0.5 * source_cell * bin);
-    mirror = outline(transport, aperture, source, choice.vertex_distance_mm);
+    // What the aperture catches changes from round to round, and the transport little.
+    const Eigen::VectorXf guess = potentials(to.bins);
+    const PointTransport transport(light.caught, to.flux, choice.sign, 0.5 * source_cell * bin,
+                                   round > 0 ? &guess : nullptr);
+    potentials(to.bins) = transport.potentials();
+    const bool last = round + 1 == kTransportRounds;
+    mirror =
+        outline(transport, aperture, source, choice.vertex_distance_mm, last ? kPlaces : kPlacesForEdges);
     edges = mirror->edges;
   }
   if (mirror->reach < kMinRimReach) return std::nullopt;

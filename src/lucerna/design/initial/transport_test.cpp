@@ -62,6 +62,20 @@ TEST(PointTransport, SpreadsACircleOfLightEvenlyOverAnother) {
   }
 }
 
+TEST(PointTransport, AGuessLeadsToTheSame) {
+  const std::vector<DirectedFlux> to = cone({0, 0, 1}, 0.35, 600), from = cone({0, 0, -1}, 0.9, 600);
+  for (const double sign : {1.0, -1.0}) {
+    const PointTransport other(cone({0, 0, -1}, 0.8, 600), to, sign, 2e-3);
+    const PointTransport whole(from, to, sign, 2e-3), guessed(from, to, sign, 2e-3, &other.potentials());
+    const Direction axis = Direction::from({0, 0, -1});
+    for (const DirectedFlux& l : cone({0, 0, -1}, 0.85, 40)) {
+      EXPECT_NEAR(guessed.radius(l.direction) / guessed.radius(axis),
+                  whole.radius(l.direction) / whole.radius(axis), 1e-3)
+          << sign;
+    }
+  }
+}
+
 TEST(PointTransport, TakesNarrowTargetsAndUnevenLight) {
   std::vector<DirectedFlux> to = cone({0, 0, 1}, 0.02, 400);
   for (std::size_t i = 0; i < to.size(); ++i) to[i].flux *= i % 2 == 0 ? 1.0 : 1e-5;
