@@ -8,8 +8,8 @@ int main(int argc, char** argv) {
   if (argc != 3) return 2;
   try {
     lucerna::PhotometricFile file = lucerna::read_photometric_file(argv[1]);
-    for (const lucerna::Fault& repair : file.repairs)
-      std::printf("line %zu: %s\n", repair.line, repair.text.c_str());
+    for (const lucerna::Diagnostic& repair : file.repairs)
+      std::printf("%s\n", lucerna::to_string(repair).c_str());
 
     const lucerna::PhotometricMetrics figures = lucerna::photometric_metrics(file);
     std::printf("%s, %zu planes\n", file.origin.format.c_str(), file.distribution.c_deg.size());

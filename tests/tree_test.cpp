@@ -103,7 +103,7 @@ const std::map<std::string, Layers> kSubRooms{
          {"kernels", {"detectors", "tally"}},
          {"engines", {"detectors", "kernels", "tally"}},
          {"backward", {"detectors", "engines", "kernels"}},
-         {"benchmark", {"kernels"}},
+         {"benchmark", {"engines", "kernels"}},
          {"device", {"detectors", "engines", "kernels", "tally"}},
          {"result", {"detectors"}},
          {"metrics", {"backward", "result"}},
@@ -157,6 +157,7 @@ const std::set<std::string> kDirectly{"cli/main.cpp"};
 /// The room of src/lucerna that each public header (include/lucerna) belongs to: what it defines is
 /// implemented there, and it may be included where that room may.
 const std::map<std::string, std::string> kPublicHeaders{
+    {"diagnostic.h", "core"},
     {"error.h", "core"},
     {"estimate.h", "core"},
     {"flux_unit.h", "core"},

@@ -7,6 +7,7 @@
 #include "lucerna/comparison.h"
 #include "lucerna/design.h"
 #include "lucerna/detectors.h"
+#include "lucerna/diagnostic.h"
 #include "lucerna/error.h"
 #include "lucerna/estimate.h"
 #include "lucerna/far_field_metrics.h"

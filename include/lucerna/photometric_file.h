@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "lucerna/diagnostic.h"
 #include "lucerna/intensity.h"
 
 #pragma GCC visibility push(default)
@@ -58,23 +59,6 @@ struct LuminaireData {
   friend bool operator==(const LuminaireData&, const LuminaireData&) = default;
 };
 
-/// Something found in a file. `line` counts from 1; 0 means the file as a whole.
-struct Fault {
-  /// How bad it is.
-  enum class Severity {
-    note,     ///< legal, but changes how the numbers are to be read
-    warning,  ///< a rule is broken; the reader repaired it as the text says
-    error,    ///< cannot be read
-  };
-  /// How bad it is.
-  Severity severity = Severity::warning;
-  /// In the file, from 1.
-  std::size_t line = 0;
-  /// What is wrong, in words.
-  std::string text{};
-  friend bool operator==(const Fault&, const Fault&) = default;
-};
-
 /// What the file looked like before it was expanded, turned and scaled to cd.
 struct PhotometricOrigin {
   std::string format;                  ///< "IES LM-63-2002", "EULUMDAT"; empty if not from a file
@@ -104,8 +88,8 @@ struct PhotometricFile {
   LuminaireData luminaire;
   /// What the file looked like.
   PhotometricOrigin origin{};
-  std::vector<Fault> repairs{};  ///< every repair that reading needed, in the order of the file
-  std::vector<Fault> notes{};    ///< what was assumed or is unusual but legal
+  std::vector<Diagnostic> repairs{};  ///< every repair that reading needed, in the order of the file
+  std::vector<Diagnostic> notes{};    ///< what was assumed or is unusual but legal
 };
 
 /// Flux of the lamps that intensities may be quoted for (cd/klm), in lm: of the first lamp set with flux, or
@@ -203,8 +187,8 @@ void write_photometric_file(const std::filesystem::path& path, const Photometric
 /// ratio outside 1 to 105 %, a little uplight (under 7 % of the flux, as stray light in the laboratory
 /// gives), missing sizes, an Isym 3 file that looks reversed. Strict: warnings become errors. Throws only if
 /// the file cannot be opened.
-[[nodiscard]] std::vector<Fault> check_photometric_file(const std::filesystem::path& path,
-                                                        const PhotometricReadOptions& options = {});
+[[nodiscard]] std::vector<Diagnostic> check_photometric_file(const std::filesystem::path& path,
+                                                             const PhotometricReadOptions& options = {});
 
 }  // namespace lucerna
 #pragma GCC visibility pop

@@ -15,45 +15,26 @@ namespace lucerna::cli {
 
 namespace {
 
-/// One thing that `check` found; severity "note", "warning" or "error".
-struct FileFault {
-  std::string severity, text;
-};
-
-std::vector<FileFault> check_photometry(const std::string& path, const PhotometricReadOptions& options) {
-  std::vector<FileFault> faults;
-  for (const Fault& fault : check_photometric_file(path, options)) {
-    const char* severity = fault.severity == Fault::Severity::note      ? "note"
-                           : fault.severity == Fault::Severity::warning ? "warning"
-                                                                        : "error";
-    faults.push_back(
-        {severity, fault.line > 0 ? fmt::format("line {}: {}", fault.line, fault.text) : fault.text});
+std::vector<Diagnostic> check_rays(const std::string& path, Session& session) {
+  std::vector<Diagnostic> found = check_ray_file(path, {}, session.progress());
+  for (Diagnostic& d : found) {
+    if (session.strict) d.severity = Severity::error;
   }
-  return faults;
+  return found;
 }
 
-std::vector<FileFault> check_rays(const std::string& path, Session& session) {
-  std::vector<FileFault> faults;
-  for (const Finding& finding : check_ray_file(path, {}, session.progress())) {
-    const bool error = finding.severity == Severity::error || session.strict;
-    faults.push_back(
-        {error ? "error" : "warning",
-         finding.place.empty() ? finding.message : fmt::format("{}: {}", finding.place, finding.message)});
-  }
-  return faults;
-}
-
-std::vector<FileFault> check_file(const std::string& path, const PhotometricArguments& photometric,
-                                  Session& session) {
+std::vector<Diagnostic> check_file(const std::string& path, const PhotometricArguments& photometric,
+                                   Session& session) {
   try {
     if (is_source_model(path)) {
       static_cast<void>(load_source_model(path));  // throws where the file is damaged
       return {};
     }
-    if (is_photometric_file(path)) return check_photometry(path, photometric.read_options(session.strict));
+    if (is_photometric_file(path))
+      return check_photometric_file(path, photometric.read_options(session.strict));
     return check_rays(path, session);
   } catch (const InputError& e) {
-    return {{"error", e.what()}};
+    return {{Severity::error, "", e.what()}};
   }
 }
 
@@ -75,9 +56,9 @@ std::vector<std::string> expand(const std::vector<std::string>& paths) {
   return files;
 }
 
-std::size_t count(const std::vector<FileFault>& faults, const std::string& severity) {
-  return static_cast<std::size_t>(std::count_if(faults.begin(), faults.end(),
-                                                [&](const FileFault& f) { return f.severity == severity; }));
+std::size_t count(const std::vector<Diagnostic>& found, Severity severity) {
+  return static_cast<std::size_t>(
+      std::count_if(found.begin(), found.end(), [&](const Diagnostic& d) { return d.severity == severity; }));
 }
 
 void check(const std::vector<std::string>& paths, const PhotometricArguments& photometric, Session& session,
@@ -87,14 +68,18 @@ void check(const std::vector<std::string>& paths, const PhotometricArguments& ph
   std::size_t clean = 0, warned = 0, failed = 0;
   Json list = Json::array();
   for (const std::string& path : files) {
-    const auto faults = session.timed("check", [&] { return check_file(path, photometric, session); });
-    const std::size_t errors = count(faults, "error"), warnings = count(faults, "warning");
+    const auto found = session.timed("check", [&] { return check_file(path, photometric, session); });
+    const std::size_t errors = count(found, Severity::error), warnings = count(found, Severity::warning);
     ++(errors > 0 ? failed : warnings > 0 ? warned : clean);
     Json entries = Json::array();
-    for (const FileFault& f : faults) entries.push_back({{"severity", f.severity}, {"text", f.text}});
+    for (const Diagnostic& d : found) {
+      entries.push_back({{"severity", to_string(d.severity)}, {"text", to_string(d)}});
+    }
     list.push_back({{"path", path}, {"errors", errors}, {"warnings", warnings}, {"faults", entries}});
     session.print_line(fmt::format("{}: {}", path, errors > 0 ? "error" : warnings > 0 ? "warning" : "ok"));
-    for (const FileFault& f : faults) session.print_line(fmt::format("  {}: {}", f.severity, f.text));
+    for (const Diagnostic& d : found) {
+      session.print_line(fmt::format("  {}: {}", to_string(d.severity), to_string(d)));
+    }
   }
   session.print_line(
       fmt::format("{} files: {} ok, {} with warnings, {} with errors", files.size(), clean, warned, failed));

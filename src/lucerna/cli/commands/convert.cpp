@@ -51,9 +51,9 @@ void convert_photometry(const ConvertArguments& a, Session& session) {
     throw UsageError("--rays, --flux, --rotate, --move and --salvage are for ray files");
   }
   const PhotometricFile file = read_photometric_file(a.input, a.photometric.read_options(session.strict));
-  for (const Fault& repair : file.repairs)
-    session.note(fmt::format("{}: line {}: {}", a.input, repair.line, repair.text));
-  for (const Fault& note : file.notes) session.note(fmt::format("{}: {}", a.input, note.text));
+  for (const auto* list : {&file.repairs, &file.notes}) {
+    for (const Diagnostic& d : *list) session.note(fmt::format("{}: {}", a.input, to_string(d)));
+  }
   write_photometric_file(a.output, file, *format, a.photometric.write_options());
   session.print_line(fmt::format(
       "{}: written; IES angles taken as {}", a.output,

@@ -77,7 +77,7 @@ DesignRun run(const DesignProblem& problem, const DesignOptions& options, Design
   if (made.figures.tolerances) session.add_seconds("tolerances", made.tolerances_s);
   if (made.trace.end == NoiseEnd::time) {
     session.note(fmt::format("the trace of the result has {:.2g} % noise, {:.2g} % requested: {}",
-                             100.0 * made.trace.noise, 100.0 * made.wanted_noise, to_string(made.trace.end)));
+                             100.0 * made.trace.noise, 100.0 * made.noise_goal, to_string(made.trace.end)));
   }
   return made;
 }

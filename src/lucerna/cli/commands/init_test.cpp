@@ -41,7 +41,9 @@ void make_files(const test::TempDir& dir) {
   const Mesh open{closed.vertices_mm, {{0, 2, 1}}};
   for (const char* name : {"housing.stl", "bulb.stl"}) write_file(dir / name, stl_bytes(closed));
   for (const char* name : {"mirror.stl", "sheet.stl"}) write_file(dir / name, stl_bytes(open));
-  write_file(dir / "wanted.ldt", ldt_text({uniform_distribution(30.0, 10.0), {}}));
+  IntensityDistribution light = uniform_distribution(30.0, 10.0);
+  for (std::size_t c = 0; c < light.c_deg.size(); ++c) light.at(c, 0) = light.at(c, 1) = 100.0;
+  write_file(dir / "wanted.ldt", ldt_text({light, {}}));
   write_png(dir / "wanted.png", 2, 2, std::vector<std::uint8_t>(12, 255));
 }
 

@@ -10,10 +10,6 @@ namespace lucerna::cli {
 
 namespace {
 
-std::string fault_text(const Fault& fault) {
-  return fault.line > 0 ? fmt::format("line {}: {}", fault.line, fault.text) : fault.text;
-}
-
 std::string angle(const std::optional<double>& deg) { return deg ? fmt::format("{:.1f}", *deg) : "-"; }
 
 /// BUG rating and G* class, for luminous intensities only.
@@ -40,9 +36,9 @@ Description describe_photometry(const std::string& path, const PhotometricReadOp
   const PhotometricOrigin& origin = file.origin;
   const bool lumen = file.distribution.unit == FluxUnit::lumen;
   Description d;
-  for (const Fault& repair : file.repairs) d.warnings.push_back(fault_text(repair));
+  for (const Diagnostic& repair : file.repairs) d.warnings.push_back(to_string(repair));
   std::vector<std::string> notes;
-  for (const Fault& note : file.notes) notes.push_back(fault_text(note));
+  for (const Diagnostic& note : file.notes) notes.push_back(to_string(note));
   const auto lamps = lamp_flux_lm(file.luminaire);
   d.json = {
       {"path", path},

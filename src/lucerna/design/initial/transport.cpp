@@ -136,8 +136,8 @@ class Sinkhorn {
 
 PointTransport::PointTransport(const std::vector<DirectedFlux>& from, std::vector<DirectedFlux> to,
                                double sign, double entropy, const Eigen::VectorXf* guess)
-    : to_(std::move(to)), sign_(sign), entropy_(entropy), wanted_(vectors(to_)) {
-  Matrix cost = vectors(from) * wanted_.transpose();
+    : to_(std::move(to)), sign_(sign), entropy_(entropy), directions_(vectors(to_)) {
+  Matrix cost = vectors(from) * directions_.transpose();
   cost = (-static_cast<float>(sign)) * (1.0f - cost.array()).max(kMinOpening).log();
   const Eigen::VectorXf b = shares(to_);
   const double range = static_cast<double>(cost.maxCoeff() - cost.minCoeff());
@@ -155,7 +155,8 @@ double PointTransport::radius(const Direction& towards) const {
   const Eigen::Vector3f d(static_cast<float>(towards.x()), static_cast<float>(towards.y()),
                           static_cast<float>(towards.z()));
   const float per = static_cast<float>(sign_ / entropy_);
-  const Eigen::ArrayXf x = potential_.array() + per * (1.0f - (wanted_ * d).array()).max(kMinOpening).log();
+  const Eigen::ArrayXf x =
+      potential_.array() + per * (1.0f - (directions_ * d).array()).max(kMinOpening).log();
   const float max = x.maxCoeff();
   const double soft =
       -entropy_ * (static_cast<double>(max) + std::log(static_cast<double>((x - max).exp().sum())));

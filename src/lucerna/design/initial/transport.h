@@ -8,8 +8,8 @@
 
 namespace lucerna {
 
-/// Polar radii of mirrors that throw a point source's light as wanted: entropic optimal transport between
-/// directions of the source and directions wanted, with the cost -log(1 - d . o) (Wang 2004, doi
+/// Polar radii of mirrors that throw a point source's light as prescribed: entropic optimal transport between
+/// directions of the source and prescribed ones, with the cost -log(1 - d . o) (Wang 2004, doi
 /// 10.1007/s00526-003-0239-4), by Sinkhorn's iteration with absorbed scalings (Schmitzer 2019, doi
 /// 10.1137/16M1106018) while the entropy falls. `sign` +1: the mirror is the inner envelope of paraboloids
 /// and its rays cross; -1: the outer one, whose rays spread. Immutable after it is made, thread safe.
@@ -22,7 +22,7 @@ class PointTransport {
   PointTransport(const std::vector<DirectedFlux>& from, std::vector<DirectedFlux> to, double sign,
                  double entropy, const Eigen::VectorXf* guess = nullptr);
 
-  /// Of each direction wanted: a guess for another transport.
+  /// Of each prescribed direction: a guess for another transport.
   const Eigen::VectorXf& potentials() const { return dual_; }
 
   /// Polar radius towards a direction from the source, up to a common factor.
@@ -33,7 +33,7 @@ class PointTransport {
   double sign_, entropy_;
   Eigen::VectorXf dual_;
   Eigen::VectorXf potential_;  ///< the same over the entropy, with the logarithm of the share
-  Eigen::Matrix<float, Eigen::Dynamic, 3> wanted_;
+  Eigen::Matrix<float, Eigen::Dynamic, 3> directions_;
 };
 
 }  // namespace lucerna

@@ -119,17 +119,18 @@ SplitLight split(const TransportProblem& problem, const Vec3& source, const Catc
   return out;
 }
 
-/// What is left for the mirror to make: bins that want light, and their light.
-struct WantedLight {
+/// What is left for the mirror to make: bins with prescribed light, and that light.
+struct PrescribedLight {
   std::vector<Eigen::Index> bins;
   std::vector<DirectedFlux> flux;
 };
 
-WantedLight wanted_light(const TransportProblem& problem, const SplitLight& light, const Vec3& vertex) {
+PrescribedLight prescribed_light(const TransportProblem& problem, const SplitLight& light,
+                                 const Vec3& vertex) {
   const double total = problem.reflectance * light.caught_share + light.direct.sum();
   const Eigen::VectorXd flux = (total / problem.target.sum() * problem.target - light.direct).cwiseMax(0.0);
   const double max = flux.maxCoeff();
-  WantedLight out;
+  PrescribedLight out;
   for (Eigen::Index i = 0; i < flux.size(); ++i) {
     if (!(flux[i] > 1e-6 * max)) continue;
     out.bins.push_back(i);
@@ -264,7 +265,7 @@ std::optional<DesignShape> transport_guess(const TransportProblem& problem, cons
   Eigen::VectorXf potentials = Eigen::VectorXf::Zero(problem.target.size());
   for (int round = 0; round < kTransportRounds; ++round) {
     const SplitLight light = split(problem, source, edges);
-    const WantedLight to = wanted_light(problem, light, vertex);
+    const PrescribedLight to = prescribed_light(problem, light, vertex);
     if (light.caught.size() < 16 || to.bins.size() < 4) return std::nullopt;
     const double source_cell = 2.0 * edges.widest() / kSourceCells;
     const double bin = bin_width_rad(problem.bins, vertex);

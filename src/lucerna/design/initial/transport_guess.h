@@ -24,17 +24,17 @@ struct TransportProblem {
   std::uint64_t ray_count = std::uint64_t{1} << 19;
   double reflectance = 1.0;
   bool direct_light = true;
-  /// Flux wanted in each bin, in any unit.
+  /// Flux prescribed in each bin, in any unit.
   Eigen::VectorXd target;
   /// Square bins or those of a plane, over the window and a little more.
   TentBins bins;
 };
 
-/// The free form that would throw the source's light as wanted, were the source a point: the light that the
-/// aperture catches (less what enters its hole) is transported onto the target (less the light that passes
-/// the mirror), in rounds, because what it catches follows from the shape. `family` says aperture, knots and
-/// symmetry. Nothing where the source is not in front of such a mirror or no light is left for it. About two
-/// processor seconds.
+/// The free form that would throw the source's light as prescribed, were the source a point: the light that
+/// the aperture catches (less what enters its hole) is transported onto the target (less the light that
+/// passes the mirror), in rounds, because what it catches follows from the shape. `family` says aperture,
+/// knots and symmetry. Nothing where the source is not in front of such a mirror or no light is left for it.
+/// About two processor seconds.
 std::optional<DesignShape> transport_guess(const TransportProblem& problem, const DesignShape& family,
                                            const TransportChoice& choice);
 

@@ -58,7 +58,8 @@ struct Balance {
 /// A profile in polar coordinates about the source: points (r, z) from the vertex on.
 using ProfilePoints = std::vector<std::array<double, 2>>;
 
-/// Integrates the profile whose flux up to `rim` makes the wanted light; goes on beyond with the last angle.
+/// Integrates the profile whose flux up to `rim` makes the prescribed light; goes on beyond with the last
+/// angle.
 ProfilePoints integrate(const Balance& way, const Cumulative& source, const Cumulative& target_flux,
                         double hole, double rim, double distance_mm, double source_z_mm) {
   constexpr int kPoints = 1500;

@@ -15,12 +15,12 @@ namespace lucerna {
 /// Solutions that fold over or leave the aperture's reach are left out; there may be none.
 ///
 /// Revolution: flux balance. The ray that leaves the source at the angle theta from the vertex goes out at
-/// gamma(theta), where the flux between vertex and theta is the share of the wanted flux inside (or outside)
-/// |gamma|, and the profile's polar radius follows from d ln rho / d theta = tan((theta + gamma) / 2). Four
-/// solutions: from the middle outward or from the edge inward, the rays crossing the axis or not. A trough's
-/// profile follows in the same way from the light seen along it; two solutions, from side to side.
+/// gamma(theta), where the flux between vertex and theta is the share of the prescribed flux inside (or
+/// outside) |gamma|, and the profile's polar radius follows from d ln rho / d theta = tan((theta + gamma) /
+/// 2). Four solutions: from the middle outward or from the edge inward, the rays crossing the axis or not. A
+/// trough's profile follows in the same way from the light seen along it; two solutions, from side to side.
 ///
-/// Free form: the envelope of paraboloids about the directions that are wanted, with the flux that each
+/// Free form: the envelope of paraboloids about the prescribed directions, with the flux that each
 /// catches prescribed (supporting paraboloids; Oliker 1987), solved as the optimal transport that it is (Wang
 /// 2004: cost -log(1 - d . o), or its negative for the other envelope) with an entropy that falls step by
 /// step and leaves the envelope as smooth as `blur_rad` (Sinkhorn's iteration). Two solutions.

@@ -20,7 +20,7 @@
 
 namespace lucerna {
 
-/// Illuminance that is wanted on a rectangle of a plane.
+/// Illuminance prescribed on a rectangle of a plane.
 struct PlaneTarget {
   /// Of the rectangle's centre; the light is to fall on the side of its +z.
   Frame world_from_plane;
@@ -36,7 +36,7 @@ struct PlaneTarget {
   double flux() const;
 };
 
-/// The light that is wanted: [target] of a project.
+/// The prescribed light: [target] of a project.
 struct DesignTarget {
   /// For a plane: that of the point luminaire at the mirror's place which would light it just so; a start for
   /// search, never what the result is evaluated by.

@@ -65,7 +65,7 @@ DesignRun run_design(const DesignProblem& problem, DesignOptions options, Progre
   const Scene scene = with_shape(problem, run.result.shape).scene;
   NoiseGoal goal;
   goal.max_seconds = std::clamp(kFinalTraceShare * options.time_s.value_or(problem.time_s), 1.0, 10.0);
-  run.wanted_noise = goal.noise;
+  run.noise_goal = goal.noise;
   run.trace = timed(run.trace_s, [&] { return trace_until(scene, {.seed = options.seed + 1}, goal); });
   run.figures =
       timed(run.figures_s, [&] { return design_metrics(problem, run.result, run.trace.result, scene); });

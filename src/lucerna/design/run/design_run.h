@@ -15,7 +15,7 @@ struct DesignRun {
   /// Light of the project with the result's mirror.
   NoiseTrace trace;
   /// Noise that `trace` was to have.
-  double wanted_noise = 0.0;
+  double noise_goal = 0.0;
   /// With tolerances where the problem has ranges, unless the design was interrupted.
   DesignMetrics figures;
   /// Seconds of each phase.

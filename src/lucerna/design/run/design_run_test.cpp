@@ -82,7 +82,7 @@ TEST_F(DesignRuns, TraceTheResultAndTryTolerancesOnlyWhereAsked) {
   EXPECT_FALSE(run.figures.tolerances.has_value());
   EXPECT_GT(run.design_s, 0.0);
   EXPECT_GT(run.trace_s, 0.0);
-  EXPECT_TRUE(run.trace.end == NoiseEnd::time || run.trace.noise <= run.wanted_noise);
+  EXPECT_TRUE(run.trace.end == NoiseEnd::time || run.trace.noise <= run.noise_goal);
 }
 
 }  // namespace

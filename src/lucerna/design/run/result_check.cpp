@@ -11,7 +11,7 @@
 #include "lucerna/design/constraints/light_limits.h"
 #include "lucerna/design/evaluation/body_shadows.h"
 #include "lucerna/design/validation/bounds.h"
-#include "lucerna/design/validation/reach.h"
+#include "lucerna/design/validation/etendue_limit.h"
 #include "lucerna/design/validation/validation.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
@@ -177,9 +177,9 @@ void ResultCheck::fill(const FitProblem& fit, std::uint64_t max_rays, double max
     result.limits.push_back({"source in front of the mirror (share behind it)", given, behind, false});
   }
   if (!problem_.target.zones_only) {
-    const Reach reach = target_reach(rays_, etendue_, problem_.start, fit.bins, fit.target(fit.bins),
-                                     fit.mode, problem_.limits.min_efficiency.value_or(0.0));
-    result.remarks.insert(result.remarks.begin(), reach.statements.begin(), reach.statements.end());
+    const EtendueLimit limit = etendue_limit(rays_, etendue_, problem_.start, fit.bins, fit.target(fit.bins),
+                                             fit.mode, problem_.limits.min_efficiency.value_or(0.0));
+    result.remarks.insert(result.remarks.begin(), limit.statements.begin(), limit.statements.end());
   }
   add_remarks(problem_, result);
   if (keep_given)

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lucerna/design/validation/direct_bound.h"
-#include "lucerna/design/validation/reach.h"
+#include "lucerna/design/validation/etendue_limit.h"
 
 namespace lucerna {
 

@@ -374,13 +374,13 @@ ValidationOptions limited(ValidationOptions options, const Scene& scene, const R
 }  // namespace
 
 Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const double> target,
-                    TargetMode mode, const ValidationOptions& wanted, Progress& progress) {
+                    TargetMode mode, const ValidationOptions& requested, Progress& progress) {
   check(scene);
   if (!scene.glasses.empty()) throw InputError("a design with cover glasses cannot be validated");
   const Clock::time_point start = Clock::now();
   // A seed of its own: neither the fit's rays nor those of the trace that follows a design.
-  const RayNumbering numbering(scene.sources, wanted.seed ^ 0x56414C4944415445ull);
-  const ValidationOptions options = limited(wanted, scene, numbering);
+  const RayNumbering numbering(scene.sources, requested.seed ^ 0x56414C4944415445ull);
+  const ValidationOptions options = limited(requested, scene, numbering);
   const Meshes meshes(scene, options);
   Validation out{.triangles = meshes.triangles(), .tolerance = meshes.tolerance(), .embree = meshes.embree()};
   std::vector<BoxSums>& replicates = out.replicates;

@@ -106,17 +106,17 @@ TEST(ZoneCheckStatistical, ValidationSeesTheLightOfALambertianDisk) {
   const ZoneCells cells({{"g", ZoneCoordinates::gamma_c, {0, 60}, {0, 360}, 15.0, {{"min_cd", true, 100.0}}},
                          {"h", ZoneCoordinates::h_v, {-20, 20}, {-20, 20}, 10.0, {{"min_cd", true, 250.0}}}},
                         Direction::from({0, 0, -1}), std::nullopt);
-  const IntensityDistribution wanted = [] {
+  const IntensityDistribution target = [] {
     IntensityDistribution d = uniform_distribution(0.0, 10.0);
     for (std::size_t g = 0; g < 9; ++g) d.at(0, g) = std::cos(radians(10.0 * static_cast<double>(g)));
     return d;
   }();
-  const ErrorBoxes boxes(target_rectangle(wanted));
+  const ErrorBoxes boxes(target_rectangle(target));
   ValidationOptions o;
   o.min_rays = o.max_rays = std::uint64_t{1} << 18;
   o.engine = HitEngine::tree;
   o.zones = &cells;
-  const Validation v = validate(scene, boxes, boxes.flux_of(wanted), TargetMode::shape, o);
+  const Validation v = validate(scene, boxes, boxes.flux_of(target), TargetMode::shape, o);
   ASSERT_EQ(v.zones.size(), 2u);
   EXPECT_EQ(v.zones[0].verdict(), ZoneVerdict::met);
   for (std::size_t c = 0; c < cells.size(); ++c) {

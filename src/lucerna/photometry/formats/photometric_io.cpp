@@ -51,8 +51,8 @@ bool looks_like_ldt(const std::vector<std::string_view>& lines) {
   return true;
 }
 
-void check_flux(const PhotometricFile& file, std::vector<Fault>& faults) {
-  const auto warn = [&](const std::string& text) { faults.push_back({Fault::Severity::warning, 0, text}); };
+void check_flux(const PhotometricFile& file, std::vector<Diagnostic>& found) {
+  const auto warn = [&](const std::string& text) { found.push_back({Severity::warning, "", text}); };
   const double flux = total_flux(file.distribution);
   if (!(flux > 0.0)) {
     warn("no light at all");
@@ -75,14 +75,14 @@ void check_flux(const PhotometricFile& file, std::vector<Fault>& faults) {
   }
   const double up = zonal_flux(file.distribution, 90.0, 180.0) / flux;
   if (up > 0.001 && up < 0.07) {
-    faults.push_back(
-        {Fault::Severity::note, 0,
+    found.push_back(
+        {Severity::note, "",
          fmt::format("{:.1f} % of the flux goes up: stray light, if the luminaire is sealed above",
                      100.0 * up)});
   }
 }
 
-void check_isym3(const PhotometricFile& file, std::vector<Fault>& faults) {
+void check_isym3(const PhotometricFile& file, std::vector<Diagnostic>& found) {
   if (file.origin.symmetry != "Isym 3") return;
   double front = 0.0, back = 0.0;
   const std::vector<double> rings = ring_weights_sr(file.distribution.gamma_deg);
@@ -96,8 +96,8 @@ void check_isym3(const PhotometricFile& file, std::vector<Fault>& faults) {
     }
   }
   if (back > 1.2 * front) {
-    faults.push_back(
-        {Fault::Severity::note, 3,
+    found.push_back(
+        {Severity::note, line_place(3),
          "more light to C270 than to C90: if this is a street light its planes may be stored in reverse "
          "(read it with isym3 reversed)"});
   }
@@ -141,39 +141,31 @@ void write_photometric_file(const std::filesystem::path& path, const Photometric
              format == PhotometricFormat::ldt ? ldt_text(file, options) : ies_text(file, format, options));
 }
 
-std::vector<Fault> check_photometric_file(const std::filesystem::path& path,
-                                          const PhotometricReadOptions& options) {
+std::vector<Diagnostic> check_photometric_file(const std::filesystem::path& path,
+                                               const PhotometricReadOptions& options) {
   [[maybe_unused]] const InputFile opened(path);  // throws if it cannot be opened
-  std::vector<Fault> faults;
+  std::vector<Diagnostic> found;
   try {
     PhotometricReadOptions tolerant = options;
     tolerant.strict = false;
     const PhotometricFile file = read_photometric_file(path, tolerant);
-    faults = file.repairs;
-    faults.insert(faults.end(), file.notes.begin(), file.notes.end());
-    check_flux(file, faults);
-    check_isym3(file, faults);
+    found = file.repairs;
+    found.insert(found.end(), file.notes.begin(), file.notes.end());
+    check_flux(file, found);
+    check_isym3(file, found);
     const LuminaireData& l = file.luminaire;
     if (l.luminous_length_mm == 0.0 && l.luminous_width_mm == 0.0) {
-      faults.push_back({Fault::Severity::note, 0, "no size of the luminous area: a point"});
+      found.push_back({Severity::note, "", "no size of the luminous area: a point"});
     }
   } catch (const InputError& error) {
-    std::string text = error.what();
-    if (text.starts_with(path.string() + ": ")) text.erase(0, path.string().size() + 2);
-    std::size_t line = 0;
-    if (text.starts_with("line ")) {
-      const std::size_t end = text.find(": ");
-      line = static_cast<std::size_t>(number_from(text.substr(5, end - 5)).value_or(0.0));
-      text.erase(0, end + 2);
-    }
-    faults.push_back({Fault::Severity::error, line, text});
+    found.push_back(diagnostic(error, path));
   }
-  for (Fault& fault : faults) {
-    if (options.strict && fault.severity == Fault::Severity::warning) fault.severity = Fault::Severity::error;
+  for (Diagnostic& d : found) {
+    if (options.strict && d.severity == Severity::warning) d.severity = Severity::error;
   }
-  std::stable_sort(faults.begin(), faults.end(),
-                   [](const Fault& a, const Fault& b) { return a.line < b.line; });
-  return faults;
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Diagnostic& a, const Diagnostic& b) { return line_of(a) < line_of(b); });
+  return found;
 }
 
 double tilt_factor(const PhotometricOrigin& origin, double tilt_deg) {

@@ -75,16 +75,16 @@ const Case kCases[] = {
     {"ldt_two_lamp_sets.ldt", 0, 30, 750 * 6.6, "", "HIT 70W"},
 };
 
-bool mentions(const std::vector<Fault>& faults, const std::string& text) {
-  for (const Fault& fault : faults) {
+bool mentions(const std::vector<Diagnostic>& faults, const std::string& text) {
+  for (const Diagnostic& fault : faults) {
     if (fault.text.find(text) != std::string::npos) return true;
   }
   return false;
 }
 
-std::string all(const std::vector<Fault>& faults) {
+std::string all(const std::vector<Diagnostic>& faults) {
   std::string text;
-  for (const Fault& fault : faults) text += fmt::format("[{}: {}] ", fault.line, fault.text);
+  for (const Diagnostic& fault : faults) text += fmt::format("[{}] ", to_string(fault));
   return text;
 }
 
@@ -195,15 +195,15 @@ TEST(PhotometricIo, DetectsByContent) {
 TEST(PhotometricIo, CheckSortsByLineAndSurvivesErrors) {
   const auto faults = check_photometric_file(own("ies_too_few_candela.ies"));
   ASSERT_EQ(faults.size(), 1u);
-  EXPECT_EQ(faults.front().severity, Fault::Severity::error);
-  EXPECT_EQ(faults.front().line, 7u);
+  EXPECT_EQ(faults.front().severity, Severity::error);
+  EXPECT_EQ(faults.front().place, "line 7");
   EXPECT_TRUE(faults.front().text.starts_with("10 vertical")) << faults.front().text;
   const auto strict = check_photometric_file(own("ies_negative_candela.ies"), {.strict = true});
   EXPECT_TRUE(std::any_of(strict.begin(), strict.end(),
-                          [](const Fault& f) { return f.severity == Fault::Severity::error; }));
+                          [](const Diagnostic& f) { return f.severity == Severity::error; }));
   const auto tolerant = check_photometric_file(own("ies_negative_candela.ies"));
   EXPECT_FALSE(std::any_of(tolerant.begin(), tolerant.end(),
-                           [](const Fault& f) { return f.severity == Fault::Severity::error; }));
+                           [](const Diagnostic& f) { return f.severity == Severity::error; }));
   EXPECT_THROW(check_photometric_file("/no/such/file.ies"), InputError);
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "lucerna/core/io/diagnostic_text.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/photometric_file.h"
 
@@ -50,12 +51,12 @@ class RepairLog {
   void repair(std::size_t line, fmt::format_string<Args...> text, Args&&... args) {
     std::string what = fmt::format(text, std::forward<Args>(args)...);
     if (strict_) fail_text(line, what);
-    repairs.push_back({Fault::Severity::warning, line, std::move(what)});
+    repairs.push_back({Severity::warning, line_place(line), std::move(what)});
   }
 
   template <class... Args>
   void note(std::size_t line, fmt::format_string<Args...> text, Args&&... args) {
-    notes.push_back({Fault::Severity::note, line, fmt::format(text, std::forward<Args>(args)...)});
+    notes.push_back({Severity::note, line_place(line), fmt::format(text, std::forward<Args>(args)...)});
   }
 
   /// Throws InputError "name: line N: text".
@@ -64,11 +65,11 @@ class RepairLog {
     fail_text(line, fmt::format(text, std::forward<Args>(args)...));
   }
 
-  std::vector<Fault> repairs, notes;
+  std::vector<Diagnostic> repairs, notes;
 
  private:
   [[noreturn]] void fail_text(std::size_t line, const std::string& what) const {
-    throw_input_error(name_, line > 0 ? fmt::format("line {}", line) : std::string(), "{}", what);
+    throw_input_error(name_, line_place(line), "{}", what);
   }
 
   std::string name_;

@@ -7,16 +7,16 @@
 
 namespace lucerna {
 
-/// A choice of `wanted` of `available` rays, spread over their order: ray k of the choice is a random one of
-/// the k-th of `wanted` equal stretches, so that sorted files are thinned evenly too and the choice streams.
+/// A choice of `count` of `available` rays, spread over their order: ray k of the choice is a random one of
+/// the k-th of `count` equal stretches, so that sorted files are thinned evenly too and the choice streams.
 /// The same for the same seed. Immutable, thread safe.
 class RaySubset {
  public:
-  /// 0 <= wanted <= available; InputError otherwise.
-  RaySubset(std::uint64_t available, std::uint64_t wanted, std::uint64_t seed);
+  /// 0 <= count <= available; InputError otherwise.
+  RaySubset(std::uint64_t available, std::uint64_t count, std::uint64_t seed);
 
-  std::uint64_t wanted() const { return wanted_; }
-  /// Number in the file of the k-th chosen ray; ascends strictly with k < wanted.
+  std::uint64_t count() const { return count_; }
+  /// Number in the file of the k-th chosen ray; ascends strictly with k < count.
   std::uint64_t at(std::uint64_t k) const;
 
   /// Appends to `out` those rays of `block` that are chosen, `first` being the number of the block's first
@@ -26,7 +26,7 @@ class RaySubset {
  private:
   /// The first number of stretch k.
   std::uint64_t begin(std::uint64_t k) const;
-  std::uint64_t available_, wanted_, seed_;
+  std::uint64_t available_, count_, seed_;
 };
 
 }  // namespace lucerna

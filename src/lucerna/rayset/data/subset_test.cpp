@@ -15,11 +15,11 @@ namespace {
 
 TEST(RaySubset, AscendsAndLiesInTheFile) {
   for (const std::uint64_t available : {1ull, 7ull, 1000ull, (1ull << 40) + 3}) {
-    for (const std::uint64_t wanted : {1ull, 3ull, 7ull, 999ull}) {
-      if (wanted > available) continue;
-      const RaySubset subset(available, wanted, 5);
-      for (std::uint64_t k = 0; k + 1 < wanted; ++k) EXPECT_LT(subset.at(k), subset.at(k + 1));
-      EXPECT_LT(subset.at(wanted - 1), available);
+    for (const std::uint64_t count : {1ull, 3ull, 7ull, 999ull}) {
+      if (count > available) continue;
+      const RaySubset subset(available, count, 5);
+      for (std::uint64_t k = 0; k + 1 < count; ++k) EXPECT_LT(subset.at(k), subset.at(k + 1));
+      EXPECT_LT(subset.at(count - 1), available);
     }
   }
   EXPECT_THROW(RaySubset(5, 6, 1), InputError);
@@ -34,8 +34,8 @@ TEST(RaySubset, BlocksGiveTheChosenRaysWhereverTheyAreCut) {
   RayBlock all;
   all.resize(1000, 1);
   for (std::size_t i = 0; i < 1000; ++i) all.x_mm[i] = all.extra[0][i] = static_cast<float>(i);
-  for (const std::uint64_t wanted : {0ull, 1ull, 37ull, 500ull, 1000ull}) {
-    const RaySubset subset(1000, wanted, 9);
+  for (const std::uint64_t count : {0ull, 1ull, 37ull, 500ull, 1000ull}) {
+    const RaySubset subset(1000, count, 9);
     for (const std::size_t block_size : {1u, 10u, 333u, 1000u}) {
       RayBlock chosen;
       for (std::size_t first = 0; first < 1000; first += block_size) {
@@ -45,8 +45,8 @@ TEST(RaySubset, BlocksGiveTheChosenRaysWhereverTheyAreCut) {
           block.append(all, i);
         subset.select(block, first, chosen);
       }
-      ASSERT_EQ(chosen.size(), wanted);
-      for (std::uint64_t k = 0; k < wanted; ++k) {
+      ASSERT_EQ(chosen.size(), count);
+      for (std::uint64_t k = 0; k < count; ++k) {
         EXPECT_EQ(chosen.extra[0][k], static_cast<float>(subset.at(k)));
       }
     }

@@ -45,7 +45,7 @@ RayConversionResult convert_ray_file(const std::filesystem::path& in, const std:
     subset.emplace(reader->ray_count(), *conversion.rays, conversion.seed);
     factor = weight_factor(in, *subset, read_options, progress);
   }
-  const std::uint64_t count = subset ? subset->wanted() : reader->ray_count();
+  const std::uint64_t count = subset ? subset->count() : reader->ray_count();
   const auto writer = create_ray_file(out, format, header, count, {.length_unit = conversion.length_unit});
   RayConversionResult result{0, header.flux(), header.flux_unit, {}};
   std::uint64_t first = 0;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "lucerna/core/io/diagnostic_text.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/ray_file.h"
 #include "lucerna/ray_statistics.h"
@@ -11,24 +12,7 @@ namespace lucerna {
 
 namespace {
 
-/// Splits "ray 17 (byte 9): what" at the first colon if what stands before it is a place.
-Finding finding(Severity severity, std::string text) {
-  for (const std::string_view word : {"byte ", "line ", "ray "}) {
-    const std::size_t colon = text.find(": ");
-    if (!text.starts_with(word) || colon == text.npos) continue;
-    return {severity, text.substr(0, colon), text.substr(colon + 2)};
-  }
-  return {severity, "", std::move(text)};
-}
-
-/// The error's text without the name of the file before it.
-Finding finding(const InputError& error, const std::filesystem::path& path) {
-  std::string text = error.what();
-  if (const std::string name = path.string() + ": "; text.starts_with(name)) text.erase(0, name.size());
-  return finding(Severity::error, std::move(text));
-}
-
-void check_totals(const RaySetHeader& header, const RaySummary& summary, std::vector<Finding>& found) {
+void check_totals(const RaySetHeader& header, const RaySummary& summary, std::vector<Diagnostic>& found) {
   const auto warn = [&](std::string text) { found.push_back({Severity::warning, "", std::move(text)}); };
   if (summary.count == 0) return warn("no rays");
   if (!(summary.weight_sum > 0.0)) found.push_back({Severity::error, "", "no ray carries flux"});
@@ -45,11 +29,9 @@ void check_totals(const RaySetHeader& header, const RaySummary& summary, std::ve
 
 }  // namespace
 
-std::string_view to_string(Severity severity) { return severity == Severity::error ? "error" : "warning"; }
-
-std::vector<Finding> check_ray_file(const std::filesystem::path& path, const ReadOptions& options,
-                                    Progress& progress) {
-  std::vector<Finding> found;
+std::vector<Diagnostic> check_ray_file(const std::filesystem::path& path, const ReadOptions& options,
+                                       Progress& progress) {
+  std::vector<Diagnostic> found;
   const auto pass = [&](bool salvage) {
     ReadOptions how = options;
     how.salvage = salvage;
@@ -57,7 +39,7 @@ std::vector<Finding> check_ray_file(const std::filesystem::path& path, const Rea
     RayStatistics statistics;
     for_each_block(*reader, progress, "check", [&](const RayBlock& block) { statistics.add(block); });
     for (const std::string& warning : reader->warnings())
-      found.push_back(finding(Severity::warning, warning));
+      found.push_back(diagnostic(Severity::warning, warning));
     if (reader->dropped() > 0)
       found.push_back({Severity::error, "", fmt::format("{} faulty rays", reader->dropped())});
     check_totals(reader->header(), statistics.result(), found);
@@ -66,7 +48,7 @@ std::vector<Finding> check_ray_file(const std::filesystem::path& path, const Rea
     pass(false);
     return found;
   } catch (const InputError& error) {
-    found = {finding(error, path)};
+    found = {diagnostic(error, path)};
   }
   // What a first error hides: the file is read again as far as it can be.
   try {

@@ -23,7 +23,7 @@ RaySet honest_set(std::size_t n) {
   return set;
 }
 
-TEST(RayCheck, AGoodFileHasNoFindings) {
+TEST(RayCheck, AGoodFileHasNoDiagnostics) {
   const test::TempDir dir;
   write_ray_set(dir / "a", honest_set(100), "tm25");
   EXPECT_THAT(check_ray_file(dir / "a"), IsEmpty());
@@ -40,9 +40,9 @@ TEST(RayCheck, EveryFaultHasItsPlace) {
   ASSERT_GE(found.size(), 4u);
   EXPECT_EQ(found[0].severity, Severity::error);
   EXPECT_EQ(found[0].place, "ray 7 (byte 36484)");
-  EXPECT_THAT(found[0].message, HasSubstr("kx is nan"));
-  EXPECT_THAT(found, ::testing::Contains(Field(&Finding::message, HasSubstr("2 faulty rays"))));
-  EXPECT_THAT(found, ::testing::Contains(Field(&Finding::message, HasSubstr("is stated: the rays share"))));
+  EXPECT_THAT(found[0].text, HasSubstr("kx is nan"));
+  EXPECT_THAT(found, ::testing::Contains(Field(&Diagnostic::text, HasSubstr("2 faulty rays"))));
+  EXPECT_THAT(found, ::testing::Contains(Field(&Diagnostic::text, HasSubstr("is stated: the rays share"))));
 }
 
 TEST(RayCheck, MissingFluxNoRaysAndNoRayFile) {
@@ -51,9 +51,9 @@ TEST(RayCheck, MissingFluxNoRaysAndNoRayFile) {
   set.header.flux_lm.reset();
   write_ray_set(dir / "a", set, "tm25");
   EXPECT_THAT(check_ray_file(dir / "a"),
-              ::testing::ElementsAre(Field(&Finding::message, HasSubstr("it will have to be given"))));
+              ::testing::ElementsAre(Field(&Diagnostic::text, HasSubstr("it will have to be given"))));
   write_ray_set(dir / "a", honest_set(0), "tm25");
-  EXPECT_THAT(check_ray_file(dir / "a"), ::testing::ElementsAre(Field(&Finding::message, "no rays")));
+  EXPECT_THAT(check_ray_file(dir / "a"), ::testing::ElementsAre(Field(&Diagnostic::text, "no rays")));
   set.rays.weight.assign(3, 0.0F);
   write_ray_set(dir / "a", set, "tm25");
   EXPECT_EQ(check_ray_file(dir / "a").front().severity, Severity::error);

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "lucerna/core/cpu/vector_clones.h"
+#include "lucerna/simd/vector_clones.h"
 
 namespace lucerna::batch {
 

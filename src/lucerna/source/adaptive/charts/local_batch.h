@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "lucerna/core/cpu/vector_clones.h"
+#include "lucerna/simd/vector_clones.h"
 #include "lucerna/source/adaptive/charts/support_batch.h"
 
 namespace lucerna {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/source/adaptive/charts/number_batch.h"
 
-#include "lucerna/core/cpu/vector_clones.h"
+#include "lucerna/simd/vector_clones.h"
 
 namespace lucerna {
 

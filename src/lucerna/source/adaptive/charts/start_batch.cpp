@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lucerna/core/cpu/vector_clones.h"
+#include "lucerna/simd/vector_clones.h"
 #include "lucerna/source/adaptive/charts/local_batch.h"
 
 namespace lucerna {

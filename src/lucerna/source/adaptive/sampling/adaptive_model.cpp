@@ -7,9 +7,9 @@
 #include <span>
 
 #include "lucerna/core/cpu/huge_pages.h"
-#include "lucerna/core/cpu/vector_clones.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/parallel/parallel.h"
+#include "lucerna/simd/vector_clones.h"
 #include "lucerna/source/adaptive/charts/number_batch.h"
 #include "lucerna/source/adaptive/charts/support_batch.h"
 #include "lucerna/source/emitters/warp.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/core/cpu/processor.h"
+#include "lucerna/simd/processor.h"
 
 namespace lucerna {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/design/validation/reach.h"
+#include "lucerna/design/validation/etendue_limit.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -31,19 +31,19 @@ Eigen::VectorXd spot_in(const TentBins& bins, double half_deg, double share) {
 }
 
 /// By default of a Lambertian disk of 1 mm: pi^2 mm^2 sr, of even luminance.
-Reach reach_of(double half_deg, double share, TargetMode mode, double efficiency = 0.0,
-               EmitterKind kind = EmitterKind::disk) {
+EtendueLimit reach_of(double half_deg, double share, TargetMode mode, double efficiency = 0.0,
+                      EmitterKind kind = EmitterKind::disk) {
   const DesignShape shape = DesignShape::revolution(10, Aperture::circle(20), 4);
   const TentBins bins = TentBins::rings(Frame(), 1.5 * radians(half_deg), 48);
   const DesignRays rays = emitter_rays(kind);
   SourceEtendue etendue(rays);
-  return target_reach(rays, etendue, shape, bins, spot_in(bins, half_deg, share), mode, efficiency);
+  return etendue_limit(rays, etendue, shape, bins, spot_in(bins, half_deg, share), mode, efficiency);
 }
 
-TEST(Reach, BoundsTheShareByTheEtendue) {
+TEST(EtendueLimit, BoundsTheShareByTheEtendue) {
   // The opening of radius 10 (and the source's cross section of 1) at sin(half): 101 pi^2 sin^2(half).
   for (const double half_deg : {2.0, 4.5}) {
-    const Reach r = reach_of(half_deg, 0.5, TargetMode::absolute);
+    const EtendueLimit r = reach_of(half_deg, 0.5, TargetMode::absolute);
     const double expected = 101.0 * std::pow(std::sin(radians(half_deg)), 2);
     EXPECT_NEAR(r.max_share, expected, 0.12 * expected) << half_deg;
     EXPECT_NEAR(r.opening_mm2, 101.0 * std::numbers::pi, 0.05 * 101.0 * std::numbers::pi);
@@ -51,7 +51,7 @@ TEST(Reach, BoundsTheShareByTheEtendue) {
   EXPECT_DOUBLE_EQ(reach_of(12.0, 0.9, TargetMode::absolute).max_share, 1.0);
 }
 
-TEST(Reach, SaysWhatForbidsATarget) {
+TEST(EtendueLimit, SaysWhatForbidsATarget) {
   using testing::ElementsAre;
   using testing::HasSubstr;
   using testing::IsEmpty;
@@ -64,9 +64,9 @@ TEST(Reach, SaysWhatForbidsATarget) {
               ElementsAre(HasSubstr("etendue: "), HasSubstr("efficiency: 0.800")));
 }
 
-TEST(Reach, ACoilIsNotJudgedByItsFocusPlane) {
+TEST(EtendueLimit, ACoilIsNotJudgedByItsFocusPlane) {
   // On its focus plane the light of a coil fills twice its étendue and would not fit (model_etendue_test).
-  const Reach r = reach_of(8.0, 1.0, TargetMode::shape, 0.0, EmitterKind::filament);
+  const EtendueLimit r = reach_of(8.0, 1.0, TargetMode::shape, 0.0, EmitterKind::filament);
   EXPECT_LT(r.needed_mm2sr, 0.7 * r.etendue_mm2sr);
   EXPECT_GT(r.max_share, 0.96);
   EXPECT_THAT(r.statements, testing::IsEmpty());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/design/validation/reach.h"
+#include "lucerna/design/validation/etendue_limit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,44 +29,45 @@ std::vector<std::size_t> brightest_first(const TentBins& bins, const Eigen::Vect
 
 /// What the étendue of the opening lets the sources send, by their curve.
 void bound_by_etendue(const EtendueCurve& curve, const TentBins& bins, const Eigen::VectorXd& target,
-                      TargetMode mode, Reach& reach) {
+                      TargetMode mode, EtendueLimit& limit) {
   const double total = target.sum();
   double part = 0.0, etendue = 0.0;
   bool half = false;
-  reach.max_share = 1.0;
+  limit.max_share = 1.0;
   for (const std::size_t i : brightest_first(bins, target)) {
     part += target[static_cast<Eigen::Index>(i)] / total;
     const double cosine = std::abs(bin_direction(bins, i, {}).z());
-    etendue += bins.measure()[i] * (cosine * reach.opening_mm2);
-    reach.max_share = std::min(reach.max_share, share_in(curve, etendue) / part);
+    etendue += bins.measure()[i] * (cosine * limit.opening_mm2);
+    limit.max_share = std::min(limit.max_share, share_in(curve, etendue) / part);
     if (half || part < 0.5) continue;
     half = true;
-    reach.etendue_mm2sr = etendue;
+    limit.etendue_mm2sr = etendue;
     const double share = mode == TargetMode::absolute ? std::min(1.0, total * part) : part;
-    reach.needed_mm2sr = curve.degenerate() ? 0.0 : curve.at(share);
+    limit.needed_mm2sr = curve.degenerate() ? 0.0 : curve.at(share);
   }
 }
 
 /// What that forbids.
-std::vector<std::string> etendue_statements(const Reach& reach, TargetMode mode, double wanted_efficiency) {
+std::vector<std::string> etendue_statements(const EtendueLimit& limit, TargetMode mode,
+                                            double min_efficiency) {
   std::vector<std::string> statements;
   const auto forbids = [&](const char* what, double share) {
     statements.push_back(fmt::format(
         "etendue: an opening of {:.4g} mm2 passes {:.3g} mm2 sr towards the brighter half of the target, "
         "where the sources' light needs {:.3g}; at most {:.1f} % of it can have the target's distribution, "
         "{} {:.1f} %",
-        reach.opening_mm2, reach.etendue_mm2sr, reach.needed_mm2sr, 100.0 * reach.max_share, what,
+        limit.opening_mm2, limit.etendue_mm2sr, limit.needed_mm2sr, 100.0 * limit.max_share, what,
         100.0 * share));
   };
-  const double max = kEtendueTolerance * reach.max_share;
-  if (reach.wanted_share > max && reach.wanted_share <= 1.0) {
-    forbids("the target asks for", reach.wanted_share);
+  const double max = kEtendueTolerance * limit.max_share;
+  if (limit.target_share > max && limit.target_share <= 1.0) {
+    forbids("the target asks for", limit.target_share);
   }
   if (mode == TargetMode::shape && max < 1.0) forbids("the sources have", 1.0);
-  if (wanted_efficiency > max) {
+  if (min_efficiency > max) {
     statements.push_back(
         fmt::format("efficiency: {:.3f} is asked for, the etendue lets {:.3f} have the target's distribution",
-                    wanted_efficiency, reach.max_share));
+                    min_efficiency, limit.max_share));
   }
   return statements;
 }
@@ -97,29 +98,29 @@ double opening_mm2(const DesignShape& shape, const RayBlock& rays) {
   return outline + std::numbers::pi * *at * *at;
 }
 
-Reach target_reach(const DesignRays& rays, SourceEtendue& etendue, const DesignShape& shape,
-                   const TentBins& bins, const Eigen::VectorXd& target, TargetMode mode,
-                   double wanted_efficiency) {
-  Reach reach;
+EtendueLimit etendue_limit(const DesignRays& rays, SourceEtendue& etendue, const DesignShape& shape,
+                           const TentBins& bins, const Eigen::VectorXd& target, TargetMode mode,
+                           double min_efficiency) {
+  EtendueLimit limit;
   const double total = target.sum();
   LUCERNA_CHECK(total > 0.0, "a target without light in its window");
   if (mode == TargetMode::absolute) {
-    reach.wanted_share = total;
+    limit.target_share = total;
     if (total > 1.0) {
-      reach.statements.push_back(fmt::format(
+      limit.statements.push_back(fmt::format(
           "flux: the target has {:.4g} {} in its window, the sources {:.4g}; no mirror adds light",
           total * rays.flux(), symbol(rays.unit()), rays.flux()));
     }
   }
-  if (bins.is_plane()) return reach;
-  reach.opening_mm2 = opening_mm2(shape, etendue.rays());
-  bound_by_etendue(etendue.quick(), bins, target, mode, reach);
-  if (!etendue_statements(reach, mode, wanted_efficiency).empty()) {
-    bound_by_etendue(etendue.searched(), bins, target, mode, reach);
+  if (bins.is_plane()) return limit;
+  limit.opening_mm2 = opening_mm2(shape, etendue.rays());
+  bound_by_etendue(etendue.quick(), bins, target, mode, limit);
+  if (!etendue_statements(limit, mode, min_efficiency).empty()) {
+    bound_by_etendue(etendue.searched(), bins, target, mode, limit);
   }
-  const auto forbidden = etendue_statements(reach, mode, wanted_efficiency);
-  reach.statements.insert(reach.statements.end(), forbidden.begin(), forbidden.end());
-  return reach;
+  const auto forbidden = etendue_statements(limit, mode, min_efficiency);
+  limit.statements.insert(limit.statements.end(), forbidden.begin(), forbidden.end());
+  return limit;
 }
 
 }  // namespace lucerna
