@@ -7,7 +7,7 @@
 #include "lucerna/trace/kernels/triangle_bvh.h"
 
 #if defined(LUCERNA_EMBREE)
-#include <embree3/rtcore.h>
+#include "lucerna/trace/engines/embree_device.h"
 #endif
 
 namespace lucerna {
@@ -46,18 +46,18 @@ class TreeHits final : public MeshHitFinder {
 
 class EmbreeHits final : public MeshHitFinder {
  public:
-  explicit EmbreeHits(const std::vector<Body>& meshes) : device_(rtcNewDevice(nullptr)) {
-    if (device_ == nullptr) throw InputError("Embree gives no device", ErrorCause::unsupported);
-    scene_ = rtcNewScene(device_);
-    for (std::size_t i = 0; i < meshes.size(); ++i) attach(meshes[i], static_cast<unsigned>(i));
+  explicit EmbreeHits(const std::vector<Body>& meshes) : scene_(rtcNewScene(device_.get())) {
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+      if (meshes[i].mesh->triangles.empty()) continue;
+      RTCGeometry g = embree_triangles(device_, meshes[i]);
+      rtcAttachGeometryByID(scene_, g, static_cast<unsigned>(i));
+      rtcReleaseGeometry(g);
+    }
     // Robust: no ray passes between two triangles that share an edge.
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
     rtcCommitScene(scene_);
   }
-  ~EmbreeHits() override {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
+  ~EmbreeHits() override { rtcReleaseScene(scene_); }
   EmbreeHits(const EmbreeHits&) = delete;
   EmbreeHits& operator=(const EmbreeHits&) = delete;
 
@@ -90,30 +90,7 @@ class EmbreeHits final : public MeshHitFinder {
   }
 
  private:
-  void attach(const Body& body, unsigned id) {
-    const Mesh& mesh = *body.mesh;
-    if (mesh.triangles.empty()) return;  // Embree gives no buffer of size 0
-    RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
-                                                          mesh.vertices_mm.size()));
-    auto* t = static_cast<std::uint32_t*>(
-        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangles.size()));
-    if (v == nullptr || t == nullptr) {
-      throw InputError(fmt::format("the mesh of '{}' does not fit the memory", body.name));
-    }
-    for (const Vec3& p : mesh.vertices_mm) {
-      const Vec3 w = body.world_from_body.point(p);
-      for (const double x : {w.x, w.y, w.z}) *v++ = static_cast<float>(x);
-    }
-    for (const auto& triangle : mesh.triangles) {
-      for (const std::uint32_t k : triangle) *t++ = k;
-    }
-    rtcCommitGeometry(g);
-    rtcAttachGeometryByID(scene_, g, id);
-    rtcReleaseGeometry(g);
-  }
-
-  RTCDevice device_;
+  EmbreeDevice device_;
   RTCScene scene_;
 };
 

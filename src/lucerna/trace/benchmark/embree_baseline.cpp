@@ -7,9 +7,10 @@
 #include "lucerna/trace/kernels/kernel.h"
 
 #if defined(LUCERNA_EMBREE)
-#include <embree3/rtcore.h>
 #include <pmmintrin.h>
 #include <xmmintrin.h>
+
+#include "lucerna/trace/engines/embree_device.h"
 #endif
 
 namespace lucerna {
@@ -21,9 +22,8 @@ struct EmbreeBaseline::Device {
     csr_ = _mm_getcsr();  // Embree's manual asks for these modes; they are this thread's until the end
     _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
     _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-    device_ = rtcNewDevice("threads=1");
-    scene_ = rtcNewScene(device_);
-    RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    scene_ = rtcNewScene(device_.get());
+    RTCGeometry mesh = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
     const auto n = static_cast<std::size_t>(field.cells()) + 1;
     auto* v = static_cast<float*>(
         rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, n * n));
@@ -52,7 +52,6 @@ struct EmbreeBaseline::Device {
   }
   ~Device() {
     rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
     _mm_setcsr(csr_);
   }
   Device(const Device&) = delete;
@@ -143,7 +142,7 @@ struct EmbreeBaseline::Device {
 
   double build_s = 0.0;
   unsigned csr_ = 0;
-  RTCDevice device_;
+  EmbreeDevice device_{"threads=1"};
   RTCScene scene_;
 };
 

@@ -4,7 +4,7 @@
 #include "lucerna/core/io/error.h"
 
 #if defined(LUCERNA_EMBREE)
-#include <embree3/rtcore.h>
+#include "lucerna/trace/engines/embree_device.h"
 #endif
 
 namespace lucerna {
@@ -32,52 +32,23 @@ std::vector<Vec3> smooth_normals(const Body& body) {
 #if defined(LUCERNA_EMBREE)
 
 struct BodyTracer::Device {
-  RTCDevice device = nullptr;
+  EmbreeDevice device;
   /// What light straight from the source meets, and what all other light does (Debian's Embree has no ray
   /// masks).
-  RTCScene direct = nullptr, returning = nullptr;
+  RTCScene direct = rtcNewScene(device.get()), returning = rtcNewScene(device.get());
   ~Device() {
-    if (direct != nullptr) rtcReleaseScene(direct);
-    if (returning != nullptr) rtcReleaseScene(returning);
-    if (device != nullptr) rtcReleaseDevice(device);
+    rtcReleaseScene(direct);
+    rtcReleaseScene(returning);
   }
 };
 
-namespace {
-
-RTCGeometry geometry(RTCDevice device, const Body& body) {
-  const Mesh& mesh = *body.mesh;
-  RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* v = static_cast<float*>(
-      rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.vertices_mm.size()));
-  auto* t = static_cast<std::uint32_t*>(
-      rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangles.size()));
-  if (v == nullptr || t == nullptr)
-    throw InputError(fmt::format("body '{}' does not fit the memory", body.name));
-  for (const Vec3& p : mesh.vertices_mm) {
-    const Vec3 w = body.world_from_body.point(p);
-    for (const double x : {w.x, w.y, w.z}) *v++ = static_cast<float>(x);
-  }
-  for (const auto& triangle : mesh.triangles) {
-    for (const std::uint32_t k : triangle) *t++ = k;
-  }
-  rtcCommitGeometry(g);
-  return g;
-}
-
-}  // namespace
-
-BodyTracer::BodyTracer(const std::vector<Body>& bodies)
-    : count_(bodies.size()), device_(std::make_unique<Device>()) {
+BodyTracer::BodyTracer(const std::vector<Body>& bodies) : count_(bodies.size()) {
   if (bodies.empty()) return;
-  device_->device = rtcNewDevice(nullptr);
-  if (device_->device == nullptr) throw InputError("Embree gives no device", ErrorCause::unsupported);
-  device_->direct = rtcNewScene(device_->device);
-  device_->returning = rtcNewScene(device_->device);
+  device_ = std::make_unique<Device>();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     check(bodies[i]);
     corner_normals_.push_back(smooth_normals(bodies[i]));
-    RTCGeometry g = geometry(device_->device, bodies[i]);
+    RTCGeometry g = embree_triangles(device_->device, bodies[i]);
     rtcAttachGeometryByID(device_->returning, g, static_cast<unsigned>(i));
     if (!bodies[i].only_returning_light) rtcAttachGeometryByID(device_->direct, g, static_cast<unsigned>(i));
     rtcReleaseGeometry(g);
