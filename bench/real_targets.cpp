@@ -6,12 +6,12 @@
 //   bench_real_targets [options] hidden [CASE ...]             random mirrors: n10, n49-near, n49-far,
 //   n49-wild, n400
 // options: --time S (60), --rays N (of the validation, 16 M), --target-rays N (of tables, 64 M), --family
-// bspline|revolution, --source led|filament|FILE, --targets N (of `hidden`, 10), --seed S, --start (judges
-// only the mirror to begin with), --history (prints every step), --keep (the models and tables that were
-// made), --fixed-knots (of `hidden`), --device cuda. The mirror of all but `hidden`: 120 mm over f = 20 mm,
-// hole 8 mm, reflectance 0.9. Each line: excess at n = 12, 24 and 48 with its standard error, noise, light in
-// the rectangle, light and error outside, bound, seconds of the design and of the validation, rays of the
-// design, why it ended.
+// bspline|revolution, --light-weight W (0.03), --source led|filament|FILE, --targets N (of `hidden`, 10),
+// --seed S, --start (judges only the mirror to begin with), --history (prints every step), --keep (the models
+// and tables that were made), --fixed-knots (of `hidden`), --device cuda. The mirror of all but `hidden`: 120
+// mm over f = 20 mm, hole 8 mm, reflectance 0.9. Each line: excess at n = 12, 24 and 48 with its standard
+// error, noise, light in the rectangle, light and error outside, bound, seconds of the design and of the
+// validation, rays of the design, why it ended.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,7 +45,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Run {
-  double time_s = 60.0;
+  double time_s = 60.0, light_weight = DesignProblem::kLightWeight;
   std::uint64_t rays = std::uint64_t{1} << 24, target_rays = std::uint64_t{1} << 26, seed = 1;
   std::string family = "bspline", source = "led", mode;
   int targets = 10;
@@ -59,7 +59,7 @@ double seconds_since(std::chrono::steady_clock::time_point t) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - t).count();
 }
 
-bool wanted(const Run& run, const std::string& name) {
+bool selected(const Run& run, const std::string& name) {
   return run.names.empty() || std::find(run.names.begin(), run.names.end(), name) != run.names.end();
 }
 
@@ -91,8 +91,8 @@ std::string luminaire(const Run& run, const std::string& source) {
 DesignProblem problem(const Run& run, const std::string& scene, const fs::path& target,
                       const std::string& mode) {
   const fs::path file = run.folder / "project.toml";
-  write_file(file, fmt::format("{}[target]\nfile = \"{}\"\nmode = \"{}\"\n[design]\n", scene,
-                               fs::absolute(target).string(), mode));
+  write_file(file, fmt::format("{}[target]\nfile = \"{}\"\nmode = \"{}\"\n[design]\nlight_weight = {}\n",
+                               scene, fs::absolute(target).string(), mode, run.light_weight));
   return design_problem(read_project(file), file);
 }
 
@@ -193,7 +193,7 @@ void files(const Run& run) {
 
 void synthetic(const Run& run) {
   for (const auto& target : bench::synthetic_targets()) {
-    if (!wanted(run, target.name)) continue;
+    if (!selected(run, target.name)) continue;
     const fs::path file = written(run, target.name, bench::table_of(target, 2.5, 1.0));
     Validated j;
     solve(run, target.name, problem(run, luminaire(run, run.source), file, "shape"), run.time_s, j);
@@ -205,7 +205,7 @@ void attainable(const Run& run) {
   double worst = -1.0;
   for (const std::string source : {"led", "filament"}) {
     for (const auto& target : bench::synthetic_targets()) {
-      if (!wanted(run, target.name)) continue;
+      if (!selected(run, target.name)) continue;
       const std::string scene = luminaire(run, source), name = target.name + "-" + source;
       const DesignProblem first =
           problem(run, scene, written(run, name, bench::table_of(target, 2.5, 1.0)), "shape");
@@ -320,7 +320,7 @@ DesignProblem hidden_problem(const Run& run, const Suite& s, const DesignShape& 
 
 void hidden(const Run& run) {
   for (const Suite& s : kSuites) {
-    if (!wanted(run, s.name)) continue;
+    if (!selected(run, s.name)) continue;
     double worst = 0.0;
     int k = 0;
     for (const DesignShape& truth : hidden_shapes(s, run.targets)) {
@@ -351,6 +351,8 @@ Run parsed(int argc, char** argv) {
       run.seed = std::stoull(value(i));
     } else if (a == "--targets") {
       run.targets = std::stoi(value(i));
+    } else if (a == "--light-weight") {
+      run.light_weight = std::stod(value(i));
     } else if (a == "--family") {
       run.family = value(i);
     } else if (a == "--source") {
