@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -9,6 +10,7 @@
 #include "lucerna/cli/parse/photometric_arguments.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/rayset/files/ray_check.h"
+#include "lucerna/ray_file.h"
 #include "lucerna/source_model.h"
 
 namespace lucerna::cli {
@@ -38,22 +40,46 @@ std::vector<Diagnostic> check_file(const std::string& path, const PhotometricArg
   }
 }
 
-/// Files as given; a folder represents every regular file below it, by name.
-std::vector<std::string> expand(const std::vector<std::string>& paths) {
+/// Whether a file below a folder is one to be checked, by its content, or by its ending where that is damaged.
+bool is_known_kind(const std::filesystem::path& path) {
+  constexpr std::array kEndings{".nfl", ".ies", ".ldt"};
+  const std::string ending = path.extension().string();
+  if (std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end()) return true;
+  const auto formats = ray_formats();
+  const auto own = [&](std::string_view format) {
+    return ending != ".txt" && ray_file_ending(format) == ending;
+  };
+  if (std::any_of(formats.begin(), formats.end(), own)) return true;
+  return is_source_model(path) || is_photometric_file(path) || detect_ray_format(path).has_value();
+}
+
+/// Files as given; a folder represents those below it that are of a known kind, by name.
+struct FileList {
   std::vector<std::string> files;
+  /// Of folders: files of other kinds.
+  std::size_t others = 0;
+};
+
+FileList expand(const std::vector<std::string>& paths) {
+  FileList list;
   for (const std::string& path : paths) {
     if (!std::filesystem::is_directory(path)) {
-      files.push_back(path);
+      list.files.push_back(path);
       continue;
     }
     std::vector<std::string> inside;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(path)) {
-      if (entry.is_regular_file()) inside.push_back(entry.path().string());
+      if (!entry.is_regular_file()) continue;
+      if (is_known_kind(entry.path())) {
+        inside.push_back(entry.path().string());
+      } else {
+        ++list.others;
+      }
     }
     std::sort(inside.begin(), inside.end());
-    files.insert(files.end(), inside.begin(), inside.end());
+    list.files.insert(list.files.end(), inside.begin(), inside.end());
   }
-  return files;
+  return list;
 }
 
 std::size_t count(const std::vector<Diagnostic>& found, Severity severity) {
@@ -64,7 +90,8 @@ std::size_t count(const std::vector<Diagnostic>& found, Severity severity) {
 void check(const std::vector<std::string>& paths, const PhotometricArguments& photometric, Session& session,
            int& exit_code) {
   session.start();
-  const std::vector<std::string> files = expand(paths);
+  const FileList expanded = expand(paths);
+  const std::vector<std::string>& files = expanded.files;
   std::size_t clean = 0, warned = 0, failed = 0;
   Json list = Json::array();
   for (const std::string& path : files) {
@@ -83,12 +110,17 @@ void check(const std::vector<std::string>& paths, const PhotometricArguments& ph
   }
   session.print_line(
       fmt::format("{} files: {} ok, {} with warnings, {} with errors", files.size(), clean, warned, failed));
+  if (expanded.others > 0) {
+    session.print_line(fmt::format("{} other files are no ray files, source models or light distributions",
+                                   expanded.others));
+  }
   if (session.json) {
     Json result = session.json_head(std::nullopt);
     result["files"] = std::move(list);
     result["ok"] = clean;
     result["with_warnings"] = warned;
     result["with_errors"] = failed;
+    result["other_files"] = expanded.others;
     session.print_json(result);
   }
   if (failed > 0) exit_code = 1;

@@ -43,6 +43,19 @@ TEST_F(CheckCli, AFolderIsItsFilesByName) {
             "3 files: 3 ok, 0 with warnings, 0 with errors\n");
 }
 
+TEST_F(CheckCli, OfAFolderOnlyFilesOfItsKinds) {
+  write_file(dir / "good/project.toml", "[[source]]\n");
+  write_file(dir / "good/result.json", "{}\n");
+  write_file(dir / "good/cut.nfl", "");  // by its ending: what is damaged is not passed over
+  const auto run = run_lucerna(dir.path(), "check good");
+  EXPECT_EQ(run.exit_code, 1) << run.out << run.err;
+  EXPECT_TRUE(has(run.out, "good/cut.nfl: error\n")) << run.out;
+  EXPECT_TRUE(has(run.out, "4 files: 3 ok, 0 with warnings, 1 with errors\n")) << run.out;
+  EXPECT_TRUE(has(run.out, "2 other files are no ray files")) << run.out;
+  // Given by name, any file is checked.
+  EXPECT_EQ(run_lucerna(dir.path(), "check good/result.json").exit_code, 1);
+}
+
 TEST_F(CheckCli, GoesOnAfterABadFileAndCountsIt) {
   const std::string whole = test::slurp(dir / "good/s.tm25ray");
   write_file(dir / "cut.tm25ray", whole.substr(0, 20000));

@@ -33,9 +33,9 @@ struct DesignProblem {
   /// bring the mirror near the target.
   bool fixed_knots = false;
   /// What light beside the target's rectangle costs a free form in shape mode: so many times the square of
-  /// the missing share, beside the squared error. At 0.03 a tenth of the light counts as an error of 1.7 %.
+  /// the missing share, beside the squared error. At 0.1 a tenth of the light counts as an error of 3.2 %.
   double light_weight = kLightWeight;
-  static constexpr double kLightWeight = 0.03;
+  static constexpr double kLightWeight = 0.1;
   /// What to try around the result; nothing: no [design.tolerances].
   std::optional<ToleranceRanges> tolerances;
 };

@@ -149,7 +149,7 @@ constexpr std::array kKeys{
     ProjectKey{"design", "time_s", Type::number, kAboveZero, "", "60", "Time for the search. Rays per step follow from it."},
     ProjectKey{"design", "intervals", Type::number_or_numbers, whole(1, 60), "", "chosen by the search", "Fixes the intervals between knots: one number, or two along x and y."},
     ProjectKey{"design", "restarts", Type::number, whole(0, 1000), "", "while there is time", "Restarts in a row without gain that end the search."},
-    ProjectKey{"design", "light_weight", Type::number, within(0, 100), "", "0.03", "Weight of light that misses the target's rectangle: 0.03 counts a tenth of it as an error of 1.7 %."},
+    ProjectKey{"design", "light_weight", Type::number, within(0, 100), "", "0.1", "Weight of light that misses the target's rectangle: 0.1 counts a tenth of it as an error of 3.2 %."},
     ProjectKey{"design", "limits", Type::table, kAny, "", "none", "What the mirror must not be."},
     ProjectKey{"design", "tolerances", Type::table, kAny, "", "none", "What a manufactured luminaire may differ by."},
 
