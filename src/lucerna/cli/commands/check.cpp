@@ -9,8 +9,8 @@
 #include "lucerna/cli/commands/commands.h"
 #include "lucerna/cli/parse/photometric_arguments.h"
 #include "lucerna/core/io/error.h"
-#include "lucerna/rayset/files/ray_check.h"
 #include "lucerna/ray_file.h"
+#include "lucerna/rayset/files/ray_check.h"
 #include "lucerna/source_model.h"
 
 namespace lucerna::cli {
@@ -40,7 +40,8 @@ std::vector<Diagnostic> check_file(const std::string& path, const PhotometricArg
   }
 }
 
-/// Whether a file below a folder is one to be checked, by its content, or by its ending where that is damaged.
+/// Whether a file below a folder is one to be checked, by its content, or by its ending where that is
+/// damaged.
 bool is_known_kind(const std::filesystem::path& path) {
   constexpr std::array kEndings{".nfl", ".ies", ".ldt"};
   const std::string ending = path.extension().string();
