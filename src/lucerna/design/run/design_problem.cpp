@@ -231,7 +231,8 @@ DesignShape start_within(const DesignLimits& limits, const DesignShape& start,
 }
 
 DesignProblem design_problem(Project project, const std::filesystem::path& path) {
-  const toml::table tables = toml_tables(project);  // the readers below point into it
+  // The readers below point into it. It stays where it is when the project is moved; a copy has no lines.
+  const toml::table& tables = toml_tables(project);
   TomlReader root(tables, path.string(), "");
   for (const char* known : {"source", "reflector", "detector", "body"}) root.has(known);
   auto target_reader = root.table("target");

@@ -325,6 +325,7 @@ TEST(DesignProblem, RefusesATargetBehindTheMirror) {
   } catch (const InputError& e) {
     EXPECT_EQ(e.cause(), ErrorCause::contradiction);
     EXPECT_THAT(std::string(e.what()), testing::HasSubstr("180 degrees away from where the mirror opens"));
+    EXPECT_THAT(std::string(e.what()), testing::HasSubstr("project.toml: line 18: target: "));
   }
   // With another mirror in the scene the light may be turned around.
   write_file(file,

@@ -67,6 +67,17 @@ std::string without_numbers(std::string_view path) {
   return text;
 }
 
+/// Where a node stands; a table under a header has no line of its own, so its first entry's. 0: nowhere.
+toml::source_index first_line(const toml::node& node) {
+  toml::source_index line = node.source().begin.line;
+  if (line > 0 || !node.is_table()) return line;
+  for (const auto& entry : *node.as_table()) {
+    const toml::source_index at = entry.second.source().begin.line;
+    if (at > 0 && (line == 0 || at < line)) line = at;
+  }
+  return line;
+}
+
 }  // namespace
 
 std::string nearest_word(std::string_view word, const std::set<std::string, std::less<>>& candidates) {
@@ -142,8 +153,9 @@ void TomlReader::missing(std::string_view key, const std::string& what) const {
 
 void TomlReader::fail(std::string_view key, const std::string& what, ErrorCause cause) const {
   const toml::node* node = table_->get(key);
-  const auto line = node != nullptr ? node->source().begin.line : table_->source().begin.line;
-  throw InputError(fmt::format("{}: line {}: {}: {}", file_, line, full_key(key), what), cause);
+  const auto line = first_line(node != nullptr ? *node : *table_);
+  const std::string place = line > 0 ? fmt::format("line {}: ", line) : "";
+  throw InputError(fmt::format("{}: {}{}: {}", file_, place, full_key(key), what), cause);
 }
 
 double TomlReader::to_number(const toml::node& node, std::string_view key) const {
