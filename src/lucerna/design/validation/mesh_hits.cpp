@@ -46,18 +46,17 @@ class TreeHits final : public MeshHitFinder {
 
 class EmbreeHits final : public MeshHitFinder {
  public:
-  explicit EmbreeHits(const std::vector<Body>& meshes) : scene_(rtcNewScene(device_.get())) {
+  explicit EmbreeHits(const std::vector<Body>& meshes) {
     for (std::size_t i = 0; i < meshes.size(); ++i) {
       if (meshes[i].mesh->triangles.empty()) continue;
       RTCGeometry g = embree_triangles(device_, meshes[i]);
-      rtcAttachGeometryByID(scene_, g, static_cast<unsigned>(i));
+      rtcAttachGeometryByID(scene_.get(), g, static_cast<unsigned>(i));
       rtcReleaseGeometry(g);
     }
     // Robust: no ray passes between two triangles that share an edge.
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    rtcCommitScene(scene_);
+    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcCommitScene(scene_.get());
   }
-  ~EmbreeHits() override { rtcReleaseScene(scene_); }
   EmbreeHits(const EmbreeHits&) = delete;
   EmbreeHits& operator=(const EmbreeHits&) = delete;
 
@@ -80,7 +79,7 @@ class EmbreeHits final : public MeshHitFinder {
       q.ray.mask = 0xFFFFFFFFU;
       q.ray.flags = 0;
       q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-      rtcIntersect1(scene_, &context, &q);
+      rtcIntersect1(scene_.get(), &context, &q);
       hits.t[i] = q.ray.tfar;
       hits.u[i] = q.hit.u;
       hits.v[i] = q.hit.v;
@@ -91,7 +90,7 @@ class EmbreeHits final : public MeshHitFinder {
 
  private:
   EmbreeDevice device_;
-  RTCScene scene_;
+  EmbreeScene scene_{device_};
 };
 
 #endif

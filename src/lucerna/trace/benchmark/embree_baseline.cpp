@@ -22,7 +22,6 @@ struct EmbreeBaseline::Device {
     csr_ = _mm_getcsr();  // Embree's manual asks for these modes; they are this thread's until the end
     _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
     _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-    scene_ = rtcNewScene(device_.get());
     RTCGeometry mesh = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
     const auto n = static_cast<std::size_t>(field.cells()) + 1;
     auto* v = static_cast<float*>(
@@ -46,14 +45,11 @@ struct EmbreeBaseline::Device {
       }
     }
     rtcCommitGeometry(mesh);
-    rtcAttachGeometry(scene_, mesh);
+    rtcAttachGeometry(scene_.get(), mesh);
     rtcReleaseGeometry(mesh);
-    build_s = wall_seconds([&] { rtcCommitScene(scene_); });
+    build_s = wall_seconds([&] { rtcCommitScene(scene_.get()); });
   }
-  ~Device() {
-    rtcReleaseScene(scene_);
-    _mm_setcsr(csr_);
-  }
+  ~Device() { _mm_setcsr(csr_); }
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
@@ -125,7 +121,7 @@ struct EmbreeBaseline::Device {
       packet.ray.flags[k] = 0;
       packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
     }
-    rtcIntersect16(valid, scene_, &context, &packet);
+    rtcIntersect16(valid, scene_.get(), &context, &packet);
     for (std::size_t k = 0; k < 16; ++k) {
       const bool is_hit = valid[k] != 0 && packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
       hits.t[i + k] = hits.past[i + k] = packet.ray.tfar[k];
@@ -143,7 +139,7 @@ struct EmbreeBaseline::Device {
   double build_s = 0.0;
   unsigned csr_ = 0;
   EmbreeDevice device_{"threads=1"};
-  RTCScene scene_;
+  EmbreeScene scene_{device_};
 };
 
 bool EmbreeBaseline::available() { return true; }

@@ -35,11 +35,7 @@ struct BodyTracer::Device {
   EmbreeDevice device;
   /// What light straight from the source meets, and what all other light does (Debian's Embree has no ray
   /// masks).
-  RTCScene direct = rtcNewScene(device.get()), returning = rtcNewScene(device.get());
-  ~Device() {
-    rtcReleaseScene(direct);
-    rtcReleaseScene(returning);
-  }
+  EmbreeScene direct{device}, returning{device};
 };
 
 BodyTracer::BodyTracer(const std::vector<Body>& bodies) : count_(bodies.size()) {
@@ -49,11 +45,12 @@ BodyTracer::BodyTracer(const std::vector<Body>& bodies) : count_(bodies.size()) 
     check(bodies[i]);
     corner_normals_.push_back(smooth_normals(bodies[i]));
     RTCGeometry g = embree_triangles(device_->device, bodies[i]);
-    rtcAttachGeometryByID(device_->returning, g, static_cast<unsigned>(i));
-    if (!bodies[i].only_returning_light) rtcAttachGeometryByID(device_->direct, g, static_cast<unsigned>(i));
+    rtcAttachGeometryByID(device_->returning.get(), g, static_cast<unsigned>(i));
+    if (!bodies[i].only_returning_light)
+      rtcAttachGeometryByID(device_->direct.get(), g, static_cast<unsigned>(i));
     rtcReleaseGeometry(g);
   }
-  for (RTCScene scene : {device_->direct, device_->returning}) {
+  for (RTCScene scene : {device_->direct.get(), device_->returning.get()}) {
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     rtcCommitScene(scene);
   }
@@ -74,7 +71,7 @@ std::optional<BodyHit> BodyTracer::first_hit(const Ray& ray, double t_max_mm, bo
   q.ray.tfar = static_cast<float>(t_max_mm);
   q.ray.mask = 0xFFFFFFFFU;
   q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(returning ? device_->returning : device_->direct, &context, &q);
+  rtcIntersect1((returning ? device_->returning : device_->direct).get(), &context, &q);
   if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   const std::vector<Vec3>& corners = corner_normals_[q.hit.geomID];
   return body_hit(ray.direction, static_cast<double>(q.ray.tfar), q.hit.geomID,

@@ -8,12 +8,19 @@
 
 namespace lucerna {
 
-// Not inlined: its name has to stand in the stacks that the thread sanitizer shows.
+// Constructors are not inlined: their names have to stand in the stacks that the thread sanitizer shows.
 __attribute__((noinline)) EmbreeDevice::EmbreeDevice(const char* config) : device_(rtcNewDevice(config)) {
   if (device_ == nullptr) throw InputError("Embree gives no device", ErrorCause::unsupported);
 }
 
 EmbreeDevice::~EmbreeDevice() { rtcReleaseDevice(device_); }
+
+__attribute__((noinline)) EmbreeScene::EmbreeScene(const EmbreeDevice& device)
+    : scene_(rtcNewScene(device.get())) {
+  if (scene_ == nullptr) throw InputError("Embree gives no scene", ErrorCause::unsupported);
+}
+
+EmbreeScene::~EmbreeScene() { rtcReleaseScene(scene_); }
 
 RTCGeometry embree_triangles(const EmbreeDevice& device, const Body& body) {
   const Mesh& mesh = *body.mesh;

@@ -8,8 +8,8 @@
 
 namespace lucerna {
 
-/// An Embree device: the only place where one is made, so that what the thread sanitizer says of Embree's own
-/// threads can be told from races of ours (cmake/races_elsewhere.txt).
+/// An Embree device. Devices and scenes are made here only, so that what the thread sanitizer says of
+/// Embree's own threads can be told from races of ours (cmake/races_elsewhere.txt).
 class EmbreeDevice {
  public:
   /// `config` as rtcNewDevice takes it. Throws InputError where Embree gives no device.
@@ -22,6 +22,20 @@ class EmbreeDevice {
 
  private:
   RTCDevice device_;
+};
+
+/// An Embree scene without geometries; does not outlive its device.
+class EmbreeScene {
+ public:
+  explicit EmbreeScene(const EmbreeDevice& device);
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  RTCScene get() const { return scene_; }
+
+ private:
+  RTCScene scene_;
 };
 
 /// The triangles of a body in the luminaire frame, committed; to be attached to a scene and released. The
