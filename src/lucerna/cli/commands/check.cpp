@@ -48,7 +48,7 @@ bool is_known_kind(const std::filesystem::path& path) {
   if (std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end()) return true;
   const auto formats = ray_formats();
   const auto own = [&](std::string_view format) {
-    return ending != ".txt" && ray_file_ending(format) == ending;
+    return ending != ".txt" && ray_file_ending(format) == ending;  // any text may be called .txt
   };
   if (std::any_of(formats.begin(), formats.end(), own)) return true;
   return is_source_model(path) || is_photometric_file(path) || detect_ray_format(path).has_value();

@@ -15,7 +15,7 @@ namespace lucerna {
 /// source.
 struct TransportChoice {
   double sign = 1.0, vertex_distance_mm = 0.0;
-  bool exists() const { return vertex_distance_mm > 0.0; }
+  constexpr bool exists() const { return vertex_distance_mm > 0.0; }
 };
 
 /// What a start by transport is made for.

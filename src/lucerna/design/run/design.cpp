@@ -75,6 +75,14 @@ void check_result(const FitProblem& fit, const DesignOptions& options, const Tim
 
 }  // namespace
 
+DesignRays design_rays(const DesignProblem& problem, const DesignOptions& options, std::uint64_t seed) {
+  const Frame mirror_from_world = problem.world_from_mirror.inverse();
+  DesignRays rays(problem.project.scene.sources, mirror_from_world, seed);
+  rays.evaluate_on(options.accelerator);
+  rays.shade_by(shadows_of(problem.project.scene, mirror_from_world));
+  return rays;
+}
+
 FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& options, DesignRays& rays) {
   FitProblem fit{&rays, problem.reflectance, {}, target_window(problem), problem.target.mode};
   fit.seed = options.seed;
@@ -109,9 +117,7 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
                     const DesignObserver& observer) {
   check(options);
   TimeBudget time(options.time_s.value_or(problem.time_s));
-  DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
-  rays.evaluate_on(options.accelerator);
-  rays.shade_by(shadows_of(problem.project.scene, problem.world_from_mirror.inverse()));
+  DesignRays rays = design_rays(problem, options, options.seed);
   FitProblem fit = fit_problem(problem, options, rays);
   ResultCheck result_check(problem, options, progress);
   time.begin_search(result_check.seconds(options.validation_rays), options.rays_after);

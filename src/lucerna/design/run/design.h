@@ -61,6 +61,10 @@ struct DesignResult : DesignFindings {
 using DesignObserver =
     std::function<void(const FitRecord&, const DesignShape& best, const std::string& checkpoint)>;
 
+/// The rays of a problem's sources in the mirror's frame, evaluated where the options say, with what shades
+/// them. None are drawn yet.
+DesignRays design_rays(const DesignProblem& problem, const DesignOptions& options, std::uint64_t seed);
+
 /// The problem as a fit sees it: in the mirror's frame, in shares of the sources' flux, with all limits. Both
 /// `problem` and `rays` (the problem's sources in the mirror's frame) must outlive it.
 FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& options, DesignRays& rays);

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "lucerna/core/io/error.h"
-#include "lucerna/design/evaluation/body_shadows.h"
 #include "lucerna/design/run/design.h"
 #include "lucerna/design/run/search_mirror.h"
 #include "lucerna/design/search/free_form_search.h"
@@ -80,9 +79,7 @@ std::vector<ParetoPoint> pareto_front(const DesignProblem& problem, const Design
       problem.target.zones_only) {
     return {};
   }
-  DesignRays rays(problem.project.scene.sources, problem.world_from_mirror.inverse(), options.seed);
-  rays.evaluate_on(options.accelerator);
-  rays.shade_by(shadows_of(problem.project.scene, problem.world_from_mirror.inverse()));
+  DesignRays rays = design_rays(problem, options, options.seed);
   FitProblem fit = fit_problem(problem, options, rays);
   const ErrorBoxes boxes(target_rectangle(problem.target));
   const std::vector<double> target = box_target(boxes, problem.target, rays.flux());

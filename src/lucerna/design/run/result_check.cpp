@@ -9,7 +9,6 @@
 
 #include "lucerna/cad.h"
 #include "lucerna/design/constraints/light_limits.h"
-#include "lucerna/design/evaluation/body_shadows.h"
 #include "lucerna/design/validation/bounds.h"
 #include "lucerna/design/validation/etendue_limit.h"
 #include "lucerna/design/validation/validation.h"
@@ -50,13 +49,10 @@ std::vector<LimitCheck> checked_limits(const DesignProblem& problem, const Desig
   return out;
 }
 
-/// The scene's sources in the mirror's frame, other rays than those of the search.
-DesignRays check_rays(const DesignProblem& problem, const DesignOptions& options) {
-  const Frame mirror_from_world = problem.world_from_mirror.inverse();
-  DesignRays rays(problem.project.scene.sources, mirror_from_world, options.seed + 0x9E3779B97F4A7C15ull);
-  rays.evaluate_on(options.accelerator);
-  rays.shade_by(shadows_of(problem.project.scene, mirror_from_world));
-  rays.grow(std::min(options.validation_rays, kLimitRays));
+/// Other rays than those of the search.
+DesignRays check_rays(const DesignProblem& problem, const DesignOptions& options, Progress& progress) {
+  DesignRays rays = design_rays(problem, options, options.seed + 0x9E3779B97F4A7C15ull);
+  rays.grow(std::min(options.validation_rays, kLimitRays), progress);
   return rays;
 }
 
@@ -114,7 +110,7 @@ double share_behind(const DesignShape& shape, const DesignRays& rays) {
 ResultCheck::ResultCheck(const DesignProblem& problem, const DesignOptions& options, Progress& progress)
     : problem_(problem),
       options_(options),
-      rays_(check_rays(problem, options)),
+      rays_(check_rays(problem, options, progress)),
       etendue_(rays_),
       boxes_(target_rectangle(problem.target)),
       target_(box_target(boxes_, problem.target, rays_.flux())) {

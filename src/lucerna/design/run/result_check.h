@@ -20,7 +20,7 @@ double share_behind(const DesignShape& shape, const DesignRays& rays);
 /// that a search knows what time is left for it: the start's error and the étendue of the sources.
 class ResultCheck {
  public:
-  /// Both must outlive it. Validates the start with a sixteenth of the options' rays at most.
+  /// Both must outlive it. Validates the start with 2^20 rays at most, in a twentieth of the time.
   ResultCheck(const DesignProblem& problem, const DesignOptions& options, Progress& progress);
 
   /// Seconds that so many rays through the result will take, as the start's did.

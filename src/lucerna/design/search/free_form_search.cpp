@@ -19,21 +19,23 @@ constexpr int kLevels = kFreeFormLevels, kEnd = 2, kMoreRays = 3;
 constexpr int kRoughIntervals = 32;
 /// The first candidates, over the aperture's radius: mirrors that spread light near the source, and mirrors
 /// whose rays cross farther from it. Others catch too little light or become walls.
-constexpr std::array<TransportChoice, 9> kFirst{{{-1.0, 0.33},
-                                                 {-1.0, 0.27},
-                                                 {-1.0, 0.21},
-                                                 {-1.0, 0.45},
-                                                 {1.0, 0.75},
-                                                 {1.0, 0.92},
-                                                 {1.0, 0.33},
-                                                 {1.0, 0.27},
-                                                 {1.0, 0.45}}};
-/// The candidate that is an approach of the given mirror, where the ones before it stay this far from the
-/// target (relative error): a point source's mirror is no guide for a source that is long or wide.
+constexpr std::array<TransportChoice, 10> kFirst{{{-1.0, 0.33},
+                                                  {-1.0, 0.27},
+                                                  {},  // no transport: an approach of the given mirror
+                                                  {-1.0, 0.21},
+                                                  {-1.0, 0.45},
+                                                  {1.0, 0.75},
+                                                  {1.0, 0.92},
+                                                  {1.0, 0.33},
+                                                  {1.0, 0.27},
+                                                  {1.0, 0.45}}};
+/// The approach is tried where the candidates before it stay this far from the target (relative error): a
+/// point source's mirror is no guide for a source that is long or wide.
 constexpr int kApproach = 3;
+static_assert(!kFirst[kApproach - 1].exists());
 constexpr double kFarError = 0.15;
 /// The given mirror, its approach and these.
-constexpr int kFirstCandidates = static_cast<int>(kFirst.size()) + 2;
+constexpr int kFirstCandidates = static_cast<int>(kFirst.size()) + 1;
 /// How many of them are fitted finely.
 constexpr int kFine = 3;
 /// A neighbour of the best goes on where its cost is at most so many times the best's at that level.
@@ -117,7 +119,7 @@ FreeFormLevel FreeFormSearch::level(int number) const {
 }
 
 TransportChoice FreeFormSearch::first_choice(int number) const {
-  const TransportChoice& c = kFirst[static_cast<std::size_t>(number < kApproach ? number - 1 : number - 2)];
+  const TransportChoice& c = kFirst[static_cast<std::size_t>(number) - 1];
   return {c.sign, c.vertex_distance_mm * given_.aperture().outer_radius_mm()};
 }
 
@@ -142,7 +144,6 @@ bool FreeFormSearch::approach_is_alone() const {
 }
 
 TransportChoice FreeFormSearch::choice(int number) const {
-  if (number == kApproach) return {};
   if (number < kFirstCandidates) return first_choice(number);
   // A neighbour of the best; of the first choice where the given mirror is the best.
   Rng rng(problem_.seed, static_cast<std::uint64_t>(number), 77);
@@ -157,6 +158,7 @@ TransportChoice FreeFormSearch::choice(int number) const {
 std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormSnapshot& snapshot) {
   if (snapshot.candidate == 0) return nearer_of_given();
   if (snapshot.candidate == kApproach && !worth_an_approach()) return std::nullopt;
+  // The first approach begins with the given mirror itself, later ones with perturbed copies.
   if (!snapshot.transport.exists()) return approached(snapshot.candidate - kApproach);
   const FreeFormLevel rough = level(0);
   const DesignShape family = DesignShape::bspline(given_.focal_mm(), given_.aperture(), rough.intervals_x,

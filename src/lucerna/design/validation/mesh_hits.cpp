@@ -57,8 +57,6 @@ class EmbreeHits final : public MeshHitFinder {
     rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
     rtcCommitScene(scene_.get());
   }
-  EmbreeHits(const EmbreeHits&) = delete;
-  EmbreeHits& operator=(const EmbreeHits&) = delete;
 
   void first_hits(const MeshRays& rays, std::size_t n, MeshHits& hits) const override {
     // One ray at a time: on rays in the order of their directions, a fifth faster than packets of 8 or 16.

@@ -10,12 +10,6 @@ namespace {
 
 constexpr std::uint64_t kCurveRays = std::uint64_t{1} << 18;
 
-/// Whether a source's own density makes a curve in less time than its rays do.
-bool has_quick_density(const RaySource& source) {
-  const auto* light = dynamic_cast<const LuminanceSource*>(&source);
-  return light != nullptr && light->has_luminance();
-}
-
 }  // namespace
 
 SourceEtendue::SourceEtendue(const DesignRays& rays) : rays_(rays.first(kCurveRays)) {
@@ -23,7 +17,7 @@ SourceEtendue::SourceEtendue(const DesignRays& rays) : rays_(rays.first(kCurveRa
 }
 
 const EtendueCurve& SourceEtendue::quick() {
-  if (only_ != nullptr && has_quick_density(*only_)) return searched();
+  if (only_ != nullptr && luminance_of(*only_) != nullptr) return searched();
   if (!quick_) quick_ = etendue_curve(rays_);
   return *quick_;
 }

@@ -202,8 +202,11 @@ FarFieldMetrics far_field_metrics(const CountedSphere& sphere, std::span<const d
       exact ? exact_axis(exact, axis, sphere.replicates(), m) : measure_axis(sphere, axis, m);
   if (peak && exact) {
     const PointPeak on_axis{axis, m.axis_cd};
-    peak->half_width_deg <= kExactLobe_deg ? refine_peak(exact, on_axis, *peak)
-                                           : add_ripples(exact, on_axis, *peak);
+    if (peak->half_width_deg <= kExactLobe_deg) {
+      refine_peak(exact, on_axis, *peak);
+    } else {
+      add_ripples(exact, on_axis, *peak);
+    }
   }
   m.peak = peak;
   std::vector<double> planes{0.0, 90.0};

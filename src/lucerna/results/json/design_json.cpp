@@ -129,8 +129,7 @@ void tolerance_rows(const ToleranceSweep& sweep, std::vector<std::string>& lines
 
 /// What the bound stands on.
 std::string bound_text(const DesignBound& bound) {
-  if (!(bound.error > 0.0))
-    return "neither etendue nor direct light forbid the target with this share of the light";
+  if (!(bound.error > 0.0)) return "neither etendue nor direct light forbids the target";
   if (bound.direct_error >= bound.etendue_error) return "the light that passes the mirror unreflected";
   return fmt::format(
       "the {:.0f} % of the target's light in its brightest boxes have {:.3g} mm2 sr of this aperture "

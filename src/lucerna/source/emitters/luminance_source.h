@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "lucerna/geometry.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 
@@ -38,5 +39,11 @@ class LuminanceSource {
   /// A ball that every line of light crosses.
   virtual LightBound light_bound() const = 0;
 };
+
+/// The source as one that knows its luminance; null where it does not.
+inline const LuminanceSource* luminance_of(const RaySource& source) {
+  const auto* light = dynamic_cast<const LuminanceSource*>(&source);
+  return light != nullptr && light->has_luminance() ? light : nullptr;
+}
 
 }  // namespace lucerna

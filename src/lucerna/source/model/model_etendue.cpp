@@ -87,8 +87,8 @@ EtendueCurve etendue_curve(const SourceModel& model, std::uint64_t rays, std::ui
 std::optional<EtendueCurve> known_etendue_curve(const RaySource& source, std::uint64_t rays,
                                                 std::uint64_t seed) {
   if (const auto* model = dynamic_cast<const SourceModel*>(&source)) return etendue_curve(*model, rays, seed);
-  const auto* light = dynamic_cast<const LuminanceSource*>(&source);
-  if (light == nullptr || !light->has_luminance()) return std::nullopt;
+  const LuminanceSource* light = luminance_of(source);
+  if (light == nullptr) return std::nullopt;
   const RayBlock drawn =
       draw_rays(source, Sequence(SequenceKind::random, seed), static_cast<std::size_t>(rays));
   const auto density = sorted_by([&](const Ray& ray) { return density_on_line(*light, ray); }, drawn);

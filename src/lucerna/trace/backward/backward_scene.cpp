@@ -11,11 +11,6 @@ namespace lucerna {
 
 namespace {
 
-const LuminanceSource* luminance_of(const PlacedSource& source) {
-  const auto* light = dynamic_cast<const LuminanceSource*>(source.rays.get());
-  return light != nullptr && light->has_luminance() ? light : nullptr;
-}
-
 /// A slope error turns where light goes but not how much of a mirror it sees: over the surface's own normal,
 /// a mirror takes light in by the cosine of incidence and gives it off by that of exit.
 struct Reflection {
@@ -45,7 +40,7 @@ struct BackwardScene::Hit {
 
 std::string no_backward_reason(const Scene& scene) {
   for (const PlacedSource& s : scene.sources) {
-    if (luminance_of(s) == nullptr) return "a source has no known luminance";
+    if (luminance_of(*s.rays) == nullptr) return "a source has no known luminance";
   }
   for (const PlacedReflector& r : scene.reflectors) {
     if (r.reflector.curve) return "a mirror is a swept curve";
@@ -67,7 +62,8 @@ BackwardScene::BackwardScene(const Scene& scene, int max_bounces)
         {&r, ReferenceTracer(r.reflector), r.world_from_reflector.inverse(), 1e-3 * r.slope_error_mrad});
   }
   for (const PlacedSource& s : scene.sources) {
-    sources_.push_back({luminance_of(s), s.world_from_source, s.world_from_source.inverse(), s.total_flux()});
+    sources_.push_back(
+        {luminance_of(*s.rays), s.world_from_source, s.world_from_source.inverse(), s.total_flux()});
   }
 }
 
