@@ -20,10 +20,8 @@ constexpr double kCutOff = 0.025;  // photometric practice: less than 2.5 % of t
 constexpr double kSmoothing = 0.25;
 /// Of intensities that are read at fixed directions; a goniophotometer's detector has half of it.
 constexpr double kGlareRadius_deg = 2.5;
-/// The brightest direction is looked for this share of the lobe's half width about those that the cells show.
-constexpr double kPeakSearch = 0.15;
-/// A wider lobe has more places to be the brightest than a search looks at.
-constexpr double kExactLobe_deg = 10.0;
+/// The brightest direction is looked for within this share of the distance between those that the cells show.
+constexpr double kPeakSearch = 0.5;
 /// Arcs of C0 and C90 below this are measured by `exact`. Their ends are looked for within this share of
 /// them.
 constexpr double kNarrowArc_deg = 20.0, kArcWindow = 0.25;
@@ -119,32 +117,33 @@ Jackknife independent(const Estimate& e, std::size_t replicates) {
   return Jackknife(replicates).map([&](double) { return e.mean; }).with_error(e.standard_error);
 }
 
-/// Moves the peak to the brightest direction near those that the cells show. It is as well known as it was,
-/// and no better than it has moved.
-void refine_peak(const PointIntensity& exact, const PointPeak& axis, FoundPeak& p) {
-  PointPeak best = brightest_point(exact, p.bright, kPeakSearch * p.half_width_deg);
-  if (axis.cd.mean > best.cd.mean) best = axis;
-  const TypeCAngles at = type_c_angles(best.direction);
-  const double moved_deg = degrees(angle_between(best.direction, p.direction));
+/// A place is as well known as it was, and no better than it has moved.
+void move(FoundPeak& p, const Direction& to) {
+  const TypeCAngles from = type_c_angles(p.direction), at = type_c_angles(to);
+  const double moved_deg = degrees(angle_between(p.direction, to));
+  const double along_deg = degrees(std::abs(at.gamma_rad - from.gamma_rad));
+  const double across_deg = std::sqrt(std::max(0.0, moved_deg * moved_deg - along_deg * along_deg));
+  const double c_moved_deg = across_deg / std::max(std::sin(at.gamma_rad), 1e-9);
+  const auto moved = [](double angle_rad, const Estimate& before, double by_deg) {
+    return Estimate{degrees(angle_rad), std::hypot(before.standard_error, by_deg)};
+  };
+  if (p.gamma_deg) p.gamma_deg = moved(at.gamma_rad, *p.gamma_deg, along_deg);
+  if (c_moved_deg > kTurned_deg) p.c_deg.reset();
+  if (p.c_deg) p.c_deg = moved(at.c_rad, *p.c_deg, c_moved_deg);
   p.direction_error_deg = std::hypot(p.direction_error_deg, moved_deg);
-  if (p.gamma_deg)
-    p.gamma_deg = Estimate{degrees(at.gamma_rad), std::hypot(p.gamma_deg->standard_error, moved_deg)};
-  const double c_moved_deg = moved_deg / std::max(std::sin(at.gamma_rad), 1e-9);
-  if (p.c_deg && c_moved_deg > kTurned_deg) p.c_deg.reset();
-  if (p.c_deg) p.c_deg = Estimate{degrees(at.c_rad), std::hypot(p.c_deg->standard_error, c_moved_deg)};
-  p.direction = best.direction;
-  p.cd = best.cd;
-  p.values = independent(best.cd, p.values.replicates());
-  p.radius_deg = p.c_radius_deg = 0.0;
+  p.direction = to;
 }
 
-/// What single directions differ by from what kernels show, at the peak and upward on the axis, is in the
-/// peak's error.
-void add_ripples(const PointIntensity& exact, const PointPeak& axis, FoundPeak& p) {
-  const double at_peak = std::abs(precise_intensity(exact, p.direction).mean - p.cd.mean);
-  const double ripple = std::max(at_peak, axis.cd.mean - p.cd.mean);
-  p.cd.standard_error = std::hypot(p.cd.standard_error, ripple);
-  p.values = p.values.with_error(p.cd.standard_error);
+/// Moves the peak to the brightest direction near those that the cells show.
+void refine_peak(const PointIntensity& exact, const PointPeak& axis, FoundPeak& p) {
+  PointPeak best = brightest_point(exact, p.bright, kPeakSearch * p.bright_spacing_deg);
+  if (axis.cd.mean > best.cd.mean) {
+    best = {axis.direction, {axis.cd.mean, std::max(axis.cd.standard_error, best.cd.standard_error)}};
+  }
+  move(p, best.direction);
+  p.cd = best.cd;
+  p.values = independent(p.cd, p.values.replicates());
+  p.radius_deg = p.c_radius_deg = 0.0;
 }
 
 Jackknife exact_axis(const PointIntensity& exact, const Direction& axis, std::size_t replicates,
@@ -200,14 +199,7 @@ FarFieldMetrics far_field_metrics(const CountedSphere& sphere, std::span<const d
   const Direction axis = Direction::from_unit({0.0, 0.0, m.axis_gamma_deg == 0.0 ? -1.0 : 1.0});
   const Jackknife centre =
       exact ? exact_axis(exact, axis, sphere.replicates(), m) : measure_axis(sphere, axis, m);
-  if (peak && exact) {
-    const PointPeak on_axis{axis, m.axis_cd};
-    if (peak->half_width_deg <= kExactLobe_deg) {
-      refine_peak(exact, on_axis, *peak);
-    } else {
-      add_ripples(exact, on_axis, *peak);
-    }
-  }
+  if (peak && exact) refine_peak(exact, {axis, m.axis_cd}, *peak);
   m.peak = peak;
   std::vector<double> planes{0.0, 90.0};
   for (const double c : planes_deg) {

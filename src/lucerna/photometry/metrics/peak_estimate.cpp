@@ -33,6 +33,8 @@ constexpr double kDarkShare = 0.1;
 constexpr int kStencil = 5;
 /// Directions that are offered as starts of a finer search.
 constexpr std::size_t kMaxBright = 12;
+/// Kernels of this radius show ripples on top of a lobe; wider ones may not.
+constexpr double kRippleRadius_deg = 1.5;
 
 /// Directions in rows of gamma that cover the sphere, the poles among them.
 class Covering {
@@ -100,6 +102,11 @@ Scan scan(const CountedSphere& sphere, const Kernel& kernel, const Scan* before)
   s.best = static_cast<std::size_t>(std::max_element(s.cd.begin(), s.cd.end()) - s.cd.begin());
   return s;
 }
+
+struct PointOfScan {
+  Direction direction;
+  double cd;
+};
 
 struct LobeWidth {
   double half_deg = 180.0, side_deg = 180.0;
@@ -313,22 +320,43 @@ void choose_radius(const CountedSphere& sphere, const LargestFigure& max, const 
   p.noise_cd = max.estimate.standard_error;
 }
 
-/// The peak, then candidates in the order of their brightness, as far apart as a radius.
-std::vector<Direction> bright_directions(const Candidates& c, const FoundPeak& p) {
-  std::vector<std::size_t> order(c.cd.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::pair(-c.cd[a].all(), a) < std::pair(-c.cd[b].all(), b);
-  });
-  std::vector<Direction> out{p.direction};
-  for (const std::size_t i : order) {
-    const Direction d = c.direction(i);
-    const bool apart = std::all_of(out.begin(), out.end(),
-                                   [&](const Direction& o) { return apart_deg(o, d) > p.radius_deg; });
-    if (apart) out.push_back(d);
+/// The peak, then the others in the order of their brightness, as far apart as `spacing_deg`.
+std::vector<Direction> bright_directions(const Direction& peak, std::vector<PointOfScan> others,
+                                         double spacing_deg) {
+  std::stable_sort(others.begin(), others.end(),
+                   [](const PointOfScan& a, const PointOfScan& b) { return a.cd > b.cd; });
+  std::vector<Direction> out{peak};
+  for (const PointOfScan& p : others) {
+    const bool apart = std::all_of(
+        out.begin(), out.end(), [&](const Direction& o) { return apart_deg(o, p.direction) > spacing_deg; });
+    if (apart) out.push_back(p.direction);
     if (out.size() == kMaxBright) break;
   }
   return out;
+}
+
+std::vector<PointOfScan> points(const Candidates& c) {
+  std::vector<PointOfScan> out;
+  for (std::size_t i = 0; i < c.cd.size(); ++i) out.push_back({c.direction(i), c.cd[i].all()});
+  return out;
+}
+
+std::vector<PointOfScan> points(const Scan& s) {
+  std::vector<PointOfScan> out;
+  for (std::size_t i = 0; i < s.cd.size(); ++i) out.push_back({s.directions[i], s.cd[i]});
+  return out;
+}
+
+void find_bright(const CountedSphere& sphere, const Scan& scanned, const Candidates& candidates,
+                 FoundPeak& p) {
+  p.bright_spacing_deg = p.radius_deg;
+  std::vector<PointOfScan> places = points(candidates);
+  if (std::max(p.radius_deg, p.c_radius_deg) > kRippleRadius_deg) {
+    const Kernel narrow(std::min(p.radius_deg, std::max(sphere.resolution_deg(), kRippleRadius_deg)));
+    p.bright_spacing_deg = std::min(p.radius_deg, 2.0 * narrow.radius_deg);
+    places = points(scan(sphere, narrow, &scanned));
+  }
+  p.bright = bright_directions(p.direction, std::move(places), p.bright_spacing_deg);
 }
 
 }  // namespace
@@ -357,7 +385,7 @@ std::optional<FoundPeak> peak_estimate(const CountedSphere& sphere) {
   const Candidates c = candidates(sphere, *s, kernel);
   const LargestFigure max = largest(c.cd);
   place_peak(c, max, p);
-  p.bright = bright_directions(c, p);
+  find_bright(sphere, *s, c, p);
   choose_radius(sphere, max, kernel, p);
   return p;
 }

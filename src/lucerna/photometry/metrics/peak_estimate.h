@@ -14,8 +14,11 @@ struct FoundPeak : PeakEstimate {
   Jackknife values;
   /// Noise of the widest kernel, which is wide for the lobe: what a trace can be asked to bring down.
   double noise_cd = 0.0;
-  /// Directions further than a radius apart that are nearly as bright, this one first.
+  /// Directions at least `bright_spacing_deg` apart that are nearly as bright, this one first. On the top of
+  /// a wide lobe they are what narrower kernels show: it can have ripples, and the highest may be any of
+  /// them.
   std::vector<Direction> bright;
+  double bright_spacing_deg = 0.0;
 };
 
 /// Finds it. The widest kernel follows from the lobe's own width: from wide to narrow, until the radius is

@@ -17,8 +17,8 @@ constexpr double kPrecise = 0.003;
 constexpr std::uint64_t kFirstSamples = 1024, kMaxSamples = std::uint64_t{1} << 13;
 /// Of each direction that a search looks at; the same random numbers for all, so that most noise cancels.
 constexpr std::uint64_t kSearchSamples = 256, kSearchSeed = 11, kFinalSeed = 23;
-/// Starts that are searched about, and looked at again by themselves.
-constexpr std::size_t kSearched = 2, kRetained = 2;
+/// Starts that are searched about, and tops that are looked at again.
+constexpr std::size_t kSearched = 8, kRetained = 4;
 /// A search ends when its step is this share of the radius.
 constexpr double kFirstStep = 0.5, kLastStep = 0.05;
 constexpr int kNeighbours = 6;
@@ -37,6 +37,26 @@ struct Found {
   Direction direction;
   double cd = 0.0;
 };
+
+void retain_brightest(std::vector<Found>& found, std::size_t max) {
+  std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.cd > b.cd; });
+  found.resize(std::min(found.size(), max));
+}
+
+/// A search that ends as high as this share of the best went up another ripple of the same top.
+constexpr double kSameTop = 0.95;
+
+/// Half of what the best two searches differ by: a ripple that none saw may be higher by about that.
+double search_error(std::vector<PointPeak> tops) {
+  std::sort(tops.begin(), tops.end(),
+            [](const PointPeak& a, const PointPeak& b) { return a.cd.mean > b.cd.mean; });
+  if (tops.size() < 2 || tops[1].cd.mean < kSameTop * tops[0].cd.mean) return 0.0;
+  return 0.5 * (tops[0].cd.mean - tops[1].cd.mean);
+}
+
+PointPeak precise_peak(const PointIntensity& intensity, const Direction& direction) {
+  return {direction, precise_intensity(intensity, direction)};
+}
 
 Found pattern_search(const PointIntensity& intensity, const Direction& start, double radius_deg) {
   const auto look = [&](const Direction& d) {
@@ -126,18 +146,19 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
   LUCERNA_CHECK(!starts.empty(), "nowhere to start");
   std::vector<Found> found;
   for (const Direction& d : starts) found.push_back({d, intensity(d, kFirstSamples, kSearchSeed).mean});
-  const auto brighter = [](const Found& a, const Found& b) { return a.cd > b.cd; };
-  std::stable_sort(found.begin(), found.end(), brighter);
-  const std::size_t searched = std::min(kSearched, found.size());
-  found.resize(std::min(found.size(), kRetained));
-  for (std::size_t i = 0; i < searched; ++i)
-    found.push_back(pattern_search(intensity, found[i].direction, radius_deg));
-  // Other samples choose among the few that are left, and do not hold the noise that led the search there.
-  PointPeak best{};
+  retain_brightest(found, kSearched);
+  const Direction brightest_start = found.front().direction;
+  for (Found& f : found) f = pattern_search(intensity, f.direction, radius_deg);
+  for (Found& f : found) f.cd = intensity(f.direction, kFirstSamples, kSearchSeed).mean;
+  retain_brightest(found, kRetained);
+  // Other samples judge what was found: they do not hold the noise that led the search there.
+  PointPeak best = precise_peak(intensity, brightest_start);
+  std::vector<PointPeak> tops;
   for (const Found& f : found) {
-    const Estimate cd = precise_intensity(intensity, f.direction);
-    if (cd.mean > best.cd.mean) best = {f.direction, cd};
+    tops.push_back(precise_peak(intensity, f.direction));
+    if (tops.back().cd.mean > best.cd.mean) best = tops.back();
   }
+  best.cd.standard_error = std::hypot(best.cd.standard_error, search_error(std::move(tops)));
   return best;
 }
 

@@ -26,9 +26,9 @@ struct PointPeak {
   Estimate cd;
 };
 
-/// The brightest direction by pattern search about the brightest of `starts`, within about `radius_deg` of
-/// them. The value is from samples that the search has not seen. At least one start. Some 100 short
-/// estimates.
+/// The brightest direction by pattern search about the brightest eight of `starts`, within about `radius_deg`
+/// of them. The value is from samples that the search has not seen, its error has what the best two searches
+/// differ by where they end on one top. At least one start. Some 400 short estimates.
 PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direction> starts,
                           double radius_deg);
 
