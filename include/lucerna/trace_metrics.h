@@ -66,9 +66,10 @@ struct TraceMetrics {
 
 /// The figures of a trace. Thread safe. Cost: a few passes over the bins.
 [[nodiscard]] TraceMetrics trace_metrics(const TraceResult& result);
-/// The same with the scene that was traced: the far fields' peaks and axes are then exact, without bins and
-/// kernels, where all sources know their luminance (models, simple emitters) and light can be followed
-/// backward through the scene. About 0.5 s a far field.
+/// The same with the scene that was traced, where all sources know their luminance (models, simple emitters)
+/// and light can be followed backward through the scene: the far fields' peaks and axes are then exact,
+/// without bins and kernels, and small planes and luminance images are averaged with backward light. About
+/// 1 s a far field, and for each plane as long as a trace of the same number of rays or 0.3 s.
 [[nodiscard]] TraceMetrics trace_metrics(const TraceResult& result, const Scene& scene);
 
 /// "C 12.3 +- 0.4, gamma 30.2 +- 0.1 deg", or what is known of it: "on the axis within 0.3 deg", "gamma 30.2

@@ -7,20 +7,11 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/parallel/parallel.h"
-#include "lucerna/ray_statistics.h"
 
 namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kPilotRays = 4096;
-/// Radii that hold these shares of a source's lines, and the one that holds all, take equal shares of the
-/// samples.
-constexpr double kLineShares[] = {0.5, 0.9, 0.99};
-/// Mirrors are looked at where they reflect lines within the radius of this share.
-constexpr double kGuideShare = 0.98;
-/// A start on a mirror, in front of it by this share of its distance from the mirror's origin.
-constexpr double kOffSurface = 1e-10;
 /// Of the samples of the mirrors, each source has directly.
 constexpr std::uint64_t kDirectPart = 4;
 /// Numbers the streams of a seed: the mirrors' and each source's own.
@@ -31,60 +22,12 @@ int checked(int max_bounces) {
   return max_bounces;
 }
 
-double distance_mm(const Ray& line, const Vec3& point) {
-  const Vec3 to = point - line.origin_mm;
-  return length(to - dot(to, line.direction.vec()) * line.direction.vec());
-}
-
-/// How far the lines of a source's rays pass its focus, ascending.
-struct SourceLines {
-  Vec3 focus_mm;
-  std::vector<double> miss_mm;
-};
-
-SourceLines lines_of(const PlacedSource& placed) {
-  RayBlock rays;
-  rays.resize(kPilotRays, 0);
-  placed.rays->emit(Sequence(SequenceKind::sobol, 1), 0, rays);
-  const auto focus = summarize(rays).virtual_focus;
-  SourceLines lines{focus ? focus->point_mm : Vec3{}, {}};
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    lines.miss_mm.push_back(distance_mm(rays.ray(i), lines.focus_mm));
-  std::sort(lines.miss_mm.begin(), lines.miss_mm.end());
-  return lines;
-}
-
-double quantile(const std::vector<double>& ascending, double share) {
-  return ascending[static_cast<std::size_t>(share * static_cast<double>(ascending.size() - 1))];
-}
-
-std::vector<GuideSource> guide_sources(const Scene& scene) {
-  std::vector<GuideSource> out;
-  for (const PlacedSource& placed : scene.sources) {
-    const SourceLines lines = lines_of(placed);
-    out.push_back({placed.world_from_source.point(lines.focus_mm), quantile(lines.miss_mm, kGuideShare)});
-  }
-  return out;
-}
-
 }  // namespace
 
 BackwardEstimator::BackwardEstimator(const Scene& scene, int max_bounces)
     : scene_(scene, checked(max_bounces)), guide_(scene_, guide_sources(scene)) {
   for (std::size_t i = 0; i < scene.sources.size(); ++i)
-    disks_.push_back(disks_of(scene.sources[i], scene_.sources()[i]));
-}
-
-BackwardEstimator::LineDisks BackwardEstimator::disks_of(const PlacedSource& placed,
-                                                         const BackwardScene::Source& source) {
-  const SourceLines lines = lines_of(placed);
-  LineDisks disks{placed.world_from_source.point(lines.focus_mm), {}};
-  const LightBound bound = source.light->light_bound();
-  const double all = length(bound.centre_mm - lines.focus_mm) + bound.radius_mm;
-  for (const double share : kLineShares)
-    disks.radii_mm.push_back(std::min(all, std::max(1e-3 * all, quantile(lines.miss_mm, share))));
-  disks.radii_mm.push_back(all);
-  return disks;
+    disks_.emplace_back(scene.sources[i], *scene_.sources()[i].light);
 }
 
 template <class Sink>
@@ -96,20 +39,15 @@ void BackwardEstimator::sample_mirrors(const DirectionCell& cell, const CellGuid
     const auto u = sequence.point<4>(i);
     const TypeCAngles angles = cell.at(u[2], u[3]);
     const MirrorPlace place = guide.place(u[0], u[1]);
-    const BackwardScene::Mirror& mirror = scene_.mirrors()[place.mirror];
-    const Reflector& reflector = mirror.placed->reflector;
-    if (!reflector.aperture.contains(place.x_mm, place.y_mm)) continue;
-    const SurfacePoint s = reflector.surface->at(place.x_mm, place.y_mm);
-    const Frame& world_from_mirror = mirror.placed->world_from_reflector;
-    const Vec3 upward = world_from_mirror.vector({-s.dzdx, -s.dzdy, 1.0});
+    const auto from = mirror_point(scene_, place);
+    if (!from) continue;
     const Direction out = direction_from_type_c(angles);
-    const double area = dot(upward, out.vec());  // of the surface as seen from there, over that of the plane
+    const double area =
+        dot(from->area, out.vec());  // of the surface as seen from there, over that of the plane
     if (!(area > 0.0)) continue;
-    const double off = kOffSurface * (1.0 + std::hypot(place.x_mm, place.y_mm) + std::abs(s.z_mm));
-    const Vec3 point = world_from_mirror.point({place.x_mm, place.y_mm, s.z_mm + off});
-    const double luminance =
-        scene_.reflected_luminance(mirror, point, Direction::from(upward), out, {seed, i, 0}, scratch);
-    if (luminance > 0.0 && scene_.escapes(point, out, true))
+    const double luminance = scene_.reflected_luminance(
+        *from->mirror, from->point_mm, Direction::from(from->area), out, {seed, i, 0}, scratch);
+    if (luminance > 0.0 && scene_.escapes(from->point_mm, out, true))
       sink(u[2], angles, luminance * area / place.pdf_plane / static_cast<double>(samples));
   }
 }
@@ -119,22 +57,15 @@ void BackwardEstimator::sample_source(const DirectionCell& cell, std::size_t sou
                                       std::uint64_t seed, const Sink& sink) const {
   const Sequence sequence(SequenceKind::sobol, seed);
   const LineDisks& disks = disks_[source];
-  const auto count = static_cast<double>(disks.radii_mm.size());
   BackwardScene::Scratch scratch;
   for (std::uint64_t i = 0; i < samples; ++i) {
     const auto u = sequence.point<4>(i);
     const TypeCAngles angles = cell.at(u[2], u[3]);
     const Direction out = direction_from_type_c(angles);
-    const auto disk = static_cast<std::size_t>(u[0] * count);
-    const double radius = disks.radii_mm[disk] * std::sqrt(u[0] * count - static_cast<double>(disk));
-    double pdf = 0.0;
-    for (const double r : disks.radii_mm) pdf += radius <= r ? 1.0 / (count * std::numbers::pi * r * r) : 0.0;
-    const double turn = 2.0 * std::numbers::pi * u[1];
-    const Frame across = Frame::from_z(out);
-    const Vec3 point =
-        disks.centre_mm + radius * std::cos(turn) * across.ex() + radius * std::sin(turn) * across.ey();
-    const double luminance = scene_.direct_luminance(scene_.sources()[source], {point, out}, scratch);
-    if (luminance > 0.0) sink(u[2], angles, luminance / pdf / static_cast<double>(samples));
+    const LineDisks::Place place = disks.place(u[0], u[1], out);
+    const double luminance =
+        scene_.direct_luminance(scene_.sources()[source], {place.point_mm, out}, scratch);
+    if (luminance > 0.0) sink(u[2], angles, luminance / place.pdf_area / static_cast<double>(samples));
   }
 }
 

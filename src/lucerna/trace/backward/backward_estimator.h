@@ -9,6 +9,7 @@
 #include "lucerna/random.h"
 #include "lucerna/trace/backward/backward_scene.h"
 #include "lucerna/trace/backward/mirror_guide.h"
+#include "lucerna/trace/backward/source_lines.h"
 #include "lucerna/trace/detectors/direction_cell.h"
 
 namespace lucerna {
@@ -34,11 +35,6 @@ class BackwardEstimator {
                         std::uint64_t seed = 1) const;
 
  private:
-  /// Lines past a source: `weight` of them evenly within each radius of its centre.
-  struct LineDisks {
-    Vec3 centre_mm;
-    std::vector<double> radii_mm;
-  };
   /// One sample: a direction of the cell and what it adds to the mean intensity there.
   template <class Sink>
   void sample_mirrors(const DirectionCell& cell, const CellGuide& guide, std::uint64_t samples,
@@ -49,7 +45,6 @@ class BackwardEstimator {
   template <class Sink>
   void sample_cell(const DirectionCell& cell, const CellGuide& guide, std::uint64_t samples,
                    std::uint64_t seed, const Sink& sink) const;
-  static LineDisks disks_of(const PlacedSource& placed, const BackwardScene::Source& source);
 
   BackwardScene scene_;
   std::vector<LineDisks> disks_;

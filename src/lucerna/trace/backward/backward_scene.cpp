@@ -11,6 +11,9 @@ namespace lucerna {
 
 namespace {
 
+/// Past everything; a start there loses less than a nanometre.
+constexpr double kFarAway_mm = 1e6;
+
 /// A slope error turns where light goes but not how much of a mirror it sees: over the surface's own normal,
 /// a mirror takes light in by the cosine of incidence and gives it off by that of exit.
 struct Reflection {
@@ -130,6 +133,15 @@ double BackwardScene::direct_luminance(const Source& source, const Ray& ray, Scr
     if (escapes(ray.at(l.start_mm), ray.direction, false)) sum += source.flux * l.pdf_etendue;
   }
   return sum;
+}
+
+double BackwardScene::leaving_luminance(const Ray& line, ReflectionKey key, Scratch& scratch) const {
+  double sum = 0.0;
+  for (const Source& s : sources_) sum += direct_luminance(s, line, scratch);
+  const Ray against{line.at(kFarAway_mm), Direction::from_unit(-line.direction.vec())};
+  const auto last = nearest(against);
+  if (!last || !last->front || !escapes(last->point, line.direction, true)) return sum;
+  return sum + reflected_luminance(*last->mirror, last->point, last->normal, line.direction, key, scratch);
 }
 
 }  // namespace lucerna

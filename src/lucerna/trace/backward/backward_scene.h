@@ -53,6 +53,9 @@ class BackwardScene {
   /// Luminance that one source sends along the line of `ray` to infinity, past everything.
   double direct_luminance(const Source& source, const Ray& ray, Scratch& scratch) const;
 
+  /// Luminance of all light that leaves the luminaire along a line, wherever on it. `key` as above.
+  double leaving_luminance(const Ray& line, ReflectionKey key, Scratch& scratch) const;
+
   /// Does light from `point` along `out` leave the luminaire? `returning`: it was reflected before.
   bool escapes(const Vec3& point, const Direction& out, bool returning) const;
 

@@ -16,8 +16,21 @@ constexpr double kAnywhere = 0.1;
 constexpr double kMargin = 1.3;
 /// Slope errors of this many standard deviations are followed.
 constexpr double kSlopeErrors = 2.5;
+/// A point on a mirror is this share of its distance from the mirror's origin in front of it.
+constexpr double kOffSurface = 1e-10;
 
 }  // namespace
+
+std::optional<MirrorPoint> mirror_point(const BackwardScene& scene, const MirrorPlace& place) {
+  const BackwardScene::Mirror& mirror = scene.mirrors()[place.mirror];
+  const Reflector& reflector = mirror.placed->reflector;
+  if (!reflector.aperture.contains(place.x_mm, place.y_mm)) return std::nullopt;
+  const SurfacePoint s = reflector.surface->at(place.x_mm, place.y_mm);
+  const Frame& world_from_mirror = mirror.placed->world_from_reflector;
+  const double off = kOffSurface * (1.0 + std::hypot(place.x_mm, place.y_mm) + std::abs(s.z_mm));
+  return MirrorPoint{&mirror, world_from_mirror.point({place.x_mm, place.y_mm, s.z_mm + off}),
+                     world_from_mirror.vector({-s.dzdx, -s.dzdy, 1.0})};
+}
 
 MirrorPlace CellGuide::place(double u, double v) const {
   const auto after = std::upper_bound(entries_.begin(), entries_.end(), u,
@@ -50,17 +63,19 @@ MirrorGuide::MirrorGuide(const BackwardScene& scene, std::span<const GuideSource
   }
 }
 
-/// By how far the light that each patch sends along `out` has missed the source's centre.
+/// By how far the light that each patch sends has missed the source's centre.
+template <class AimOf>
 std::vector<MirrorGuide::Offset> MirrorGuide::offsets(std::span<const Patch> patches,
-                                                      const GuideSource& source, const Direction& out) const {
+                                                      const GuideSource& source, const AimOf& aim_of) {
   std::vector<Offset> to(patches.size());
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const Patch& p = patches[i];
-    const double cosine = dot(out.vec(), p.normal);
-    const Vec3 back = 2.0 * cosine * p.normal - out.vec();
+    const Aim aim = aim_of(p);
+    const double cosine = dot(aim.out.vec(), p.normal);
+    const Vec3 back = 2.0 * cosine * p.normal - aim.out.vec();
     const Vec3 centre = source.centre_mm - p.centre_mm;
     const double along = dot(centre, back);
-    to[i] = {centre - along * back, along, cosine * p.slope};
+    to[i] = {centre - along * back, along, cosine * p.slope * aim.weight};
   }
   return to;
 }
@@ -87,22 +102,34 @@ MirrorGuide::Offset MirrorGuide::reach_of_patch(std::span<const Offset> off, std
 }
 
 CellGuide MirrorGuide::for_cell(const DirectionCell& cell) const {
+  const Aim aim{cell.centre(), cell.radius_rad()};
+  return guide([&](const Patch&) { return aim; });
+}
+
+CellGuide MirrorGuide::for_point(const Vec3& point_mm, double radius_mm) const {
+  return guide([&](const Patch& p) {
+    const Vec3 to = point_mm - p.centre_mm;
+    const double r = length(to);
+    return Aim{Direction::from(to), radius_mm / r, 1.0 / (r * r)};
+  });
+}
+
+template <class AimOf>
+CellGuide MirrorGuide::guide(const AimOf& aim_of) const {
   CellGuide guide;
-  const Direction out = cell.centre();
-  const double spread = cell.radius_rad();
   double bright = 0.0, area = 0.0;
   std::vector<double> weights;
   for (std::size_t m = 0; m < mirrors_.size(); ++m) {
     const std::vector<Patch>& patches = mirrors_[m];
     std::vector<double> weight(patches.size(), 0.0);
     for (const GuideSource& source : sources_) {
-      const std::vector<Offset> off = offsets(patches, source, out);
+      const std::vector<Offset> off = offsets(patches, source, aim_of);
       for (std::size_t i = 0; i < patches.size(); ++i) {
         if (!patches[i].on_mirror) continue;
         const Offset reach = reach_of_patch(off, i);
-        const bool lit =
-            reach.weight > 0.0 && reach.along_mm > -source.radius_mm &&
-            reach.miss_mm.x < source.radius_mm + (spread + turn_rad_[m]) * std::abs(off[i].along_mm);
+        const bool lit = reach.weight > 0.0 && reach.along_mm > -source.radius_mm &&
+                         reach.miss_mm.x < source.radius_mm + (aim_of(patches[i]).spread_rad + turn_rad_[m]) *
+                                                                  std::abs(off[i].along_mm);
         if (lit) weight[i] = reach.weight;
       }
     }

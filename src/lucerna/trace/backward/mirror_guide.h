@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,18 @@ struct MirrorPlace {
   /// Density of the draw, 1/mm^2 of the aperture's plane.
   double pdf_plane = 0.0;
 };
+
+/// A place on a mirror's surface, in the luminaire frame.
+struct MirrorPoint {
+  const BackwardScene::Mirror* mirror = nullptr;
+  /// A hair in front of the surface.
+  Vec3 point_mm;
+  /// Towards the front, longer than 1 by the surface's area over that of the aperture's plane.
+  Vec3 area;
+};
+
+/// Nothing where the place is outside the aperture.
+std::optional<MirrorPoint> mirror_point(const BackwardScene& scene, const MirrorPlace& place);
 
 /// Chooses places on mirrors for light that leaves towards a cell of directions: nine tenths of them on the
 /// patches that are seen to reflect a source there, with a margin for what they turn within a patch and the
@@ -51,6 +64,8 @@ class MirrorGuide {
   MirrorGuide(const BackwardScene& scene, std::span<const GuideSource> sources);
   /// About 2300 patches a mirror, some 20 ns each.
   CellGuide for_cell(const DirectionCell& cell) const;
+  /// For light towards places within `radius_mm` of a point instead.
+  CellGuide for_point(const Vec3& point_mm, double radius_mm) const;
 
  private:
   struct Patch {
@@ -64,8 +79,16 @@ class MirrorGuide {
     Vec3 miss_mm;
     double along_mm = 0.0, weight = 0.0;
   };
-  std::vector<Offset> offsets(std::span<const Patch> patches, const GuideSource& source,
-                              const Direction& out) const;
+  /// Where the light of a patch goes, by how much the directions differ, and a factor of its weight.
+  struct Aim {
+    Direction out;
+    double spread_rad = 0.0, weight = 1.0;
+  };
+  template <class AimOf>
+  CellGuide guide(const AimOf& aim_of) const;
+  template <class AimOf>
+  static std::vector<Offset> offsets(std::span<const Patch> patches, const GuideSource& source,
+                                     const AimOf& aim_of);
 
   static Offset reach_of_patch(std::span<const Offset> off, std::size_t i);
 

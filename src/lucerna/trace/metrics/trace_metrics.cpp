@@ -10,6 +10,7 @@
 #include "lucerna/photometry/binning/binned_intensity.h"
 #include "lucerna/photometry/metrics/far_field_metrics.h"
 #include "lucerna/ray_file.h"
+#include "lucerna/trace/metrics/backward_blend.h"
 #include "lucerna/trace/metrics/backward_intensity.h"
 #include "lucerna/trace/result/far_field_counts.h"
 #include "lucerna/trace/result/node_noise.h"
@@ -101,13 +102,17 @@ TraceMetrics figures_of(const TraceResult& result, const Scene* scene) {
   for (std::size_t i = 0; i < result.far_fields.size(); ++i)
     figures.far_fields.push_back(far_field_result(result, i, scene));
   for (std::size_t i = 0; i < result.planes.size(); ++i) {
-    const PlaneImage image = illuminance(result, i);
-    figures.planes.push_back(plane_metrics(image, illuminance_extremes(result, i, image), std::nullopt));
+    const PlaneImage counted = illuminance(result, i);
+    const ImageBlend blend =
+        scene != nullptr ? backward_illuminance(*scene, result, i, counted) : ImageBlend();
+    figures.planes.push_back(plane_metrics(blended(counted, blend),
+                                           illuminance_extremes(result, i, counted, blend), std::nullopt));
   }
   for (std::size_t i = 0; i < result.luminances.size(); ++i) {
-    const PlaneImage image = luminance(result, i);
-    figures.luminances.push_back(
-        plane_metrics(image, luminance_extremes(result, i, image), result.luminances[i]));
+    const PlaneImage counted = luminance(result, i);
+    const ImageBlend blend = scene != nullptr ? backward_luminance(*scene, result, i, counted) : ImageBlend();
+    figures.luminances.push_back(plane_metrics(
+        blended(counted, blend), luminance_extremes(result, i, counted, blend), result.luminances[i]));
   }
   for (const RayDetector& d : result.ray_detectors) figures.rays.push_back({d, result.out_rays.size(), out});
   return figures;

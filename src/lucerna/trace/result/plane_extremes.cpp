@@ -35,17 +35,35 @@ std::vector<std::size_t> contenders(const PlaneImage& image, double sign) {
   return cells;
 }
 
-/// Figure over flux of a cell: what PlaneImage has, cell by cell.
+/// What PlaneImage has, cell by cell and without each replicate.
 struct ImageBins {
   const TraceResult& result;
   std::size_t bins;
-  const PlaneImage& image;
+  const PlaneImage& counted;
+  const ImageBlend& blend;
+  PlaneImage image = blended(counted, blend);
 
+  /// Of the counted light `flux` of a cell.
   Jackknife value(const JackknifedFlux& flux, std::size_t row, std::size_t cell, double sign) const {
-    const double per_flux = flux.flux(row) > 0.0 ? sign * image.value[cell] / flux.flux(row) : 0.0;
-    return Jackknife({flux.row(row).begin(), flux.row(row).end()}).map([&](double v) {
-      return per_flux * v;
+    const double counted_part = sign * (1.0 - blend.weight);
+    const double per_flux = flux.flux(row) > 0.0 ? counted_part * counted.value[cell] / flux.flux(row) : 0.0;
+    Jackknife out(flux.replicates());
+    out.add(per_flux, flux.row(row));
+    if (blend.weight > 0.0) out.add(sign * blend.weight, blend.values.row(cell));
+    return out;
+  }
+  /// Of all cells together.
+  Jackknife mean() const {
+    const JackknifedFlux all = jackknifed_flux(result, 1, [&](const Tally& t, std::size_t) {
+      return std::accumulate(t.bins[bins].begin(), t.bins[bins].end(), std::int64_t{0});
     });
+    const auto cells = static_cast<double>(counted.value.size());
+    const double sum = std::accumulate(counted.value.begin(), counted.value.end(), 0.0);
+    Jackknife out(all.replicates());
+    if (all.flux(0) > 0.0) out.add((1.0 - blend.weight) * sum / cells / all.flux(0), all.row(0));
+    for (std::size_t k = 0; blend.weight > 0.0 && k < counted.value.size(); ++k)
+      out.add(blend.weight / cells, blend.values.row(k));
+    return out;
   }
 };
 
@@ -67,29 +85,24 @@ PlaneExtremes extremes(const ImageBins& b) {
   out.max = extreme(b, 1.0, out.max_cell).estimate;
   const LargestFigure min = extreme(b, -1.0, min_cell);
   out.min = {-min.estimate.mean, min.estimate.standard_error};
-  const auto& value = b.image.value;
-  const double mean = std::accumulate(value.begin(), value.end(), 0.0) / static_cast<double>(value.size());
-  const JackknifedFlux all = jackknifed_flux(b.result, 1, [&](const Tally& t, std::size_t) {
-    return std::accumulate(t.bins[b.bins].begin(), t.bins[b.bins].end(), std::int64_t{0});
-  });
-  const double per_flux = all.flux(0) > 0.0 ? mean / all.flux(0) : 0.0;
-  const Jackknife means =
-      Jackknife({all.row(0).begin(), all.row(0).end()}).map([&](double v) { return per_flux * v; });
+  const Jackknife means = b.mean();
   out.mean = means.estimate();
-  if (!(mean > 0.0)) return out;
+  if (!(means.all() > 0.0)) return out;
   const Estimate e = ratio(min.values.map([](double v) { return -v; }), means).estimate();
-  out.uniformity = Estimate{e.mean, std::fmax(e.standard_error, out.min.standard_error / mean)};
+  out.uniformity = Estimate{e.mean, std::fmax(e.standard_error, out.min.standard_error / means.all())};
   return out;
 }
 
 }  // namespace
 
-PlaneExtremes illuminance_extremes(const TraceResult& result, std::size_t index, const PlaneImage& image) {
-  return extremes({result, result.far_fields.size() + index, image});
+PlaneExtremes illuminance_extremes(const TraceResult& result, std::size_t index, const PlaneImage& counted,
+                                   const ImageBlend& blend) {
+  return extremes({result, result.far_fields.size() + index, counted, blend});
 }
 
-PlaneExtremes luminance_extremes(const TraceResult& result, std::size_t index, const PlaneImage& image) {
-  return extremes({result, result.far_fields.size() + result.planes.size() + index, image});
+PlaneExtremes luminance_extremes(const TraceResult& result, std::size_t index, const PlaneImage& counted,
+                                 const ImageBlend& blend) {
+  return extremes({result, result.far_fields.size() + result.planes.size() + index, counted, blend});
 }
 
 }  // namespace lucerna

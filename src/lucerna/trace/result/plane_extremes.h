@@ -4,12 +4,15 @@
 #include <cstddef>
 
 #include "lucerna/trace.h"
+#include "lucerna/trace/result/image_blend.h"
 
 namespace lucerna {
 
-/// Of `illuminance(result, index)`. O(cells).
-PlaneExtremes illuminance_extremes(const TraceResult& result, std::size_t index, const PlaneImage& image);
+/// Of `illuminance(result, index)` averaged with `blend`. O(cells).
+PlaneExtremes illuminance_extremes(const TraceResult& result, std::size_t index, const PlaneImage& counted,
+                                   const ImageBlend& blend = {});
 /// Of `luminance(result, index)`.
-PlaneExtremes luminance_extremes(const TraceResult& result, std::size_t index, const PlaneImage& image);
+PlaneExtremes luminance_extremes(const TraceResult& result, std::size_t index, const PlaneImage& counted,
+                                 const ImageBlend& blend = {});
 
 }  // namespace lucerna

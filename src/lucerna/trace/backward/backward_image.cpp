@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/backward/backward_image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lucerna/random.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Of the samples of the mirrors, each source has directly.
+constexpr std::uint64_t kDirectPart = 4;
+/// Numbers the streams of a seed: the mirrors' and each source's own.
+constexpr std::uint64_t kStreamStep = 0xD1B54A32D192ED03u;
+/// Nearest place to a source, in radii of the ball that its light leaves.
+constexpr double kNearest = 1.5;
+
+/// Of (u, v) in the unit square, in the luminaire frame.
+Vec3 place_in_cell(const PlaneGrid& grid, std::size_t cell, double u, double v) {
+  const double width = grid.size_x_mm / static_cast<double>(grid.nx);
+  const double height = grid.size_y_mm / static_cast<double>(grid.ny);
+  return grid.world_from_plane.point(
+      {grid.cell_x_mm(cell) + (u - 0.5) * width, grid.cell_y_mm(cell) + (v - 0.5) * height, 0.0});
+}
+
+double half_diagonal_mm(const PlaneGrid& grid) {
+  return 0.5 * std::hypot(grid.size_x_mm / static_cast<double>(grid.nx),
+                          grid.size_y_mm / static_cast<double>(grid.ny));
+}
+
+/// A disk point by its area.
+Vec3 place_in_disk(double u, double v, double radius) {
+  const double r = radius * std::sqrt(u), turn = 2.0 * std::numbers::pi * v;
+  return {r * std::cos(turn), r * std::sin(turn), 0.0};
+}
+
+/// Where an observer's line through a cell goes, in the plane's frame, and its weight in the mean: the
+/// density of what light of luminance 1 carries over that of the draw.
+struct View {
+  Direction direction;
+  double weight = 1.0;
+};
+
+View view_of(const LuminanceDetector& d, std::size_t cell, const Vec3& at, double u, double v) {
+  if (d.distance_mm <= 0.0) {
+    const Vec3 p = place_in_disk(u, v, std::sin(radians(d.half_angle_deg)));
+    return {Direction::from({p.x, p.y, std::sqrt(1.0 - p.x * p.x - p.y * p.y)})};
+  }
+  const Vec3 pupil = place_in_disk(u, v, d.pupil_radius_mm) + Vec3{0.0, 0.0, d.distance_mm};
+  const Vec3 to = pupil - at;
+  const double r2 = dot(to, to), pupil_mm2 = std::numbers::pi * d.pupil_radius_mm * d.pupil_radius_mm;
+  return {Direction::from(to),
+          d.distance_mm * d.distance_mm / (r2 * r2) * d.grid.cell_mm2() * pupil_mm2 / etendue_mm2sr(d, cell)};
+}
+
+}  // namespace
+
+BackwardImage::BackwardImage(const Scene& scene, int max_bounces)
+    : scene_(scene, max_bounces), guide_(scene_, guide_sources(scene)) {
+  for (std::size_t i = 0; i < scene.sources.size(); ++i)
+    disks_.emplace_back(scene.sources[i], *scene_.sources()[i].light);
+}
+
+bool BackwardImage::can_see(const PlaneGrid& grid) const {
+  return std::all_of(disks_.begin(), disks_.end(), [&](const LineDisks& disks) {
+    const Vec3 centre = grid.world_from_plane.inverse().point(disks.centre_mm());
+    const double dx = std::max(0.0, std::abs(centre.x) - 0.5 * grid.size_x_mm);
+    const double dy = std::max(0.0, std::abs(centre.y) - 0.5 * grid.size_y_mm);
+    return length(Vec3{dx, dy, centre.z}) > kNearest * disks.radius_mm();
+  });
+}
+
+double BackwardImage::by_mirrors(const PlaneGrid& grid, std::size_t cell, const CellGuide& guide,
+                                 std::uint64_t samples, std::uint64_t seed) const {
+  const Sequence sequence(SequenceKind::sobol, seed);
+  const Vec3 lit = grid.world_from_plane.ez();
+  BackwardScene::Scratch scratch;
+  double sum = 0.0;
+  for (std::uint64_t i = 0; i < samples; ++i) {
+    const auto u = sequence.point<4>(i);
+    const MirrorPlace place = guide.place(u[0], u[1]);
+    const auto from = mirror_point(scene_, place);
+    if (!from) continue;
+    const Vec3 to = place_in_cell(grid, cell, u[2], u[3]) - from->point_mm;
+    const Direction out = Direction::from(to);
+    const double area = dot(from->area, out.vec()), cosine = -dot(lit, out.vec());
+    if (!(area > 0.0 && cosine > 0.0)) continue;
+    const double luminance = scene_.reflected_luminance(
+        *from->mirror, from->point_mm, Direction::from(from->area), out, {seed, i, 0}, scratch);
+    if (luminance > 0.0 && scene_.escapes(from->point_mm, out, true))
+      sum += luminance * area * cosine / dot(to, to) / place.pdf_plane;
+  }
+  return sum / static_cast<double>(samples);
+}
+
+double BackwardImage::by_source(const PlaneGrid& grid, std::size_t cell, std::size_t source,
+                                std::uint64_t samples, std::uint64_t seed) const {
+  const Sequence sequence(SequenceKind::sobol, seed);
+  const Vec3 lit = grid.world_from_plane.ez();
+  BackwardScene::Scratch scratch;
+  double sum = 0.0;
+  for (std::uint64_t i = 0; i < samples; ++i) {
+    const auto u = sequence.point<4>(i);
+    const Vec3 place = place_in_cell(grid, cell, u[2], u[3]);
+    const Vec3 from_centre = place - disks_[source].centre_mm();
+    const double near = disks_[source].radius_mm() / length(from_centre);
+    const Direction axis = Direction::from(from_centre);
+    const LineDisks::Place passed =
+        disks_[source].widened(1.0 / std::sqrt(1.0 - near * near)).place(u[0], u[1], axis);
+    const Vec3 to = place - passed.point_mm;
+    const Direction out = Direction::from(to);
+    const double cosine = -dot(lit, out.vec());
+    if (!(cosine > 0.0)) continue;
+    const double luminance =
+        scene_.direct_luminance(scene_.sources()[source], {passed.point_mm, out}, scratch);
+    sum += luminance * cosine * dot(axis.vec(), out.vec()) / dot(to, to) / passed.pdf_area;
+  }
+  return sum / static_cast<double>(samples);
+}
+
+std::vector<double> BackwardImage::illuminance(const PlaneGrid& grid, std::size_t cell, std::uint64_t samples,
+                                               std::span<const std::uint64_t> seeds) const {
+  const CellGuide guide = guide_.for_point(place_in_cell(grid, cell, 0.5, 0.5), half_diagonal_mm(grid));
+  std::vector<double> out;
+  for (const std::uint64_t seed : seeds) {
+    double sum = guide.empty() ? 0.0 : by_mirrors(grid, cell, guide, samples, seed);
+    for (std::size_t s = 0; s < disks_.size(); ++s) {
+      const std::uint64_t stream = detail::mix_bits(seed + kStreamStep * (s + 1));
+      sum += by_source(grid, cell, s, std::max<std::uint64_t>(1, samples / kDirectPart), stream);
+    }
+    out.push_back(sum);
+  }
+  return out;
+}
+
+std::vector<double> BackwardImage::luminance(const LuminanceDetector& detector, std::size_t cell,
+                                             std::uint64_t samples,
+                                             std::span<const std::uint64_t> seeds) const {
+  const PlaneGrid& grid = detector.grid;
+  const Frame plane_from_world = grid.world_from_plane.inverse();
+  std::vector<double> out;
+  BackwardScene::Scratch scratch;
+  for (const std::uint64_t seed : seeds) {
+    const Sequence sequence(SequenceKind::sobol, seed);
+    double sum = 0.0;
+    for (std::uint64_t i = 0; i < samples; ++i) {
+      const auto u = sequence.point<4>(i);
+      const Vec3 place = place_in_cell(grid, cell, u[0], u[1]);
+      const View view = view_of(detector, cell, plane_from_world.point(place), u[2], u[3]);
+      const Ray line{place, grid.world_from_plane.direction(view.direction)};
+      sum += view.weight * scene_.leaving_luminance(line, {seed, i, 0}, scratch);
+    }
+    out.push_back(sum / static_cast<double>(samples));
+  }
+  return out;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/backward/source_lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lucerna/random.h"
+#include "lucerna/ray_statistics.h"
+
+namespace lucerna {
+
+namespace {
+
+constexpr std::size_t kPilotRays = 4096;
+constexpr double kLineShares[] = {0.5, 0.9, 0.99};
+/// Mirrors are looked at where they reflect lines within the radius of this share.
+constexpr double kGuideShare = 0.98;
+
+double distance_mm(const Ray& line, const Vec3& point) {
+  const Vec3 to = point - line.origin_mm;
+  return length(to - dot(to, line.direction.vec()) * line.direction.vec());
+}
+
+/// How far the lines of a source's rays pass its focus, ascending.
+struct SourceLines {
+  Vec3 focus_mm;
+  std::vector<double> miss_mm;
+};
+
+SourceLines lines_of(const PlacedSource& placed) {
+  RayBlock rays;
+  rays.resize(kPilotRays, 0);
+  placed.rays->emit(Sequence(SequenceKind::sobol, 1), 0, rays);
+  const auto focus = summarize(rays).virtual_focus;
+  SourceLines lines{focus ? focus->point_mm : Vec3{}, {}};
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    lines.miss_mm.push_back(distance_mm(rays.ray(i), lines.focus_mm));
+  std::sort(lines.miss_mm.begin(), lines.miss_mm.end());
+  return lines;
+}
+
+double quantile(const std::vector<double>& ascending, double share) {
+  return ascending[static_cast<std::size_t>(share * static_cast<double>(ascending.size() - 1))];
+}
+
+}  // namespace
+
+std::vector<GuideSource> guide_sources(const Scene& scene) {
+  std::vector<GuideSource> out;
+  for (const PlacedSource& placed : scene.sources) {
+    const SourceLines lines = lines_of(placed);
+    out.push_back({placed.world_from_source.point(lines.focus_mm), quantile(lines.miss_mm, kGuideShare)});
+  }
+  return out;
+}
+
+LineDisks::LineDisks(const PlacedSource& placed, const LuminanceSource& light) {
+  const SourceLines lines = lines_of(placed);
+  centre_mm_ = placed.world_from_source.point(lines.focus_mm);
+  const LightBound bound = light.light_bound();
+  const double all = length(bound.centre_mm - lines.focus_mm) + bound.radius_mm;
+  for (const double share : kLineShares)
+    radii_mm_.push_back(std::min(all, std::max(1e-3 * all, quantile(lines.miss_mm, share))));
+  radii_mm_.push_back(all);
+}
+
+LineDisks LineDisks::widened(double factor) const {
+  LineDisks out = *this;
+  out.radii_mm_.back() *= factor;
+  return out;
+}
+
+LineDisks::Place LineDisks::place(double u, double v, const Direction& line) const {
+  const auto count = static_cast<double>(radii_mm_.size());
+  const auto disk = static_cast<std::size_t>(u * count);
+  const double radius = radii_mm_[disk] * std::sqrt(u * count - static_cast<double>(disk));
+  double pdf = 0.0;
+  for (const double r : radii_mm_) pdf += radius <= r ? 1.0 / (count * std::numbers::pi * r * r) : 0.0;
+  const double turn = 2.0 * std::numbers::pi * v;
+  const Frame across = Frame::from_z(line);
+  return {centre_mm_ + radius * std::cos(turn) * across.ex() + radius * std::sin(turn) * across.ey(), pdf};
+}
+
+}  // namespace lucerna

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "lucerna/scene.h"
+#include "lucerna/source/emitters/luminance_source.h"
+#include "lucerna/trace/backward/mirror_guide.h"
+
+namespace lucerna {
+
+/// Lines past a source, drawn through disks about its focus: radii that hold half, 90 % and 99 % of the lines
+/// of its rays, and one that holds all, take equal shares.
+class LineDisks {
+ public:
+  struct Place {
+    Vec3 point_mm;
+    /// Density of the draw over the plane of the disks, 1/mm^2.
+    double pdf_area = 0.0;
+  };
+  LineDisks(const PlacedSource& placed, const LuminanceSource& light);
+
+  /// The place of (u, v) in the unit square on the disks across `line`.
+  Place place(double u, double v, const Direction& line) const;
+  /// In the luminaire frame.
+  const Vec3& centre_mm() const { return centre_mm_; }
+  /// Of a ball about the centre that all light leaves.
+  double radius_mm() const { return radii_mm_.back(); }
+  /// The same with the largest disk wider by `factor`: seen from near by, a ball covers more than a disk.
+  LineDisks widened(double factor) const;
+
+ private:
+  Vec3 centre_mm_;
+  std::vector<double> radii_mm_;
+};
+
+/// Where most lines of each source pass.
+std::vector<GuideSource> guide_sources(const Scene& scene);
+
+}  // namespace lucerna

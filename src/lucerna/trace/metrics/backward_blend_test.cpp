@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/metrics/backward_blend.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "lucerna/source.h"
+#include "lucerna/trace.h"
+#include "lucerna/trace_metrics.h"
+
+namespace lucerna {
+namespace {
+
+/// A disk in a paraboloid that shines down on a floor, and a sensor of 4 mm there.
+Scene scene() {
+  Scene scene;
+  EmitterOptions source;
+  source.kind = EmitterKind::disk;
+  scene.sources.push_back({make_emitter(source), {}, {}});
+  const Reflector mirror = conic_reflector(ConicPreset::parabola, 12.0, 0.0, Aperture::circle(90.0, 10.0));
+  scene.reflectors.push_back(
+      {mirror, Frame::from_axis(Direction::from({0, 0, -1}), 0.0, {0, 0, 12}), Reflectance(0.9)});
+  const auto plane = [&](const std::string& name, const Vec3& at_mm, double size_mm, std::size_t n) {
+    PlaneDetector d;
+    d.name = name;
+    d.grid.world_from_plane = facing_frame(Direction::from({0, 0, 1}), {0, 1, 0}, at_mm);
+    d.grid.size_x_mm = d.grid.size_y_mm = size_mm;
+    d.grid.nx = d.grid.ny = n;
+    scene.planes.push_back(d);
+  };
+  plane("sensor", {40.0, 20.0, -3000.0}, 4.0, 2);
+  plane("floor", {0.0, 0.0, -3000.0}, 6000.0, 60);
+  return scene;
+}
+
+TraceResult run(const Scene& scene, std::uint64_t rays, std::uint64_t seed = 1) {
+  TraceOptions options;
+  options.last_ray = rays;
+  options.seed = seed;
+  return trace(scene, options);
+}
+
+// The sensor gets some 70 of 2^18 rays. Backward light must agree with 2^25 forward rays, which know it to
+// 1 %, within four errors of both; an estimate that is 6 % off is not.
+TEST(BackwardBlendStatistical, SmallPlanesAreKnownBetter) {
+  const Scene luminaire = scene();
+  const TraceResult few = run(luminaire, 1 << 18);
+  const PlaneMetrics counted = trace_metrics(few).planes[0], known = trace_metrics(few, luminaire).planes[0];
+  std::cout << "noise " << counted.noise << " -> " << known.noise << "\n";
+  EXPECT_LT(10.0 * known.noise, counted.noise);
+  EXPECT_LT(10.0 * known.image.flux.standard_error, counted.image.flux.standard_error);
+  const PlaneMetrics truth = trace_metrics(run(luminaire, 1 << 25, 7)).planes[0];
+  for (const auto& [a, b] :
+       {std::pair(known.extremes.mean, truth.extremes.mean), std::pair(known.image.flux, truth.image.flux)}) {
+    EXPECT_NEAR(a.mean, b.mean, 4.0 * std::hypot(a.standard_error, b.standard_error));
+    EXPECT_LT(std::hypot(a.standard_error, b.standard_error), 0.015 * b.mean);
+  }
+  const double error = std::hypot(known.extremes.max.standard_error, known.extremes.min.standard_error);
+  EXPECT_LT(known.extremes.max.mean - known.extremes.min.mean, 0.02 * known.extremes.mean.mean + 4.0 * error);
+}
+
+TEST(BackwardBlend, WideFloorsStayCounted) {
+  const Scene luminaire = scene();
+  const TraceResult result = run(luminaire, 1 << 22);
+  const PlaneImage counted = illuminance(result, 1);
+  EXPECT_EQ(backward_illuminance(luminaire, result, 1, counted).weight, 0.0);
+}
+
+// A scene that is not the one that was traced: its light is dimmer by a third.
+TEST(BackwardBlend, LightThatDoesNotAgreeIsNotUsed) {
+  Scene luminaire = scene();
+  luminaire.planes[0].grid.size_x_mm = luminaire.planes[0].grid.size_y_mm = 20.0;
+  const TraceResult result = run(luminaire, 1 << 20);
+  const PlaneImage counted = illuminance(result, 0);
+  EXPECT_GT(backward_illuminance(luminaire, result, 0, counted).weight, 0.5);
+  luminaire.reflectors[0].reflectance = Reflectance(0.6);
+  EXPECT_EQ(backward_illuminance(luminaire, result, 0, counted).weight, 0.0);
+}
+
+TEST(BackwardBlend, IsTheSameEachTime) {
+  const Scene luminaire = scene();
+  const TraceResult result = run(luminaire, 1 << 16);
+  const PlaneImage counted = illuminance(result, 0);
+  const ImageBlend a = backward_illuminance(luminaire, result, 0, counted);
+  const ImageBlend b = backward_illuminance(luminaire, result, 0, counted);
+  ASSERT_GT(a.weight, 0.9);
+  EXPECT_EQ(a.weight, b.weight);
+  EXPECT_EQ(a.values.fluxes(), b.values.fluxes());
+}
+
+}  // namespace
+}  // namespace lucerna
