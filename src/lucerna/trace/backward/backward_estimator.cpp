@@ -12,11 +12,6 @@ namespace lucerna {
 
 namespace {
 
-/// Of the samples of the mirrors, each source has directly.
-constexpr std::uint64_t kDirectPart = 4;
-/// Numbers the streams of a seed: the mirrors' and each source's own.
-constexpr std::uint64_t kStreamStep = 0xD1B54A32D192ED03u;
-
 int checked(int max_bounces) {
   if (max_bounces < 1) throw UsageError(fmt::format("{} bounces: expected at least 1", max_bounces));
   return max_bounces;
@@ -74,8 +69,7 @@ void BackwardEstimator::sample_cell(const DirectionCell& cell, const CellGuide& 
                                     std::uint64_t seed, const Sink& sink) const {
   if (!guide.empty()) sample_mirrors(cell, guide, samples, seed, sink);
   for (std::size_t s = 0; s < disks_.size(); ++s) {
-    const std::uint64_t stream = detail::mix_bits(seed + kStreamStep * (s + 1));
-    sample_source(cell, s, std::max<std::uint64_t>(1, samples / kDirectPart), stream, sink);
+    sample_source(cell, s, direct_samples(samples), source_stream(seed, s), sink);
   }
 }
 

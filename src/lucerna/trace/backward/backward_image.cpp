@@ -11,10 +11,8 @@ namespace lucerna {
 
 namespace {
 
-/// Of the samples of the mirrors, each source has directly.
-constexpr std::uint64_t kDirectPart = 4;
-/// Numbers the streams of a seed: the mirrors' and each source's own.
-constexpr std::uint64_t kStreamStep = 0xD1B54A32D192ED03u;
+/// Images are in flux / m^2, lengths in mm.
+constexpr double kPerSquareMetre = 1e6;
 /// Nearest place to a source, in radii of the ball that its light leaves.
 constexpr double kNearest = 1.5;
 
@@ -127,11 +125,9 @@ std::vector<double> BackwardImage::illuminance(const PlaneGrid& grid, std::size_
   std::vector<double> out;
   for (const std::uint64_t seed : seeds) {
     double sum = guide.empty() ? 0.0 : by_mirrors(grid, cell, guide, samples, seed);
-    for (std::size_t s = 0; s < disks_.size(); ++s) {
-      const std::uint64_t stream = detail::mix_bits(seed + kStreamStep * (s + 1));
-      sum += by_source(grid, cell, s, std::max<std::uint64_t>(1, samples / kDirectPart), stream);
-    }
-    out.push_back(sum);
+    for (std::size_t s = 0; s < disks_.size(); ++s)
+      sum += by_source(grid, cell, s, direct_samples(samples), source_stream(seed, s));
+    out.push_back(kPerSquareMetre * sum);
   }
   return out;
 }
@@ -153,7 +149,7 @@ std::vector<double> BackwardImage::luminance(const LuminanceDetector& detector, 
       const Ray line{place, grid.world_from_plane.direction(view.direction)};
       sum += view.weight * scene_.leaving_luminance(line, {seed, i, 0}, scratch);
     }
-    out.push_back(sum / static_cast<double>(samples));
+    out.push_back(kPerSquareMetre * sum / static_cast<double>(samples));
   }
   return out;
 }

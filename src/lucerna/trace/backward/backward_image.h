@@ -24,11 +24,11 @@ class BackwardImage {
   /// Whether a plane is far enough from every source to look at it from there.
   bool can_see(const PlaneGrid& grid) const;
 
-  /// Flux / mm^2 on the lit side of a cell, one value a seed: `samples` rays by mirrors and a quarter of that
+  /// Flux / m^2 on the lit side of a cell, one value a seed: `samples` rays by mirrors and a quarter of that
   /// by each source directly, about 1 us each. The grid must be one that `can_see`.
   std::vector<double> illuminance(const PlaneGrid& grid, std::size_t cell, std::uint64_t samples,
                                   std::span<const std::uint64_t> seeds) const;
-  /// Flux / (mm^2 sr) of a cell, one value a seed, by `samples` lines through it.
+  /// Flux / (m^2 sr) of a cell, one value a seed, by `samples` lines through it.
   std::vector<double> luminance(const LuminanceDetector& detector, std::size_t cell, std::uint64_t samples,
                                 std::span<const std::uint64_t> seeds) const;
 

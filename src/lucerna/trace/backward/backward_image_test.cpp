@@ -19,8 +19,6 @@
 namespace lucerna {
 namespace {
 
-constexpr double kPerSquareMetre = 1e6;
-
 /// An LED of four dies in a paraboloid that shines down; a black plate covers a part of the opening.
 Scene paraboloid(double slope_error_mrad = 0.0) {
   Scene scene;
@@ -75,21 +73,19 @@ TraceOptions forward_options() {
 
 /// How the two differ over their errors, in cells of a twentieth of the brightest or more (in darker ones
 /// the errors of so few backward rays are not known well); and the ratio of all light.
-struct Agreement {
+struct ImageAgreement {
   double mean_z2 = 0.0, ratio = 0.0;
   int cells = 0;
 };
 
 template <class Backward>
-Agreement agreement(const PlaneImage& forward, const Backward& backward) {
+ImageAgreement agreement(const PlaneImage& forward, const Backward& backward) {
   std::vector<Estimate> found(forward.value.size());
   parallel_blocks(found.size(), 1, [&](std::size_t k, std::size_t) {
     const auto seeds = seeds_of(k);
-    std::vector<double> values = backward(k, seeds);
-    for (double& v : values) v *= kPerSquareMetre;
-    found[k] = mean_estimate(values);
+    found[k] = mean_estimate(backward(k, seeds));
   });
-  Agreement a;
+  ImageAgreement a;
   const double brightest = *std::max_element(forward.value.begin(), forward.value.end());
   double sum_forward = 0.0, sum_backward = 0.0;
   for (std::size_t k = 0; k < found.size(); ++k) {
@@ -108,7 +104,7 @@ Agreement agreement(const PlaneImage& forward, const Backward& backward) {
 
 // The mean of z^2 over 50 cells and more with 15 degrees of freedom to either side is 1.1 +- 0.2: above 1.9
 // with a chance below 1e-4. The ratio of all light is known to half a per cent.
-void expect_agreement(const Agreement& a) {
+void expect_agreement(const ImageAgreement& a) {
   EXPECT_GE(a.cells, 50);
   EXPECT_LT(a.mean_z2, 1.9);
   std::cout << a.cells << " cells, mean z^2 " << a.mean_z2 << ", ratio " << a.ratio << '\n';
@@ -123,7 +119,7 @@ TEST(BackwardImageStatistical, PlanesHaveTheLightThatATraceCounts) {
     const PlaneImage forward = illuminance(trace(scene, forward_options()), 0);
     const BackwardImage backward(scene, 100);
     ASSERT_TRUE(backward.can_see(forward.grid));
-    const Agreement a = agreement(forward, [&](std::size_t cell, auto& seeds) {
+    const ImageAgreement a = agreement(forward, [&](std::size_t cell, auto& seeds) {
       return backward.illuminance(forward.grid, cell, 64, seeds);
     });
     expect_agreement(a);
@@ -137,7 +133,7 @@ TEST(BackwardImageStatistical, ObserversSeeTheLightThatATraceCounts) {
     scene.luminances.push_back(observer(distance_mm));
     const PlaneImage forward = luminance(trace(scene, forward_options()), 0);
     const BackwardImage backward(scene, 100);
-    const Agreement a = agreement(forward, [&](std::size_t cell, auto& seeds) {
+    const ImageAgreement a = agreement(forward, [&](std::size_t cell, auto& seeds) {
       return backward.luminance(scene.luminances[0], cell, 64, seeds);
     });
     expect_agreement(a);
@@ -150,7 +146,7 @@ TEST(BackwardImageStatistical, WrongEstimatorsAreFound) {
   scene.planes.push_back({"plane", grid_at({5.0, 3.0, -250.0}, 110.0, 18)});
   const PlaneImage forward = illuminance(trace(scene, forward_options()), 0);
   const BackwardImage backward(scene, 100);
-  const Agreement brighter = agreement(forward, [&](std::size_t cell, auto& seeds) {
+  const ImageAgreement brighter = agreement(forward, [&](std::size_t cell, auto& seeds) {
     auto values = backward.illuminance(forward.grid, cell, 64, seeds);
     for (double& v : values) v *= 1.05;
     return values;
@@ -159,7 +155,7 @@ TEST(BackwardImageStatistical, WrongEstimatorsAreFound) {
   Scene without = scene;
   without.bodies.clear();
   const BackwardImage blind(without, 100);
-  const Agreement a = agreement(forward, [&](std::size_t cell, auto& seeds) {
+  const ImageAgreement a = agreement(forward, [&](std::size_t cell, auto& seeds) {
     return blind.illuminance(forward.grid, cell, 64, seeds);
   });
   EXPECT_GT(a.mean_z2, 1.9);

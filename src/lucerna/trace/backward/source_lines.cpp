@@ -46,6 +46,16 @@ double quantile(const std::vector<double>& ascending, double share) {
 
 }  // namespace
 
+std::uint64_t direct_samples(std::uint64_t samples) {
+  constexpr std::uint64_t kPart = 4;
+  return std::max<std::uint64_t>(1, samples / kPart);
+}
+
+std::uint64_t source_stream(std::uint64_t seed, std::size_t source) {
+  constexpr std::uint64_t kStep = 0xD1B54A32D192ED03u;
+  return detail::mix_bits(seed + kStep * (source + 1));
+}
+
 std::vector<GuideSource> guide_sources(const Scene& scene) {
   std::vector<GuideSource> out;
   for (const PlacedSource& placed : scene.sources) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "lucerna/scene.h"
@@ -33,6 +35,11 @@ class LineDisks {
   Vec3 centre_mm_;
   std::vector<double> radii_mm_;
 };
+
+/// Of `samples` by mirrors, each source has so many directly.
+std::uint64_t direct_samples(std::uint64_t samples);
+/// The stream of a source's own samples under `seed`; the mirrors' has the seed itself.
+std::uint64_t source_stream(std::uint64_t seed, std::size_t source);
 
 /// Where most lines of each source pass.
 std::vector<GuideSource> guide_sources(const Scene& scene);

@@ -2,23 +2,21 @@
 #include "lucerna/trace/metrics/backward_blend.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "lucerna/core/parallel/parallel.h"
 #include "lucerna/estimate.h"
 #include "lucerna/random.h"
 #include "lucerna/trace/backward/backward_image.h"
-#include "lucerna/trace/tally/flux_quanta.h"
 
 namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kSeeds = kReplicates;
 /// Forward rays that are traced in the time of a backward one.
 constexpr std::uint64_t kForwardRays = 16;
 constexpr std::uint64_t kMinRays = std::uint64_t{1} << 18;
@@ -27,18 +25,15 @@ constexpr std::size_t kPilotCells = 64;
 constexpr double kMinWeight = 0.2;
 /// Backward and counted light agree within so many errors or this share of each other; cell by cell, the mean
 /// of the squared differences over the errors is below a limit.
-constexpr double kMaxErrors = 4.0, kMaxShare = 0.005, kMaxMeanSquare = 2.0;
+constexpr double kImageErrors = 4.0, kImageShare = 0.005, kMaxMeanSquare = 2.0;
 /// Cells that are compared: counted errors are known where many rays were counted.
 constexpr double kComparedShare = 0.05, kComparedError = 0.1;
 
-constexpr double kSquareMillimetresPerSquareMetre = 1e6;
-
-using Seeds = std::array<std::uint64_t, kSeeds>;
-
-Seeds seeds_of(std::uint64_t run_seed, std::size_t cell) {
-  Seeds seeds;
-  for (std::size_t r = 0; r < kSeeds; ++r)
-    seeds[r] = detail::mix_bits(detail::mix_bits(run_seed + kSeeds * cell) + r);
+/// Independent of the run's other numbers, one for each of its replicates.
+std::vector<std::uint64_t> seeds_of(const TraceResult& result, std::size_t cell) {
+  std::vector<std::uint64_t> seeds;
+  const std::uint64_t stream = detail::mix_bits(detail::mix_bits(result.seed) + cell);
+  for (std::size_t r = 0; r < result.replicates.size(); ++r) seeds.push_back(detail::mix_bits(stream + r));
   return seeds;
 }
 
@@ -97,24 +92,22 @@ bool agree(const PlaneImage& counted, const JackknifedFlux& values) {
       counted.flux.mean > 0.0 ? counted_sum * counted.flux.standard_error / counted.flux.mean : counted_sum;
   const Estimate all = backward_sum.estimate();
   const double gap = std::abs(all.mean - counted_sum);
-  return gap <= kMaxErrors * std::hypot(all.standard_error, counted_error) + kMaxShare * counted_sum &&
+  return gap <= kImageErrors * std::hypot(all.standard_error, counted_error) + kImageShare * counted_sum &&
          squares <= kMaxMeanSquare * compared + 4.0 * std::sqrt(2.0 * compared);
 }
 
-/// `look(cell, samples, seeds)`: one value a seed, per mm^2.
+/// `look(cell, samples, seeds)`: one value a seed, in the image's unit.
 template <class Look>
 ImageBlend blend(const TraceResult& result, const PlaneImage& counted, const Look& look) {
-  const std::size_t cells = counted.value.size();
+  const std::size_t cells = counted.value.size(), seeds = result.replicates.size();
   const std::uint64_t rays = std::max(kMinRays, (result.last_ray - result.first_ray) / kForwardRays);
-  const std::uint64_t samples = std::bit_floor(rays / (kSeeds * cells));
+  const std::uint64_t samples = std::bit_floor(rays / (seeds * cells));
   const auto used = std::count_if(result.replicates.begin(), result.replicates.end(),
                                   [](const Tally& t) { return t.emitted > 0; });
-  if (samples == 0 || static_cast<std::size_t>(used) != kSeeds) return {};
-  ImageBlend out{0.0, JackknifedFlux(cells, kSeeds)};
+  if (samples == 0 || static_cast<std::size_t>(used) != seeds) return {};
+  ImageBlend out{0.0, JackknifedFlux(cells, seeds)};
   const auto fill = [&](std::size_t k) {
-    std::vector<double> values = look(k, samples, seeds_of(result.seed, k));
-    for (double& v : values) v *= kSquareMillimetresPerSquareMetre;
-    leave_one_out(values, out.values.row(k));
+    leave_one_out(look(k, samples, seeds_of(result, k)), out.values.row(k));
   };
   const std::vector<std::size_t> pilot = brightest(counted, kPilotCells);
   parallel_blocks(pilot.size(), 1, [&](std::size_t i, std::size_t) { fill(pilot[i]); });
@@ -133,18 +126,20 @@ ImageBlend backward_illuminance(const Scene& scene, const TraceResult& result, s
   const BackwardImage backward(scene, result.max_bounces);
   const PlaneGrid& grid = result.planes[index].grid;
   if (!backward.can_see(grid)) return {};
-  return blend(result, counted, [&](std::size_t cell, std::uint64_t samples, const Seeds& seeds) {
-    return backward.illuminance(grid, cell, samples, seeds);
-  });
+  return blend(result, counted,
+               [&](std::size_t cell, std::uint64_t samples, std::span<const std::uint64_t> seeds) {
+                 return backward.illuminance(grid, cell, samples, seeds);
+               });
 }
 
 ImageBlend backward_luminance(const Scene& scene, const TraceResult& result, std::size_t index,
                               const PlaneImage& counted) {
   if (!no_backward_reason(scene).empty()) return {};
   const BackwardImage backward(scene, result.max_bounces);
-  return blend(result, counted, [&](std::size_t cell, std::uint64_t samples, const Seeds& seeds) {
-    return backward.luminance(result.luminances[index], cell, samples, seeds);
-  });
+  return blend(result, counted,
+               [&](std::size_t cell, std::uint64_t samples, std::span<const std::uint64_t> seeds) {
+                 return backward.luminance(result.luminances[index], cell, samples, seeds);
+               });
 }
 
 }  // namespace lucerna
