@@ -11,11 +11,12 @@
 #   install       what is installed works where it was moved to: program, manual, completion; the library by CMake and pkg-config
 #   consumers     the same program with the sources of Lucerna within its project
 #   api           the API pages are made, and no public type or function is without a comment (needs doxygen)
+#   site          the site of the documentation is made without a warning (needs sphinx and doxygen)
 #   deb           Debian packages, by lintian, and installed, used and removed in a bare Debian 12 (needs root and debootstrap)
 #   clang asan tsan   the same tests under those presets
 set -u
 cd "$(dirname "$0")/.."
-stages="${*:-format tidy tree docs release install consumers api deb clang asan tsan}"
+stages="${*:-format tidy tree docs release install consumers api site deb clang asan tsan}"
 # `make` waits for two compilers at once on two cores; the presets' tests run two at a time too.
 jobs=${JOBS:-$(nproc)}
 base=${BASE:-origin/main}
@@ -113,6 +114,7 @@ stage() {
     release) build_and_test release all benchmarks ;;
     install) installs ;;
     api) needs doxygen && scripts/api.sh ;;
+    site) needs sphinx-build doxygen && scripts/docs.sh ;;
     deb) packages ;;
     consumers) within_sources ;;
     clang) build_and_test clang all benchmarks ;;
