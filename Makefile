@@ -16,6 +16,8 @@ test: program
 # Every compiler and sanitizer, stage by stage (scripts/check.sh says which); a stage that passed for this commit is not run again.
 check: packages
 	scripts/packages.sh scripts/packages-check.txt
+	scripts/packages.sh scripts/packages-docs.txt
+	scripts/packages.sh scripts/packages-deb.txt
 	scripts/check.sh $(STAGES)
 
 # Seconds to minutes: the form of the tree, clang-tidy on what changed.
