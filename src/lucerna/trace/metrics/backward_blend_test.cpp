@@ -13,7 +13,7 @@
 namespace lucerna {
 namespace {
 
-/// A disk in a paraboloid that shines down on a floor, and a sensor of 4 mm there.
+/// A disk in a paraboloid that shines down on a floor, and a sensor of 8 mm there.
 Scene scene() {
   Scene scene;
   EmitterOptions source;
@@ -30,7 +30,7 @@ Scene scene() {
     d.grid.nx = d.grid.ny = n;
     scene.planes.push_back(d);
   };
-  plane("sensor", {40.0, 20.0, -3000.0}, 4.0, 2);
+  plane("sensor", {40.0, 20.0, -3000.0}, 8.0, 2);
   plane("floor", {0.0, 0.0, -3000.0}, 6000.0, 60);
   return scene;
 }
@@ -42,7 +42,7 @@ TraceResult run(const Scene& scene, std::uint64_t rays, std::uint64_t seed = 1) 
   return trace(scene, options);
 }
 
-// The sensor gets some 70 of 2^18 rays. Backward light must agree with 2^25 forward rays, which know it to
+// The sensor gets some 280 of 2^18 rays. Backward light must agree with 2^23 forward rays, which know it to
 // 1 %, within four errors of both; an estimate that is 6 % off is not.
 TEST(BackwardBlendStatistical, SmallPlanesAreKnownBetter) {
   const Scene luminaire = scene();
@@ -51,14 +51,14 @@ TEST(BackwardBlendStatistical, SmallPlanesAreKnownBetter) {
   std::cout << "noise " << counted.noise << " -> " << known.noise << "\n";
   EXPECT_LT(10.0 * known.noise, counted.noise);
   EXPECT_LT(10.0 * known.image.flux.standard_error, counted.image.flux.standard_error);
-  const PlaneMetrics truth = trace_metrics(run(luminaire, 1 << 25, 7)).planes[0];
+  const PlaneMetrics truth = trace_metrics(run(luminaire, 1 << 23, 7)).planes[0];
   for (const auto& [a, b] :
        {std::pair(known.extremes.mean, truth.extremes.mean), std::pair(known.image.flux, truth.image.flux)}) {
     EXPECT_NEAR(a.mean, b.mean, 4.0 * std::hypot(a.standard_error, b.standard_error));
     EXPECT_LT(std::hypot(a.standard_error, b.standard_error), 0.015 * b.mean);
   }
   const double error = std::hypot(known.extremes.max.standard_error, known.extremes.min.standard_error);
-  EXPECT_LT(known.extremes.max.mean - known.extremes.min.mean, 0.02 * known.extremes.mean.mean + 4.0 * error);
+  EXPECT_LT(known.extremes.max.mean - known.extremes.min.mean, 0.06 * known.extremes.mean.mean + 4.0 * error);
 }
 
 TEST(BackwardBlend, WideFloorsStayCounted) {
