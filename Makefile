@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The two commands of the README, and the longer suites. Each installs what is missing first (scripts/packages.sh).
+# The two commands of the README, and the longer suites. Each installs what is missing first (scripts/packages.sh),
+# but for check-quick and format.
 # CUDA=1 compiles the CUDA back end too (needs nvcc).
 .PHONY: reference demo test check check-quick fuzz bench benchmarks test-report test-slow gallery docs program packages \
         install deb api format clean
@@ -15,9 +16,7 @@ test: program
 
 # Every compiler and sanitizer, stage by stage (scripts/check.sh says which); a stage that passed for this commit is not run again.
 check: packages
-	scripts/packages.sh scripts/packages-check.txt
-	scripts/packages.sh scripts/packages-docs.txt
-	scripts/packages.sh scripts/packages-deb.txt
+	scripts/packages.sh scripts/packages-check.txt scripts/packages-docs.txt scripts/packages-deb.txt
 	scripts/check.sh $(STAGES)
 
 # Seconds to minutes: the form of the tree, clang-tidy on what changed.

@@ -21,7 +21,8 @@ stages="${*:-format tidy tree docs release install consumers api site deb clang 
 jobs=${JOBS:-$(nproc)}
 base=${BASE:-origin/main}
 
-if [ -z "$(git status --porcelain --untracked-files=no)" ]; then
+# New files count too: CMake builds what lies in the folders of the sources.
+if [ -z "$(git status --porcelain -- . ':!fuzz/executions.csv')" ]; then
   commit=$(git rev-parse --short=12 HEAD)
 else
   commit=changed
@@ -43,9 +44,10 @@ changed_sources() {
 }
 
 # clang-tidy reads how clang would compile each file; nothing is built. Prints each finding once, though a header is read often;
-# not that unity files include sources.
+# not that unity files include sources. Findings end clang-tidy with 1; anything else is a crash.
 tidy() {  # PRESET
-  xargs -r -n 1 -P "$jobs" clang-tidy -p "build/$1" --quiet 2>/dev/null >build/check/findings
+  xargs -r -n 1 -P "$jobs" sh -c 'clang-tidy -p "build/$0" --quiet "$1" 2>/dev/null; [ $? -le 1 ] || echo "$1: error: clang-tidy failed"' \
+    "$1" >build/check/findings
   grep -E '(warning|error): ' build/check/findings | grep -v 'suspicious #include of file' | sort -u >build/check/findings.once
   cat build/check/findings.once
   [ ! -s build/check/findings.once ]
@@ -107,10 +109,10 @@ within_sources() {
 stage() {
   case $1 in
     format) git ls-files '*.h' '*.cpp' '*.cu' | xargs clang-format --dry-run -Werror ;;
-    tidy) cmake --preset tidy-unity >/dev/null && compiled_files tidy-unity | tidy tidy-unity ;;
-    tidy-changed) cmake --preset tidy >/dev/null && changed_sources | tidy tidy ;;
+    tidy) needs clang-tidy && cmake --preset tidy-unity >/dev/null && compiled_files tidy-unity | tidy tidy-unity ;;
+    tidy-changed) needs clang-tidy && cmake --preset tidy >/dev/null && changed_sources | tidy tidy ;;
     tree) tree_tests '-Docs.*' ;;
-    docs) tree_tests 'Docs.*' && { ! command -v python3 >/dev/null || scripts/benchmarks.py --check; } ;;
+    docs) tree_tests 'Docs.*' && needs python3 && scripts/benchmarks.py --check ;;
     release) build_and_test release all benchmarks ;;
     install) installs ;;
     api) needs doxygen && scripts/api.sh ;;
@@ -133,7 +135,7 @@ counts() {  # LOG
   elif grep -q '^\[==========\] .* ran\.' "$1"; then
     echo "$(sed -n 's/^\[==========\] \([0-9]*\) test.* ran\..*/\1/p' "$1") $(grep -c '^\[  FAILED  \] .*ms)$' "$1")"
   else
-    echo "- $(grep -cE '(warning|error): ' "$1")"
+    echo "- $(grep -ciE '(warning|error): ' "$1")"
   fi
 }
 

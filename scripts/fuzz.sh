@@ -30,6 +30,10 @@ for name in $targets; do
   log=build/fuzz/grown/$name.log
   executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   finding=none
+  if [ -z "$executions" ]; then
+    finding="did not run to its end"
+    found=1
+  fi
   if grep -q '^SUMMARY:\|ERROR: libFuzzer' "$log"; then
     finding=$(grep -m1 '^SUMMARY:\|ERROR: libFuzzer' "$log" | cut -c1-100 | tr ',' ' ')
     found=1

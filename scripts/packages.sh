@@ -1,11 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Installs the Debian packages of packages.txt (or of the list given) that are missing. Without root it prints the line to run and stops.
+# Installs the Debian packages of packages.txt (or of the lists given) that are missing. Without root it prints the line to run and stops.
 # A program of the package's name counts as the package: npm comes with other builds of nodejs, and Debian's would not install beside them.
 set -eu
 here=$(dirname "$0")
+[ $# -gt 0 ] || set -- "$here/packages.txt"
 missing=""
-for package in $(sed 's/#.*//' "${1:-$here/packages.txt}"); do
+for package in $(sed 's/#.*//' "$@" | sort -u); do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || command -v "$package" >/dev/null ||
     missing="$missing $package"
 done
