@@ -153,7 +153,7 @@ struct PlaneImage {
   std::vector<double> value;
   /// NaN where not known, as in Ledger.
   std::vector<double> standard_error;
-  /// Flux that was counted, all cells, and its error.
+  /// Flux of all cells, and its error.
   Estimate flux;
 };
 

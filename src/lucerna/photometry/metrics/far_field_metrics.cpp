@@ -22,6 +22,8 @@ constexpr double kSmoothing = 0.25;
 constexpr double kGlareRadius_deg = 2.5;
 /// The brightest direction is looked for within this share of the distance between those that the cells show.
 constexpr double kPeakSearch = 0.5;
+/// A narrower lobe is one image of the source and smooth; others have ripples where images overlap.
+constexpr double kSmoothLobe_deg = 3.0;
 /// Arcs of C0 and C90 below this are measured by `exact`. Their ends are looked for within this share of
 /// them.
 constexpr double kNarrowArc_deg = 20.0, kArcWindow = 0.25;
@@ -128,7 +130,8 @@ void move(FoundPeak& p, const Direction& to) {
     return Estimate{degrees(angle_rad), std::hypot(before.standard_error, by_deg)};
   };
   if (p.gamma_deg) p.gamma_deg = moved(at.gamma_rad, *p.gamma_deg, along_deg);
-  if (c_moved_deg > kTurned_deg) p.c_deg.reset();
+  const bool on_axis = std::hypot(to.x(), to.y()) < 1e-9;
+  if (on_axis || c_moved_deg > kTurned_deg) p.c_deg.reset();
   if (p.c_deg) p.c_deg = moved(at.c_rad, *p.c_deg, c_moved_deg);
   p.direction_error_deg = std::hypot(p.direction_error_deg, moved_deg);
   p.direction = to;
@@ -137,11 +140,11 @@ void move(FoundPeak& p, const Direction& to) {
 /// Moves the peak to the brightest direction near those that the cells show.
 void refine_peak(const PointIntensity& exact, const PointPeak& axis, FoundPeak& p) {
   PointPeak best = brightest_point(exact, p.bright, kPeakSearch * p.bright_spacing_deg);
-  if (axis.cd.mean > best.cd.mean) {
-    best = {axis.direction, {axis.cd.mean, std::max(axis.cd.standard_error, best.cd.standard_error)}};
-  }
+  if (axis.cd.mean > best.cd.mean) best = {axis.direction, axis.cd, best.search_error_cd};
   move(p, best.direction);
   p.cd = best.cd;
+  if (p.half_width_deg > kSmoothLobe_deg)
+    p.cd.standard_error = std::hypot(p.cd.standard_error, best.search_error_cd);
   p.values = independent(p.cd, p.values.replicates());
   p.radius_deg = p.c_radius_deg = 0.0;
 }
@@ -193,7 +196,7 @@ FarFieldMetrics far_field_metrics(const CountedSphere& sphere, std::span<const d
   FarFieldMetrics m;
   measure_zones(sphere, m);
   measure_glare(sphere, m);
-  std::optional<FoundPeak> peak = peak_estimate(sphere);
+  std::optional<FoundPeak> peak = peak_estimate(sphere, static_cast<bool>(exact));
   m.peak = peak;  // the lobe's width, for the axis
   m.axis_gamma_deg = m.flux_90_180.mean > m.flux_0_90.mean ? 180.0 : 0.0;
   const Direction axis = Direction::from_unit({0.0, 0.0, m.axis_gamma_deg == 0.0 ? -1.0 : 1.0});

@@ -116,6 +116,18 @@ TEST(FarFieldMetrics, ZonesAreTheFluxOfTheirRays) {
 }
 
 // What is not determined is said: where two lobes are alike, on a ring, on the axis, below the threshold.
+// The cells show a lobe at C 30, gamma 2; single directions have its top on the axis, where there is no C.
+TEST(FarFieldMetrics, APeakThatMovesToTheAxisHasNoC) {
+  const PointIntensity exact = [](const Direction& d, std::uint64_t, std::uint64_t) {
+    return Estimate{lobe(0.0, 0.0, 5.0, 1200.0)(d), 1.0};
+  };
+  const FarFieldMetrics m = far_field_metrics(sphere(lobe(30.0, 2.0, 5.0), 0.0), {}, exact);
+  ASSERT_TRUE(m.peak && m.peak->gamma_deg);
+  EXPECT_NEAR(m.peak->cd.mean, 1200.0, 3.0);
+  EXPECT_LT(m.peak->gamma_deg->mean, 0.5);
+  EXPECT_FALSE(m.peak->c_deg);
+}
+
 TEST(FarFieldMetrics, SaysWhatIsNotDetermined) {
   const auto two = [a = lobe(0.0, 30.0, 5.0), b = lobe(180.0, 30.0, 5.0)](const Direction& d) {
     return a(d) + b(d);

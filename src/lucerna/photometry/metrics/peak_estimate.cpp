@@ -343,7 +343,9 @@ std::vector<PointOfScan> points(const Candidates& c) {
 
 std::vector<PointOfScan> points(const Scan& s) {
   std::vector<PointOfScan> out;
-  for (std::size_t i = 0; i < s.cd.size(); ++i) out.push_back({s.directions[i], s.cd[i]});
+  for (std::size_t i = 0; i < s.cd.size(); ++i) {
+    if (s.cd[i] >= kCandidateShare * s.cd[s.best]) out.push_back({s.directions[i], s.cd[i]});
+  }
   return out;
 }
 
@@ -361,7 +363,7 @@ void find_bright(const CountedSphere& sphere, const Scan& scanned, const Candida
 
 }  // namespace
 
-std::optional<FoundPeak> peak_estimate(const CountedSphere& sphere) {
+std::optional<FoundPeak> peak_estimate(const CountedSphere& sphere, bool with_bright) {
   FoundPeak p;
   double radius = kWidestRadius_deg;
   const double finest = sphere.resolution_deg();
@@ -385,7 +387,7 @@ std::optional<FoundPeak> peak_estimate(const CountedSphere& sphere) {
   const Candidates c = candidates(sphere, *s, kernel);
   const LargestFigure max = largest(c.cd);
   place_peak(c, max, p);
-  find_bright(sphere, *s, c, p);
+  if (with_bright) find_bright(sphere, *s, c, p);
   choose_radius(sphere, max, kernel, p);
   return p;
 }

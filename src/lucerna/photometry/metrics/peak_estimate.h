@@ -28,6 +28,7 @@ struct FoundPeak : PeakEstimate {
 /// taken off as `largest` does. At that place narrower kernels follow, each of half the radius; the one of
 /// least error is taken, and its error has the bias that the others show (radius_choice.h). Nothing for a
 /// dark sphere. About 0.1 s.
-std::optional<FoundPeak> peak_estimate(const CountedSphere& sphere);
+/// `bright` is found only where it is asked for.
+std::optional<FoundPeak> peak_estimate(const CountedSphere& sphere, bool with_bright = false);
 
 }  // namespace lucerna

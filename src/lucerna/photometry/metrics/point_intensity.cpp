@@ -2,6 +2,7 @@
 #include "lucerna/photometry/metrics/point_intensity.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -18,9 +19,11 @@ constexpr std::uint64_t kFirstSamples = 1024, kMaxSamples = std::uint64_t{1} << 
 /// Of each direction that a search looks at; the same random numbers for all, so that most noise cancels.
 constexpr std::uint64_t kSearchSamples = 256, kSearchSeed = 11, kFinalSeed = 23;
 /// Starts that are searched about, and tops that are looked at again.
-constexpr std::size_t kSearched = 8, kRetained = 4;
+constexpr std::size_t kSearched = 8, kRetained = 3;
+/// Starts below this share of the brightest are not: a search gains less.
+constexpr double kHopeful = 0.92;
 /// A search ends when its step is this share of the radius.
-constexpr double kFirstStep = 0.5, kLastStep = 0.05;
+constexpr double kFirstStep = 0.5, kLastStep = 0.1;
 constexpr int kNeighbours = 6;
 /// Steps into which a window is cut to find a crossing; points of the line through it within a step to either
 /// side.
@@ -133,12 +136,13 @@ std::optional<Crossing> find_crossing(const PointIntensity& intensity, const Dir
 }  // namespace
 
 Estimate precise_intensity(const PointIntensity& intensity, const Direction& direction) {
-  Estimate e;
-  for (std::uint64_t samples = kFirstSamples; samples <= kMaxSamples; samples *= 2) {
-    e = intensity(direction, samples, kFinalSeed);
-    if (e.standard_error <= kPrecise * e.mean) break;
-  }
-  return e;
+  const Estimate first = intensity(direction, kFirstSamples, kFinalSeed);
+  const double excess = first.standard_error / (kPrecise * first.mean);
+  if (!(excess > 1.0)) return first;
+  // The error falls with the root of the samples, or faster.
+  const double more = std::min(excess * excess, static_cast<double>(kMaxSamples / kFirstSamples));
+  return intensity(direction, kFirstSamples * std::bit_ceil(static_cast<std::uint64_t>(std::ceil(more))),
+                   kFinalSeed);
 }
 
 PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direction> starts,
@@ -147,6 +151,8 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
   std::vector<Found> found;
   for (const Direction& d : starts) found.push_back({d, intensity(d, kFirstSamples, kSearchSeed).mean});
   retain_brightest(found, kSearched);
+  const double min_cd = kHopeful * found.front().cd;
+  std::erase_if(found, [&](const Found& f) { return f.cd < min_cd; });
   const Direction brightest_start = found.front().direction;
   for (Found& f : found) f = pattern_search(intensity, f.direction, radius_deg);
   for (Found& f : found) f.cd = intensity(f.direction, kFirstSamples, kSearchSeed).mean;
@@ -158,7 +164,7 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
     tops.push_back(precise_peak(intensity, f.direction));
     if (tops.back().cd.mean > best.cd.mean) best = tops.back();
   }
-  best.cd.standard_error = std::hypot(best.cd.standard_error, search_error(std::move(tops)));
+  best.search_error_cd = search_error(std::move(tops));
   return best;
 }
 

@@ -17,18 +17,20 @@ namespace lucerna {
 using PointIntensity =
     std::function<Estimate(const Direction& direction, std::uint64_t samples, std::uint64_t seed)>;
 
-/// The intensity to a relative error of 0.2 %, or as near to it as 2^14 samples bring it.
+/// The intensity to a relative error of 0.3 %, or as near to it as 2^13 samples bring it.
 Estimate precise_intensity(const PointIntensity& intensity, const Direction& direction);
 
-/// A local maximum.
+/// A local maximum. On a top with ripples the highest may be higher by about `search_error_cd`: half of what
+/// the best two searches differ by, where they end on one top.
 struct PointPeak {
   Direction direction;
   Estimate cd;
+  double search_error_cd = 0.0;
 };
 
 /// The brightest direction by pattern search about the brightest eight of `starts`, within about `radius_deg`
-/// of them. The value is from samples that the search has not seen, its error has what the best two searches
-/// differ by where they end on one top. At least one start. Some 400 short estimates.
+/// of them. The value is from samples that the search has not seen. At least one start. Some 300 short
+/// estimates.
 PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direction> starts,
                           double radius_deg);
 

@@ -71,10 +71,11 @@ struct Ripples {
   double height[25];
 };
 
-// Twelve starts see about half of the ripples. Half of what the best two searches differ by is stated, so
-// that the highest lies within three errors and 0.3 % in most of 40 tops.
+// Four starts see few of the ripples. Half of what the best two searches differ by is stated, so
+// that the highest lies within three errors and 0.3 % in most of 40 tops: in more than with the noise of the
+// samples alone (three errors and 0.3 % are 0.5 %).
 TEST(PointIntensityStatistical, FindsAHighRippleAndSaysHowHighOthersMayBe) {
-  int held = 0, within = 0;
+  int held = 0, held_by_noise = 0, within = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const Ripples top(seed);
     const PointIntensity noisy = [&](const Direction& d, std::uint64_t samples, std::uint64_t stream) {
@@ -83,15 +84,18 @@ TEST(PointIntensityStatistical, FindsAHighRippleAndSaysHowHighOthersMayBe) {
     };
     std::vector<Direction> starts;
     Rng rng(seed, 6);
-    for (int i = 0; i < 12; ++i)
+    for (int i = 0; i < 4; ++i)
       starts.push_back(toward(360.0 * rng.uniform(), 3.5 * std::sqrt(rng.uniform())));
     const PointPeak peak = brightest_point(noisy, starts, 0.75);
     const double gap = top.highest() - peak.cd.mean;
-    held += std::abs(gap) <= 3.0 * peak.cd.standard_error + 3.0 ? 1 : 0;
+    const double error = std::hypot(peak.cd.standard_error, peak.search_error_cd);
+    held += std::abs(gap) <= 3.0 * error + 3.0 ? 1 : 0;
+    held_by_noise += std::abs(gap) <= 5.0 ? 1 : 0;
     within += std::abs(gap) <= 10.0 ? 1 : 0;
   }
-  EXPECT_GE(held, 30);
-  EXPECT_GE(within, 32);
+  EXPECT_GE(held, held_by_noise + 5);
+  EXPECT_GE(held, 28);
+  EXPECT_GE(within, 26);
 }
 
 TEST(PointIntensity, SaysNothingWhereTheEndsAreNotThere) {

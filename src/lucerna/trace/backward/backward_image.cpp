@@ -13,7 +13,7 @@ namespace {
 
 /// Images are in flux / m^2, lengths in mm.
 constexpr double kPerSquareMetre = 1e6;
-/// Nearest place to a source, in radii of the ball that its light leaves.
+/// Nearest place to a source, in radii of the ball that its light leaves, and to a mirror, in patches.
 constexpr double kNearest = 1.5;
 
 /// Of (u, v) in the unit square, in the luminaire frame.
@@ -40,6 +40,8 @@ Vec3 place_in_disk(double u, double v, double radius) {
 struct View {
   Direction direction;
   double weight = 1.0;
+  /// Light from further along the line does not count.
+  double end_mm = BackwardScene::kNoEnd;
 };
 
 View view_of(const LuminanceDetector& d, std::size_t cell, const Vec3& at, double u, double v) {
@@ -50,8 +52,9 @@ View view_of(const LuminanceDetector& d, std::size_t cell, const Vec3& at, doubl
   const Vec3 pupil = place_in_disk(u, v, d.pupil_radius_mm) + Vec3{0.0, 0.0, d.distance_mm};
   const Vec3 to = pupil - at;
   const double r2 = dot(to, to), pupil_mm2 = std::numbers::pi * d.pupil_radius_mm * d.pupil_radius_mm;
-  return {Direction::from(to),
-          d.distance_mm * d.distance_mm / (r2 * r2) * d.grid.cell_mm2() * pupil_mm2 / etendue_mm2sr(d, cell)};
+  const double weight =
+      d.distance_mm * d.distance_mm / (r2 * r2) * d.grid.cell_mm2() * pupil_mm2 / etendue_mm2sr(d, cell);
+  return {Direction::from(to), weight, std::sqrt(r2)};
 }
 
 }  // namespace
@@ -63,12 +66,17 @@ BackwardImage::BackwardImage(const Scene& scene, int max_bounces)
 }
 
 bool BackwardImage::can_see(const PlaneGrid& grid) const {
-  return std::all_of(disks_.begin(), disks_.end(), [&](const LineDisks& disks) {
-    const Vec3 centre = grid.world_from_plane.inverse().point(disks.centre_mm());
-    const double dx = std::max(0.0, std::abs(centre.x) - 0.5 * grid.size_x_mm);
-    const double dy = std::max(0.0, std::abs(centre.y) - 0.5 * grid.size_y_mm);
-    return length(Vec3{dx, dy, centre.z}) > kNearest * disks.radius_mm();
-  });
+  const Frame plane_from_world = grid.world_from_plane.inverse();
+  const auto distance_mm = [&](const Vec3& place) {
+    const Vec3 p = plane_from_world.point(place);
+    const double dx = std::max(0.0, std::abs(p.x) - 0.5 * grid.size_x_mm);
+    const double dy = std::max(0.0, std::abs(p.y) - 0.5 * grid.size_y_mm);
+    return length(Vec3{dx, dy, p.z});
+  };
+  return guide_.further_than(kNearest, distance_mm) &&
+         std::all_of(disks_.begin(), disks_.end(), [&](const LineDisks& disks) {
+           return distance_mm(disks.centre_mm()) > kNearest * disks.radius_mm();
+         });
 }
 
 double BackwardImage::by_mirrors(const PlaneGrid& grid, std::size_t cell, const CellGuide& guide,
@@ -113,7 +121,7 @@ double BackwardImage::by_source(const PlaneGrid& grid, std::size_t cell, std::si
     const double cosine = -dot(lit, out.vec());
     if (!(cosine > 0.0)) continue;
     const double luminance =
-        scene_.direct_luminance(scene_.sources()[source], {passed.point_mm, out}, scratch);
+        scene_.direct_luminance(scene_.sources()[source], {passed.point_mm, out}, scratch, length(to));
     sum += luminance * cosine * dot(axis.vec(), out.vec()) / dot(to, to) / passed.pdf_area;
   }
   return sum / static_cast<double>(samples);
@@ -147,7 +155,7 @@ std::vector<double> BackwardImage::luminance(const LuminanceDetector& detector, 
       const Vec3 place = place_in_cell(grid, cell, u[0], u[1]);
       const View view = view_of(detector, cell, plane_from_world.point(place), u[2], u[3]);
       const Ray line{place, grid.world_from_plane.direction(view.direction)};
-      sum += view.weight * scene_.leaving_luminance(line, {seed, i, 0}, scratch);
+      sum += view.weight * scene_.leaving_luminance(line, {seed, i, 0}, scratch, view.end_mm);
     }
     out.push_back(kPerSquareMetre * sum / static_cast<double>(samples));
   }

@@ -21,7 +21,7 @@ class BackwardImage {
   /// Throws InputError with `no_backward_reason`.
   BackwardImage(const Scene& scene, int max_bounces);
 
-  /// Whether a plane is far enough from every source to look at it from there.
+  /// Whether a plane is far enough from every source and mirror to look at them from there.
   bool can_see(const PlaneGrid& grid) const;
 
   /// Flux / m^2 on the lit side of a cell, one value a seed: `samples` rays by mirrors and a quarter of that

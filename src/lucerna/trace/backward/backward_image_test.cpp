@@ -140,7 +140,7 @@ TEST(BackwardImageStatistical, ObserversSeeTheLightThatATraceCounts) {
   }
 }
 
-// What the tests above would see: a cosine that is forgotten, and bodies that are.
+// What the tests above would see: 5 % too much light, and bodies that are forgotten.
 TEST(BackwardImageStatistical, WrongEstimatorsAreFound) {
   Scene scene = paraboloid();
   scene.planes.push_back({"plane", grid_at({5.0, 3.0, -250.0}, 110.0, 18)});
@@ -161,10 +161,11 @@ TEST(BackwardImageStatistical, WrongEstimatorsAreFound) {
   EXPECT_GT(a.mean_z2, 1.9);
 }
 
-TEST(BackwardImage, APlaneAtTheSourceCannotBeSeenFromThere) {
+TEST(BackwardImage, APlaneAtASourceOrMirrorCannotBeSeenFromThere) {
   const BackwardImage backward(paraboloid(), 100);
   EXPECT_FALSE(backward.can_see(grid_at({0.0, 0.0, 0.0}, 10.0, 2)));
   EXPECT_FALSE(backward.can_see(grid_at({200.0, 0.0, -20.0}, 500.0, 2)));
+  EXPECT_FALSE(backward.can_see(grid_at({49.0, 0.0, -26.0}, 10.0, 2)));
   EXPECT_TRUE(backward.can_see(grid_at({200.0, 0.0, -60.0}, 10.0, 2)));
 }
 

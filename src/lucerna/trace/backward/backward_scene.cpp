@@ -125,22 +125,26 @@ bool BackwardScene::escapes(const Vec3& point, const Direction& out, bool return
   return !nearest(ray) && !bodies_.first_hit(ray, std::numeric_limits<double>::infinity(), returning);
 }
 
-double BackwardScene::direct_luminance(const Source& source, const Ray& ray, Scratch& scratch) const {
+double BackwardScene::direct_luminance(const Source& source, const Ray& ray, Scratch& scratch,
+                                       double end_mm) const {
   scratch.clear();
   source.light->add_light_on(source.source_from_world.ray(ray), scratch);
   double sum = 0.0;
   for (const LineLight& l : scratch) {
-    if (escapes(ray.at(l.start_mm), ray.direction, false)) sum += source.flux * l.pdf_etendue;
+    if (l.start_mm < end_mm && escapes(ray.at(l.start_mm), ray.direction, false))
+      sum += source.flux * l.pdf_etendue;
   }
   return sum;
 }
 
-double BackwardScene::leaving_luminance(const Ray& line, ReflectionKey key, Scratch& scratch) const {
+double BackwardScene::leaving_luminance(const Ray& line, ReflectionKey key, Scratch& scratch,
+                                        double end_mm) const {
   double sum = 0.0;
-  for (const Source& s : sources_) sum += direct_luminance(s, line, scratch);
+  for (const Source& s : sources_) sum += direct_luminance(s, line, scratch, end_mm);
   const Ray against{line.at(kFarAway_mm), Direction::from_unit(-line.direction.vec())};
   const auto last = nearest(against);
-  if (!last || !last->front || !escapes(last->point, line.direction, true)) return sum;
+  if (!last || !last->front || kFarAway_mm - last->t_mm > end_mm) return sum;
+  if (!escapes(last->point, line.direction, true)) return sum;
   return sum + reflected_luminance(*last->mirror, last->point, last->normal, line.direction, key, scratch);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,6 +36,7 @@ class BackwardScene {
     Frame world_from_source, source_from_world;
     double flux;
   };
+  static constexpr double kNoEnd = std::numeric_limits<double>::infinity();
   /// Memory that a thread reuses.
   using Scratch = std::vector<LineLight>;
 
@@ -50,11 +52,15 @@ class BackwardScene {
   double reflected_luminance(const Mirror& mirror, const Vec3& point, const Direction& normal,
                              const Direction& out, ReflectionKey key, Scratch& scratch) const;
 
-  /// Luminance that one source sends along the line of `ray` to infinity, past everything.
-  double direct_luminance(const Source& source, const Ray& ray, Scratch& scratch) const;
+  /// Luminance that one source sends along the line of `ray` to infinity, past everything, from places on it
+  /// before `end_mm`.
+  double direct_luminance(const Source& source, const Ray& ray, Scratch& scratch,
+                          double end_mm = kNoEnd) const;
 
-  /// Luminance of all light that leaves the luminaire along a line, wherever on it. `key` as above.
-  double leaving_luminance(const Ray& line, ReflectionKey key, Scratch& scratch) const;
+  /// Luminance of all light that leaves the luminaire along a line from places before `end_mm`. `key` as
+  /// above.
+  double leaving_luminance(const Ray& line, ReflectionKey key, Scratch& scratch,
+                           double end_mm = kNoEnd) const;
 
   /// Does light from `point` along `out` leave the luminaire? `returning`: it was reflected before.
   bool escapes(const Vec3& point, const Direction& out, bool returning) const;

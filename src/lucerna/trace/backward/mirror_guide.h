@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -64,6 +65,17 @@ class MirrorGuide {
   MirrorGuide(const BackwardScene& scene, std::span<const GuideSource> sources);
   /// About 2300 patches a mirror, some 20 ns each.
   CellGuide for_cell(const DirectionCell& cell) const;
+  /// Whether all patches are further away than so many times their size; distance(centre) in mm.
+  template <class Distance>
+  bool further_than(double sizes, const Distance& distance_mm) const {
+    for (const std::vector<Patch>& patches : mirrors_) {
+      for (const Patch& p : patches) {
+        const double size = std::max(p.region.x1_mm - p.region.x0_mm, p.region.y1_mm - p.region.y0_mm);
+        if (p.on_mirror && !(distance_mm(p.centre_mm) > sizes * size * p.slope)) return false;
+      }
+    }
+    return true;
+  }
   /// For light towards places within `radius_mm` of a point instead.
   CellGuide for_point(const Vec3& point_mm, double radius_mm) const;
 

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <iostream>
 
+#include "lucerna/core/parallel/parallel.h"
 #include "lucerna/source.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace_metrics.h"
@@ -48,7 +48,6 @@ TEST(BackwardBlendStatistical, SmallPlanesAreKnownBetter) {
   const Scene luminaire = scene();
   const TraceResult few = run(luminaire, 1 << 18);
   const PlaneMetrics counted = trace_metrics(few).planes[0], known = trace_metrics(few, luminaire).planes[0];
-  std::cout << "noise " << counted.noise << " -> " << known.noise << "\n";
   EXPECT_LT(10.0 * known.noise, counted.noise);
   EXPECT_LT(10.0 * known.image.flux.standard_error, counted.image.flux.standard_error);
   const PlaneMetrics truth = trace_metrics(run(luminaire, 1 << 23, 7)).planes[0];
@@ -61,11 +60,44 @@ TEST(BackwardBlendStatistical, SmallPlanesAreKnownBetter) {
   EXPECT_LT(known.extremes.max.mean - known.extremes.min.mean, 0.06 * known.extremes.mean.mean + 4.0 * error);
 }
 
+// A sensor that is much smaller than what one of 2^16 rays stands for.
+TEST(BackwardBlendStatistical, ASensorThatNoRayFindsIsNotDark) {
+  Scene luminaire = scene();
+  luminaire.planes.push_back(luminaire.planes[0]);
+  luminaire.planes.back().name = "wide";
+  luminaire.planes[0].grid.size_x_mm = luminaire.planes[0].grid.size_y_mm = 0.1;
+  const TraceResult few = run(luminaire, 1 << 16);
+  ASSERT_EQ(illuminance(few, 0).flux.mean, 0.0);
+  const TraceMetrics known = trace_metrics(few, luminaire);
+  const Estimate small = known.planes[0].extremes.mean, wide = known.planes[2].extremes.mean;
+  EXPECT_GT(small.mean, 50.0 * small.standard_error);
+  EXPECT_NEAR(small.mean, wide.mean, 0.05 * wide.mean);
+}
+
+// A picture of the lit mirror, with the noise of the counted one at least halved.
+TEST(BackwardBlendStatistical, LuminanceImagesAreKnownBetter) {
+  Scene luminaire = scene();
+  LuminanceDetector d;
+  d.grid.world_from_plane = facing_frame(Direction::from({0, 0, -1}), {0, 1, 0}, {0, 0, -30});
+  d.grid.size_x_mm = d.grid.size_y_mm = 90.0;
+  d.grid.nx = d.grid.ny = 12;
+  d.half_angle_deg = 0.5;
+  luminaire.luminances.push_back(d);
+  const TraceResult few = run(luminaire, 1 << 18);
+  const PlaneMetrics counted = trace_metrics(few).luminances[0];
+  const PlaneMetrics known = trace_metrics(few, luminaire).luminances[0];
+  EXPECT_LT(2.0 * known.noise, counted.noise);
+  const PlaneMetrics truth = trace_metrics(run(luminaire, 1 << 23, 7)).luminances[0];
+  for (const auto& [a, b] : {std::pair(known.extremes.mean, truth.extremes.mean),
+                             std::pair(known.extremes.max, truth.extremes.max)})
+    EXPECT_NEAR(a.mean, b.mean, 4.0 * std::hypot(a.standard_error, b.standard_error) + 0.005 * b.mean);
+}
+
 TEST(BackwardBlend, WideFloorsStayCounted) {
   const Scene luminaire = scene();
   const TraceResult result = run(luminaire, 1 << 22);
   const PlaneImage counted = illuminance(result, 1);
-  EXPECT_EQ(backward_illuminance(luminaire, result, 1, counted).weight, 0.0);
+  EXPECT_EQ(backward_illuminance(BackwardImage(luminaire, 100), result, 1, counted).weight, 0.0);
 }
 
 // A scene that is not the one that was traced: its light is dimmer by a third.
@@ -74,20 +106,23 @@ TEST(BackwardBlend, LightThatDoesNotAgreeIsNotUsed) {
   luminaire.planes[0].grid.size_x_mm = luminaire.planes[0].grid.size_y_mm = 20.0;
   const TraceResult result = run(luminaire, 1 << 20);
   const PlaneImage counted = illuminance(result, 0);
-  EXPECT_GT(backward_illuminance(luminaire, result, 0, counted).weight, 0.5);
+  EXPECT_GT(backward_illuminance(BackwardImage(luminaire, 100), result, 0, counted).weight, 0.5);
   luminaire.reflectors[0].reflectance = Reflectance(0.6);
-  EXPECT_EQ(backward_illuminance(luminaire, result, 0, counted).weight, 0.0);
+  EXPECT_EQ(backward_illuminance(BackwardImage(luminaire, 100), result, 0, counted).weight, 0.0);
 }
 
-TEST(BackwardBlend, IsTheSameEachTime) {
+TEST(BackwardBlend, IsTheSameForAnyThreads) {
   const Scene luminaire = scene();
   const TraceResult result = run(luminaire, 1 << 16);
   const PlaneImage counted = illuminance(result, 0);
-  const ImageBlend a = backward_illuminance(luminaire, result, 0, counted);
-  const ImageBlend b = backward_illuminance(luminaire, result, 0, counted);
-  ASSERT_GT(a.weight, 0.9);
-  EXPECT_EQ(a.weight, b.weight);
-  EXPECT_EQ(a.values.fluxes(), b.values.fluxes());
+  const auto with = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return backward_illuminance(BackwardImage(luminaire, 100), result, 0, counted);
+  };
+  const ImageBlend one = with(1), two = with(2);
+  ASSERT_GT(one.weight, 0.9);
+  EXPECT_EQ(one.weight, two.weight);
+  EXPECT_EQ(one.values.fluxes(), two.values.fluxes());
 }
 
 }  // namespace

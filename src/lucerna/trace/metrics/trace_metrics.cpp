@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "lucerna/photometry/binning/binned_intensity.h"
@@ -105,16 +106,19 @@ TraceMetrics figures_of(const TraceResult& result, const Scene* scene) {
   const Estimate out = out_flux(result).estimate();
   for (std::size_t i = 0; i < result.far_fields.size(); ++i)
     figures.far_fields.push_back(far_field_result(result, i, scene));
+  std::optional<BackwardImage> backward;
+  const bool images = !result.planes.empty() || !result.luminances.empty();
+  if (images && scene != nullptr && no_backward_reason(*scene).empty())
+    backward.emplace(*scene, result.max_bounces);
   for (std::size_t i = 0; i < result.planes.size(); ++i) {
     const PlaneImage counted = illuminance(result, i);
-    const ImageBlend blend =
-        scene != nullptr ? backward_illuminance(*scene, result, i, counted) : ImageBlend();
+    const ImageBlend blend = backward ? backward_illuminance(*backward, result, i, counted) : ImageBlend();
     figures.planes.push_back(plane_metrics(blended(counted, blend),
                                            illuminance_extremes(result, i, counted, blend), std::nullopt));
   }
   for (std::size_t i = 0; i < result.luminances.size(); ++i) {
     const PlaneImage counted = luminance(result, i);
-    const ImageBlend blend = scene != nullptr ? backward_luminance(*scene, result, i, counted) : ImageBlend();
+    const ImageBlend blend = backward ? backward_luminance(*backward, result, i, counted) : ImageBlend();
     figures.luminances.push_back(plane_metrics(
         blended(counted, blend), luminance_extremes(result, i, counted, blend), result.luminances[i]));
   }

@@ -7,18 +7,19 @@ namespace lucerna {
 
 PlaneImage blended(PlaneImage counted, const ImageBlend& blend) {
   if (!(blend.weight > 0.0)) return counted;
-  const double w = blend.weight;
   double counted_sum = 0.0;
   Jackknife sum(blend.values.replicates());
   for (std::size_t k = 0; k < counted.value.size(); ++k) {
     const auto row = blend.values.row(k);
     counted_sum += counted.value[k];
     sum.add(1.0, row);
+    const double w = blend.weight_of(k);
     const Estimate other = Jackknife({row.begin(), row.end()}).estimate();
     counted.value[k] = (1.0 - w) * counted.value[k] + w * other.mean;
     counted.standard_error[k] = std::hypot((1.0 - w) * counted.standard_error[k], w * other.standard_error);
   }
   if (!(counted_sum > 0.0)) return counted;
+  const double w = blend.weight;
   const Estimate other = sum.map([&](double v) { return v / counted_sum * counted.flux.mean; }).estimate();
   counted.flux = {(1.0 - w) * counted.flux.mean + w * other.mean,
                   std::hypot((1.0 - w) * counted.flux.standard_error, w * other.standard_error)};

@@ -12,6 +12,8 @@ struct ImageBlend {
   double weight = 0.0;
   /// Values of the cells in the image's unit, and those without each replicate.
   JackknifedFlux values;
+  /// Of a cell: where nothing was found its error is not known either, and the counted value stays.
+  double weight_of(std::size_t cell) const { return weight > 0.0 && values.flux(cell) > 0.0 ? weight : 0.0; }
 };
 
 /// The average; its flux is that of the average's values as the counted one is of the counted values.

@@ -45,11 +45,11 @@ struct ImageBins {
 
   /// Of the counted light `flux` of a cell.
   Jackknife value(const JackknifedFlux& flux, std::size_t row, std::size_t cell, double sign) const {
-    const double counted_part = sign * (1.0 - blend.weight);
+    const double w = blend.weight_of(cell), counted_part = sign * (1.0 - w);
     const double per_flux = flux.flux(row) > 0.0 ? counted_part * counted.value[cell] / flux.flux(row) : 0.0;
     Jackknife out(flux.replicates());
     out.add(per_flux, flux.row(row));
-    if (blend.weight > 0.0) out.add(sign * blend.weight, blend.values.row(cell));
+    if (w > 0.0) out.add(sign * w, blend.values.row(cell));
     return out;
   }
   /// Of all cells together.
