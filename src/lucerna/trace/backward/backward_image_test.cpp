@@ -20,7 +20,7 @@ namespace lucerna {
 namespace {
 
 /// An LED of four dies in a paraboloid that shines down; a black plate covers a part of the opening.
-Scene paraboloid(double slope_error_mrad = 0.0) {
+Scene plated_paraboloid(double slope_error_mrad = 0.0) {
   Scene scene;
   EmitterOptions source;
   source.kind = EmitterKind::led;
@@ -114,7 +114,7 @@ void expect_agreement(const ImageAgreement& a) {
 TEST(BackwardImageStatistical, PlanesHaveTheLightThatATraceCounts) {
   for (const double slope_error_mrad : {0.0, 10.0}) {
     SCOPED_TRACE(slope_error_mrad);
-    Scene scene = paraboloid(slope_error_mrad);
+    Scene scene = plated_paraboloid(slope_error_mrad);
     scene.planes.push_back({"plane", grid_at({5.0, 3.0, -250.0}, 110.0, 18)});
     const PlaneImage forward = illuminance(trace(scene, forward_options()), 0);
     const BackwardImage backward(scene, 100);
@@ -129,7 +129,7 @@ TEST(BackwardImageStatistical, PlanesHaveTheLightThatATraceCounts) {
 TEST(BackwardImageStatistical, ObserversSeeTheLightThatATraceCounts) {
   for (const double distance_mm : {0.0, 400.0}) {
     SCOPED_TRACE(distance_mm);
-    Scene scene = paraboloid();
+    Scene scene = plated_paraboloid();
     scene.luminances.push_back(observer(distance_mm));
     const PlaneImage forward = luminance(trace(scene, forward_options()), 0);
     const BackwardImage backward(scene, 100);
@@ -142,7 +142,7 @@ TEST(BackwardImageStatistical, ObserversSeeTheLightThatATraceCounts) {
 
 // What the tests above would see: 5 % too much light, and bodies that are forgotten.
 TEST(BackwardImageStatistical, WrongEstimatorsAreFound) {
-  Scene scene = paraboloid();
+  Scene scene = plated_paraboloid();
   scene.planes.push_back({"plane", grid_at({5.0, 3.0, -250.0}, 110.0, 18)});
   const PlaneImage forward = illuminance(trace(scene, forward_options()), 0);
   const BackwardImage backward(scene, 100);
@@ -162,7 +162,7 @@ TEST(BackwardImageStatistical, WrongEstimatorsAreFound) {
 }
 
 TEST(BackwardImage, APlaneAtASourceOrMirrorCannotBeSeenFromThere) {
-  const BackwardImage backward(paraboloid(), 100);
+  const BackwardImage backward(plated_paraboloid(), 100);
   EXPECT_FALSE(backward.can_see(grid_at({0.0, 0.0, 0.0}, 10.0, 2)));
   EXPECT_FALSE(backward.can_see(grid_at({200.0, 0.0, -20.0}, 500.0, 2)));
   EXPECT_FALSE(backward.can_see(grid_at({49.0, 0.0, -26.0}, 10.0, 2)));
