@@ -56,7 +56,7 @@ std::string no_backward_reason(const Scene& scene) {
 }
 
 BackwardScene::BackwardScene(const Scene& scene, int max_bounces)
-    : scene_(scene), max_bounces_(max_bounces), bodies_(scene.bodies) {
+    : max_bounces_(max_bounces), bodies_(scene.bodies) {
   check(scene);
   const std::string reason = no_backward_reason(scene);
   if (!reason.empty()) throw InputError("light cannot be followed backward: " + reason);

@@ -70,7 +70,6 @@ class BackwardScene {
   std::optional<Hit> nearest(const Ray& ray) const;
   double emitted_on(const Ray& backward, double reach_mm, Scratch& scratch) const;
 
-  const Scene& scene_;
   int max_bounces_;
   std::vector<Mirror> mirrors_;
   std::vector<Source> sources_;
