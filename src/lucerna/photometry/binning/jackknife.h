@@ -92,6 +92,7 @@ class JackknifedFlux {
   std::span<const double> row(std::size_t cell) const {
     return std::span(values_).subspan(cell * stride_, stride_);
   }
+  Jackknife at(std::size_t cell) const { return Jackknife({row(cell).begin(), row(cell).end()}); }
   /// The whole run's flux of all cells.
   std::vector<double> fluxes() const;
 

@@ -351,14 +351,14 @@ std::vector<PointOfScan> points(const Scan& s) {
 
 void find_bright(const CountedSphere& sphere, const Scan& scanned, const Candidates& candidates,
                  FoundPeak& p) {
-  p.bright_spacing_deg = p.radius_deg;
-  std::vector<PointOfScan> places = points(candidates);
-  if (std::max(p.radius_deg, p.c_radius_deg) > kRippleRadius_deg) {
-    const Kernel narrow(std::min(p.radius_deg, std::max(sphere.resolution_deg(), kRippleRadius_deg)));
-    p.bright_spacing_deg = std::min(p.radius_deg, 2.0 * narrow.radius_deg);
-    places = points(scan(sphere, narrow, &scanned));
+  if (std::max(p.radius_deg, p.c_radius_deg) <= kRippleRadius_deg) {
+    p.bright_spacing_deg = p.radius_deg;
+    p.bright = bright_directions(p.direction, points(candidates), p.bright_spacing_deg);
+    return;
   }
-  p.bright = bright_directions(p.direction, std::move(places), p.bright_spacing_deg);
+  const Kernel narrow(std::min(p.radius_deg, std::max(sphere.resolution_deg(), kRippleRadius_deg)));
+  p.bright_spacing_deg = std::min(p.radius_deg, 2.0 * narrow.radius_deg);
+  p.bright = bright_directions(p.direction, points(scan(sphere, narrow, &scanned)), p.bright_spacing_deg);
 }
 
 }  // namespace

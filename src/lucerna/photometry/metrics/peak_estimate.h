@@ -27,8 +27,7 @@ struct FoundPeak : PeakEstimate {
 /// Gaussian lobe and by 3 % and more for a sharp tip. That the largest of many noisy values is too large is
 /// taken off as `largest` does. At that place narrower kernels follow, each of half the radius; the one of
 /// least error is taken, and its error has the bias that the others show (radius_choice.h). Nothing for a
-/// dark sphere. About 0.1 s.
-/// `bright` is found only where it is asked for.
+/// dark sphere. `bright` is found only where it is asked for. About 0.1 s.
 std::optional<FoundPeak> peak_estimate(const CountedSphere& sphere, bool with_bright = false);
 
 }  // namespace lucerna

@@ -103,14 +103,7 @@ Estimate BackwardEstimator::intensity_cd(const Direction& direction, std::uint64
     sample_cell(cell, guide, samples, detail::mix_bits(seed * replicates + r),
                 [&](double, const TypeCAngles&, double part) { cd[r] += part; });
   });
-  const auto n = static_cast<double>(replicates);
-  double sum = 0.0, squares = 0.0;
-  for (const double v : cd) {
-    sum += v;
-    squares += v * v;
-  }
-  const double mean = sum / n;
-  return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1.0))};
+  return mean_estimate(cd);
 }
 
 }  // namespace lucerna

@@ -5,23 +5,21 @@
 #include <cmath>
 #include <numbers>
 
+#include "lucerna/core/math/units.h"
 #include "lucerna/random.h"
 
 namespace lucerna {
 
 namespace {
 
-/// Images are in flux / m^2, lengths in mm.
-constexpr double kPerSquareMetre = 1e6;
 /// Nearest place to a source, in radii of the ball that its light leaves, and to a mirror, in patches.
 constexpr double kNearest = 1.5;
 
-/// Of (u, v) in the unit square, in the luminaire frame.
+/// Of (u, v) in the unit square, in the plane's frame.
 Vec3 place_in_cell(const PlaneGrid& grid, std::size_t cell, double u, double v) {
   const double width = grid.size_x_mm / static_cast<double>(grid.nx);
   const double height = grid.size_y_mm / static_cast<double>(grid.ny);
-  return grid.world_from_plane.point(
-      {grid.cell_x_mm(cell) + (u - 0.5) * width, grid.cell_y_mm(cell) + (v - 0.5) * height, 0.0});
+  return {grid.cell_x_mm(cell) + (u - 0.5) * width, grid.cell_y_mm(cell) + (v - 0.5) * height, 0.0};
 }
 
 double half_diagonal_mm(const PlaneGrid& grid) {
@@ -35,27 +33,37 @@ Vec3 place_in_disk(double u, double v, double radius) {
   return {r * std::cos(turn), r * std::sin(turn), 0.0};
 }
 
-/// Where an observer's line through a cell goes, in the plane's frame, and its weight in the mean: the
-/// density of what light of luminance 1 carries over that of the draw.
-struct View {
-  Direction direction;
-  double weight = 1.0;
-  /// Light from further along the line does not count.
-  double end_mm = BackwardScene::kNoEnd;
-};
+/// Lines of an observer through the places of a cell, in the plane's frame.
+class View {
+ public:
+  struct Line {
+    Direction direction;
+    /// The density of what light of luminance 1 carries over that of the draw.
+    double weight = 1.0;
+    /// Light from further along the line does not count.
+    double end_mm = BackwardScene::kNoEnd;
+  };
 
-View view_of(const LuminanceDetector& d, std::size_t cell, const Vec3& at, double u, double v) {
-  if (d.distance_mm <= 0.0) {
-    const Vec3 p = place_in_disk(u, v, std::sin(radians(d.half_angle_deg)));
-    return {Direction::from({p.x, p.y, std::sqrt(1.0 - p.x * p.x - p.y * p.y)})};
+  View(const LuminanceDetector& d, std::size_t cell) : d_(d) {
+    if (d.distance_mm <= 0.0) return;
+    const double pupil_mm2 = std::numbers::pi * d.pupil_radius_mm * d.pupil_radius_mm;
+    weight_ = d.distance_mm * d.distance_mm * d.grid.cell_mm2() * pupil_mm2 / etendue_mm2sr(d, cell);
   }
-  const Vec3 pupil = place_in_disk(u, v, d.pupil_radius_mm) + Vec3{0.0, 0.0, d.distance_mm};
-  const Vec3 to = pupil - at;
-  const double r2 = dot(to, to), pupil_mm2 = std::numbers::pi * d.pupil_radius_mm * d.pupil_radius_mm;
-  const double weight =
-      d.distance_mm * d.distance_mm / (r2 * r2) * d.grid.cell_mm2() * pupil_mm2 / etendue_mm2sr(d, cell);
-  return {Direction::from(to), weight, std::sqrt(r2)};
-}
+
+  Line line(const Vec3& place, double u, double v) const {
+    if (d_.distance_mm <= 0.0) {
+      const Vec3 p = place_in_disk(u, v, std::sin(radians(d_.half_angle_deg)));
+      return {Direction::from({p.x, p.y, std::sqrt(1.0 - p.x * p.x - p.y * p.y)})};
+    }
+    const Vec3 to = place_in_disk(u, v, d_.pupil_radius_mm) + Vec3{0.0, 0.0, d_.distance_mm} - place;
+    const double r2 = dot(to, to);
+    return {Direction::from(to), weight_ / (r2 * r2), std::sqrt(r2)};
+  }
+
+ private:
+  const LuminanceDetector& d_;
+  double weight_ = 1.0;
+};
 
 }  // namespace
 
@@ -90,7 +98,7 @@ double BackwardImage::by_mirrors(const PlaneGrid& grid, std::size_t cell, const 
     const MirrorPlace place = guide.place(u[0], u[1]);
     const auto from = mirror_point(scene_, place);
     if (!from) continue;
-    const Vec3 to = place_in_cell(grid, cell, u[2], u[3]) - from->point_mm;
+    const Vec3 to = grid.world_from_plane.point(place_in_cell(grid, cell, u[2], u[3])) - from->point_mm;
     const Direction out = Direction::from(to);
     const double area = dot(from->area, out.vec()), cosine = -dot(lit, out.vec());
     if (!(area > 0.0 && cosine > 0.0)) continue;
@@ -110,12 +118,12 @@ double BackwardImage::by_source(const PlaneGrid& grid, std::size_t cell, std::si
   double sum = 0.0;
   for (std::uint64_t i = 0; i < samples; ++i) {
     const auto u = sequence.point<4>(i);
-    const Vec3 place = place_in_cell(grid, cell, u[2], u[3]);
+    const Vec3 place = grid.world_from_plane.point(place_in_cell(grid, cell, u[2], u[3]));
     const Vec3 from_centre = place - disks_[source].centre_mm();
     const double near = disks_[source].radius_mm() / length(from_centre);
     const Direction axis = Direction::from(from_centre);
     const LineDisks::Place passed =
-        disks_[source].widened(1.0 / std::sqrt(1.0 - near * near)).place(u[0], u[1], axis);
+        disks_[source].place(u[0], u[1], axis, 1.0 / std::sqrt(1.0 - near * near));
     const Vec3 to = place - passed.point_mm;
     const Direction out = Direction::from(to);
     const double cosine = -dot(lit, out.vec());
@@ -129,13 +137,14 @@ double BackwardImage::by_source(const PlaneGrid& grid, std::size_t cell, std::si
 
 std::vector<double> BackwardImage::illuminance(const PlaneGrid& grid, std::size_t cell, std::uint64_t samples,
                                                std::span<const std::uint64_t> seeds) const {
-  const CellGuide guide = guide_.for_point(place_in_cell(grid, cell, 0.5, 0.5), half_diagonal_mm(grid));
+  const CellGuide guide = guide_.for_point(grid.world_from_plane.point(place_in_cell(grid, cell, 0.5, 0.5)),
+                                           half_diagonal_mm(grid));
   std::vector<double> out;
   for (const std::uint64_t seed : seeds) {
     double sum = guide.empty() ? 0.0 : by_mirrors(grid, cell, guide, samples, seed);
     for (std::size_t s = 0; s < disks_.size(); ++s)
       sum += by_source(grid, cell, s, direct_samples(samples), source_stream(seed, s));
-    out.push_back(kPerSquareMetre * sum);
+    out.push_back(kSquareMillimetresPerSquareMetre * sum);
   }
   return out;
 }
@@ -144,7 +153,7 @@ std::vector<double> BackwardImage::luminance(const LuminanceDetector& detector, 
                                              std::uint64_t samples,
                                              std::span<const std::uint64_t> seeds) const {
   const PlaneGrid& grid = detector.grid;
-  const Frame plane_from_world = grid.world_from_plane.inverse();
+  const View view(detector, cell);
   std::vector<double> out;
   BackwardScene::Scratch scratch;
   for (const std::uint64_t seed : seeds) {
@@ -153,11 +162,11 @@ std::vector<double> BackwardImage::luminance(const LuminanceDetector& detector, 
     for (std::uint64_t i = 0; i < samples; ++i) {
       const auto u = sequence.point<4>(i);
       const Vec3 place = place_in_cell(grid, cell, u[0], u[1]);
-      const View view = view_of(detector, cell, plane_from_world.point(place), u[2], u[3]);
-      const Ray line{place, grid.world_from_plane.direction(view.direction)};
-      sum += view.weight * scene_.leaving_luminance(line, {seed, i, 0}, scratch, view.end_mm);
+      const View::Line seen = view.line(place, u[2], u[3]);
+      const Ray line{grid.world_from_plane.point(place), grid.world_from_plane.direction(seen.direction)};
+      sum += seen.weight * scene_.leaving_luminance(line, {seed, i, 0}, scratch, seen.end_mm);
     }
-    out.push_back(kPerSquareMetre * sum / static_cast<double>(samples));
+    out.push_back(kSquareMillimetresPerSquareMetre * sum / static_cast<double>(samples));
   }
   return out;
 }

@@ -75,18 +75,18 @@ LineDisks::LineDisks(const PlacedSource& placed, const LuminanceSource& light) {
   radii_mm_.push_back(all);
 }
 
-LineDisks LineDisks::widened(double factor) const {
-  LineDisks out = *this;
-  out.radii_mm_.back() *= factor;
-  return out;
-}
-
-LineDisks::Place LineDisks::place(double u, double v, const Direction& line) const {
+LineDisks::Place LineDisks::place(double u, double v, const Direction& line, double widest) const {
   const auto count = static_cast<double>(radii_mm_.size());
   const auto disk = static_cast<std::size_t>(u * count);
-  const double radius = radii_mm_[disk] * std::sqrt(u * count - static_cast<double>(disk));
+  const auto radius_of = [&](std::size_t i) {
+    return i + 1 == radii_mm_.size() ? widest * radii_mm_[i] : radii_mm_[i];
+  };
+  const double radius = radius_of(disk) * std::sqrt(u * count - static_cast<double>(disk));
   double pdf = 0.0;
-  for (const double r : radii_mm_) pdf += radius <= r ? 1.0 / (count * std::numbers::pi * r * r) : 0.0;
+  for (std::size_t i = 0; i < radii_mm_.size(); ++i) {
+    const double r = radius_of(i);
+    pdf += radius <= r ? 1.0 / (count * std::numbers::pi * r * r) : 0.0;
+  }
   const double turn = 2.0 * std::numbers::pi * v;
   const Frame across = Frame::from_z(line);
   return {centre_mm_ + radius * std::cos(turn) * across.ex() + radius * std::sin(turn) * across.ey(), pdf};

@@ -22,14 +22,13 @@ class LineDisks {
   };
   LineDisks(const PlacedSource& placed, const LuminanceSource& light);
 
-  /// The place of (u, v) in the unit square on the disks across `line`.
-  Place place(double u, double v, const Direction& line) const;
+  /// The place of (u, v) in the unit square on the disks across `line`. The largest is wider by `widest`:
+  /// seen from near by, a ball covers more than a disk.
+  Place place(double u, double v, const Direction& line, double widest = 1.0) const;
   /// In the luminaire frame.
   const Vec3& centre_mm() const { return centre_mm_; }
   /// Of a ball about the centre that all light leaves.
   double radius_mm() const { return radii_mm_.back(); }
-  /// The same with the largest disk wider by `factor`: seen from near by, a ball covers more than a disk.
-  LineDisks widened(double factor) const;
 
  private:
   Vec3 centre_mm_;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "lucerna/core/math/units.h"
 #include "lucerna/core/parallel/parallel.h"
 #include "lucerna/estimate.h"
 #include "lucerna/random.h"
@@ -20,7 +21,6 @@ namespace {
 constexpr std::uint64_t kForwardRays = 16;
 /// A third of a second to some seconds.
 constexpr std::uint64_t kMinRays = std::uint64_t{1} << 18, kMaxBackwardRays = std::uint64_t{1} << 21;
-constexpr double kUnitsPerSquareMetre = 1e6;
 /// Cells that are looked at first, and the share of the average that is worth the others.
 constexpr std::size_t kPilotCells = 64;
 constexpr double kMinWeight = 0.2;
@@ -47,8 +47,6 @@ void leave_one_out(std::span<const double> values, std::span<double> row) {
   for (std::size_t r = 0; r < values.size(); ++r) row[r + 1] = (sum - values[r]) / (n - 1.0);
 }
 
-Estimate estimate_of(std::span<const double> row) { return Jackknife({row.begin(), row.end()}).estimate(); }
-
 std::vector<std::size_t> brightest_first(const PlaneImage& image) {
   std::vector<std::size_t> cells(image.value.size());
   std::iota(cells.begin(), cells.end(), std::size_t{0});
@@ -63,7 +61,7 @@ double weight_of(const PlaneImage& counted, const JackknifedFlux& values, std::s
                  double one_ray) {
   double forward = 0.0, backward = 0.0;
   for (const std::size_t k : cells) {
-    const double error = estimate_of(values.row(k)).standard_error;
+    const double error = values.at(k).estimate().standard_error;
     forward += counted.standard_error[k] * counted.standard_error[k];
     backward += error * error;
   }
@@ -81,12 +79,12 @@ bool agree(const PlaneImage& counted, const JackknifedFlux& values, double one_r
     if (!(counted.value[k] > 0.0) || counted.value[k] < bright ||
         counted.standard_error[k] > kComparedError * counted.value[k])
       continue;
-    const Estimate backward = estimate_of(values.row(k));
+    const Estimate backward = values.at(k).estimate();
     const double gap = backward.mean - counted.value[k];
-    squares +=
-        gap * gap /
-        (backward.standard_error * backward.standard_error +
-         counted.standard_error[k] * counted.standard_error[k] + 1e-12 * counted.value[k] * counted.value[k]);
+    const double variance = backward.standard_error * backward.standard_error +
+                            counted.standard_error[k] * counted.standard_error[k];
+    if (!(variance > 0.0)) continue;
+    squares += gap * gap / variance;
     compared += 1.0;
   }
   const double counted_error =
@@ -127,8 +125,8 @@ ImageBlend blend(const TraceResult& result, const PlaneImage& counted, double on
 
 /// What one ray adds to a cell: its flux over the area (for luminance the étendue, mm^2 sr) of the cell.
 double one_ray(const TraceResult& result, double cell_mm2) {
-  return kUnitsPerSquareMetre * result.flux / static_cast<double>(result.last_ray - result.first_ray) /
-         cell_mm2;
+  return kSquareMillimetresPerSquareMetre * result.flux /
+         static_cast<double>(result.last_ray - result.first_ray) / cell_mm2;
 }
 
 }  // namespace

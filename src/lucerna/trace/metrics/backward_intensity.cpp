@@ -53,12 +53,7 @@ Estimate counted_flux(const CountedFarField& f, const CellBlock& b) {
 Estimate backward_flux(const BackwardEstimator& estimator, const DirectionCell& cell) {
   std::array<std::uint64_t, 16> seeds;
   std::iota(seeds.begin(), seeds.end(), std::uint64_t{1});
-  const auto flux = estimator.cell_flux(cell, 1, 1, kCheckSamples, seeds);
-  double mean = 0.0, squares = 0.0;
-  for (const double v : flux) mean += v / static_cast<double>(flux.size());
-  for (const double v : flux) squares += (v - mean) * (v - mean);
-  const auto n = static_cast<double>(flux.size());
-  return {mean, std::sqrt(squares / (n * (n - 1.0)))};
+  return mean_estimate(estimator.cell_flux(cell, 1, 1, kCheckSamples, seeds));
 }
 
 bool agree(const BackwardEstimator& estimator, const CountedFarField& f, const CellBlock& block) {

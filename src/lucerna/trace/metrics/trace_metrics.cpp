@@ -49,8 +49,7 @@ FarFieldResult far_field_result(const TraceResult& result, std::size_t index, co
   return f;
 }
 
-PlaneMetrics plane_metrics(PlaneImage image, const PlaneExtremes& extremes,
-                           std::optional<LuminanceDetector> view) {
+PlaneMetrics plane_metrics(PlaneImage image, const PlaneExtremes& extremes) {
   PlaneMetrics f;
   double noise = 0.0, signal = 0.0;
   for (std::size_t i = 0; i < image.value.size(); ++i) {
@@ -62,8 +61,20 @@ PlaneMetrics plane_metrics(PlaneImage image, const PlaneExtremes& extremes,
   f.noise = signal > 0.0 ? std::sqrt(noise / signal) : std::nan("");
   f.image = std::move(image);
   f.extremes = extremes;
-  f.view = std::move(view);
   return f;
+}
+
+/// Of a counted image and what it is averaged with, if with anything.
+template <class Extremes>
+PlaneMetrics image_metrics(const TraceResult& result, std::size_t index, PlaneImage counted,
+                           const ImageBlend& blend, const Extremes& extremes) {
+  if (!(blend.weight > 0.0)) {
+    const PlaneExtremes e = extremes(result, index, {counted, blend, counted});
+    return plane_metrics(std::move(counted), e);
+  }
+  PlaneImage average = blended(counted, blend);
+  const PlaneExtremes e = extremes(result, index, {counted, blend, average});
+  return plane_metrics(std::move(average), e);
 }
 
 }  // namespace
@@ -111,16 +122,15 @@ TraceMetrics figures_of(const TraceResult& result, const Scene* scene) {
   if (images && scene != nullptr && no_backward_reason(*scene).empty())
     backward.emplace(*scene, result.max_bounces);
   for (std::size_t i = 0; i < result.planes.size(); ++i) {
-    const PlaneImage counted = illuminance(result, i);
+    PlaneImage counted = illuminance(result, i);
     const ImageBlend blend = backward ? backward_illuminance(*backward, result, i, counted) : ImageBlend();
-    figures.planes.push_back(plane_metrics(blended(counted, blend),
-                                           illuminance_extremes(result, i, counted, blend), std::nullopt));
+    figures.planes.push_back(image_metrics(result, i, std::move(counted), blend, illuminance_extremes));
   }
   for (std::size_t i = 0; i < result.luminances.size(); ++i) {
-    const PlaneImage counted = luminance(result, i);
+    PlaneImage counted = luminance(result, i);
     const ImageBlend blend = backward ? backward_luminance(*backward, result, i, counted) : ImageBlend();
-    figures.luminances.push_back(plane_metrics(
-        blended(counted, blend), luminance_extremes(result, i, counted, blend), result.luminances[i]));
+    figures.luminances.push_back(image_metrics(result, i, std::move(counted), blend, luminance_extremes));
+    figures.luminances.back().view = result.luminances[i];
   }
   for (const RayDetector& d : result.ray_detectors) figures.rays.push_back({d, result.out_rays.size(), out});
   return figures;

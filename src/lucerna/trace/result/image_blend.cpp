@@ -6,15 +6,13 @@
 namespace lucerna {
 
 PlaneImage blended(PlaneImage counted, const ImageBlend& blend) {
-  if (!(blend.weight > 0.0)) return counted;
   double counted_sum = 0.0;
   Jackknife sum(blend.values.replicates());
   for (std::size_t k = 0; k < counted.value.size(); ++k) {
-    const auto row = blend.values.row(k);
     counted_sum += counted.value[k];
-    sum.add(1.0, row);
+    sum.add(1.0, blend.values.row(k));
     const double w = blend.weight_of(k);
-    const Estimate other = Jackknife({row.begin(), row.end()}).estimate();
+    const Estimate other = blend.values.at(k).estimate();
     counted.value[k] = (1.0 - w) * counted.value[k] + w * other.mean;
     counted.standard_error[k] = std::hypot((1.0 - w) * counted.standard_error[k], w * other.standard_error);
   }

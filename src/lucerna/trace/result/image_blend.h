@@ -19,4 +19,11 @@ struct ImageBlend {
 /// The average; its flux is that of the average's values as the counted one is of the counted values.
 PlaneImage blended(PlaneImage counted, const ImageBlend& blend);
 
+/// An image as it was counted, and what it becomes: the same object where nothing is averaged.
+struct ImageParts {
+  const PlaneImage& counted;
+  const ImageBlend& blend;
+  const PlaneImage& average;
+};
+
 }  // namespace lucerna

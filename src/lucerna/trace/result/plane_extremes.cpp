@@ -39,17 +39,15 @@ std::vector<std::size_t> contenders(const PlaneImage& image, double sign) {
 struct ImageBins {
   const TraceResult& result;
   std::size_t bins;
-  const PlaneImage& counted;
-  const ImageBlend& blend;
-  PlaneImage image = blended(counted, blend);
+  const ImageParts& image;
 
   /// Of the counted light `flux` of a cell.
   Jackknife value(const JackknifedFlux& flux, std::size_t row, std::size_t cell, double sign) const {
-    const double w = blend.weight_of(cell), counted_part = sign * (1.0 - w);
-    const double per_flux = flux.flux(row) > 0.0 ? counted_part * counted.value[cell] / flux.flux(row) : 0.0;
+    const double w = image.blend.weight_of(cell), counted = sign * (1.0 - w) * image.counted.value[cell];
+    const double per_flux = flux.flux(row) > 0.0 ? counted / flux.flux(row) : 0.0;
     Jackknife out(flux.replicates());
     out.add(per_flux, flux.row(row));
-    if (w > 0.0) out.add(sign * w, blend.values.row(cell));
+    if (w > 0.0) out.add(sign * w, image.blend.values.row(cell));
     return out;
   }
   /// Of all cells together.
@@ -57,19 +55,19 @@ struct ImageBins {
     const JackknifedFlux all = jackknifed_flux(result, 1, [&](const Tally& t, std::size_t) {
       return std::accumulate(t.bins[bins].begin(), t.bins[bins].end(), std::int64_t{0});
     });
-    const auto cells = static_cast<double>(counted.value.size());
-    const double sum = std::accumulate(counted.value.begin(), counted.value.end(), 0.0);
+    const std::vector<double>& value = image.counted.value;
+    const auto cells = static_cast<double>(value.size());
+    const double sum = std::accumulate(value.begin(), value.end(), 0.0), w = image.blend.weight;
     Jackknife out(all.replicates());
-    if (all.flux(0) > 0.0) out.add((1.0 - blend.weight) * sum / cells / all.flux(0), all.row(0));
-    for (std::size_t k = 0; blend.weight > 0.0 && k < counted.value.size(); ++k)
-      out.add(blend.weight / cells, blend.values.row(k));
+    if (all.flux(0) > 0.0) out.add((1.0 - w) * sum / cells / all.flux(0), all.row(0));
+    for (std::size_t k = 0; w > 0.0 && k < value.size(); ++k) out.add(w / cells, image.blend.values.row(k));
     return out;
   }
 };
 
 /// The largest of `sign` times the values, and its cell.
 LargestFigure extreme(const ImageBins& b, double sign, std::size_t& cell) {
-  const std::vector<std::size_t> cells = contenders(b.image, sign);
+  const std::vector<std::size_t> cells = contenders(b.image.average, sign);
   const JackknifedFlux flux = jackknifed_flux(
       b.result, cells.size(), [&](const Tally& t, std::size_t k) { return t.bins[b.bins][cells[k]]; });
   std::vector<Jackknife> values;
@@ -95,14 +93,12 @@ PlaneExtremes extremes(const ImageBins& b) {
 
 }  // namespace
 
-PlaneExtremes illuminance_extremes(const TraceResult& result, std::size_t index, const PlaneImage& counted,
-                                   const ImageBlend& blend) {
-  return extremes({result, result.far_fields.size() + index, counted, blend});
+PlaneExtremes illuminance_extremes(const TraceResult& result, std::size_t index, const ImageParts& image) {
+  return extremes({result, result.far_fields.size() + index, image});
 }
 
-PlaneExtremes luminance_extremes(const TraceResult& result, std::size_t index, const PlaneImage& counted,
-                                 const ImageBlend& blend) {
-  return extremes({result, result.far_fields.size() + result.planes.size() + index, counted, blend});
+PlaneExtremes luminance_extremes(const TraceResult& result, std::size_t index, const ImageParts& image) {
+  return extremes({result, result.far_fields.size() + result.planes.size() + index, image});
 }
 
 }  // namespace lucerna

@@ -8,11 +8,9 @@
 
 namespace lucerna {
 
-/// Of `illuminance(result, index)` averaged with `blend`. O(cells).
-PlaneExtremes illuminance_extremes(const TraceResult& result, std::size_t index, const PlaneImage& counted,
-                                   const ImageBlend& blend = {});
+/// Of `illuminance(result, index)` and what it is averaged with. O(cells).
+PlaneExtremes illuminance_extremes(const TraceResult& result, std::size_t index, const ImageParts& image);
 /// Of `luminance(result, index)`.
-PlaneExtremes luminance_extremes(const TraceResult& result, std::size_t index, const PlaneImage& counted,
-                                 const ImageBlend& blend = {});
+PlaneExtremes luminance_extremes(const TraceResult& result, std::size_t index, const ImageParts& image);
 
 }  // namespace lucerna

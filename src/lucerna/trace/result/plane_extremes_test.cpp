@@ -33,7 +33,7 @@ PlaneExtremes seen(std::uint64_t seed, PlaneImage* image) {
   options.sequence = SequenceKind::random;
   const TraceResult result = trace(lit_plane(), options);
   *image = illuminance(result, 0);
-  return illuminance_extremes(result, 0, *image);
+  return illuminance_extremes(result, 0, {*image, {}, *image});
 }
 
 // The largest of 400 cells of which each has 40 rays is far too large; what is stated is not. Means of twelve
@@ -68,7 +68,8 @@ TEST(PlaneExtremes, OfADarkPlaneAreZero) {
   TraceOptions options;
   options.last_ray = 4096;
   const TraceResult result = trace(scene, options);
-  const PlaneExtremes e = illuminance_extremes(result, 0, illuminance(result, 0));
+  const PlaneImage image = illuminance(result, 0);
+  const PlaneExtremes e = illuminance_extremes(result, 0, {image, {}, image});
   EXPECT_EQ(e.max.mean, 0.0);
   EXPECT_EQ(e.min.mean, 0.0);
   EXPECT_EQ(e.mean.mean, 0.0);

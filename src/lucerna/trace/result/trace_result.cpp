@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/core/math/units.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace/detectors/far_field_grid.h"
 #include "lucerna/trace/result/far_field_counts.h"
@@ -124,10 +125,8 @@ CountedFarField far_field(const TraceResult& result, std::size_t index) {
                       return sum;
                     })};
   f.flux = f.replicated.fluxes();
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    const auto row = f.replicated.row(i);
-    f.standard_error[i] = Jackknife({row.begin(), row.end()}).estimate().standard_error;
-  }
+  for (std::size_t i = 0; i < grid.size(); ++i)
+    f.standard_error[i] = f.replicated.at(i).estimate().standard_error;
   return f;
 }
 
@@ -141,14 +140,12 @@ CountedSphere counted_far_field(const TraceResult& result, std::size_t index) {
 }
 
 Jackknife out_flux(const TraceResult& result) {
-  const JackknifedFlux flux =
-      jackknifed_flux(result, 1, [](const Tally& t, std::size_t) { return t.out_direct + t.out_reflected; });
-  return Jackknife({flux.row(0).begin(), flux.row(0).end()});
+  return jackknifed_flux(result, 1,
+                         [](const Tally& t, std::size_t) { return t.out_direct + t.out_reflected; })
+      .at(0);
 }
 
 namespace {
-
-constexpr double kSquareMillimetresPerSquareMetre = 1e6;
 
 /// `per_flux(cell)` turns flux into the figure.
 template <class PerFlux>
