@@ -41,10 +41,12 @@ Jackknife Jackknife::from_draws(std::vector<double> values) {
 Jackknife Jackknife::with_error(double error) const {
   Jackknife out(*this);
   const auto n = static_cast<double>(replicates());
+  // Equal values have a scatter too, by rounding of their mean.
+  constexpr double kRounding = 1e-12;
   const double before = estimate().standard_error;
   for (std::size_t r = 1; r < values_.size(); ++r) {
     double& v = out.values_[r];
-    if (before > 0.0) {
+    if (before > kRounding * std::abs(all())) {
       v = all() + (v - all()) * error / before;
     } else {
       v = all() + (r % 2 == 0 ? 1.0 : -1.0) * error / std::sqrt(n - 1.0);

@@ -83,6 +83,14 @@ TEST(JackknifeStatistical, TheLargestOfManyIsNotTooLarge) {
   EXPECT_GT(inside, 0.9 * kRuns);
 }
 
+// The mean of seventeen equal values may differ from them by rounding.
+TEST(Jackknife, EqualValuesTakeTheErrorThatIsGiven) {
+  for (const double value : {0.0, 1.0 / 3.0, 163'400.1}) {
+    const Jackknife level(std::vector<double>(17, value));
+    EXPECT_NEAR(level.with_error(0.25).estimate().standard_error, 0.25, 1e-9) << value;
+  }
+}
+
 TEST(Jackknife, WithNothingToChooseTheLargestIsItself) {
   Rng rng(5, 1);
   const std::vector<Jackknife> candidates{noisy(10.0, 0.1, rng), noisy(20.0, 0.1, rng), noisy(5.0, 0.1, rng)};
