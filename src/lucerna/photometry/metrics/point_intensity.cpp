@@ -22,13 +22,21 @@ constexpr std::uint64_t kSearchSamples = 256, kSearchSeed = 11, kFinalSeed = 23;
 constexpr std::size_t kSearched = 8, kRetained = 3;
 /// Starts below this share of the brightest are not: a search gains less.
 constexpr double kHopeful = 0.92;
-/// A search ends when its step is this share of the radius.
-constexpr double kFirstStep = 0.5, kLastStep = 0.1;
 constexpr int kNeighbours = 6;
-/// Steps into which a window is cut to find a crossing; points of the line through it within a step to either
-/// side.
-constexpr int kWindowSteps = 10, kLinePoints = 8, kMaxLines = 4;
-constexpr std::uint64_t kWindowSamples = 256, kLineSamples = 512;
+/// A search goes from the first step to the last, shares of the radius, with so many samples a direction.
+struct Steps {
+  double first, last;
+  std::uint64_t samples;
+};
+/// About each start; and about the best that they found: the tip of a narrow lobe is sharper than a search's
+/// last step.
+constexpr Steps kCoarse{0.5, 0.1, kSearchSamples}, kFine{0.1, 0.0125, kFirstSamples};
+/// Steps into which a window is cut to find a crossing, and so many more from there.
+constexpr int kWindowSteps = 5, kMaxSteps = 6;
+/// Points of a mean within a step to either side, and the length of the last as a share of the others.
+constexpr int kMeanPoints = 6;
+constexpr double kShorter = 0.25;
+constexpr std::uint64_t kWindowSamples = 256, kMeanSamples = 512;
 
 Direction moved(const Direction& from, double angle_rad, double distance_rad) {
   const Frame frame = Frame::from_z(from);
@@ -61,13 +69,14 @@ PointPeak precise_peak(const PointIntensity& intensity, const Direction& directi
   return {direction, precise_intensity(intensity, direction)};
 }
 
-Found pattern_search(const PointIntensity& intensity, const Direction& start, double radius_deg) {
+Found pattern_search(const PointIntensity& intensity, const Direction& start, double radius_deg,
+                     const Steps& steps) {
   const auto look = [&](const Direction& d) {
-    return Found{d, intensity(d, kSearchSamples, kSearchSeed).mean};
+    return Found{d, intensity(d, steps.samples, kSearchSeed).mean};
   };
   Found best = look(start);
   double turn = 0.0;
-  for (double step = kFirstStep; step > kLastStep;) {
+  for (double step = steps.first; step > steps.last;) {
     const Direction centre = best.direction;
     const double before = best.cd;
     for (int k = 0; k < kNeighbours; ++k) {
@@ -86,51 +95,68 @@ struct Crossing {
   double angle_deg, cd_per_deg, cd_error;
 };
 
-/// By a line through independent estimates within `half_deg` of `near_deg`; nothing where the line does not
-/// fall that way (the sign of `half_deg`).
-std::optional<Crossing> crossing_of_line(const PointIntensity& intensity, const DirectionAt& at,
-                                         double near_deg, double half_deg, double threshold) {
-  double mean = 0.0, covariance = 0.0, squares = 0.0, variance = 0.0;
-  for (int k = 0; k < kLinePoints; ++k) {
-    const double x = half_deg * ((2.0 * k + 1.0) / kLinePoints - 1.0);
-    const Estimate cd = intensity(at(near_deg + x), kLineSamples, kFinalSeed + static_cast<std::uint64_t>(k));
-    mean += cd.mean / kLinePoints;
-    covariance += x * cd.mean;
-    squares += x * x;
-    variance += cd.standard_error * cd.standard_error / (kLinePoints * kLinePoints);
+/// The mean of independent estimates within `half_deg` of an angle.
+Estimate mean_about(const PointIntensity& intensity, const DirectionAt& at, double angle_deg,
+                    double half_deg) {
+  double sum = 0.0, variance = 0.0;
+  for (int k = 0; k < kMeanPoints; ++k) {
+    const double x = half_deg * ((2.0 * k + 1.0) / kMeanPoints - 1.0);
+    const Estimate cd =
+        intensity(at(angle_deg + x), kMeanSamples, kFinalSeed + static_cast<std::uint64_t>(k));
+    sum += cd.mean;
+    variance += cd.standard_error * cd.standard_error;
   }
-  const double slope = covariance / squares, off = (threshold - mean) / slope;
-  if (!(slope * half_deg < 0.0)) return std::nullopt;
-  // At the crossing the line is less well known than at its middle.
-  const double spread = std::sqrt(1.0 + off * off * kLinePoints / squares);
-  return Crossing{near_deg + off, std::abs(slope), spread * std::sqrt(variance)};
+  return {sum / kMeanPoints, std::sqrt(variance) / kMeanPoints};
 }
 
-/// The line about the crossing that the line before found, until it is there.
-std::optional<Crossing> crossing_near(const PointIntensity& intensity, const DirectionAt& at, double near_deg,
-                                      double half_deg, double threshold) {
-  for (int k = 0; k < kMaxLines; ++k) {
-    const auto found = crossing_of_line(intensity, at, near_deg, half_deg, threshold);
-    if (!found) break;
-    const double off = found->angle_deg - near_deg;
-    if (std::abs(off) <= std::abs(half_deg)) return found;
-    near_deg += std::copysign(half_deg, off);
+/// Steps from `angle_deg` to where means lie on either side of the threshold, and the crossing of the line
+/// through these; nothing where that is too far. Outside is where `step_deg` has its sign to.
+std::optional<Crossing> crossing_near(const PointIntensity& intensity, const DirectionAt& at,
+                                      double angle_deg, double step_deg, double threshold) {
+  Estimate here = mean_about(intensity, at, angle_deg, step_deg);
+  const bool bright = here.mean >= threshold;
+  const double step = bright ? step_deg : -step_deg;
+  for (int k = 0; k < kMaxSteps; ++k) {
+    const Estimate next = mean_about(intensity, at, angle_deg + step, step_deg);
+    if ((next.mean >= threshold) != bright) {
+      const double slope = (next.mean - here.mean) / step, off = (threshold - here.mean) / slope;
+      const double share = off / step;
+      return Crossing{angle_deg + off, slope,
+                      std::hypot((1.0 - share) * here.standard_error, share * next.standard_error)};
+    }
+    angle_deg += step;
+    here = next;
   }
   return std::nullopt;
 }
 
-/// The outermost crossing from `near_deg` - `window_deg` to `near_deg` + `window_deg`, the outer end.
+/// A mean leaves out how the section bends: one of a quarter of the length about the crossing that was found
+/// has a sixteenth of that error, so what it moves by bounds the rest.
+Crossing sharpened(const PointIntensity& intensity, const DirectionAt& at, const Crossing& first,
+                   double step_deg, double threshold) {
+  const Estimate cd = mean_about(intensity, at, first.angle_deg, kShorter * step_deg);
+  const double rest_cd = kShorter * kShorter * (threshold - cd.mean);
+  return {first.angle_deg + (threshold - cd.mean) / first.cd_per_deg, first.cd_per_deg,
+          std::hypot(cd.standard_error, rest_cd)};
+}
+
+/// The outermost crossing from `window_deg` outside of `near_deg` to `inward_deg` inside of it, or, where it
+/// is still bright there, the next one within another window. Outside is where `window_deg` has its sign to.
 std::optional<Crossing> find_crossing(const PointIntensity& intensity, const DirectionAt& at, double near_deg,
-                                      double window_deg, double threshold) {
-  const auto cd = [&](double angle) { return intensity(at(angle), kWindowSamples, kSearchSeed).mean; };
-  const double step = 2.0 * window_deg / kWindowSteps;
-  double inner = near_deg + window_deg;
-  int k = 0;
-  for (; cd(inner) < threshold; inner -= step) {
-    if (++k > kWindowSteps) return std::nullopt;
+                                      double window_deg, double inward_deg, double threshold) {
+  const auto bright = [&](double angle) {
+    return intensity(at(angle), kWindowSamples, kSearchSeed).mean >= threshold;
+  };
+  const double step = window_deg / kWindowSteps, outer = near_deg + window_deg;
+  const bool outward = bright(outer);
+  const int steps = outward ? kWindowSteps : kWindowSteps + static_cast<int>(inward_deg / std::abs(step));
+  for (int k = 1; k <= steps; ++k) {
+    const double angle = outer + (outward ? k : -k) * step;
+    if (bright(angle) == outward) continue;
+    const auto first = crossing_near(intensity, at, angle + (outward ? -0.5 : 0.5) * step, step, threshold);
+    return first ? std::optional(sharpened(intensity, at, *first, step, threshold)) : std::nullopt;
   }
-  if (k == 0) return std::nullopt;  // bright beyond the window
-  return crossing_near(intensity, at, inner + 0.5 * step, step, threshold);
+  return std::nullopt;
 }
 
 }  // namespace
@@ -154,9 +180,10 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
   const double min_cd = kHopeful * found.front().cd;
   std::erase_if(found, [&](const Found& f) { return f.cd < min_cd; });
   const Direction brightest_start = found.front().direction;
-  for (Found& f : found) f = pattern_search(intensity, f.direction, radius_deg);
+  for (Found& f : found) f = pattern_search(intensity, f.direction, radius_deg, kCoarse);
   for (Found& f : found) f.cd = intensity(f.direction, kFirstSamples, kSearchSeed).mean;
   retain_brightest(found, kRetained);
+  found.front() = pattern_search(intensity, found.front().direction, radius_deg, kFine);
   // Other samples judge what was found: they do not hold the noise that led the search there.
   PointPeak best = precise_peak(intensity, brightest_start);
   std::vector<PointPeak> tops;
@@ -170,12 +197,14 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
 
 std::optional<Estimate> exact_arc_deg(const PointIntensity& intensity, const DirectionAt& at,
                                       const CircleArc& near, double window_deg, const Estimate& threshold) {
-  const auto from = find_crossing(intensity, at, near.from_deg, -window_deg, threshold.mean);
-  const auto to = find_crossing(intensity, at, near.to_deg, window_deg, threshold.mean);
+  const double inward_deg = std::max(window_deg, 0.5 * (near.to_deg - near.from_deg));
+  const auto from = find_crossing(intensity, at, near.from_deg, -window_deg, inward_deg, threshold.mean);
+  const auto to = find_crossing(intensity, at, near.to_deg, window_deg, inward_deg, threshold.mean);
   if (!from || !to) return std::nullopt;
-  const double by_threshold = threshold.standard_error * (1.0 / from->cd_per_deg + 1.0 / to->cd_per_deg);
+  const double from_slope = std::abs(from->cd_per_deg), to_slope = std::abs(to->cd_per_deg);
+  const double by_threshold = threshold.standard_error * (1.0 / from_slope + 1.0 / to_slope);
   return Estimate{to->angle_deg - from->angle_deg,
-                  std::hypot(by_threshold, from->cd_error / from->cd_per_deg, to->cd_error / to->cd_per_deg)};
+                  std::hypot(by_threshold, from->cd_error / from_slope, to->cd_error / to_slope)};
 }
 
 }  // namespace lucerna

@@ -38,8 +38,8 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
 using DirectionAt = std::function<Direction(double angle_deg)>;
 
 /// The size of an arc on which the intensity is `threshold` or more, and falls below it at both ends. The
-/// ends are looked for within `window_deg` of `near`; nothing where they are not there. Some 40 short
-/// estimates.
+/// ends are looked for from two `window_deg` outside of `near` (kernels widen an arc, or shift it) to its
+/// middle; nothing where they are not there. Some 60 short estimates.
 std::optional<Estimate> exact_arc_deg(const PointIntensity& intensity, const DirectionAt& at,
                                       const CircleArc& near, double window_deg, const Estimate& threshold);
 
