@@ -10,20 +10,7 @@
 
 namespace lucerna {
 
-namespace {
-
-int checked(int max_bounces) {
-  if (max_bounces < 1) throw UsageError(fmt::format("{} bounces: expected at least 1", max_bounces));
-  return max_bounces;
-}
-
-}  // namespace
-
-BackwardEstimator::BackwardEstimator(const Scene& scene, int max_bounces)
-    : scene_(scene, checked(max_bounces)), guide_(scene_, guide_sources(scene)) {
-  for (std::size_t i = 0; i < scene.sources.size(); ++i)
-    disks_.emplace_back(scene.sources[i], *scene_.sources()[i].light);
-}
+BackwardEstimator::BackwardEstimator(const Scene& scene, int max_bounces) : sampler_(scene, max_bounces) {}
 
 template <class Sink>
 void BackwardEstimator::sample_mirrors(const DirectionCell& cell, const CellGuide& guide,
@@ -34,16 +21,11 @@ void BackwardEstimator::sample_mirrors(const DirectionCell& cell, const CellGuid
     const auto u = sequence.point<4>(i);
     const TypeCAngles angles = cell.at(u[2], u[3]);
     const MirrorPlace place = guide.place(u[0], u[1]);
-    const auto from = mirror_point(scene_, place);
+    const auto from = mirror_point(sampler_.scene(), place);
     if (!from) continue;
-    const Direction out = direction_from_type_c(angles);
-    const double area =
-        dot(from->area, out.vec());  // of the surface as seen from there, over that of the plane
-    if (!(area > 0.0)) continue;
-    const double luminance = scene_.reflected_luminance(
-        *from->mirror, from->point_mm, Direction::from(from->area), out, {seed, i, 0}, scratch);
-    if (luminance > 0.0 && scene_.escapes(from->point_mm, out, true))
-      sink(u[2], angles, luminance * area / place.pdf_plane / static_cast<double>(samples));
+    const double cd =
+        sampler_.intensity_sample(place, *from, direction_from_type_c(angles), {seed, i, 0}, scratch);
+    if (cd > 0.0) sink(u[2], angles, cd / static_cast<double>(samples));
   }
 }
 
@@ -51,15 +33,15 @@ template <class Sink>
 void BackwardEstimator::sample_source(const DirectionCell& cell, std::size_t source, std::uint64_t samples,
                                       std::uint64_t seed, const Sink& sink) const {
   const Sequence sequence(SequenceKind::sobol, seed);
-  const LineDisks& disks = disks_[source];
+  const LineDisks& disks = sampler_.disks()[source];
+  const BackwardScene& scene = sampler_.scene();
   BackwardScene::Scratch scratch;
   for (std::uint64_t i = 0; i < samples; ++i) {
     const auto u = sequence.point<4>(i);
     const TypeCAngles angles = cell.at(u[2], u[3]);
     const Direction out = direction_from_type_c(angles);
     const LineDisks::Place place = disks.place(u[0], u[1], out);
-    const double luminance =
-        scene_.direct_luminance(scene_.sources()[source], {place.point_mm, out}, scratch);
+    const double luminance = scene.direct_luminance(scene.sources()[source], {place.point_mm, out}, scratch);
     if (luminance > 0.0) sink(u[2], angles, luminance / place.pdf_area / static_cast<double>(samples));
   }
 }
@@ -68,7 +50,7 @@ template <class Sink>
 void BackwardEstimator::sample_cell(const DirectionCell& cell, const CellGuide& guide, std::uint64_t samples,
                                     std::uint64_t seed, const Sink& sink) const {
   if (!guide.empty()) sample_mirrors(cell, guide, samples, seed, sink);
-  for (std::size_t s = 0; s < disks_.size(); ++s) {
+  for (std::size_t s = 0; s < sampler_.disks().size(); ++s) {
     sample_source(cell, s, direct_samples(samples), source_stream(seed, s), sink);
   }
 }
@@ -76,7 +58,7 @@ void BackwardEstimator::sample_cell(const DirectionCell& cell, const CellGuide& 
 std::vector<double> BackwardEstimator::cell_flux(const DirectionCell& cell, std::size_t c_parts,
                                                  std::size_t gamma_parts, std::uint64_t samples,
                                                  std::span<const std::uint64_t> seeds) const {
-  const CellGuide guide = guide_.for_cell(cell);
+  const CellGuide guide = sampler_.guide().for_cell(cell);
   const double solid_angle = cell.solid_angle_sr(), height = cell.gamma1_rad - cell.gamma0_rad;
   const auto part = [](double u, std::size_t parts) {
     return std::min(parts - 1, static_cast<std::size_t>(std::max(0.0, u) * static_cast<double>(parts)));
@@ -97,7 +79,7 @@ Estimate BackwardEstimator::intensity_cd(const Direction& direction, std::uint64
   LUCERNA_CHECK(replicates >= 2, "{} replicates", replicates);
   const TypeCAngles a = type_c_angles(direction);
   const DirectionCell cell{a.c_rad, a.c_rad, a.gamma_rad, a.gamma_rad};
-  const CellGuide guide = guide_.for_cell(cell);
+  const CellGuide guide = sampler_.guide().for_cell(cell);
   std::vector<double> cd(replicates, 0.0);
   parallel_blocks(replicates, 1, [&](std::size_t r, std::size_t) {
     sample_cell(cell, guide, samples, detail::mix_bits(seed * replicates + r),

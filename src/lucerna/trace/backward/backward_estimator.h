@@ -7,9 +7,7 @@
 
 #include "lucerna/estimate.h"
 #include "lucerna/random.h"
-#include "lucerna/trace/backward/backward_scene.h"
-#include "lucerna/trace/backward/mirror_guide.h"
-#include "lucerna/trace/backward/source_lines.h"
+#include "lucerna/trace/backward/backward_sampler.h"
 #include "lucerna/trace/detectors/direction_cell.h"
 
 namespace lucerna {
@@ -21,7 +19,7 @@ namespace lucerna {
 /// moves (support.h). Immutable and thread safe; the scene must outlive it.
 class BackwardEstimator {
  public:
-  /// Throws InputError with `no_backward_reason`, UsageError unless max_bounces >= 1.
+  /// Throws as BackwardSampler.
   explicit BackwardEstimator(const Scene& scene, int max_bounces = 100);
 
   /// Flux towards a cell of directions, cut into c_parts x gamma_parts equal steps of C and gamma, once for
@@ -46,9 +44,7 @@ class BackwardEstimator {
   void sample_cell(const DirectionCell& cell, const CellGuide& guide, std::uint64_t samples,
                    std::uint64_t seed, const Sink& sink) const;
 
-  BackwardScene scene_;
-  std::vector<LineDisks> disks_;
-  MirrorGuide guide_;
+  BackwardSampler sampler_;
 };
 
 }  // namespace lucerna

@@ -67,11 +67,7 @@ class View {
 
 }  // namespace
 
-BackwardImage::BackwardImage(const Scene& scene, int max_bounces)
-    : scene_(scene, max_bounces), guide_(scene_, guide_sources(scene)) {
-  for (std::size_t i = 0; i < scene.sources.size(); ++i)
-    disks_.emplace_back(scene.sources[i], *scene_.sources()[i].light);
-}
+BackwardImage::BackwardImage(const Scene& scene, int max_bounces) : sampler_(scene, max_bounces) {}
 
 bool BackwardImage::can_see(const PlaneGrid& grid) const {
   const Frame plane_from_world = grid.world_from_plane.inverse();
@@ -81,8 +77,8 @@ bool BackwardImage::can_see(const PlaneGrid& grid) const {
     const double dy = std::max(0.0, std::abs(p.y) - 0.5 * grid.size_y_mm);
     return length(Vec3{dx, dy, p.z});
   };
-  return guide_.further_than(kNearest, distance_mm) &&
-         std::all_of(disks_.begin(), disks_.end(), [&](const LineDisks& disks) {
+  return sampler_.guide().further_than(kNearest, distance_mm) &&
+         std::ranges::all_of(sampler_.disks(), [&](const LineDisks& disks) {
            return distance_mm(disks.centre_mm()) > kNearest * disks.radius_mm();
          });
 }
@@ -96,16 +92,13 @@ double BackwardImage::by_mirrors(const PlaneGrid& grid, std::size_t cell, const 
   for (std::uint64_t i = 0; i < samples; ++i) {
     const auto u = sequence.point<4>(i);
     const MirrorPlace place = guide.place(u[0], u[1]);
-    const auto from = mirror_point(scene_, place);
+    const auto from = mirror_point(sampler_.scene(), place);
     if (!from) continue;
     const Vec3 to = grid.world_from_plane.point(place_in_cell(grid, cell, u[2], u[3])) - from->point_mm;
     const Direction out = Direction::from(to);
-    const double area = dot(from->area, out.vec()), cosine = -dot(lit, out.vec());
-    if (!(area > 0.0 && cosine > 0.0)) continue;
-    const double luminance = scene_.reflected_luminance(
-        *from->mirror, from->point_mm, Direction::from(from->area), out, {seed, i, 0}, scratch);
-    if (luminance > 0.0 && scene_.escapes(from->point_mm, out, true))
-      sum += luminance * area * cosine / dot(to, to) / place.pdf_plane;
+    const double cosine = -dot(lit, out.vec());
+    if (cosine > 0.0)
+      sum += cosine / dot(to, to) * sampler_.intensity_sample(place, *from, out, {seed, i, 0}, scratch);
   }
   return sum / static_cast<double>(samples);
 }
@@ -113,23 +106,24 @@ double BackwardImage::by_mirrors(const PlaneGrid& grid, std::size_t cell, const 
 double BackwardImage::by_source(const PlaneGrid& grid, std::size_t cell, std::size_t source,
                                 std::uint64_t samples, std::uint64_t seed) const {
   const Sequence sequence(SequenceKind::sobol, seed);
+  const LineDisks& disks = sampler_.disks()[source];
+  const BackwardScene& scene = sampler_.scene();
   const Vec3 lit = grid.world_from_plane.ez();
   BackwardScene::Scratch scratch;
   double sum = 0.0;
   for (std::uint64_t i = 0; i < samples; ++i) {
     const auto u = sequence.point<4>(i);
     const Vec3 place = grid.world_from_plane.point(place_in_cell(grid, cell, u[2], u[3]));
-    const Vec3 from_centre = place - disks_[source].centre_mm();
-    const double near = disks_[source].radius_mm() / length(from_centre);
+    const Vec3 from_centre = place - disks.centre_mm();
+    const double near = disks.radius_mm() / length(from_centre);
     const Direction axis = Direction::from(from_centre);
-    const LineDisks::Place passed =
-        disks_[source].place(u[0], u[1], axis, 1.0 / std::sqrt(1.0 - near * near));
+    const LineDisks::Place passed = disks.place(u[0], u[1], axis, 1.0 / std::sqrt(1.0 - near * near));
     const Vec3 to = place - passed.point_mm;
     const Direction out = Direction::from(to);
     const double cosine = -dot(lit, out.vec());
     if (!(cosine > 0.0)) continue;
     const double luminance =
-        scene_.direct_luminance(scene_.sources()[source], {passed.point_mm, out}, scratch, length(to));
+        scene.direct_luminance(scene.sources()[source], {passed.point_mm, out}, scratch, length(to));
     sum += luminance * cosine * dot(axis.vec(), out.vec()) / dot(to, to) / passed.pdf_area;
   }
   return sum / static_cast<double>(samples);
@@ -137,12 +131,12 @@ double BackwardImage::by_source(const PlaneGrid& grid, std::size_t cell, std::si
 
 std::vector<double> BackwardImage::illuminance(const PlaneGrid& grid, std::size_t cell, std::uint64_t samples,
                                                std::span<const std::uint64_t> seeds) const {
-  const CellGuide guide = guide_.for_point(grid.world_from_plane.point(place_in_cell(grid, cell, 0.5, 0.5)),
-                                           half_diagonal_mm(grid));
+  const CellGuide guide = sampler_.guide().for_point(
+      grid.world_from_plane.point(place_in_cell(grid, cell, 0.5, 0.5)), half_diagonal_mm(grid));
   std::vector<double> out;
   for (const std::uint64_t seed : seeds) {
     double sum = guide.empty() ? 0.0 : by_mirrors(grid, cell, guide, samples, seed);
-    for (std::size_t s = 0; s < disks_.size(); ++s)
+    for (std::size_t s = 0; s < sampler_.disks().size(); ++s)
       sum += by_source(grid, cell, s, direct_samples(samples), source_stream(seed, s));
     out.push_back(kSquareMillimetresPerSquareMetre * sum);
   }
@@ -164,7 +158,7 @@ std::vector<double> BackwardImage::luminance(const LuminanceDetector& detector, 
       const Vec3 place = place_in_cell(grid, cell, u[0], u[1]);
       const View::Line seen = view.line(place, u[2], u[3]);
       const Ray line{grid.world_from_plane.point(place), grid.world_from_plane.direction(seen.direction)};
-      sum += seen.weight * scene_.leaving_luminance(line, {seed, i, 0}, scratch, seen.end_mm);
+      sum += seen.weight * sampler_.scene().leaving_luminance(line, {seed, i, 0}, scratch, seen.end_mm);
     }
     out.push_back(kSquareMillimetresPerSquareMetre * sum / static_cast<double>(samples));
   }

@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "lucerna/detectors.h"
-#include "lucerna/trace/backward/backward_scene.h"
-#include "lucerna/trace/backward/mirror_guide.h"
-#include "lucerna/trace/backward/source_lines.h"
+#include "lucerna/trace/backward/backward_sampler.h"
 
 namespace lucerna {
 
@@ -18,7 +16,7 @@ namespace lucerna {
 /// must outlive it.
 class BackwardImage {
  public:
-  /// Throws InputError with `no_backward_reason`.
+  /// Throws as BackwardSampler.
   BackwardImage(const Scene& scene, int max_bounces);
 
   /// Whether a plane is far enough from every source and mirror to look at them from there.
@@ -38,9 +36,7 @@ class BackwardImage {
   double by_source(const PlaneGrid& grid, std::size_t cell, std::size_t source, std::uint64_t samples,
                    std::uint64_t seed) const;
 
-  BackwardScene scene_;
-  std::vector<LineDisks> disks_;
-  MirrorGuide guide_;
+  BackwardSampler sampler_;
 };
 
 }  // namespace lucerna

@@ -56,15 +56,6 @@ std::uint64_t source_stream(std::uint64_t seed, std::size_t source) {
   return detail::mix_bits(seed + kStep * (source + 1));
 }
 
-std::vector<GuideSource> guide_sources(const Scene& scene) {
-  std::vector<GuideSource> out;
-  for (const PlacedSource& placed : scene.sources) {
-    const SourceLines lines = lines_of(placed);
-    out.push_back({placed.world_from_source.point(lines.focus_mm), quantile(lines.miss_mm, kGuideShare)});
-  }
-  return out;
-}
-
 LineDisks::LineDisks(const PlacedSource& placed, const LuminanceSource& light) {
   const SourceLines lines = lines_of(placed);
   centre_mm_ = placed.world_from_source.point(lines.focus_mm);
@@ -73,6 +64,7 @@ LineDisks::LineDisks(const PlacedSource& placed, const LuminanceSource& light) {
   for (const double share : kLineShares)
     radii_mm_.push_back(std::min(all, std::max(1e-3 * all, quantile(lines.miss_mm, share))));
   radii_mm_.push_back(all);
+  guide_radius_mm_ = quantile(lines.miss_mm, kGuideShare);
 }
 
 LineDisks::Place LineDisks::place(double u, double v, const Direction& line, double widest) const {

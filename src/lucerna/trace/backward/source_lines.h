@@ -7,7 +7,6 @@
 
 #include "lucerna/scene.h"
 #include "lucerna/source/emitters/luminance_source.h"
-#include "lucerna/trace/backward/mirror_guide.h"
 
 namespace lucerna {
 
@@ -29,18 +28,18 @@ class LineDisks {
   const Vec3& centre_mm() const { return centre_mm_; }
   /// Of a ball about the centre that all light leaves.
   double radius_mm() const { return radii_mm_.back(); }
+  /// Most lines pass the centre within this.
+  double guide_radius_mm() const { return guide_radius_mm_; }
 
  private:
   Vec3 centre_mm_;
   std::vector<double> radii_mm_;
+  double guide_radius_mm_ = 0.0;
 };
 
 /// Of `samples` by mirrors, each source has so many directly.
 std::uint64_t direct_samples(std::uint64_t samples);
 /// The stream of a source's own samples under `seed`; the mirrors' has the seed itself.
 std::uint64_t source_stream(std::uint64_t seed, std::size_t source);
-
-/// Where most lines of each source pass.
-std::vector<GuideSource> guide_sources(const Scene& scene);
 
 }  // namespace lucerna
