@@ -6,7 +6,8 @@
 //   bench_real_targets [options] hidden [CASE ...]             random mirrors: n10, n49-near, n49-far,
 //   n49-wild, n400
 // options: --time S (60), --rays N (of the validation, 16 M), --target-rays N (of tables, 64 M), --family
-// bspline|revolution, --light-weight W (0.1), --source led|filament|FILE, --targets N (of `hidden`, 10),
+// bspline|revolution, --light-weight W (0.1), --source led|filament|FILE (led; `attainable`: both), --targets
+// N (of `hidden`, 10),
 // --seed S, --start (judges only the mirror to begin with), --history (prints every step), --keep (the models
 // and tables that were made), --fixed-knots (of `hidden`), --device cuda. The mirror of all but `hidden`: 120
 // mm over f = 20 mm, hole 8 mm, reflectance 0.9. Each line: excess at n = 12, 24 and 48 with its standard
@@ -47,7 +48,7 @@ namespace {
 struct Run {
   double time_s = 60.0, light_weight = DesignProblem::kLightWeight;
   std::uint64_t rays = std::uint64_t{1} << 24, target_rays = std::uint64_t{1} << 26, seed = 1;
-  std::string family = "bspline", source = "led", mode;
+  std::string family = "bspline", source, mode;
   int targets = 10;
   bool start_only = false, history = false, keep = false, fixed_knots = false;
   std::vector<std::string> names;
@@ -79,6 +80,8 @@ fs::path model_of(const Run& run, const std::string& source) {
   save_source_model(file, *compress_adaptive(rays, {}));
   return file;
 }
+
+std::string source_of(const Run& run) { return run.source.empty() ? "led" : run.source; }
 
 std::string luminaire(const Run& run, const std::string& source) {
   return fmt::format(
@@ -187,7 +190,7 @@ void files(const Run& run) {
   for (const std::string& file : run.names) {
     Validated j;
     solve(run, fs::path(file).filename().string().substr(0, 28),
-          problem(run, luminaire(run, run.source), file, "shape"), run.time_s, j);
+          problem(run, luminaire(run, source_of(run)), file, "shape"), run.time_s, j);
   }
 }
 
@@ -196,14 +199,15 @@ void synthetic(const Run& run) {
     if (!selected(run, target.name)) continue;
     const fs::path file = written(run, target.name, bench::table_of(target, 2.5, 1.0));
     Validated j;
-    solve(run, target.name, problem(run, luminaire(run, run.source), file, "shape"), run.time_s, j);
+    solve(run, target.name, problem(run, luminaire(run, source_of(run)), file, "shape"), run.time_s, j);
   }
 }
 
 /// Designs for a function, writes the light of the result as a table, and designs for that from scratch.
 void attainable(const Run& run) {
   double worst = -1.0;
-  for (const std::string source : {"led", "filament"}) {
+  const std::vector<std::string> both{"led", "filament"};
+  for (const std::string& source : run.source.empty() ? both : std::vector{run.source}) {
     for (const auto& target : bench::synthetic_targets()) {
       if (!selected(run, target.name)) continue;
       const std::string scene = luminaire(run, source), name = target.name + "-" + source;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/design/solver/sparse_equations.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
@@ -37,6 +38,26 @@ SparseSymmetric joined(const std::vector<Columns>& parts, Eigen::Index n) {
   }
   out.outerIndexPtr()[column] = at;
   return out;
+}
+
+/// A matrix with more of its triangle filled is factorised as a dense one: a sparse factor fills up, and is
+/// then five times slower (2601 parameters, half filled: 1.3 s against 0.27 s; 6 % filled: 0.06 s).
+constexpr double kDenseShare = 0.2;
+
+bool is_dense(const SparseSymmetric& a) {
+  const auto n = static_cast<double>(a.rows());
+  return static_cast<double>(a.nonZeros()) > kDenseShare * 0.5 * n * n;
+}
+
+/// a^-1 right by Cholesky's factorisation; NaN where `a` is not positive definite.
+Eigen::MatrixXd solved(const SparseSymmetric& a, const Eigen::MatrixXd& right) {
+  const auto with = [&](const auto& solver) -> Eigen::MatrixXd {
+    if (solver.info() == Eigen::Success) return solver.solve(right);
+    return Eigen::MatrixXd::Constant(right.rows(), right.cols(), std::nan(""));
+  };
+  if (!is_dense(a)) return with(Eigen::SimplicialLLT<SparseSymmetric, Eigen::Lower>(a));
+  Eigen::MatrixXd dense(a);
+  return with(Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower>(dense));
 }
 
 }  // namespace
@@ -138,14 +159,12 @@ SparseSymmetric sparse_step_metric(const DesignShape& shape, const SparseEquatio
 }
 
 Eigen::VectorXd damped_step(const SparseEquations& equations, const SparseSymmetric& metric, double lambda) {
-  const SparseSymmetric a = equations.hessian + lambda * metric;
-  const Eigen::SimplicialLLT<SparseSymmetric, Eigen::Lower> solver(a);
-  const Eigen::Index n = a.rows(), k = static_cast<Eigen::Index>(equations.products.size());
-  if (solver.info() != Eigen::Success) return Eigen::VectorXd::Constant(n, std::nan(""));
+  const Eigen::Index n = metric.rows(), k = static_cast<Eigen::Index>(equations.products.size());
   Eigen::MatrixXd right(n, k + 1);
   right.col(0) = equations.gradient;
   for (Eigen::Index i = 0; i < k; ++i) right.col(i + 1) = equations.products[static_cast<std::size_t>(i)].v;
-  const Eigen::MatrixXd x = solver.solve(right);
+  const Eigen::MatrixXd x = solved(equations.hessian + lambda * metric, right);
+  if (!x.allFinite()) return Eigen::VectorXd::Constant(n, std::nan(""));
   Eigen::VectorXd step = x.col(0);
   if (k > 0) {  // Woodbury
     Eigen::MatrixXd inner(k, k);

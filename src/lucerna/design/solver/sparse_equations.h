@@ -39,7 +39,7 @@ SparseEquations sparse_equations(const Evaluation& e, const Eigen::VectorXd& tar
 /// How a step of a free form is measured: see `step_metric`.
 SparseSymmetric sparse_step_metric(const DesignShape& shape, const SparseEquations& equations);
 
-/// The step -(H + lambda D + products)^-1 g by a sparse Cholesky factorisation.
+/// The step -(H + lambda D + products)^-1 g by Cholesky factorisation, sparse where H is.
 Eigen::VectorXd damped_step(const SparseEquations& equations, const SparseSymmetric& metric, double lambda);
 
 /// See least_squares.h.
