@@ -27,6 +27,8 @@ constexpr double kSmoothLobe_deg = 3.0;
 /// Arcs of C0 and C90 below this are measured by `exact`. Their ends are looked for within this share of
 /// them.
 constexpr double kNarrowArc_deg = 20.0, kArcWindow = 0.25;
+/// Ends of a centre darker than this share of the peak lie on a lobe's foot, which bends within any window.
+constexpr double kBrightCentre = 0.5;
 /// Beyond this a peak's C is not determined.
 constexpr double kTurned_deg = 90.0;
 /// Narrower than the beam is wide, wide enough for its axis where no peak was found.
@@ -62,9 +64,11 @@ PlaneResult measure_plane(const CountedSphere& sphere, double c_deg, double wide
   Section section(sphere, c_deg, widest_deg, kDark * std::min(maximum.all(), centre.all()));
   PlaneResult r;
   r.plane.c_deg = c_deg;
-  const PointIntensity ends = c_deg == 0.0 || c_deg == 90.0 ? exact : PointIntensity{};
+  const bool has_ends = c_deg == 0.0 || c_deg == 90.0;
   const auto arc = [&](const Jackknife& full, double share_of_full) {
-    return arc_deg(ends, sphere.resolution_deg(), section, full, share_of_full);
+    const bool bright = full.all() >= kBrightCentre * maximum.all();
+    return arc_deg(has_ends && bright ? exact : PointIntensity{}, sphere.resolution_deg(), section, full,
+                   share_of_full);
   };
   r.plane.beam_of_maximum = arc(maximum, 0.5);
   r.plane.field_of_maximum = arc(maximum, 0.1);

@@ -30,12 +30,15 @@ struct Steps {
 };
 /// About each start; and about the best that they found: the tip of a narrow lobe is sharper than a search's
 /// last step.
-constexpr Steps kCoarse{0.5, 0.1, kSearchSamples}, kFine{0.1, 0.0125, kFirstSamples};
+constexpr Steps kCoarse{0.5, 0.1, kSearchSamples}, kFine{0.1, 0.025, 2 * kSearchSamples};
 /// Steps into which a window is cut to find a crossing, and so many more from there.
 constexpr int kWindowSteps = 5, kMaxSteps = 6;
 /// Points of a mean within a step to either side, and the length of the last as a share of the others.
 constexpr int kMeanPoints = 6;
 constexpr double kShorter = 0.25;
+constexpr int kMaxShorter = 3;
+/// A mean this many errors from the threshold is at it.
+constexpr double kSameErrors = 2.0;
 constexpr std::uint64_t kWindowSamples = 256, kMeanSamples = 512;
 
 Direction moved(const Direction& from, double angle_rad, double distance_rad) {
@@ -93,6 +96,8 @@ Found pattern_search(const PointIntensity& intensity, const Direction& start, do
 /// Where a section falls below a threshold, its slope there, and the error of its intensity.
 struct Crossing {
   double angle_deg, cd_per_deg, cd_error;
+
+  double error_deg() const { return cd_error / std::abs(cd_per_deg); }
 };
 
 /// The mean of independent estimates within `half_deg` of an angle.
@@ -130,14 +135,25 @@ std::optional<Crossing> crossing_near(const PointIntensity& intensity, const Dir
   return std::nullopt;
 }
 
-/// A mean leaves out how the section bends: one of a quarter of the length about the crossing that was found
-/// has a sixteenth of that error, so what it moves by bounds the rest.
-Crossing sharpened(const PointIntensity& intensity, const DirectionAt& at, const Crossing& first,
-                   double step_deg, double threshold) {
-  const Estimate cd = mean_about(intensity, at, first.angle_deg, kShorter * step_deg);
-  const double rest_cd = kShorter * kShorter * (threshold - cd.mean);
-  return {first.angle_deg + (threshold - cd.mean) / first.cd_per_deg, first.cd_per_deg,
-          std::hypot(cd.standard_error, rest_cd)};
+/// The crossing by ever shorter steps: a line through two means leaves out how the section bends. It is found
+/// when the mean of a quarter of the length about it is the threshold, within the noise; what is left of that
+/// is in the error.
+std::optional<Crossing> precise_crossing(const PointIntensity& intensity, const DirectionAt& at,
+                                         double angle_deg, double step_deg, double threshold) {
+  std::optional<Crossing> found;
+  for (int k = 0; k < kMaxShorter; ++k) {
+    const auto near = crossing_near(intensity, at, angle_deg, step_deg, threshold);
+    if (!near) return found;
+    step_deg *= kShorter;
+    angle_deg = near->angle_deg;
+    const Estimate cd = mean_about(intensity, at, angle_deg, step_deg);
+    const double off = threshold - cd.mean;
+    found = Crossing{angle_deg + off / near->cd_per_deg, near->cd_per_deg,
+                     std::hypot(cd.standard_error, kShorter * kShorter * off)};
+    if (std::abs(off) <= kSameErrors * cd.standard_error) return found;
+    found->cd_error = std::hypot(cd.standard_error, off);
+  }
+  return found;
 }
 
 /// The outermost crossing from `window_deg` outside of `near_deg` to `inward_deg` inside of it, or, where it
@@ -153,8 +169,7 @@ std::optional<Crossing> find_crossing(const PointIntensity& intensity, const Dir
   for (int k = 1; k <= steps; ++k) {
     const double angle = outer + (outward ? k : -k) * step;
     if (bright(angle) == outward) continue;
-    const auto first = crossing_near(intensity, at, angle + (outward ? -0.5 : 0.5) * step, step, threshold);
-    return first ? std::optional(sharpened(intensity, at, *first, step, threshold)) : std::nullopt;
+    return precise_crossing(intensity, at, angle + (outward ? -0.5 : 0.5) * step, step, threshold);
   }
   return std::nullopt;
 }
@@ -201,10 +216,10 @@ std::optional<Estimate> exact_arc_deg(const PointIntensity& intensity, const Dir
   const auto from = find_crossing(intensity, at, near.from_deg, -window_deg, inward_deg, threshold.mean);
   const auto to = find_crossing(intensity, at, near.to_deg, window_deg, inward_deg, threshold.mean);
   if (!from || !to) return std::nullopt;
-  const double from_slope = std::abs(from->cd_per_deg), to_slope = std::abs(to->cd_per_deg);
-  const double by_threshold = threshold.standard_error * (1.0 / from_slope + 1.0 / to_slope);
+  const double by_threshold =
+      threshold.standard_error * (1.0 / std::abs(from->cd_per_deg) + 1.0 / std::abs(to->cd_per_deg));
   return Estimate{to->angle_deg - from->angle_deg,
-                  std::hypot(by_threshold, from->cd_error / from_slope, to->cd_error / to_slope)};
+                  std::hypot(by_threshold, from->error_deg(), to->error_deg())};
 }
 
 }  // namespace lucerna

@@ -111,15 +111,15 @@ struct Held {
   int arcs = 0;
   double mean_error = 0.0;
 };
-Held held_arcs(double sigma, double window_deg, double shift_deg) {
-  const double truth = 2.0 * sigma * std::sqrt(2.0 * std::numbers::ln2);
+Held held_arcs(double sigma, double window_deg, double shift_deg, double threshold_cd = 500.0) {
+  const double truth = 2.0 * sigma * std::sqrt(2.0 * std::log(1000.0 / threshold_cd));
   const auto line = [](double angle) { return toward(angle < 0.0 ? 180.0 : 0.0, std::abs(angle)); };
   Held out;
   for (std::uint64_t stream = 0; stream < 100; ++stream) {
     const double off = 0.01 * static_cast<double>(stream % 30) - 0.15 + shift_deg;
     const CircleArc near{-0.5 * truth + off, 0.5 * truth + off};
-    const auto arc =
-        exact_arc_deg(noisy_lobe(toward(0.0, 0.0), sigma, stream), line, near, window_deg, {500.0, 0.0});
+    const auto arc = exact_arc_deg(noisy_lobe(toward(0.0, 0.0), sigma, stream), line, near, window_deg,
+                                   {threshold_cd, 0.0});
     if (!arc) continue;
     out.arcs += std::abs(arc->mean - truth) <= 2.0 * arc->standard_error ? 1 : 0;
     out.mean_error += arc->standard_error / 100.0;
@@ -140,6 +140,13 @@ TEST(PointIntensityStatistical, ArcsOfBentFlanksHoldTheTruth) {
   const Held wide = held_arcs(3.0, 6.0, 0.0);
   EXPECT_GE(wide.arcs, 85);
   EXPECT_LT(wide.mean_error, 0.03);
+}
+
+// At a thousandth of the peak a step of a fifth of the window spans a factor of twenty.
+TEST(PointIntensityStatistical, ArcsFarDownATailHoldTheTruth) {
+  const Held tail = held_arcs(1.0, 4.0, 0.0, 1.0);
+  EXPECT_GE(tail.arcs, 85);
+  EXPECT_LT(tail.mean_error, 0.02);
 }
 
 // A kernel moves the arc of a lopsided lobe by more than the window.
