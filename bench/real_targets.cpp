@@ -6,13 +6,12 @@
 //   bench_real_targets [options] hidden [CASE ...]             random mirrors: n10, n49-near, n49-far,
 //   n49-wild, n400
 // options: --time S (60), --rays N (of the validation, 16 M), --target-rays N (of tables, 64 M), --family
-// bspline|revolution, --light-weight W (0.1), --source led|filament|FILE (led; `attainable`: both), --targets
-// N (of `hidden`, 10),
-// --seed S, --start (judges only the mirror to begin with), --history (prints every step), --keep (the models
-// and tables that were made), --fixed-knots (of `hidden`), --device cuda. The mirror of all but `hidden`: 120
-// mm over f = 20 mm, hole 8 mm, reflectance 0.9. Each line: excess at n = 12, 24 and 48 with its standard
-// error, noise, light in the rectangle, light and error outside, bound, seconds of the design and of the
-// validation, rays of the design, why it ended.
+// bspline|revolution, --light-weight W (0.1), --source led|filament|FILE (led; `attainable`: both in turn),
+// --targets N (of `hidden`, 10), --seed S, --start (judges only the mirror to begin with), --history (prints
+// every step), --keep (the models and tables that were made), --fixed-knots (of `hidden`), --device cuda. The
+// mirror of all but `hidden`: 120 mm over f = 20 mm, hole 8 mm, reflectance 0.9. Each line: excess at n = 12,
+// 24 and 48 with its standard error, noise, light in the rectangle, light and error outside, bound, seconds
+// of the design and of the validation, rays of the design, why it ended.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -29,7 +29,7 @@ struct FreeFormSnapshot {
   /// What candidates are compared by: the squared error less its noise (a share of it while the fit is
   /// rough), and what lost light, limits and roughness cost.
   double cost = 0.0;
-  /// Error over noise.
+  /// Root of the whole cost, missing light included, over the noise.
   double error_to_noise = 0.0;
   int intervals_x = 1, intervals_y = 1;
   std::vector<double> parameters;
