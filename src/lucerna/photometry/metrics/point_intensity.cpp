@@ -30,7 +30,9 @@ struct Steps {
 };
 /// About each start; and about the best that they found: the tip of a narrow lobe is sharper than a search's
 /// last step.
-constexpr Steps kCoarse{0.5, 0.1, kSearchSamples}, kFine{0.1, 0.025, 2 * kSearchSamples};
+constexpr Steps kCoarse{0.5, 0.1, kSearchSamples}, kFine{0.1, 0.0125, kFirstSamples};
+/// Of what the finer steps gained: still finer ones may gain so much.
+constexpr double kRestOfGain = 0.25;
 /// Steps into which a window is cut to find a crossing, and so many more from there.
 constexpr int kWindowSteps = 5, kMaxSteps = 6;
 /// Points of a mean within a step to either side, and the length of the last as a share of the others.
@@ -198,12 +200,15 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
   for (Found& f : found) f = pattern_search(intensity, f.direction, radius_deg, kCoarse);
   for (Found& f : found) f.cd = intensity(f.direction, kFirstSamples, kSearchSeed).mean;
   retain_brightest(found, kRetained);
+  const double coarse_cd = found.front().cd;
   found.front() = pattern_search(intensity, found.front().direction, radius_deg, kFine);
+  const double rest_cd = kRestOfGain * std::max(0.0, found.front().cd - coarse_cd);
   // Other samples judge what was found: they do not hold the noise that led the search there.
   PointPeak best = precise_peak(intensity, brightest_start);
   std::vector<PointPeak> tops;
   for (const Found& f : found) {
     tops.push_back(precise_peak(intensity, f.direction));
+    tops.back().cd.standard_error = std::hypot(tops.back().cd.standard_error, rest_cd);
     if (tops.back().cd.mean > best.cd.mean) best = tops.back();
   }
   best.search_error_cd = search_error(std::move(tops));
