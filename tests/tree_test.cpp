@@ -128,7 +128,7 @@ const std::map<std::string, Layers> kSubRooms{
          {"optimizers", {}},
          {"search", {"constraints", "fit", "initial", "optimizers", "shape"}},
          {"validation", {"evaluation", "problem", "shape", "solver"}},
-         {"run", {"constraints", "evaluation", "fit", "problem", "search", "validation"}},
+         {"run", {"constraints", "evaluation", "fit", "problem", "search", "solver", "validation"}},
      }},
     {"results",
      {

@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Callable
 from typing import Any
 
-from . import _core, _toml
+from . import _core, _plots, _toml
 
 
 def _method(cls: type, name: str | None = None) -> Callable[[Any], Any]:
@@ -242,3 +242,9 @@ def _trace_repr(self: Any) -> str:
 @_method(_core.DesignResult, "__repr__")
 def _design_repr(self: Any) -> str:
     return f"DesignResult(relative_rms {self.relative_rms}, end={self.end!r})"
+
+
+for _class, _plot in ((_core.IntensityDistribution, _plots.plot_intensity), (_core.PlaneImage, _plots.plot_plane),
+                      (_core.SourceModel, _plots.plot_model), (_core.DesignResult, _plots.plot_design),
+                      (_core.Reflector, _plots.plot_reflector)):
+    _method(_class, "plot")(_plot)

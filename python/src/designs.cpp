@@ -270,8 +270,9 @@ A result never changes, so threads may share it.)");
       "folder"_a, R"(save(folder)
 --
 
-Writes what `lucerna design` leaves in a folder: the mirror as TOML, STEP, STL, OBJ, DXF and CSV, its light,
-history, checkpoint, result.json.
+Writes what `lucerna design` leaves in a folder.
+
+That is the mirror as TOML, STEP, STL, OBJ, DXF and CSV, its light, history, checkpoint and result.json.
 
 Parameters
 ----------

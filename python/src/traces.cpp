@@ -343,8 +343,9 @@ list of str)");
   c.def("save", &save_trace, "folder"_a, R"(save(folder)
 --
 
-Writes what `lucerna trace` leaves in a folder: result.json, project.toml, raw sums, and the files of each
-detector.
+Writes what `lucerna trace` leaves in a folder.
+
+That is result.json, project.toml, the raw sums, and the files of each detector.
 
 Parameters
 ----------
