@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # The Python package, python/: where pybind11 and Python's headers are installed. Another interpreter: -DPython3_EXECUTABLE=...
-# A module under a sanitizer needs its run-time library in the interpreter (python/README.md), so that it is built on demand only.
+# A module under a sanitizer needs its run-time library in the interpreter (LD_PRELOAD), so that it is built on demand only.
 if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
   set(Python3_EXECUTABLE /usr/bin/python3)  # the one whose packages Debian installs, whatever else is first on the path
 endif()
@@ -24,6 +24,10 @@ if(NOT LUCERNA_PYTHON)
     message(STATUS "Python: off (LUCERNA_PYTHON)")
   else()
     message(STATUS "Python: off; pybind11 and Python's headers were not found (scripts/packages-python.txt)")
+  endif()
+  if(LUCERNA_BUILD_TESTS)
+    add_test(NAME Python.Package COMMAND ${CMAKE_COMMAND} -E echo "skipped: this build has no Python package")
+    set_tests_properties(Python.Package PROPERTIES LABELS python SKIP_REGULAR_EXPRESSION "^skipped")
   endif()
   return()
 endif()

@@ -135,8 +135,10 @@ class _Memory:
         for name, known in self.objects.items():
             if known is thing:
                 return name
-        ending = {_core.SourceModel: "nfl", _core.RaySet: "tm25ray", _core.IntensityDistribution: "ldt"}
-        name = os.path.abspath(f"in-memory-{len(self.objects) + 1}.{ending[type(thing)]}")
+        # The same from any folder, so that a design can be resumed from any.
+        form = {_core.SourceModel: "model-{}.nfl", _core.RaySet: "rays-{}.tm25ray",
+                _core.IntensityDistribution: "target-{}.ldt"}[type(thing)]
+        name = "/in-memory/" + form.format(len(self.objects) + 1)
         self.objects[name] = thing
         return name
 
