@@ -150,6 +150,22 @@ def keys(self: Any) -> dict[str, Any]:
     return tomllib.loads(self.toml)["reflector"][0]
 
 
+@_method(_core.Reflector, "replace")
+def _reflector_replace(self: Any, **keys: Any) -> Any:
+    """The mirror with other keys.
+
+    Parameters
+    ----------
+    **keys
+        Keys of the [[reflector]] table; None takes one away.
+
+    Returns
+    -------
+    Reflector
+    """
+    return _core.Reflector(**{**self.keys, **keys})
+
+
 @_method(_core.IntensityDistribution)
 def to_xarray(self: Any) -> Any:
     """The distribution as an xarray.DataArray with dimensions C and gamma; units are in attrs.

@@ -19,13 +19,13 @@ def run(*arguments, **keys):
 
 @pytest.mark.slow
 def test_pip_installs_the_package_without_a_network(tmp_path):
-    build = os.environ.get("LUCERNA_WHEEL_BUILD", tmp_path / "build")
     run(sys.executable, "-m", "venv", "--system-site-packages", tmp_path / "venv")
     python = tmp_path / "venv/bin/python"
-    bare = {"PATH": os.environ["PATH"], "HOME": str(tmp_path), "CCACHE_DIR": os.environ.get("CCACHE_DIR", ""),
-            "PIP_NO_INDEX": "1"}
+    kept = {name: os.environ[name] for name in ("PATH", "CCACHE_DIR", "CMAKE_ARGS", "CMAKE_BUILD_PARALLEL_LEVEL")
+            if name in os.environ}
+    bare = {**kept, "HOME": str(tmp_path), "PIP_NO_INDEX": "1"}
     run(python, "-m", "pip", "wheel", ROOT, "--no-build-isolation", "--no-index", "--no-deps", "-w", tmp_path,
-        "--config-settings", f"build-dir={build}", env=bare)
+        "--config-settings", f"build-dir={tmp_path / 'build'}", env=bare)
     (wheel,) = tmp_path.glob("*.whl")
     names = zipfile.ZipFile(wheel).namelist()
     assert "lucerna/py.typed" in names and "lucerna/__init__.pyi" in names
