@@ -11,8 +11,8 @@ PAGE = pathlib.Path(__file__).resolve().parents[1] / "docs/reference/python.md"
 HEAD = """# Python
 
 What `import lucerna` has. [Tutorial 5](../tutorials/python.md) shows how it is used. This page is
-written by `scripts/write_python_reference.py` from the documentation of the package; a test fails when it
-is not what the package has.
+written by `scripts/write_python_reference.py` from the documentation of the package. A test fails
+when it is not what the package has.
 
 Lengths are in mm, angles in degrees, flux in lm or W. Options are given by name. A path is text or
 any `os.PathLike`. `array_like` is what `numpy.asarray` takes; it is copied only where its type or
