@@ -17,6 +17,39 @@ using namespace py::literals;
 
 namespace {
 
+// What `help` says of each; signatures are in a form that `inspect` reads.
+
+constexpr const char* kWriteReportDoc = R"(write_report(input, html, *, ray_files=[], callback=None)
+--
+
+Writes one self-contained HTML file of a trace, a design or a model.
+
+Parameters
+----------
+input : path_like
+    The folder of a trace or design, or a model (.nfl).
+html : path_like
+    The file to write.
+ray_files : list of path_like
+    For a model: the ray files that it is compared with.
+callback : callable, optional
+    Gets a Record with phase, done and total (rays), ten times a second at most.)";
+
+constexpr const char* kBuildInfoDoc = R"(build_info()
+--
+
+What this build is, and what it uses on this machine.
+
+Returns
+-------
+Record
+    version, compiler, isa (instruction set), threads, embree (bool), cuda_unavailable (why no CUDA device can
+    be used; None where one can).)";
+
+}  // namespace
+
+namespace {
+
 namespace fs = std::filesystem;
 
 py::object views_record(const RaySetComparison& all) {
@@ -106,31 +139,8 @@ void add_comparison(py::module_& m) {
         });
       },
       "input"_a, "html"_a, py::kw_only(), "ray_files"_a = std::vector<fs::path>{}, "callback"_a = py::none(),
-      R"(write_report(input, html, *, ray_files=[], callback=None)
---
-
-Writes one self-contained HTML file of a trace, a design or a model.
-
-Parameters
-----------
-input : path_like
-    The folder of a trace or design, or a model (.nfl).
-html : path_like
-    The file to write.
-ray_files : list of path_like
-    For a model: the ray files that it is compared with.
-callback : callable, optional
-    Gets a Record with phase, done and total (rays), ten times a second at most.)");
-  m.def("build_info", &build_record, R"(build_info()
---
-
-What this build is, and what it uses on this machine.
-
-Returns
--------
-Record
-    version, compiler, isa (instruction set), threads, embree (bool), cuda_unavailable (why no CUDA device can
-    be used; None where one can).)");
+      kWriteReportDoc);
+  m.def("build_info", &build_record, kBuildInfoDoc);
   m.def(
       "estimate_text",
       [](double value, double standard_error, const std::string& unit) {

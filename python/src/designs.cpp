@@ -14,6 +14,34 @@ using namespace py::literals;
 
 namespace {
 
+// What `help` says of each; signatures are in a form that `inspect` reads.
+
+constexpr const char* kDesignResultClassDoc =
+    R"(A designed mirror, its light, and how far that is from the target.
+
+A result never changes, so threads may share it.)";
+
+constexpr const char* kSaveDoc = R"(save(folder)
+--
+
+Writes what `lucerna design` leaves in a folder.
+
+That is the mirror as TOML, STEP, STL, OBJ, DXF and CSV, its light, history, checkpoint and result.json.
+
+Parameters
+----------
+folder : path_like
+    Made if it is missing; files of the same names are replaced.
+
+Returns
+-------
+list of str
+    Names of the files.)";
+
+}  // namespace
+
+namespace {
+
 namespace fs = std::filesystem;
 
 py::object box_error(const BoxErrorEstimate& e) {
@@ -252,10 +280,7 @@ py::object design_error(const DesignError& e) {
 }
 
 void add_designs(py::module_& m) {
-  auto c = py::class_<Designed>(m, "DesignResult",
-                                R"(A designed mirror, its light, and how far that is from the target.
-
-A result never changes, so threads may share it.)");
+  auto c = py::class_<Designed>(m, "DesignResult", kDesignResultClassDoc);
   add_findings(c);
   c.def_property_readonly("history", &history, "Every step, as a Record of arrays.");
   c.def_property_readonly(
@@ -267,22 +292,7 @@ A result never changes, so threads may share it.)");
       [](const Designed& d, const fs::path& folder) {
         return released([&] { return write_design(folder, *d.mirror); });
       },
-      "folder"_a, R"(save(folder)
---
-
-Writes what `lucerna design` leaves in a folder.
-
-That is the mirror as TOML, STEP, STL, OBJ, DXF and CSV, its light, history, checkpoint and result.json.
-
-Parameters
-----------
-folder : path_like
-    Made if it is missing; files of the same names are replaced.
-
-Returns
--------
-list of str
-    Names of the files.)");
+      "folder"_a, kSaveDoc);
   m.def("_design", &design_scene, "scene"_a, py::kw_only(), "seed"_a, "time_s"_a, "max_rays"_a, "device"_a,
         "tolerances"_a, "pareto"_a, "advise"_a, "checkpoint"_a, "callback"_a);
 }

@@ -15,6 +15,130 @@ using namespace py::literals;
 
 namespace {
 
+// What `help` says of each; signatures are in a form that `inspect` reads.
+
+constexpr const char* kIntensityDistributionClassDoc =
+    R"(Luminous or radiant intensity over the sphere, CIE type C.
+
+Nadir (gamma 0) is -z, C0 is +x, C90 is +y. Between its angles the intensity is bilinear. A distribution never
+changes, so threads may share it. It pickles without loss but for the errors of the figures of a trace.
+
+Parameters
+----------
+c_deg : array_like (planes,)
+    C planes, degrees, ascending from 0, below 360.
+gamma_deg : array_like (gammas,)
+    Angles from nadir, degrees, ascending, 0 to 180, at least two.
+cd : array_like (planes, gammas)
+    Intensity, >= 0, in `unit`.
+unit : str
+    'cd' or 'W/sr'.
+standard_error : array_like (planes, gammas), optional
+    Of each value, in `unit`.
+luminaire : mapping, optional
+    Fields of the property `luminaire`.)";
+
+constexpr const char* kAtDoc = R"(at(c_deg, gamma_deg)
+--
+
+Intensity in any direction, in `unit`.
+
+Parameters
+----------
+c_deg : array_like
+    Any angles, degrees.
+gamma_deg : array_like
+    0 to 180, degrees; of one shape with c_deg by numpy's rules.
+
+Returns
+-------
+numpy.ndarray)";
+
+constexpr const char* kMetricsDoc = R"(metrics()
+--
+
+Flux, peak, beam and field angles, zones.
+
+Returns
+-------
+Record
+    Numbers where the light was measured, Estimates where it was traced. Angles in degrees, flux in lm (or W),
+    intensities in `unit`; None where a threshold is not reached.)";
+
+constexpr const char* kScaledDoc = R"(scaled(factor)
+--
+
+The same light with all values multiplied.
+
+Parameters
+----------
+factor : float
+    >= 0.
+
+Returns
+-------
+IntensityDistribution)";
+
+constexpr const char* kSaveDoc = R"(save(path, *, format=None, ies_turn_deg=0, digits=7)
+--
+
+Writes an IES or EULUMDAT file, whole or not at all.
+
+Parameters
+----------
+path : path_like
+    Ends in .ies or .ldt where no format is given.
+format : str, optional
+    'ldt', 'ies-2019' or 'ies-2002'.
+ies_turn_deg : int
+    0: H of an IES file is C; 90: H = C - 90, degrees.
+digits : int
+    Significant digits of the peak; 17 reads back to the same numbers.)";
+
+constexpr const char* kPolarSvgDoc = R"(polar_svg(*, title='')
+--
+
+The polar diagram as an SVG document, with 95 % intervals where the errors are known.
+
+Parameters
+----------
+title : str
+
+Returns
+-------
+str)";
+
+constexpr const char* kReadIntensityDoc =
+    R"(read_intensity(path, *, strict=False, ies_turn_deg=0, isym3='standard')
+--
+
+Reads an IES LM-63 or EULUMDAT file, found from its content.
+
+Parameters
+----------
+path : path_like
+strict : bool
+    The first repair becomes an InputError.
+ies_turn_deg : int
+    How the H angles of an IES file are meant: 0, H = C; 90, H = C - 90, degrees.
+isym3 : str
+    'standard' or 'reversed': how EULUMDAT files of Isym 3 are meant.
+
+Returns
+-------
+IntensityDistribution
+
+Raises
+------
+FileNotFoundError, OSError
+    Where the file cannot be read.
+InputError
+    Where it is neither, or damaged; place is the line.)";
+
+}  // namespace
+
+namespace {
+
 namespace fs = std::filesystem;
 
 /// Every field of a luminaire that is a text or a number, with its name.
@@ -312,100 +436,21 @@ py::object intensity_metrics(const Intensity& i) {
 }
 
 void add_intensity(py::module_& m) {
-  auto c = py::class_<Intensity>(m, "IntensityDistribution",
-                                 R"(Luminous or radiant intensity over the sphere, CIE type C.
-
-Nadir (gamma 0) is -z, C0 is +x, C90 is +y. Between its angles the intensity is bilinear. A distribution never
-changes, so threads may share it. It pickles without loss but for the errors of the figures of a trace.
-
-Parameters
-----------
-c_deg : array_like (planes,)
-    C planes, degrees, ascending from 0, below 360.
-gamma_deg : array_like (gammas,)
-    Angles from nadir, degrees, ascending, 0 to 180, at least two.
-cd : array_like (planes, gammas)
-    Intensity, >= 0, in `unit`.
-unit : str
-    'cd' or 'W/sr'.
-standard_error : array_like (planes, gammas), optional
-    Of each value, in `unit`.
-luminaire : mapping, optional
-    Fields of the property `luminaire`.)");
+  auto c = py::class_<Intensity>(m, "IntensityDistribution", kIntensityDistributionClassDoc);
   c.def(py::init(&make_intensity), "c_deg"_a, "gamma_deg"_a, "cd"_a, py::kw_only(), "unit"_a = "cd",
         "standard_error"_a = py::none(), "luminaire"_a = py::none());
   add_values(c);
-  c.def("at", &at, "c_deg"_a, "gamma_deg"_a, R"(at(c_deg, gamma_deg)
---
-
-Intensity in any direction, in `unit`.
-
-Parameters
-----------
-c_deg : array_like
-    Any angles, degrees.
-gamma_deg : array_like
-    0 to 180, degrees; of one shape with c_deg by numpy's rules.
-
-Returns
--------
-numpy.ndarray)");
-  c.def("metrics", &intensity_metrics, R"(metrics()
---
-
-Flux, peak, beam and field angles, zones.
-
-Returns
--------
-Record
-    Numbers where the light was measured, Estimates where it was traced. Angles in degrees, flux in lm (or W),
-    intensities in `unit`; None where a threshold is not reached.)");
-  c.def("scaled", &scaled, "factor"_a, R"(scaled(factor)
---
-
-The same light with all values multiplied.
-
-Parameters
-----------
-factor : float
-    >= 0.
-
-Returns
--------
-IntensityDistribution)");
+  c.def("at", &at, "c_deg"_a, "gamma_deg"_a, kAtDoc);
+  c.def("metrics", &intensity_metrics, kMetricsDoc);
+  c.def("scaled", &scaled, "factor"_a, kScaledDoc);
   c.def("save", &save_intensity, "path"_a, py::kw_only(), "format"_a = py::none(), "ies_turn_deg"_a = 0,
-        "digits"_a = 7, R"(save(path, *, format=None, ies_turn_deg=0, digits=7)
---
-
-Writes an IES or EULUMDAT file, whole or not at all.
-
-Parameters
-----------
-path : path_like
-    Ends in .ies or .ldt where no format is given.
-format : str, optional
-    'ldt', 'ies-2019' or 'ies-2002'.
-ies_turn_deg : int
-    0: H of an IES file is C; 90: H = C - 90, degrees.
-digits : int
-    Significant digits of the peak; 17 reads back to the same numbers.)");
+        "digits"_a = 7, kSaveDoc);
   c.def(
       "polar_svg",
       [](const Intensity& i, const std::string& title) {
         return polar_diagram(i.values(), i.standard_error, title);
       },
-      py::kw_only(), "title"_a = "", R"(polar_svg(*, title='')
---
-
-The polar diagram as an SVG document, with 95 % intervals where the errors are known.
-
-Parameters
-----------
-title : str
-
-Returns
--------
-str)");
+      py::kw_only(), "title"_a = "", kPolarSvgDoc);
   c.def("__eq__", &equal, py::is_operator());
   c.attr("__hash__") = py::none();
   c.def("__reduce__", [](const py::object& self) {
@@ -416,32 +461,7 @@ str)");
                        self.attr("standard_error"), luminaire_record(i.file->luminaire)));
   });
   m.def("read_intensity", &read_intensity, "path"_a, py::kw_only(), "strict"_a = false, "ies_turn_deg"_a = 0,
-        "isym3"_a = "standard",
-        R"(read_intensity(path, *, strict=False, ies_turn_deg=0, isym3='standard')
---
-
-Reads an IES LM-63 or EULUMDAT file, found from its content.
-
-Parameters
-----------
-path : path_like
-strict : bool
-    The first repair becomes an InputError.
-ies_turn_deg : int
-    How the H angles of an IES file are meant: 0, H = C; 90, H = C - 90, degrees.
-isym3 : str
-    'standard' or 'reversed': how EULUMDAT files of Isym 3 are meant.
-
-Returns
--------
-IntensityDistribution
-
-Raises
-------
-FileNotFoundError, OSError
-    Where the file cannot be read.
-InputError
-    Where it is neither, or damaged; place is the line.)");
+        "isym3"_a = "standard", kReadIntensityDoc);
 }
 
 }  // namespace lucerna::python

@@ -14,6 +14,213 @@ using namespace py::literals;
 
 namespace {
 
+// What `help` says of each; signatures are in a form that `inspect` reads.
+
+constexpr const char* kPdfAreaDoc = R"(pdf_area(points_mm, *, copy=True)
+--
+
+Density of starts, 1/mm2 on the surface that rays start on; 0 off it.
+
+Parameters
+----------
+points_mm : array_like (..., 3)
+    Points, mm.
+copy : bool
+    False raises where an array would have to be copied.
+
+Returns
+-------
+numpy.ndarray (...)
+
+Raises
+------
+InputError
+    Where starts fill no area (a point, a line).)";
+
+constexpr const char* kPdfSolidAngleDoc = R"(pdf_solid_angle(points_mm, directions, *, copy=True)
+--
+
+Density of directions at a start, 1/sr.
+
+Parameters
+----------
+points_mm, directions : array_like (..., 3)
+    Points, mm, and directions of any length; of one shape by numpy's rules.
+copy : bool
+    False raises where an array would have to be copied.
+
+Returns
+-------
+numpy.ndarray (...))";
+
+constexpr const char* kPdfEtendueDoc = R"(pdf_etendue(points_mm, directions, *, copy=True)
+--
+
+Density of rays, 1/(mm2 sr), projected.
+
+Parameters
+----------
+points_mm, directions : array_like (..., 3)
+    Points, mm, and directions of any length; of one shape by numpy's rules.
+copy : bool
+    False raises where an array would have to be copied.
+
+Returns
+-------
+numpy.ndarray (...))";
+
+constexpr const char* kLuminanceDoc = R"(luminance(points_mm, directions, *, copy=True)
+--
+
+Luminance of the source along rays, cd/m2 (W/(m2 sr) for radiometric models).
+
+Parameters
+----------
+points_mm, directions : array_like (..., 3)
+    Points, mm, and the directions that the light goes in; of one shape by numpy's rules.
+copy : bool
+    False raises where an array would have to be copied.
+
+Returns
+-------
+numpy.ndarray (...))";
+
+constexpr const char* kSourceModelClassDoc = R"(A ray set compressed to a density of rays.
+
+Any number of rays can be drawn from it, and the density of each is known. A model never changes, so threads
+may share it. It pickles as the bytes of its file.)";
+
+constexpr const char* kSampleDoc = R"(sample(rays, *, seed=1, sequence='random')
+--
+
+Draws rays: the same ones for the same seed, on any number of threads.
+
+Parameters
+----------
+rays : int
+    How many; 1e6 is taken, too.
+seed : int
+    Of the random numbers.
+sequence : str
+    'random' (independent) or 'sobol' (evenly spread).
+
+Returns
+-------
+RaySet
+    Its total flux is the model's.)";
+
+constexpr const char* kSampleFileDoc =
+    R"(sample_file(path, rays, *, seed=1, sequence='random', format=None, callback=None)
+--
+
+Draws rays into a file, in memory that does not grow with it: the file that `lucerna sample` writes.
+
+Parameters
+----------
+path : path_like
+rays : int
+    How many; 1e9 is taken, too.
+seed, sequence
+    As of `sample`.
+format : str, optional
+    As of `RaySet.save`.
+callback : callable, optional
+    Gets a Record with phase, done and total (rays), ten times a second at most.
+
+Returns
+-------
+list of str
+    What the format cannot hold.)";
+
+constexpr const char* kEtendueMm2srDoc = R"(etendue_mm2sr(shares, *, rays=16384, seed=1)
+--
+
+Étendue that holds the brightest shares of the flux, mm2 sr.
+
+Parameters
+----------
+shares : array_like (n,)
+    Shares of the flux, 0 to 1.
+rays : int
+    Rays that it is estimated from; the noise is about 1 / sqrt(rays).
+seed : int
+    Of these rays.
+
+Returns
+-------
+numpy.ndarray (n,))";
+
+constexpr const char* kSaveDoc = R"(save(path)
+--
+
+Writes the model as a file (.nfl), whole or not at all.
+
+Parameters
+----------
+path : path_like
+
+Returns
+-------
+int
+    Bytes of the file.)";
+
+constexpr const char* kCompressDoc =
+    R"(compress(rays, *, method='adaptive', max_bytes=None, flux_lm=None, flux_w=None, seed=1,
+    callback=None)
+--
+
+Makes a source model of rays.
+
+Parameters
+----------
+rays : RaySet, path_like or list of path_like
+    One file is read block by block, so that it may be larger than memory; several are superposed.
+method : str
+    'adaptive' or 'clusters'.
+max_bytes : int or str, optional
+    Ceiling of the model's file: 64000, '64k', '64KiB'. As many as the rays justify where it is not given.
+flux_lm, flux_w : float, optional
+    Total flux of the model, lm or W; what the rays' file states where it is not given.
+seed : int
+    Of the random choices; the same seed gives the same model.
+callback : callable, optional
+    Gets a Record with phase, done and total, ten times a second at most.
+
+Returns
+-------
+SourceModel
+
+Raises
+------
+InputError
+    Without rays or flux, or where max_bytes is too little.
+KeyboardInterrupt
+    On Ctrl-C.)";
+
+constexpr const char* kReadModelDoc = R"(read_model(path)
+--
+
+Reads a source model (.nfl) of any version.
+
+Parameters
+----------
+path : path_like
+
+Returns
+-------
+SourceModel
+
+Raises
+------
+FileNotFoundError, OSError
+    Where the file cannot be read.
+InputError
+    Where it is no model, or damaged.)";
+
+}  // namespace
+
+namespace {
+
 namespace fs = std::filesystem;
 
 /// Wavelengths are drawn in blocks of so many.
@@ -127,27 +334,7 @@ py::array_t<double> pdf_area(const Model& model, const py::object& points_mm, bo
 }
 
 void add_densities(py::class_<Model>& c) {
-  c.def("pdf_area", &pdf_area, "points_mm"_a, py::kw_only(), "copy"_a = true,
-        R"(pdf_area(points_mm, *, copy=True)
---
-
-Density of starts, 1/mm2 on the surface that rays start on; 0 off it.
-
-Parameters
-----------
-points_mm : array_like (..., 3)
-    Points, mm.
-copy : bool
-    False raises where an array would have to be copied.
-
-Returns
--------
-numpy.ndarray (...)
-
-Raises
-------
-InputError
-    Where starts fill no area (a point, a line).)");
+  c.def("pdf_area", &pdf_area, "points_mm"_a, py::kw_only(), "copy"_a = true, kPdfAreaDoc);
   c.def(
       "pdf_solid_angle",
       [](const Model& m, const py::object& points, const py::object& directions, bool copy) {
@@ -155,22 +342,7 @@ InputError
           return m.model->pdf_solid_angle(p, d);
         });
       },
-      "points_mm"_a, "directions"_a, py::kw_only(), "copy"_a = true,
-      R"(pdf_solid_angle(points_mm, directions, *, copy=True)
---
-
-Density of directions at a start, 1/sr.
-
-Parameters
-----------
-points_mm, directions : array_like (..., 3)
-    Points, mm, and directions of any length; of one shape by numpy's rules.
-copy : bool
-    False raises where an array would have to be copied.
-
-Returns
--------
-numpy.ndarray (...))");
+      "points_mm"_a, "directions"_a, py::kw_only(), "copy"_a = true, kPdfSolidAngleDoc);
   c.def(
       "pdf_etendue",
       [](const Model& m, const py::object& points, const py::object& directions, bool copy) {
@@ -178,22 +350,7 @@ numpy.ndarray (...))");
           return m.model->pdf_etendue({p, d});
         });
       },
-      "points_mm"_a, "directions"_a, py::kw_only(), "copy"_a = true,
-      R"(pdf_etendue(points_mm, directions, *, copy=True)
---
-
-Density of rays, 1/(mm2 sr), projected.
-
-Parameters
-----------
-points_mm, directions : array_like (..., 3)
-    Points, mm, and directions of any length; of one shape by numpy's rules.
-copy : bool
-    False raises where an array would have to be copied.
-
-Returns
--------
-numpy.ndarray (...))");
+      "points_mm"_a, "directions"_a, py::kw_only(), "copy"_a = true, kPdfEtendueDoc);
   c.def(
       "luminance",
       [](const Model& m, const py::object& points, const py::object& directions, bool copy) {
@@ -203,22 +360,7 @@ numpy.ndarray (...))");
           return per_density * m.model->pdf_etendue({p, d});
         });
       },
-      "points_mm"_a, "directions"_a, py::kw_only(), "copy"_a = true,
-      R"(luminance(points_mm, directions, *, copy=True)
---
-
-Luminance of the source along rays, cd/m2 (W/(m2 sr) for radiometric models).
-
-Parameters
-----------
-points_mm, directions : array_like (..., 3)
-    Points, mm, and the directions that the light goes in; of one shape by numpy's rules.
-copy : bool
-    False raises where an array would have to be copied.
-
-Returns
--------
-numpy.ndarray (...))");
+      "points_mm"_a, "directions"_a, py::kw_only(), "copy"_a = true, kLuminanceDoc);
 }
 
 py::array_t<double> model_etendue(const Model& model, const py::object& shares, double rays,
@@ -262,90 +404,20 @@ Model load(const fs::path& path) {
 }  // namespace
 
 void add_models(py::module_& m) {
-  auto c = py::class_<Model>(m, "SourceModel", R"(A ray set compressed to a density of rays.
-
-Any number of rays can be drawn from it, and the density of each is known. A model never changes, so threads
-may share it. It pickles as the bytes of its file.)");
+  auto c = py::class_<Model>(m, "SourceModel", kSourceModelClassDoc);
   add_facts(c);
-  c.def("sample", &sample_model, "rays"_a, py::kw_only(), "seed"_a = 1, "sequence"_a = "random",
-        R"(sample(rays, *, seed=1, sequence='random')
---
-
-Draws rays: the same ones for the same seed, on any number of threads.
-
-Parameters
-----------
-rays : int
-    How many; 1e6 is taken, too.
-seed : int
-    Of the random numbers.
-sequence : str
-    'random' (independent) or 'sobol' (evenly spread).
-
-Returns
--------
-RaySet
-    Its total flux is the model's.)");
+  c.def("sample", &sample_model, "rays"_a, py::kw_only(), "seed"_a = 1, "sequence"_a = "random", kSampleDoc);
   c.def("sample_file", &sample_file, "path"_a, "rays"_a, py::kw_only(), "seed"_a = 1, "sequence"_a = "random",
-        "format"_a = py::none(), "callback"_a = py::none(),
-        R"(sample_file(path, rays, *, seed=1, sequence='random', format=None, callback=None)
---
-
-Draws rays into a file, in memory that does not grow with it: the file that `lucerna sample` writes.
-
-Parameters
-----------
-path : path_like
-rays : int
-    How many; 1e9 is taken, too.
-seed, sequence
-    As of `sample`.
-format : str, optional
-    As of `RaySet.save`.
-callback : callable, optional
-    Gets a Record with phase, done and total (rays), ten times a second at most.
-
-Returns
--------
-list of str
-    What the format cannot hold.)");
+        "format"_a = py::none(), "callback"_a = py::none(), kSampleFileDoc);
   add_densities(c);
   c.def("etendue_mm2sr", &model_etendue, "shares"_a, py::kw_only(), "rays"_a = 16384, "seed"_a = 1,
-        R"(etendue_mm2sr(shares, *, rays=16384, seed=1)
---
-
-Étendue that holds the brightest shares of the flux, mm2 sr.
-
-Parameters
-----------
-shares : array_like (n,)
-    Shares of the flux, 0 to 1.
-rays : int
-    Rays that it is estimated from; the noise is about 1 / sqrt(rays).
-seed : int
-    Of these rays.
-
-Returns
--------
-numpy.ndarray (n,))");
+        kEtendueMm2srDoc);
   c.def(
       "save",
       [](const Model& model, const fs::path& path) {
         return released([&] { return save_source_model(path, *model.model); });
       },
-      "path"_a, R"(save(path)
---
-
-Writes the model as a file (.nfl), whole or not at all.
-
-Parameters
-----------
-path : path_like
-
-Returns
--------
-int
-    Bytes of the file.)");
+      "path"_a, kSaveDoc);
   c.def(py::pickle(
       [](const Model& model) {
         return py::make_tuple(py::bytes(source_model_bytes(*model.model)), model.warnings);
@@ -366,57 +438,8 @@ int
 
   m.def("compress", &compress_any, "rays"_a, py::kw_only(), "method"_a = "adaptive",
         "max_bytes"_a = py::none(), "flux_lm"_a = py::none(), "flux_w"_a = py::none(), "seed"_a = 1,
-        "callback"_a = py::none(),
-        R"(compress(rays, *, method='adaptive', max_bytes=None, flux_lm=None, flux_w=None, seed=1,
-    callback=None)
---
-
-Makes a source model of rays.
-
-Parameters
-----------
-rays : RaySet, path_like or list of path_like
-    One file is read block by block, so that it may be larger than memory; several are superposed.
-method : str
-    'adaptive' or 'clusters'.
-max_bytes : int or str, optional
-    Ceiling of the model's file: 64000, '64k', '64KiB'. As many as the rays justify where it is not given.
-flux_lm, flux_w : float, optional
-    Total flux of the model, lm or W; what the rays' file states where it is not given.
-seed : int
-    Of the random choices; the same seed gives the same model.
-callback : callable, optional
-    Gets a Record with phase, done and total, ten times a second at most.
-
-Returns
--------
-SourceModel
-
-Raises
-------
-InputError
-    Without rays or flux, or where max_bytes is too little.
-KeyboardInterrupt
-    On Ctrl-C.)");
-  m.def("read_model", &load, "path"_a, R"(read_model(path)
---
-
-Reads a source model (.nfl) of any version.
-
-Parameters
-----------
-path : path_like
-
-Returns
--------
-SourceModel
-
-Raises
-------
-FileNotFoundError, OSError
-    Where the file cannot be read.
-InputError
-    Where it is no model, or damaged.)");
+        "callback"_a = py::none(), kCompressDoc);
+  m.def("read_model", &load, "path"_a, kReadModelDoc);
 }
 
 }  // namespace lucerna::python

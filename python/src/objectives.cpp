@@ -9,6 +9,89 @@ using namespace py::literals;
 
 namespace {
 
+// What `help` says of each; signatures are in a form that `inspect` reads.
+
+constexpr const char* kCallDoc = R"(__call__(x)
+--
+
+Residuals and their exact Jacobian.
+
+Parameters
+----------
+x : array_like (n,)
+    Parameters, mm.
+
+Returns
+-------
+residuals : numpy.ndarray (m,)
+    Dimensionless.
+jacobian : numpy.ndarray (m, n)
+    1/mm.)";
+
+constexpr const char* kResidualsDoc = R"(residuals(x)
+--
+
+Residuals alone, in half the time.
+
+Parameters
+----------
+x : array_like (n,)
+    Parameters, mm.
+
+Returns
+-------
+numpy.ndarray (m,)
+    Dimensionless.)";
+
+constexpr const char* kJacobianDoc = R"(jacobian(x)
+--
+
+The exact Jacobian of the residuals.
+
+Parameters
+----------
+x : array_like (n,)
+    Parameters, mm.
+
+Returns
+-------
+numpy.ndarray (m, n)
+    1/mm.)";
+
+constexpr const char* kMetricsDoc = R"(metrics(x)
+--
+
+What the residuals come to.
+
+Parameters
+----------
+x : array_like (n,)
+    Parameters, mm.
+
+Returns
+-------
+Record
+    relative_rms (of the light, without limits), floor (what the noise of the rays makes of it), scale (what
+    the light is multiplied by), efficiency (share of the sources' flux that leaves).)";
+
+constexpr const char* kSceneDoc = R"(scene(x)
+--
+
+The scene with the mirror of given parameters.
+
+Parameters
+----------
+x : array_like (n,)
+    Parameters, mm.
+
+Returns
+-------
+Scene)";
+
+}  // namespace
+
+namespace {
+
 ObjectiveHandle make_objective(const SceneHandle& scene, double rays, std::uint64_t seed,
                                std::optional<double> rim_mm, const py::object& callback) {
   const ObjectiveOptions options{ray_count(rays), seed, rim_mm};
@@ -66,89 +149,22 @@ void add_objective(py::module_& m) {
         ObjectiveValue value = evaluate(f, x, true);
         return py::make_tuple(owned(std::move(value.residuals)), jacobian_of(f, value));
       },
-      "x"_a, R"(__call__(x)
---
-
-Residuals and their exact Jacobian.
-
-Parameters
-----------
-x : array_like (n,)
-    Parameters, mm.
-
-Returns
--------
-residuals : numpy.ndarray (m,)
-    Dimensionless.
-jacobian : numpy.ndarray (m, n)
-    1/mm.)");
+      "x"_a, kCallDoc);
   c.def(
       "residuals",
       [](const ObjectiveHandle& f, const py::object& x) {
         return owned(std::move(evaluate(f, x, false).residuals));
       },
-      "x"_a, R"(residuals(x)
---
-
-Residuals alone, in half the time.
-
-Parameters
-----------
-x : array_like (n,)
-    Parameters, mm.
-
-Returns
--------
-numpy.ndarray (m,)
-    Dimensionless.)");
+      "x"_a, kResidualsDoc);
   c.def(
       "jacobian",
       [](const ObjectiveHandle& f, const py::object& x) {
         ObjectiveValue value = evaluate(f, x, true);
         return jacobian_of(f, value);
       },
-      "x"_a, R"(jacobian(x)
---
-
-The exact Jacobian of the residuals.
-
-Parameters
-----------
-x : array_like (n,)
-    Parameters, mm.
-
-Returns
--------
-numpy.ndarray (m, n)
-    1/mm.)");
-  c.def("metrics", &metrics, "x"_a, R"(metrics(x)
---
-
-What the residuals come to.
-
-Parameters
-----------
-x : array_like (n,)
-    Parameters, mm.
-
-Returns
--------
-Record
-    relative_rms (of the light, without limits), floor (what the noise of the rays makes of it), scale (what
-    the light is multiplied by), efficiency (share of the sources' flux that leaves).)");
-  c.def("scene", &scene_at, "x"_a, R"(scene(x)
---
-
-The scene with the mirror of given parameters.
-
-Parameters
-----------
-x : array_like (n,)
-    Parameters, mm.
-
-Returns
--------
-Scene)");
+      "x"_a, kJacobianDoc);
+  c.def("metrics", &metrics, "x"_a, kMetricsDoc);
+  c.def("scene", &scene_at, "x"_a, kSceneDoc);
 }
 
 }  // namespace lucerna::python

@@ -8,6 +8,16 @@ using namespace py::literals;
 
 namespace {
 
+// What `help` says of each; signatures are in a form that `inspect` reads.
+
+constexpr const char* kPlaneImageClassDoc = R"(Illuminance on a plane, or a luminance image, by cell.
+
+It never changes, so threads may share it.)";
+
+}  // namespace
+
+namespace {
+
 Shape shape_of(const Plane& p) { return grid(p.metrics->image.grid.ny, p.metrics->image.grid.nx); }
 
 py::array_t<double> centres(const PlaneGrid& g, bool along_x) {
@@ -44,9 +54,7 @@ void add_figures(py::class_<Plane>& c) {
 }  // namespace
 
 void add_planes(py::module_& m) {
-  auto c = py::class_<Plane>(m, "PlaneImage", R"(Illuminance on a plane, or a luminance image, by cell.
-
-It never changes, so threads may share it.)");
+  auto c = py::class_<Plane>(m, "PlaneImage", kPlaneImageClassDoc);
   c.def_property_readonly(
       "name", [](const Plane& p) { return p.metrics->image.name; }, "Of the detector.");
   c.def_property_readonly(

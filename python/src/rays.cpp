@@ -15,6 +15,137 @@ namespace lucerna::python {
 
 using namespace py::literals;
 
+namespace {
+
+// What `help` says of each; signatures are in a form that `inspect` reads.
+
+constexpr const char* kRaySetClassDoc =
+    R"(Rays in memory: starts, directions, weights, and what their file says.
+
+Arrays are read-only views of the set's own memory and keep it alive. A set never changes, so threads may
+share it. It pickles without loss.)";
+
+constexpr const char* kFromArraysDoc =
+    R"(from_arrays(position_mm, direction, *, weight=None, flux_lm=None, flux_w=None, wavelength_nm=None)
+--
+
+A set of given rays; the arrays are copied.
+
+Parameters
+----------
+position_mm : array_like (n, 3)
+    Starts, mm.
+direction : array_like (n, 3)
+    Directions of any length above 0.
+weight : array_like (n,), optional
+    Relative flux of each ray, >= 0; equal where it is not given.
+flux_lm, flux_w : float, optional
+    Total flux, lm or W; one of them at most.
+wavelength_nm : array_like (n,), optional
+    Wavelength of each ray, nm.
+
+Raises
+------
+InputError
+    For wrong shapes, numbers that are not finite, negative weights, a direction of length 0.)";
+
+constexpr const char* kStatisticsDoc = R"(statistics()
+--
+
+Count, extent, means and virtual focus.
+
+Returns
+-------
+Record
+    rays, weight_sum, weight_min, weight_max, extent_min_mm, extent_max_mm, mean_start_mm, mean_direction,
+    virtual_focus_mm (None for parallel rays), backwards_share, equal_weights, effective_rays. What needs flux
+    is None without.)";
+
+constexpr const char* kSaveDoc = R"(save(path, *, format=None, length_unit='mm')
+--
+
+Writes the rays as a file, whole or not at all.
+
+Parameters
+----------
+path : path_like
+    Its ending says the format where it means only one: .tm25ray, .sdf, .dis.
+format : str, optional
+    'tm25', 'zemax-binary', 'zemax-text', 'lighttools-binary', 'lighttools-ascii', 'speos', 'asap' or 'text'.
+length_unit : str
+    Unit of the file's lengths, for formats that have a choice.
+
+Returns
+-------
+list of str
+    What the format cannot hold.)";
+
+constexpr const char* kReadRaysDoc =
+    R"(read_rays(path, *, salvage=False, format=None, text_columns=[], callback=None)
+--
+
+Reads a ray file: TM-25, Zemax, LightTools, SPEOS, ASAP or text, found from its content.
+
+Parameters
+----------
+path : path_like
+salvage : bool
+    Takes what is whole of a damaged file.
+format : str, optional
+    Reads the file as this format.
+text_columns : list of str
+    For format 'text': what each column holds, as 'x_mm', 'kx', 'flux_lm', 'wavelength_nm', '-'.
+callback : callable, optional
+    Gets a Record with phase, done and total (rays), ten times a second at most.
+
+Returns
+-------
+RaySet
+
+Raises
+------
+FileNotFoundError, OSError
+    Where the file cannot be read.
+InputError
+    Where it is no ray file, or damaged; place is the byte, line or ray.)";
+
+constexpr const char* kMakeSourceDoc =
+    R"(make_source(kind, rays, *, seed=1, sequence='random', flux_lm=None, flux_w=None, radius_mm=None,
+    length_mm=None, size_mm=[1.0, 1.0], ghost_share=0.05, surface=None, surface_mm=[])
+--
+
+Rays of an exactly known source.
+
+Parameters
+----------
+kind : str
+    'point', 'disk', 'rectangle', 'cylinder', 'sphere', 'filament', 'led', 'phong500', 'phong25', 'radial' or
+    'cosine'.
+rays : int
+    How many; 1e6 is taken, too.
+seed : int
+    Of the random numbers.
+sequence : str
+    'random' (independent) or 'sobol' (evenly spread).
+flux_lm, flux_w : float, optional
+    Total flux, lm or W; 1000 lm where neither is given.
+radius_mm, length_mm : float, optional
+    Sizes of a disk, cylinder, sphere or filament, mm.
+size_mm : sequence of 2 floats
+    Sides of a rectangle, mm.
+ghost_share : float
+    Share of a filament's flux in its image in the bulb.
+surface : str, optional
+    Where rays start: 'none', 'plane', 'sphere', 'cylinder' or 'box'.
+surface_mm : sequence of float
+    Sizes of that surface, mm.
+
+Returns
+-------
+RaySet)";
+
+}  // namespace
+
 FluxUnit flux_unit(const std::string& symbol) {
   if (symbol == "lm") return FluxUnit::lumen;
   if (symbol == "W") return FluxUnit::watt;
@@ -353,36 +484,10 @@ void add_columns(py::class_<Rays>& c) {
 }  // namespace
 
 void add_rays(py::module_& m) {
-  auto c =
-      py::class_<Rays>(m, "RaySet", R"(Rays in memory: starts, directions, weights, and what their file says.
-
-Arrays are read-only views of the set's own memory and keep it alive. A set never changes, so threads may
-share it. It pickles without loss.)");
-  c.def_static(
-      "from_arrays", &from_arrays, "position_mm"_a, "direction"_a, py::kw_only(), "weight"_a = py::none(),
-      "flux_lm"_a = py::none(), "flux_w"_a = py::none(), "wavelength_nm"_a = py::none(),
-      R"(from_arrays(position_mm, direction, *, weight=None, flux_lm=None, flux_w=None, wavelength_nm=None)
---
-
-A set of given rays; the arrays are copied.
-
-Parameters
-----------
-position_mm : array_like (n, 3)
-    Starts, mm.
-direction : array_like (n, 3)
-    Directions of any length above 0.
-weight : array_like (n,), optional
-    Relative flux of each ray, >= 0; equal where it is not given.
-flux_lm, flux_w : float, optional
-    Total flux, lm or W; one of them at most.
-wavelength_nm : array_like (n,), optional
-    Wavelength of each ray, nm.
-
-Raises
-------
-InputError
-    For wrong shapes, numbers that are not finite, negative weights, a direction of length 0.)");
+  auto c = py::class_<Rays>(m, "RaySet", kRaySetClassDoc);
+  c.def_static("from_arrays", &from_arrays, "position_mm"_a, "direction"_a, py::kw_only(),
+               "weight"_a = py::none(), "flux_lm"_a = py::none(), "flux_w"_a = py::none(),
+               "wavelength_nm"_a = py::none(), kFromArraysDoc);
   add_columns(c);
   c.def("__len__", [](const Rays& r) { return block(r).size(); });
   c.def(
@@ -407,104 +512,17 @@ InputError
   c.def_property_readonly(
       "warnings", [](const Rays& r) { return r.warnings; },
       "What was odd about the file but could be read, one sentence each.");
-  c.def("statistics", &statistics, R"(statistics()
---
-
-Count, extent, means and virtual focus.
-
-Returns
--------
-Record
-    rays, weight_sum, weight_min, weight_max, extent_min_mm, extent_max_mm, mean_start_mm, mean_direction,
-    virtual_focus_mm (None for parallel rays), backwards_share, equal_weights, effective_rays. What needs flux
-    is None without.)");
+  c.def("statistics", &statistics, kStatisticsDoc);
   c.def("save", &save_rays, "path"_a, py::kw_only(), "format"_a = py::none(), "length_unit"_a = "mm",
-        R"(save(path, *, format=None, length_unit='mm')
---
-
-Writes the rays as a file, whole or not at all.
-
-Parameters
-----------
-path : path_like
-    Its ending says the format where it means only one: .tm25ray, .sdf, .dis.
-format : str, optional
-    'tm25', 'zemax-binary', 'zemax-text', 'lighttools-binary', 'lighttools-ascii', 'speos', 'asap' or 'text'.
-length_unit : str
-    Unit of the file's lengths, for formats that have a choice.
-
-Returns
--------
-list of str
-    What the format cannot hold.)");
+        kSaveDoc);
   c.def(py::pickle(&state, &from_state));
 
   m.def("read_rays", &read_rays, "path"_a, py::kw_only(), "salvage"_a = false, "format"_a = py::none(),
-        "text_columns"_a = Warnings{}, "callback"_a = py::none(),
-        R"(read_rays(path, *, salvage=False, format=None, text_columns=[], callback=None)
---
-
-Reads a ray file: TM-25, Zemax, LightTools, SPEOS, ASAP or text, found from its content.
-
-Parameters
-----------
-path : path_like
-salvage : bool
-    Takes what is whole of a damaged file.
-format : str, optional
-    Reads the file as this format.
-text_columns : list of str
-    For format 'text': what each column holds, as 'x_mm', 'kx', 'flux_lm', 'wavelength_nm', '-'.
-callback : callable, optional
-    Gets a Record with phase, done and total (rays), ten times a second at most.
-
-Returns
--------
-RaySet
-
-Raises
-------
-FileNotFoundError, OSError
-    Where the file cannot be read.
-InputError
-    Where it is no ray file, or damaged; place is the byte, line or ray.)");
+        "text_columns"_a = Warnings{}, "callback"_a = py::none(), kReadRaysDoc);
   m.def("make_source", &make_source, "kind"_a, "rays"_a, py::kw_only(), "seed"_a = 1, "sequence"_a = "random",
         "flux_lm"_a = py::none(), "flux_w"_a = py::none(), "radius_mm"_a = py::none(),
         "length_mm"_a = py::none(), "size_mm"_a = std::array<double, 2>{1.0, 1.0}, "ghost_share"_a = 0.05,
-        "surface"_a = py::none(), "surface_mm"_a = std::vector<double>{},
-        R"(make_source(kind, rays, *, seed=1, sequence='random', flux_lm=None, flux_w=None, radius_mm=None,
-    length_mm=None, size_mm=[1.0, 1.0], ghost_share=0.05, surface=None, surface_mm=[])
---
-
-Rays of an exactly known source.
-
-Parameters
-----------
-kind : str
-    'point', 'disk', 'rectangle', 'cylinder', 'sphere', 'filament', 'led', 'phong500', 'phong25', 'radial' or
-    'cosine'.
-rays : int
-    How many; 1e6 is taken, too.
-seed : int
-    Of the random numbers.
-sequence : str
-    'random' (independent) or 'sobol' (evenly spread).
-flux_lm, flux_w : float, optional
-    Total flux, lm or W; 1000 lm where neither is given.
-radius_mm, length_mm : float, optional
-    Sizes of a disk, cylinder, sphere or filament, mm.
-size_mm : sequence of 2 floats
-    Sides of a rectangle, mm.
-ghost_share : float
-    Share of a filament's flux in its image in the bulb.
-surface : str, optional
-    Where rays start: 'none', 'plane', 'sphere', 'cylinder' or 'box'.
-surface_mm : sequence of float
-    Sizes of that surface, mm.
-
-Returns
--------
-RaySet)");
+        "surface"_a = py::none(), "surface_mm"_a = std::vector<double>{}, kMakeSourceDoc);
 }
 
 }  // namespace lucerna::python

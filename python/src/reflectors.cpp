@@ -16,6 +16,113 @@ using namespace py::literals;
 
 namespace {
 
+// What `help` says of each; signatures are in a form that `inspect` reads.
+
+constexpr const char* kHeightMmDoc = R"(height_mm(x_mm, y_mm)
+--
+
+Height over the xy plane of the mirror's own frame, mm.
+
+Parameters
+----------
+x_mm, y_mm : array_like
+    Places, mm; of one shape by numpy's rules.
+
+Returns
+-------
+numpy.ndarray
+    Not a number where there is no mirror.)";
+
+constexpr const char* kSlopeDoc = R"(slope(x_mm, y_mm)
+--
+
+Exact gradient (dz/dx, dz/dy) of the surface.
+
+Parameters
+----------
+x_mm, y_mm : array_like
+    Places, mm; of one shape by numpy's rules.
+
+Returns
+-------
+numpy.ndarray (..., 2)
+    Not a number where there is no mirror.)";
+
+constexpr const char* kMeshDoc = R"(mesh(*, chord_mm=0.01, slope_deg=2.0)
+--
+
+The mirror as triangles, counter-clockwise seen from the reflecting side.
+
+Parameters
+----------
+chord_mm : float
+    Largest distance of a triangle from the surface, mm.
+slope_deg : float
+    Largest angle between a triangle and the surface, degrees.
+
+Returns
+-------
+vertices_mm : numpy.ndarray (n, 3)
+    In the mirror's own frame, on the exact surface, mm.
+triangles : numpy.ndarray (m, 3) of uint32
+    Indices of corners.)";
+
+constexpr const char* kProfileDoc = R"(profile(*, chord_mm=0.01, slope_deg=2.0)
+--
+
+The meridian at y = 0, x >= 0, from the hole to the rim.
+
+Parameters
+----------
+chord_mm : float
+    Largest distance of a chord from the curve, mm.
+slope_deg : float
+    Largest angle between a chord and the curve, degrees.
+
+Returns
+-------
+numpy.ndarray (n, 2)
+    r and z, mm.)";
+
+constexpr const char* kSaveDoc = R"(save(path, *, chord_mm=0.01, slope_deg=2.0)
+--
+
+Writes the mirror for CAD, in its own frame, mm.
+
+Parameters
+----------
+path : path_like
+    .step and .stp hold the very surface, .stl and .obj triangles, .dxf and .csv the profile.
+chord_mm : float
+    Largest distance of a triangle or chord from the surface, mm.
+slope_deg : float
+    Largest angle of a triangle or chord to the surface, degrees.)";
+
+constexpr const char* kReflectorClassDoc = R"(A mirror: its surface, outline, place and reflectance.
+
+`Reflector(family, **keys)` takes the keys of a [[reflector]] table of a project file, with their names and
+units: `Reflector('revolution', preset='parabola', focal_mm=15, diameter_mm=100, axis='-z')`. It never changes,
+so threads may share it.)";
+
+constexpr const char* kFromTomlDoc = R"(from_toml(text, folder='.')
+--
+
+The mirror of a text with one [[reflector]] table.
+
+Parameters
+----------
+text : str
+folder : path_like
+    What file names in it are relative to.
+
+Returns
+-------
+Reflector)";
+
+}  // namespace
+
+namespace {
+
 namespace fs = std::filesystem;
 
 Mirror mirror_of(const std::string& toml, const fs::path& folder) {
@@ -106,109 +213,19 @@ py::object aperture(const Mirror& mirror) {
 }
 
 void add_geometry(py::class_<Mirror>& c) {
-  c.def("height_mm", &height, "x_mm"_a, "y_mm"_a, R"(height_mm(x_mm, y_mm)
---
-
-Height over the xy plane of the mirror's own frame, mm.
-
-Parameters
-----------
-x_mm, y_mm : array_like
-    Places, mm; of one shape by numpy's rules.
-
-Returns
--------
-numpy.ndarray
-    Not a number where there is no mirror.)");
-  c.def("slope", &slope, "x_mm"_a, "y_mm"_a, R"(slope(x_mm, y_mm)
---
-
-Exact gradient (dz/dx, dz/dy) of the surface.
-
-Parameters
-----------
-x_mm, y_mm : array_like
-    Places, mm; of one shape by numpy's rules.
-
-Returns
--------
-numpy.ndarray (..., 2)
-    Not a number where there is no mirror.)");
-  c.def("mesh", &mesh, py::kw_only(), "chord_mm"_a = 0.01, "slope_deg"_a = 2.0,
-        R"(mesh(*, chord_mm=0.01, slope_deg=2.0)
---
-
-The mirror as triangles, counter-clockwise seen from the reflecting side.
-
-Parameters
-----------
-chord_mm : float
-    Largest distance of a triangle from the surface, mm.
-slope_deg : float
-    Largest angle between a triangle and the surface, degrees.
-
-Returns
--------
-vertices_mm : numpy.ndarray (n, 3)
-    In the mirror's own frame, on the exact surface, mm.
-triangles : numpy.ndarray (m, 3) of uint32
-    Indices of corners.)");
-  c.def("profile", &profile, py::kw_only(), "chord_mm"_a = 0.01, "slope_deg"_a = 2.0,
-        R"(profile(*, chord_mm=0.01, slope_deg=2.0)
---
-
-The meridian at y = 0, x >= 0, from the hole to the rim.
-
-Parameters
-----------
-chord_mm : float
-    Largest distance of a chord from the curve, mm.
-slope_deg : float
-    Largest angle between a chord and the curve, degrees.
-
-Returns
--------
-numpy.ndarray (n, 2)
-    r and z, mm.)");
-  c.def("save", &save, "path"_a, py::kw_only(), "chord_mm"_a = 0.01, "slope_deg"_a = 2.0,
-        R"(save(path, *, chord_mm=0.01, slope_deg=2.0)
---
-
-Writes the mirror for CAD, in its own frame, mm.
-
-Parameters
-----------
-path : path_like
-    .step and .stp hold the very surface, .stl and .obj triangles, .dxf and .csv the profile.
-chord_mm : float
-    Largest distance of a triangle or chord from the surface, mm.
-slope_deg : float
-    Largest angle of a triangle or chord to the surface, degrees.)");
+  c.def("height_mm", &height, "x_mm"_a, "y_mm"_a, kHeightMmDoc);
+  c.def("slope", &slope, "x_mm"_a, "y_mm"_a, kSlopeDoc);
+  c.def("mesh", &mesh, py::kw_only(), "chord_mm"_a = 0.01, "slope_deg"_a = 2.0, kMeshDoc);
+  c.def("profile", &profile, py::kw_only(), "chord_mm"_a = 0.01, "slope_deg"_a = 2.0, kProfileDoc);
+  c.def("save", &save, "path"_a, py::kw_only(), "chord_mm"_a = 0.01, "slope_deg"_a = 2.0, kSaveDoc);
 }
 
 }  // namespace
 
 void add_reflectors(py::module_& m) {
-  auto c = py::class_<Mirror>(m, "Reflector", R"(A mirror: its surface, outline, place and reflectance.
-
-`Reflector(family, **keys)` takes the keys of a [[reflector]] table of a project file, with their names and
-units: `Reflector('revolution', preset='parabola', focal_mm=15, diameter_mm=100, axis='-z')`. It never changes,
-so threads may share it.)");
+  auto c = py::class_<Mirror>(m, "Reflector", kReflectorClassDoc);
   c.def(py::init(&make_mirror), "family"_a);
-  c.def_static("from_toml", &mirror_of, "text"_a, "folder"_a = fs::path("."), R"(from_toml(text, folder='.')
---
-
-The mirror of a text with one [[reflector]] table.
-
-Parameters
-----------
-text : str
-folder : path_like
-    What file names in it are relative to.
-
-Returns
--------
-Reflector)");
+  c.def_static("from_toml", &mirror_of, "text"_a, "folder"_a = fs::path("."), kFromTomlDoc);
   c.def_property_readonly(
       "toml", [](const Mirror& r) { return r.toml; }, "The [[reflector]] table that describes it.");
   c.def_property_readonly("aperture", &aperture,

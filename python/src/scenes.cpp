@@ -13,6 +13,87 @@ using namespace py::literals;
 
 namespace {
 
+// What `help` says of each; signatures are in a form that `inspect` reads.
+
+constexpr const char* kSceneClassDoc = R"(Sources, mirrors, bodies and detectors: a project in memory.
+
+A scene never changes, so threads may share it. It pickles with all objects that are in no file; files are
+named, not copied.
+
+Parameters
+----------
+sources : sequence
+    SourceModel, RaySet, path_like, Source or mapping with the keys of a [[source]] table.
+reflectors : sequence of Reflector or mapping
+bodies : sequence of Body or mapping
+detectors : sequence of Detector or mapping
+    One far field where there is none.
+target : IntensityDistribution, path_like or mapping, optional
+    What a design is to reach, with the keys of [target].
+design : mapping, optional
+    How a design is found, with the keys of [design].
+
+Raises
+------
+InputError
+    place is the key, as 'reflector[0].focal_mm'.)";
+
+constexpr const char* kLoadDoc = R"(load(path, *, callback=None)
+--
+
+Reads a project file.
+
+Parameters
+----------
+path : path_like
+callback : callable, optional
+    Gets a Record with phase, done and total while ray files are read, ten times a second at most.
+
+Returns
+-------
+Scene)";
+
+constexpr const char* kFromTomlDoc = R"(from_toml(text, *, folder='.', memory={})
+--
+
+Reads a project from text.
+
+Parameters
+----------
+text : str
+folder : path_like
+    What file names in it are relative to.
+memory : mapping
+    Objects that it names as files: SourceModel, RaySet or IntensityDistribution by name.
+
+Returns
+-------
+Scene)";
+
+constexpr const char* kToTomlDoc = R"(to_toml()
+--
+
+The scene as the text of a project file, with absolute file names.
+
+Objects in memory are named as files that are not there: `memory` has them, and `save` writes them.
+
+Returns
+-------
+str)";
+
+constexpr const char* kSaveDoc = R"(save(path)
+--
+
+Writes a project file, and beside it what is in no file yet.
+
+Parameters
+----------
+path : path_like)";
+
+}  // namespace
+
+namespace {
+
 namespace fs = std::filesystem;
 
 /// Objects by the names that a scene's text has for them.
@@ -120,87 +201,20 @@ SceneHandle read_scene(const std::string& text, const fs::path& path, const Proj
 }
 
 void add_scenes(py::module_& m) {
-  auto c = py::class_<SceneHandle>(m, "Scene", R"(Sources, mirrors, bodies and detectors: a project in memory.
-
-A scene never changes, so threads may share it. It pickles with all objects that are in no file; files are
-named, not copied.
-
-Parameters
-----------
-sources : sequence
-    SourceModel, RaySet, path_like, Source or mapping with the keys of a [[source]] table.
-reflectors : sequence of Reflector or mapping
-bodies : sequence of Body or mapping
-detectors : sequence of Detector or mapping
-    One far field where there is none.
-target : IntensityDistribution, path_like or mapping, optional
-    What a design is to reach, with the keys of [target].
-design : mapping, optional
-    How a design is found, with the keys of [design].
-
-Raises
-------
-InputError
-    place is the key, as 'reflector[0].focal_mm'.)");
+  auto c = py::class_<SceneHandle>(m, "Scene", kSceneClassDoc);
   c.def(py::init(&make_scene), "sources"_a, py::kw_only(), "reflectors"_a = py::tuple(),
         "bodies"_a = py::tuple(), "detectors"_a = py::tuple(), "target"_a = py::none(),
         "design"_a = py::none());
-  c.def_static("load", &load_scene, "path"_a, py::kw_only(), "callback"_a = py::none(),
-               R"(load(path, *, callback=None)
---
-
-Reads a project file.
-
-Parameters
-----------
-path : path_like
-callback : callable, optional
-    Gets a Record with phase, done and total while ray files are read, ten times a second at most.
-
-Returns
--------
-Scene)");
+  c.def_static("load", &load_scene, "path"_a, py::kw_only(), "callback"_a = py::none(), kLoadDoc);
   c.def_static(
       "from_toml",
       [](const std::string& text, const fs::path& folder, const py::dict& memory) {
         return read_scene(text, fs::absolute(folder) / "scene", memory_of(memory));
       },
-      "text"_a, py::kw_only(), "folder"_a = fs::path("."), "memory"_a = py::dict(),
-      R"(from_toml(text, *, folder='.', memory={})
---
-
-Reads a project from text.
-
-Parameters
-----------
-text : str
-folder : path_like
-    What file names in it are relative to.
-memory : mapping
-    Objects that it names as files: SourceModel, RaySet or IntensityDistribution by name.
-
-Returns
--------
-Scene)");
+      "text"_a, py::kw_only(), "folder"_a = fs::path("."), "memory"_a = py::dict(), kFromTomlDoc);
   c.def(
-      "to_toml", [](const SceneHandle& s) { return project_text(s.state->project); }, R"(to_toml()
---
-
-The scene as the text of a project file, with absolute file names.
-
-Objects in memory are named as files that are not there: `memory` has them, and `save` writes them.
-
-Returns
--------
-str)");
-  c.def("save", &save_scene, "path"_a, R"(save(path)
---
-
-Writes a project file, and beside it what is in no file yet.
-
-Parameters
-----------
-path : path_like)");
+      "to_toml", [](const SceneHandle& s) { return project_text(s.state->project); }, kToTomlDoc);
+  c.def("save", &save_scene, "path"_a, kSaveDoc);
   add_facts(c);
   c.def(
       "__eq__",

@@ -14,6 +14,119 @@ namespace lucerna::python {
 
 using namespace py::literals;
 
+namespace {
+
+// What `help` says of each; signatures are in a form that `inspect` reads.
+
+constexpr const char* kTraceDoc =
+    R"(trace(*, rays=None, noise=0.01, time_s=60.0, seed=1, sequence='sobol', max_bounces=100,
+    device='auto', isa='', resume=None, callback=None)
+--
+
+Traces light from the sources through the mirrors into the detectors.
+
+Parameters
+----------
+rays : int or (int, int), optional
+    How many, or a range of ray numbers; 1e7 is taken, too. Where it is not given, rays are traced until the
+    far fields have the noise asked for.
+noise : float
+    Largest standard error of an intensity above 1 % of the peak, over the peak.
+time_s : float
+    Seconds after which to stop with the noise that is left.
+seed : int
+    Of the random numbers: the same bits for the same seed, on any number of threads.
+sequence : str
+    'sobol' (evenly spread) or 'random' (independent).
+max_bounces : int
+    Reflections after which a ray is given up and counted as lost.
+device : str
+    'cpu', 'cuda' or 'auto'.
+isa : str
+    Instruction set: 'scalar', 'portable', 'avx2' or 'avx512'; the best where it is empty.
+resume : TraceResult, optional
+    A trace of the same scene to go on with.
+callback : callable, optional
+    Gets a Record with phase, done and total (rays), ten times a second at most.
+
+Returns
+-------
+TraceResult
+    After Ctrl-C what was whole, with `interrupted` true.
+
+Raises
+------
+InputError
+    On a scene that cannot be traced.
+KeyboardInterrupt
+    On Ctrl-C where nothing was whole.)";
+
+constexpr const char* kMergeDoc = R"(merge(parts)
+--
+
+Adds traces of ranges of rays of one scene: to the bit what one trace of all rays is.
+
+Parameters
+----------
+parts : sequence of TraceResult
+    In any order; their ranges meet end to end.
+
+Returns
+-------
+TraceResult
+
+Raises
+------
+InputError
+    Where they are of different scenes, seeds or instruction sets, or rays are missing or double.)";
+
+constexpr const char* kReadTraceDoc = R"(read_trace(folder)
+--
+
+Reads the folder of a trace, of the program's or of `TraceResult.save`.
+
+Parameters
+----------
+folder : path_like
+
+Returns
+-------
+TraceResult)";
+
+constexpr const char* kTraceResultClassDoc = R"(Where the light went.
+
+`result[name]` is what a detector recorded: an IntensityDistribution, a PlaneImage or a RaySet. Figures are
+worked out when they are first asked for. A result never changes, so threads may share it. It pickles as the
+raw sums, which `merge` adds.)";
+
+constexpr const char* kSummaryDoc = R"(summary()
+--
+
+A short table of the figures.
+
+Returns
+-------
+list of str)";
+
+constexpr const char* kSaveDoc = R"(save(folder)
+--
+
+Writes what `lucerna trace` leaves in a folder.
+
+That is result.json, project.toml, the raw sums, and the files of each detector.
+
+Parameters
+----------
+folder : path_like
+    Made if it is missing; files of the same names are replaced.
+
+Returns
+-------
+list of str
+    What a ray format had to leave out.)";
+
+}  // namespace
+
 Traced::Traced(ScenePointer scene, NoiseTrace trace, TraceMetrics metrics)
     : scene_(std::move(scene)),
       trace_(std::move(trace)),
@@ -228,70 +341,12 @@ void add_facts(py::class_<Traced, std::shared_ptr<Traced>>& c) {
 }
 
 void add_trace_call(py::module_& m) {
-  py::type::of<SceneHandle>().attr("trace") = py::cpp_function(
-      &trace_scene, py::name("trace"), py::is_method(py::type::of<SceneHandle>()), py::kw_only(),
-      "rays"_a = py::none(), "noise"_a = 0.01, "time_s"_a = 60.0, "seed"_a = 1, "sequence"_a = "sobol",
-      "max_bounces"_a = 100, "device"_a = "auto", "isa"_a = "", "resume"_a = py::none(),
-      "callback"_a = py::none(),
-      R"(trace(*, rays=None, noise=0.01, time_s=60.0, seed=1, sequence='sobol', max_bounces=100,
-    device='auto', isa='', resume=None, callback=None)
---
-
-Traces light from the sources through the mirrors into the detectors.
-
-Parameters
-----------
-rays : int or (int, int), optional
-    How many, or a range of ray numbers; 1e7 is taken, too. Where it is not given, rays are traced until the
-    far fields have the noise asked for.
-noise : float
-    Largest standard error of an intensity above 1 % of the peak, over the peak.
-time_s : float
-    Seconds after which to stop with the noise that is left.
-seed : int
-    Of the random numbers: the same bits for the same seed, on any number of threads.
-sequence : str
-    'sobol' (evenly spread) or 'random' (independent).
-max_bounces : int
-    Reflections after which a ray is given up and counted as lost.
-device : str
-    'cpu', 'cuda' or 'auto'.
-isa : str
-    Instruction set: 'scalar', 'portable', 'avx2' or 'avx512'; the best where it is empty.
-resume : TraceResult, optional
-    A trace of the same scene to go on with.
-callback : callable, optional
-    Gets a Record with phase, done and total (rays), ten times a second at most.
-
-Returns
--------
-TraceResult
-    After Ctrl-C what was whole, with `interrupted` true.
-
-Raises
-------
-InputError
-    On a scene that cannot be traced.
-KeyboardInterrupt
-    On Ctrl-C where nothing was whole.)");
-  m.def("merge", &merge_traces, "parts"_a, R"(merge(parts)
---
-
-Adds traces of ranges of rays of one scene: to the bit what one trace of all rays is.
-
-Parameters
-----------
-parts : sequence of TraceResult
-    In any order; their ranges meet end to end.
-
-Returns
--------
-TraceResult
-
-Raises
-------
-InputError
-    Where they are of different scenes, seeds or instruction sets, or rays are missing or double.)");
+  py::type::of<SceneHandle>().attr("trace") =
+      py::cpp_function(&trace_scene, py::name("trace"), py::is_method(py::type::of<SceneHandle>()),
+                       py::kw_only(), "rays"_a = py::none(), "noise"_a = 0.01, "time_s"_a = 60.0,
+                       "seed"_a = 1, "sequence"_a = "sobol", "max_bounces"_a = 100, "device"_a = "auto",
+                       "isa"_a = "", "resume"_a = py::none(), "callback"_a = py::none(), kTraceDoc);
+  m.def("merge", &merge_traces, "parts"_a, kMergeDoc);
   m.def(
       "read_trace",
       [](const fs::path& folder) -> TracedPointer {
@@ -304,58 +359,21 @@ InputError
           return std::make_shared<Traced>(state, NoiseTrace{std::move(result), std::nan(""), NoiseEnd::rays});
         });
       },
-      "folder"_a, R"(read_trace(folder)
---
-
-Reads the folder of a trace, of the program's or of `TraceResult.save`.
-
-Parameters
-----------
-folder : path_like
-
-Returns
--------
-TraceResult)");
+      "folder"_a, kReadTraceDoc);
 }
 
 }  // namespace
 
 void add_traces(py::module_& m) {
-  auto c = py::class_<Traced, std::shared_ptr<Traced>>(m, "TraceResult", R"(Where the light went.
-
-`result[name]` is what a detector recorded: an IntensityDistribution, a PlaneImage or a RaySet. Figures are
-worked out when they are first asked for. A result never changes, so threads may share it. It pickles as the
-raw sums, which `merge` adds.)");
+  auto c = py::class_<Traced, std::shared_ptr<Traced>>(m, "TraceResult", kTraceResultClassDoc);
   add_facts(c);
   c.def(
       "__getitem__",
       [](const std::shared_ptr<Traced>& t, const std::string& name) { return detector(t, name); }, "name"_a);
   c.def("__len__", [](const Traced& t) { return names_of(t).size(); });
   c.def("__iter__", [](const Traced& t) { return py::iter(py::cast(names_of(t))); });
-  c.def("summary", &summary, R"(summary()
---
-
-A short table of the figures.
-
-Returns
--------
-list of str)");
-  c.def("save", &save_trace, "folder"_a, R"(save(folder)
---
-
-Writes what `lucerna trace` leaves in a folder.
-
-That is result.json, project.toml, the raw sums, and the files of each detector.
-
-Parameters
-----------
-folder : path_like
-    Made if it is missing; files of the same names are replaced.
-
-Returns
--------
-list of str
-    What a ray format had to leave out.)");
+  c.def("summary", &summary, kSummaryDoc);
+  c.def("save", &save_trace, "folder"_a, kSaveDoc);
   c.def(
       "__eq__", [](const Traced& a, const Traced& b) { return a.result() == b.result(); }, py::is_operator());
   c.attr("__hash__") = py::none();
