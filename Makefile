@@ -3,7 +3,7 @@
 # but for check-quick and format.
 # CUDA=1 compiles the CUDA back end too (needs nvcc).
 .PHONY: reference demo test check check-quick fuzz bench benchmarks test-report test-slow gallery docs program packages \
-        install deb api format clean
+        install deb api format clean python test-python
 
 BUILD := build/release
 
@@ -22,6 +22,16 @@ check: packages
 # Seconds to minutes: the form of the tree, clang-tidy on what changed.
 check-quick:
 	scripts/check.sh format tree docs tidy-changed
+
+# The Python package in build/release/python, and its quick tests; test-python: all of them.
+python: program
+	scripts/packages.sh scripts/packages-python.txt
+	cmake --preset release -DLUCERNA_PYTHON=ON
+	cmake --build --preset release --target python_package
+	ctest --preset release -L python
+
+test-python: python
+	ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -L python
 
 # make fuzz MINUTES=10: so many minutes for all targets together.
 MINUTES ?= 10
@@ -81,7 +91,7 @@ install: program
 
 # Debian packages in build/deb/packages; make check STAGES=deb installs, uses and removes them in a bare Debian.
 deb: packages
-	scripts/packages.sh scripts/packages-deb.txt
+	scripts/packages.sh scripts/packages-deb.txt scripts/packages-python.txt
 	cmake --preset deb
 	cmake --build --preset deb
 	cpack --config build/deb/CPackConfig.cmake

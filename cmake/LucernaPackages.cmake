@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Debian packages (make deb): lucerna (the program), liblucerna0.2 (the shared library), liblucerna-dev (all that compiling needs).
+# Debian packages (make deb): lucerna (the program), liblucerna0.2 (the shared library), liblucerna-dev (all that compiling needs),
+# python3-lucerna (the Python module).
 # LUCERNA_DEBIAN adds what Debian wants in each package's folder of documents; only the preset `deb` sets it.
 option(LUCERNA_DEBIAN "Install copyright and changelogs as Debian packages carry them" OFF)
 if(NOT LUCERNA_DEBIAN)
@@ -22,7 +23,11 @@ foreach(pair "changelog.Debian.gz|${debian_dir}/changelog" "changelog.gz|${PROJE
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${source}")
   execute_process(COMMAND gzip -9 -n -c "${source}" OUTPUT_FILE "${PROJECT_BINARY_DIR}/${name}" COMMAND_ERROR_IS_FATAL ANY)
 endforeach()
-foreach(pair "program|lucerna" "library|${library_package}" "development|liblucerna-dev")
+set(debian_components "program|lucerna" "library|${library_package}" "development|liblucerna-dev")
+if(LUCERNA_PYTHON)
+  list(APPEND debian_components "python|python3-lucerna")
+endif()
+foreach(pair IN LISTS debian_components)
   string(REPLACE "|" ";" pair "${pair}")
   list(GET pair 0 component)
   list(GET pair 1 package)
@@ -40,6 +45,9 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_COMPONENTS_ALL program library development)
+if(LUCERNA_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -89,4 +97,18 @@ distribution.
 This package has what programs in C++20 that use the library are
 compiled with: headers, the static library, files for CMake and
 pkg-config.")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-lucerna)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+# The module is of this version of Python and of this very library, which is not installed where the package is made.
+math(EXPR next_python "${Python_VERSION_MINOR} + 1")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${library_package} (= ${debian_version}), python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next_python}), python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "lucerna, python3-matplotlib, python3-scipy, python3-xarray")
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${PROJECT_BINARY_DIR}/src/lucerna")
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "illumination design: Python module
+Lucerna makes small models of the ray files of light sources, traces
+light through mirrors, and designs the mirror that gives a wanted light
+distribution.
+
+This package has the module: import lucerna.")
 include(CPack)

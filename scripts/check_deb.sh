@@ -84,6 +84,12 @@ cmake --build consumer/build >/dev/null
 cmp beam.ldt beam2.ldt
 lucerna check beam.ldt
 
+echo "== the Python module"
+$install ./python3-lucerna_*.deb >install.log 2>&1 || { cat install.log; exit 1; }
+python3 -c 'import lucerna as lu; lu.Scene(["led.nfl"]).trace(rays=1e5)["far-field"].save("beam3.ldt")'
+lucerna check beam3.ldt
+test "$(python3 -m lucerna --version)" = "$(lucerna --version)"
+
 echo "== gone again"
 own=$(ls *.deb | sed 's/_.*//')
 apt-get purge -y -qq $own >remove.log 2>&1 || { cat remove.log; exit 1; }

@@ -128,7 +128,7 @@ const std::map<std::string, Layers> kSubRooms{
          {"optimizers", {}},
          {"search", {"constraints", "fit", "initial", "optimizers", "shape"}},
          {"validation", {"evaluation", "problem", "shape", "solver"}},
-         {"run", {"constraints", "evaluation", "fit", "problem", "search", "validation"}},
+         {"run", {"constraints", "evaluation", "fit", "problem", "search", "solver", "validation"}},
      }},
     {"results",
      {
@@ -159,6 +159,7 @@ const std::set<std::string> kDirectly{"cli/main.cpp"};
 const std::map<std::string, std::string> kPublicHeaders{
     {"diagnostic.h", "core"},
     {"error.h", "core"},
+    {"error_parts.h", "core"},
     {"estimate.h", "core"},
     {"flux_unit.h", "core"},
     {"geometry.h", "core"},
@@ -178,7 +179,11 @@ const std::map<std::string, std::string> kPublicHeaders{
     {"bounding_surface.h", "rayset"},
     {"source.h", "source"},
     {"source_model.h", "source"},
+    {"build_info.h", "trace"},
     {"cad.h", "optics"},
+    {"diagram.h", "results"},
+    {"objective.h", "design"},
+    {"trace_file.h", "results"},
     {"mesh.h", "optics"},
     {"reflector.h", "optics"},
     {"detectors.h", "trace"},

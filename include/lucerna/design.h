@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +12,7 @@
 
 #include "lucerna/estimate.h"
 #include "lucerna/progress.h"
+#include "lucerna/project.h"
 #include "lucerna/reflector.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace_metrics.h"
@@ -200,6 +203,23 @@ struct ParetoPoint {
   DesignError error;
 };
 
+/// A step of a design that is running; a line of its history.
+struct DesignStep {
+  /// Evaluations so far, and the rays of all of them.
+  int evaluations = 0;
+  std::uint64_t rays = 0;
+  /// Of the best so far, in the bins of the present stage, and what the noise alone makes of it.
+  double relative_rms = 0.0, floor = 0.0;
+  /// Shares of the sources' flux that leave the luminaire, and that fall into the target's rectangle (0 where
+  /// the search does not look).
+  double efficiency = 0.0, in_rectangle = 0.0;
+  /// Whether this step became the best so far.
+  bool accepted = true;
+};
+
+/// Called after every step, on the thread that designs, with the state to resume from.
+using DesignWatcher = std::function<void(const DesignStep& step, const std::string& checkpoint)>;
+
 /// How a project is designed.
 struct DesignSettings {
   /// Of all random numbers; the same seed gives the same design.
@@ -216,6 +236,10 @@ struct DesignSettings {
   /// Also the trade between error and light, and what other outlines and families would bring, each designed
   /// for the same time; both after `time_s`.
   bool pareto = false, advise = false;
+  /// A state to go on from: DesignedMirror::checkpoint, or what a DesignWatcher got, of the same problem,
+  /// seed and rays; the result is then that of a design which never stopped, to the bit. Empty: from the
+  /// start.
+  std::string checkpoint;
 };
 
 /// What was found of a design's mirror.
@@ -246,6 +270,9 @@ struct DesignFindings {
   std::uint64_t rays = 0;
 };
 
+/// What a design's files are made of; opaque to users of the library.
+struct DesignRecord;
+
 /// What a design came to.
 struct DesignedMirror : DesignFindings {
   /// In its own frame: what cad.h writes.
@@ -260,6 +287,12 @@ struct DesignedMirror : DesignFindings {
   TraceMetrics light;
   /// If DesignSettings::tolerances asked for it.
   std::optional<ToleranceSweep> tolerances;
+  /// Every step, in order; those of this call.
+  std::vector<DesignStep> history;
+  /// The state to resume from.
+  std::string checkpoint;
+  /// For `write_design`.
+  std::shared_ptr<const DesignRecord> record;
 };
 
 /// Shapes a project's mirror until its light is the project's [target], as well as it can be: a free form, a
@@ -271,6 +304,11 @@ struct DesignedMirror : DesignFindings {
 /// on a project that cannot be designed.
 [[nodiscard]] DesignedMirror design(const std::filesystem::path& project, const DesignSettings& settings = {},
                                     Progress& progress = no_progress());
+
+/// The same of a project that has been read; `name` is what messages call it.
+[[nodiscard]] DesignedMirror design(Project project, const std::string& name,
+                                    const DesignSettings& settings = {}, Progress& progress = no_progress(),
+                                    const DesignWatcher& watcher = {});
 
 }  // namespace lucerna
 #pragma GCC visibility pop

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lucerna/design.h"
 #include "lucerna/progress.h"
 #include "lucerna/project.h"
 #include "lucerna/trace.h"
@@ -15,11 +16,17 @@ namespace lucerna {
 /// Writes what `lucerna trace` leaves in a folder, which is made if it is missing: result.json, project.toml,
 /// the raw sums, and for each detector NAME: far field NAME.ldt .ies .csv .svg, plane and luminance NAME.csv
 /// .png, rays NAME with the ending of their format. `result` is a trace of `project.scene`. Files of these
-/// names are replaced, each whole or not at all. Returns their names; what a format had to leave out goes to
+/// names are replaced, each whole or not at all; what of the project is in memory is written, too. Returns
+/// their names; what a format had to leave out goes to
 /// `warnings`. Throws InputError where a file cannot be written. Reads all of the project's files, for their
 /// hashes.
 std::vector<std::string> write_trace(const std::filesystem::path& folder, const Project& project,
                                      const TraceResult& result, std::vector<std::string>* warnings = nullptr);
+
+/// Writes what `lucerna design` leaves in a folder, which is made if it is missing: what `write_trace` leaves
+/// of the finished project, and reflector.toml .step .stl .obj .dxf .csv, history.csv, checkpoint,
+/// tolerances.csv. Errors and what is returned as `write_trace`.
+std::vector<std::string> write_design(const std::filesystem::path& folder, const DesignedMirror& mirror);
 
 /// Writes the report of `input` as one self-contained HTML file. Of a folder that `write_trace`, `lucerna
 /// trace` or `lucerna design` has filled: figures with their errors, energy balance, diagrams, a 3D view; for

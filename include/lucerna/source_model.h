@@ -56,6 +56,18 @@ class SourceModel : public RaySource {
 /// Writes `model`; returns the bytes of the file.
 std::uint64_t save_source_model(const std::filesystem::path& path, const SourceModel& model);
 
+/// The bytes of that file.
+[[nodiscard]] std::string source_model_bytes(const SourceModel& model);
+/// The model of such bytes; `name` is for messages. Throws as `load_source_model`.
+[[nodiscard]] std::unique_ptr<SourceModel> source_model_from_bytes(std::string_view bytes,
+                                                                   const std::string& name);
+
+/// Étendue in mm2 sr that holds the brightest share of the flux, for each of `shares` in [0, 1], from `rays`
+/// of the model's rays and their density; all 0 where the rays fill no étendue. Noise: about 1 / sqrt(rays)
+/// of each value. Cost: `pdf_etendue` of each ray. Throws InputError for a share outside [0, 1].
+[[nodiscard]] std::vector<double> etendue_mm2sr(const SourceModel& model, std::span<const double> shares,
+                                                std::uint64_t rays = 16'384, std::uint64_t seed = 1);
+
 /// Does the file begin as a model file does? False for files that are missing or too short; reads 8 bytes.
 [[nodiscard]] bool is_source_model(const std::filesystem::path& path);
 

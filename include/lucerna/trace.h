@@ -95,6 +95,7 @@ struct TraceResult {
   RayBlock out_rays;
   /// How many of them came from which source and block.
   std::vector<OutRun> out_runs;
+  friend bool operator==(const TraceResult&, const TraceResult&) = default;
 };
 
 /// Where the light went. Every figure in the unit of the sources' flux. A standard error is NaN where it is
@@ -242,6 +243,7 @@ enum class NoiseEnd {
   rays,           ///< NoiseGoal::max_rays
   finite_source,  ///< a ray file has given all its rays: more would be the same ones again
   no_goal,        ///< no far field to measure noise in, or kept rays that would fill the memory
+  interrupted,    ///< the caller's Progress asked to stop
 };
 /// One sentence for people; empty for `reached`.
 std::string_view to_string(NoiseEnd end);
@@ -261,10 +263,19 @@ struct NoiseTrace {
 /// result is the same to the bit for any number of threads, unless the time stops it, and a run that is gone
 /// on with (`from`) is the run that was never stopped. Finite sources are traced once; scenes without a far
 /// field, and those that keep rays, are traced as `trace` does by default. `options.last_ray` is ignored, and
-/// with `from` so is `first_ray`, `seed` and `sequence`. Throws as `trace`; what Interrupted stops is lost.
+/// with `from` so is `first_ray`, `seed` and `sequence`. When progress asks to stop, the result is what was
+/// whole, with `end` saying so. Throws as `trace`; Interrupted only where nothing was whole.
 [[nodiscard]] NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const NoiseGoal& goal,
                                      std::optional<TraceResult> from = std::nullopt,
                                      Progress& progress = no_progress());
+
+/// Traces the rays of `options` in pieces of 2^22: what `trace` returns, to the bit, but when progress asks
+/// to stop, the pieces that were whole, with `end` saying so. With `from` its seed and sequence are gone on
+/// with from its last ray to `options.last_ray`. Throws as `trace`, and UsageError where `from` reaches
+/// beyond the last ray or begins at another one; Interrupted only where nothing was whole.
+[[nodiscard]] NoiseTrace trace_rays(const Scene& scene, const TraceOptions& options,
+                                    std::optional<TraceResult> from = std::nullopt,
+                                    Progress& progress = no_progress());
 
 }  // namespace lucerna
 #pragma GCC visibility pop

@@ -53,32 +53,22 @@ std::optional<TraceResult> stored_trace(const TraceArguments& a, const TraceOrig
 }
 
 /// `--rays`: exactly those, with what is there already.
-NoiseTrace trace_rays(const Scene& scene, TraceOptions options, std::optional<TraceResult> from,
-                      Session& session) {
+NoiseTrace trace_given_rays(const Scene& scene, const TraceOptions& options, std::optional<TraceResult> from,
+                            Session& session) {
   if (from) {
     if (options.first_ray != from->first_ray || *options.last_ray < from->last_ray) {
       throw UsageError(
           fmt::format("--resume: rays {}:{} are there already", from->first_ray, from->last_ray));
     }
-    options.first_ray = from->last_ray;
-    options.seed = from->seed;
-    options.sequence = from->sequence;
   }
-  NoiseTrace out;
-  if (from && options.first_ray == *options.last_ray) {
-    out.result = std::move(*from);
-  } else {
-    out.result = trace(scene, options, session.progress());
-    if (from) out.result = merge(*from, out.result);
-  }
-  return out;
+  return trace_rays(scene, options, std::move(from), session.progress());
 }
 
 NoiseTrace run_rays(const TraceArguments& a, const Scene& scene, const TraceOptions& options,
                     const TraceOrigin& origin, Session& session) {
   std::optional<TraceResult> from = stored_trace(a, origin);
   if (a.resume && !from) session.note(fmt::format("{}: no trace yet, starting anew", a.output));
-  if (!a.rays.empty()) return trace_rays(scene, options, std::move(from), session);
+  if (!a.rays.empty()) return trace_given_rays(scene, options, std::move(from), session);
   NoiseGoal goal;
   goal.noise = parse_share(a.noise);
   goal.max_seconds = parse_number(a.time);
@@ -100,6 +90,7 @@ void run_trace(const TraceArguments& a, Session& session) {
   const TraceOrigin origin = session.timed("hash", [&] { return trace_origin(project); });
   const NoiseTrace traced =
       session.timed("trace", [&] { return run_rays(a, project.scene, options, origin, session); });
+  if (traced.end == NoiseEnd::interrupted) throw Interrupted();
   const TraceResult& result = traced.result;
   const TraceMetrics figures = session.timed("figures", [&] { return trace_metrics(result, project.scene); });
   const auto names = write_trace_output(a.output, result, origin, figures, session);

@@ -8,6 +8,7 @@
 #include "lucerna/design/evaluation/window.h"
 #include "lucerna/design/problem/zone_guide.h"
 #include "lucerna/photometric_file.h"
+#include "lucerna/project/sections/project_memory.h"
 
 namespace lucerna {
 
@@ -133,23 +134,26 @@ double PlaneTarget::flux() const {
 }
 
 DesignTarget read_target(TomlReader reader, FluxUnit unit, double source_flux, const Vec3& luminaire_mm,
-                         std::vector<std::filesystem::path>& inputs) {
+                         Project& project) {
   DesignTarget target;
   const bool plane = reader.word("kind").value_or("far-field") == "plane";
   require_file_or_zones(reader, plane);
   if (plane) target.plane = read_plane(reader, luminaire_mm);
   target.zones = read_cells(reader, source_flux, target.plane);
   const auto file = reader.file("file");
+  const auto given = file ? in_memory(project.memory.targets, *file) : nullptr;
   if (!file) {
     set_guide(reader, unit, target);
   } else {
     target.mode = read_mode(reader);
     target.file = file->string();
-    inputs.push_back(*file);
+    if (given == nullptr) project.inputs.push_back(*file);
     if (target.plane) target.plane->map = read_map(reader, *file, target.mode);
   }
   reader.finish();
-  if (file && !target.plane) target.distribution = read_photometric_file(*file).distribution;
+  if (file && !target.plane) {
+    target.distribution = given != nullptr ? *given : read_photometric_file(*file).distribution;
+  }
   if (target.plane) target.distribution = seen_from(*target.plane, luminaire_mm, unit);
   if (target.mode == TargetMode::absolute && target.distribution.unit != unit) {
     reader.fail("mode",

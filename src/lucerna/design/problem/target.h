@@ -16,6 +16,7 @@
 #include "lucerna/geometry.h"
 #include "lucerna/intensity.h"
 #include "lucerna/photometry/formats/illuminance_map.h"
+#include "lucerna/project.h"
 #include "lucerna/project/schema/toml_reader.h"
 
 namespace lucerna {
@@ -54,10 +55,10 @@ struct DesignTarget {
 /// (as a plane detector has them), `size_mm` and a `file` of illuminance (CSV or PNG; `white_lx` is a PNG's
 /// white in absolute mode), and `mode`. Also [[target.zone]] (target_zone.h), about `axis` where they are
 /// given by h and v; with a zone that asks for light no file is needed. `unit` and `source_flux` are the
-/// sources', `luminaire_mm` the mirror's place. The file is added to `inputs`. Throws InputError with file,
-/// line, key, found and expected.
+/// sources', `luminaire_mm` the mirror's place. The file is in the project's memory or becomes one of its
+/// inputs. Throws InputError with file, line, key, found and expected.
 DesignTarget read_target(TomlReader reader, FluxUnit unit, double source_flux, const Vec3& luminaire_mm,
-                         std::vector<std::filesystem::path>& inputs);
+                         Project& project);
 
 /// The bins in which a target is compared, in the mirror's frame: 48 x 48 over the target's 99 % window (48
 /// rings for `rings`), or over a plane target's rectangle.

@@ -257,7 +257,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
                          placed.world_from_reflector, project.scene.bodies, source_flux);
   }
   DesignTarget target = read_target(*target_reader, project.scene.sources.front().rays->flux_unit(),
-                                    source_flux, placed.world_from_reflector.origin_mm(), project.inputs);
+                                    source_flux, placed.world_from_reflector.origin_mm(), project);
   DesignShape start = start_shape(placed.reflector, intervals, design, limits.symmetry);
   std::optional<ToleranceRanges> tolerances;
   if (auto table = design.table("tolerances")) tolerances = read_tolerances(std::move(*table));

@@ -34,16 +34,25 @@ auto timed(double& seconds, const Work& work) {
   return made;
 }
 
+DesignStep design_step(const FitRecord& r) {
+  return {r.evaluations, r.total_rays, r.error, r.floor, r.efficiency, r.in_rectangle, r.accepted};
+}
+
 /// What users of the library get of it.
-DesignedMirror designed_mirror(const DesignProblem& problem, DesignRun run) {
-  const DesignShape shape = run.result.shape;
-  return {std::move(run.result),
-          shape.reflector(),
-          problem.world_from_mirror,
-          project_text(with_shape(problem, shape)),
-          std::move(run.trace.result),
-          std::move(run.figures.trace),
-          std::move(run.figures.tolerances)};
+DesignedMirror designed_mirror(std::shared_ptr<const DesignRecord> record) {
+  const DesignProblem& problem = record->problem;
+  const DesignResult& result = record->result;
+  DesignedMirror out{static_cast<const DesignFindings&>(result),
+                     result.shape.reflector(),
+                     problem.world_from_mirror,
+                     project_text(with_shape(problem, result.shape)),
+                     record->traced,
+                     record->figures.trace,
+                     record->figures.tolerances};
+  for (const FitRecord& step : result.history) out.history.push_back(design_step(step));
+  out.checkpoint = result.checkpoint;
+  out.record = std::move(record);
+  return out;
 }
 
 }  // namespace
@@ -77,9 +86,9 @@ DesignRun run_design(const DesignProblem& problem, DesignOptions options, Progre
   return run;
 }
 
-DesignedMirror design(const std::filesystem::path& project, const DesignSettings& settings,
-                      Progress& progress) {
-  DesignProblem problem = design_problem(read_project(project, progress), project);
+DesignedMirror design(Project project, const std::string& name, const DesignSettings& settings,
+                      Progress& progress, const DesignWatcher& watcher) {
+  DesignProblem problem = design_problem(std::move(project), name);
   if (settings.tolerances && !problem.tolerances) problem.tolerances = ToleranceRanges{};
   DesignOptions options;
   options.seed = settings.seed;
@@ -89,7 +98,22 @@ DesignedMirror design(const std::filesystem::path& project, const DesignSettings
   options.accelerator = design_accelerator(settings.device);
   options.pareto = settings.pareto;
   options.advise = settings.advise;
-  return designed_mirror(problem, run_design(problem, options, progress));
+  options.checkpoint = settings.checkpoint;
+  DesignObserver observer;
+  if (watcher) {
+    observer = [&](const FitRecord& step, const DesignShape&, const std::string& checkpoint) {
+      watcher(design_step(step), checkpoint);
+    };
+  }
+  DesignRun run = run_design(problem, options, progress, observer);
+  return designed_mirror(std::make_shared<const DesignRecord>(DesignRecord{
+      std::move(problem), std::move(run.result), std::move(run.figures), std::move(run.trace.result),
+      settings.seed, options.accelerator ? options.accelerator->name() : "cpu"}));
+}
+
+DesignedMirror design(const std::filesystem::path& project, const DesignSettings& settings,
+                      Progress& progress) {
+  return design(read_project(project, progress), project.string(), settings, progress);
 }
 
 }  // namespace lucerna

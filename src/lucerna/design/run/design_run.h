@@ -22,6 +22,17 @@ struct DesignRun {
   double design_s = 0.0, trace_s = 0.0, figures_s = 0.0, tolerances_s = 0.0;
 };
 
+/// What `write_design` needs of a design beside what it returns.
+struct DesignRecord {
+  DesignProblem problem;
+  DesignResult result;
+  DesignMetrics figures;
+  TraceResult traced;
+  std::uint64_t seed = 1;
+  /// "cpu", or the name of the device that evaluated.
+  std::string device;
+};
+
 /// Designs, traces the result until its figures are good to 1 % (for a tenth of the time, 1 to 10 seconds, at
 /// most), and tries the tolerances. Time is kept for these; `options.rays_after` is not read. Throws as
 /// `design`.

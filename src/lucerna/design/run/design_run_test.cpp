@@ -60,6 +60,33 @@ TEST_F(DesignRuns, GiveTheMirrorItsErrorAndItsLight) {
   EXPECT_FALSE(cad_mesh(mirror.reflector).triangles.empty());
 }
 
+TEST_F(DesignRuns, AreWatchedAndGoOnToTheSameBits) {
+  DesignSettings settings;
+  settings.max_rays = std::uint64_t{1} << 14;
+  settings.time_s = 1e6;
+  const Project project = parse_project(
+      "[[source]]\nkind = 'disk'\n[[reflector]]\nfamily = 'revolution'\npreset = 'parabola'\nfocal_mm = 8\n"
+      "diameter_mm = 60\nposition_mm = [0, 0, 8]\naxis = '-z'\n[target]\nfile = 'spot.ldt'\n"
+      "[design]\nrestarts = 0\n",
+      dir_ / "lamp");
+  std::vector<std::string> checkpoints;
+  int evaluations = 0;
+  const DesignedMirror whole = design(project, "lamp", settings, no_progress(),
+                                      [&](const DesignStep& step, const std::string& checkpoint) {
+                                        EXPECT_GE(step.evaluations, evaluations);
+                                        evaluations = step.evaluations;
+                                        checkpoints.push_back(checkpoint);
+                                      });
+  ASSERT_GT(checkpoints.size(), 2u);
+  EXPECT_EQ(whole.history.size(), checkpoints.size());
+  settings.checkpoint = checkpoints[checkpoints.size() / 2];
+  const DesignedMirror resumed = design(project, "lamp", settings);
+  EXPECT_EQ(resumed.project_text, whole.project_text);
+  EXPECT_LT(resumed.history.size(), whole.history.size());
+  settings.seed = 2;
+  EXPECT_THROW(design(project, "lamp", settings), InputError) << "a checkpoint of another problem";
+}
+
 TEST_F(DesignRuns, LeaveAProjectThatMakesTheSameLight) {
   DesignSettings settings;
   settings.max_rays = std::uint64_t{1} << 16;

@@ -9,6 +9,7 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
+#include "lucerna/project/schema/toml_text.h"
 
 namespace lucerna {
 
@@ -88,12 +89,15 @@ std::string nearest_word(std::string_view word, const std::set<std::string, std:
 }
 
 toml::table parse_toml_file(const std::filesystem::path& path) {
-  const std::string text = read_file(path, kLargestProject);
+  return parse_toml_text(read_file(path, kLargestProject), path.string());
+}
+
+toml::table parse_toml_text(std::string_view text, const std::string& name) {
   try {
-    return toml::parse(text, path.string());
+    return toml::parse(text, name);
   } catch (const toml::parse_error& e) {
     const auto& begin = e.source().begin;
-    throw_input_error(path.string(), fmt::format("line {}, column {}", begin.line, begin.column), "{}",
+    throw_input_error(name, fmt::format("line {}, column {}", begin.line, begin.column), "{}",
                       e.description());
   }
 }

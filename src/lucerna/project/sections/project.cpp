@@ -6,6 +6,8 @@
 #include "lucerna/core/io/error.h"
 #include "lucerna/project/schema/project_tables.h"
 #include "lucerna/project/schema/toml_reader.h"
+#include "lucerna/project/schema/toml_text.h"
+#include "lucerna/project/sections/project_memory.h"
 #include "lucerna/project/sections/project_parts.h"
 
 namespace lucerna {
@@ -63,10 +65,10 @@ Frame read_placement(TomlReader& reader) {
 
 }  // namespace project_parts
 
-Project read_project(const fs::path& path, Progress& progress) {
-  Project project;
-  toml_tables(project) = parse_toml_file(path);
-  project.inputs.push_back(path);
+namespace {
+
+/// Reads the tables that `project` has, as those of the file `path`.
+void read_tables(Project& project, const fs::path& path, Progress& progress) {
   TomlReader root(toml_tables(project), path.string(), "");
   const auto sources = root.tables("source");
   const auto reflectors = root.tables("reflector");
@@ -91,7 +93,40 @@ Project read_project(const fs::path& path, Progress& progress) {
   }
   check_sources_before_mirrors(project, path.string());
   make_files_absolute(toml_tables(project), fs::absolute(path).parent_path());
+}
+
+}  // namespace
+
+Project read_project(const fs::path& path, Progress& progress) {
+  Project project;
+  toml_tables(project) = parse_toml_file(path);
+  project.inputs.push_back(path);
+  read_tables(project, path, progress);
   return project;
+}
+
+Project parse_project(std::string_view text, const fs::path& path, const ProjectMemory& memory,
+                      Progress& progress) {
+  Project project;
+  toml_tables(project) = parse_toml_text(text, path.string());
+  project.memory = absolute_names(memory, path);
+  read_tables(project, path, progress);
+  return project;
+}
+
+std::vector<PlacedReflector> parse_reflectors(std::string_view text, const fs::path& path) {
+  Project project;
+  toml_tables(project) = parse_toml_text(text, path.string());
+  TomlReader root(toml_tables(project), path.string(), "");
+  const auto reflectors = root.tables("reflector");
+  root.finish();
+  for (const TomlReader& reader : reflectors) {
+    project_parts::read_reflector(reader, project);
+    if (!project.scene.bodies.empty()) {
+      reader.fail("family", "found a mesh, which is a body; expected a surface");
+    }
+  }
+  return std::move(project.scene.reflectors);
 }
 
 std::string project_text(const Project& project) {

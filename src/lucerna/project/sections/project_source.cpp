@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "lucerna/project/sections/project_memory.h"
 #include "lucerna/project/sections/project_parts.h"
 #include "lucerna/ray_file.h"
 #include "lucerna/source.h"
@@ -49,32 +50,42 @@ std::shared_ptr<const RaySource> read_emitter(TomlReader& reader, const std::opt
   return at_key(reader, "kind", [&] { return make_emitter(options); });
 }
 
-std::shared_ptr<const RaySource> read_ray_file_source(TomlReader& reader, const fs::path& file,
-                                                      const std::optional<GivenFlux>& flux, Project& project,
-                                                      Progress& progress) {
-  std::vector<std::string> warnings;
-  auto rays = std::make_shared<RaySet>(read_ray_set(file, {}, progress, &warnings));
-  project.warnings.insert(project.warnings.end(), warnings.begin(), warnings.end());
-  if (flux) {
-    if (flux->unit != rays->header.flux_unit) {
-      reader.fail(flux->unit == FluxUnit::lumen ? "flux_lm" : "flux_w",
-                  fmt::format("the rays of {} carry {}; lumen and watt are never mixed", file.string(),
-                              symbol(rays->header.flux_unit)));
-    }
-    rays->header.set_flux(flux->flux);
+/// The flux of a project must be in the unit of what it is for; `what` names that.
+void check_unit(const TomlReader& reader, const std::optional<GivenFlux>& flux, FluxUnit unit,
+                const std::string& what) {
+  if (!flux || flux->unit == unit) return;
+  reader.fail(flux->unit == FluxUnit::lumen ? "flux_lm" : "flux_w",
+              fmt::format("{} {}; lumen and watt are never mixed", what, symbol(unit)));
+}
+
+std::shared_ptr<const RaySource> read_ray_source(const TomlReader& reader, const fs::path& file,
+                                                 const std::optional<GivenFlux>& flux, Project& project,
+                                                 Progress& progress) {
+  std::shared_ptr<const RaySet> rays = in_memory(project.memory.rays, file);
+  if (rays == nullptr) {
+    std::vector<std::string> warnings;
+    rays = std::make_shared<RaySet>(read_ray_set(file, {}, progress, &warnings));
+    project.warnings.insert(project.warnings.end(), warnings.begin(), warnings.end());
+    project.inputs.push_back(file);
+  }
+  check_unit(reader, flux, rays->header.flux_unit, fmt::format("the rays of {} carry", file.string()));
+  if (flux && !rays->header.flux()) {  // a source needs a flux of its own
+    RaySet stated = *rays;
+    stated.header.set_flux(flux->flux);
+    rays = std::make_shared<RaySet>(std::move(stated));
   }
   return std::make_shared<RaySetSource>(std::move(rays), file.string());
 }
 
-/// A model; PlacedSource::flux overrides what it holds.
-std::shared_ptr<const RaySource> read_model_source(TomlReader& reader, const fs::path& file,
-                                                   const std::optional<GivenFlux>& flux) {
-  std::shared_ptr<const RaySource> model = load_source_model(file);
-  if (flux && flux->unit != model->flux_unit()) {
-    reader.fail(flux->unit == FluxUnit::lumen ? "flux_lm" : "flux_w",
-                fmt::format("the model {} carries {}; lumen and watt are never mixed", file.string(),
-                            symbol(model->flux_unit())));
+std::shared_ptr<const RaySource> read_model_source(const TomlReader& reader, const fs::path& file,
+                                                   const std::optional<GivenFlux>& flux, Project& project) {
+  std::shared_ptr<const SourceModel> model = in_memory(project.memory.models, file);
+  if (model == nullptr) {
+    if (!is_source_model(file)) return nullptr;
+    model = load_source_model(file);
+    project.inputs.push_back(file);
   }
+  check_unit(reader, flux, model->flux_unit(), fmt::format("the model {} carries", file.string()));
   return model;
 }
 
@@ -87,13 +98,9 @@ PlacedSource read_source(TomlReader reader, Project& project, Progress& progress
   const auto file = reader.file("file");
   if (file) {
     if (reader.has("kind")) reader.fail("kind", "a source has either a file or a kind");
-    project.inputs.push_back(*file);
-    if (is_source_model(*file)) {
-      source.rays = read_model_source(reader, *file, flux);
-      if (flux) source.flux = flux->flux;
-    } else {
-      source.rays = read_ray_file_source(reader, *file, flux, project, progress);
-    }
+    source.rays = read_model_source(reader, *file, flux, project);
+    if (source.rays == nullptr) source.rays = read_ray_source(reader, *file, flux, project, progress);
+    if (flux) source.flux = flux->flux;
   } else {
     if (!reader.has("kind")) reader.missing("kind", "a source needs a file or a kind");
     source.rays = read_emitter(reader, flux);

@@ -6,25 +6,53 @@
 #include <utility>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/design/run/design_run.h"
 #include "lucerna/report/html/report_design.h"
 #include "lucerna/report/html/report_trace.h"
 #include "lucerna/report/html/write_model_report.h"
+#include "lucerna/results/folders/design_files.h"
 #include "lucerna/results/folders/trace_results.h"
+#include "lucerna/results/json/design_json.h"
 #include "lucerna/results/json/model_json.h"
 #include "lucerna/results/json/run_json.h"
+#include "lucerna/results/json/trace_json.h"
 #include "lucerna/source_model.h"
 
 namespace lucerna {
 
-std::vector<std::string> write_trace(const std::filesystem::path& folder, const Project& project,
-                                     const TraceResult& result, std::vector<std::string>* warnings) {
+namespace {
+
+void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw_input_error(folder.string(), "", "cannot make the folder: {}", error.message());
+  if (!error) return;
+  throw InputError(fmt::format("{}: cannot make the folder: {}", folder.string(), error.message()),
+                   ErrorCause::unwritable);
+}
+
+}  // namespace
+
+std::vector<std::string> write_trace(const std::filesystem::path& folder, const Project& given,
+                                     const TraceResult& result, std::vector<std::string>* warnings) {
+  make_folder(folder);
+  const Project project = save_memory(given, folder);
   nlohmann::ordered_json json = run_json({.inputs = project.inputs}, result.seed, result.isa);
   std::vector<std::string> lost;
   return write_trace_results(folder, result, trace_origin(project), trace_metrics(result, project.scene),
                              json, warnings != nullptr ? *warnings : lost);
+}
+
+std::vector<std::string> write_design(const std::filesystem::path& folder, const DesignedMirror& mirror) {
+  make_folder(folder);
+  const DesignRecord& record = *mirror.record;
+  DesignProblem problem = record.problem;
+  problem.project = save_memory(problem.project, folder);
+  nlohmann::ordered_json json = run_json({.inputs = problem.project.inputs}, record.seed, record.traced.isa);
+  json["device"] = record.device;
+  json.update(design_json(problem, record.result, record.figures));
+  json.update(trace_json(record.figures.trace));
+  return write_design_files(folder, problem, record.result, record.figures, record.traced,
+                            history_csv(record.result.history), json);
 }
 
 void write_report(const std::filesystem::path& input, const std::filesystem::path& html,

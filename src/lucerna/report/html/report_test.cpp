@@ -51,6 +51,27 @@ TEST(Report, AModelIsReportedAgainstItsRays) {
   EXPECT_THROW(write_report(dir.path(), dir / "r.html", {dir / "d.tm25ray"}), UsageError);
 }
 
+TEST(Report, ADesignsFolderIsWrittenAndReported) {
+  const test::TempDir dir;
+  ProjectMemory memory;
+  auto target = std::make_shared<IntensityDistribution>(uniform_distribution(360.0, 5.0));
+  for (std::size_t g = 0; g < 8; ++g) target->at(0, g) = 100.0;
+  memory.targets["wide"] = target;
+  const Project project = parse_project(
+      "[[source]]\nkind = 'disk'\n[[reflector]]\nfamily = 'revolution'\npreset = 'parabola'\nfocal_mm = 8\n"
+      "diameter_mm = 60\nposition_mm = [0, 0, 8]\naxis = '-z'\n[target]\nfile = 'wide'\n",
+      dir / "lamp", memory);
+  DesignSettings settings;
+  settings.max_rays = std::uint64_t{1} << 14;
+  settings.time_s = 1.0;
+  const DesignedMirror mirror = design(project, "lamp", settings);
+  const auto names = write_design(dir / "folder", mirror);
+  EXPECT_THAT(names, testing::IsSupersetOf({"result.json", "reflector.step", "history.csv", "checkpoint"}));
+  EXPECT_TRUE(std::filesystem::exists(dir / "folder/wide.ldt")) << "what was in memory";
+  write_report(dir / "folder", dir / "report.html");
+  EXPECT_THAT(read_file(dir / "report.html", 1 << 26), testing::HasSubstr("<html"));
+}
+
 TEST(Report, RefusesWhatIsNoFolderOfATrace) {
   const test::TempDir dir;
   write_file(dir / "lamp.toml", kLamp);

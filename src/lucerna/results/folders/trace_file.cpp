@@ -15,6 +15,8 @@
 #include "lucerna/trace/detectors/far_field_grid.h"
 #include "lucerna/trace/engines/ray_numbering.h"
 #include "lucerna/trace/tally/flux_quanta.h"
+#include "lucerna/trace_file.h"
+#include "lucerna/version.h"
 
 namespace lucerna {
 
@@ -237,8 +239,7 @@ void check_shape(const TraceResult& r, const Reader& reader) {
 
 }  // namespace
 
-void write_trace_file(const std::filesystem::path& path, const TraceResult& result,
-                      const TraceOrigin& origin) {
+std::string encode_trace(const TraceResult& result, const TraceOrigin& origin) {
   Writer writer;
   describe_origin(writer, origin);
   describe_head(writer, result);
@@ -248,39 +249,45 @@ void write_trace_file(const std::filesystem::path& path, const TraceResult& resu
   const std::size_t n =
       ZSTD_compress(packed.data(), packed.size(), writer.bytes.data(), writer.bytes.size(), 3);
   LUCERNA_CHECK(ZSTD_isError(n) == 0, "{}", ZSTD_getErrorName(n));
-  OutputFile file(path);
-  file.write(kMagic);
-  file.write(std::as_bytes(std::span(&kVersion, 1)));
-  file.write(std::string_view(packed).substr(0, n));
-  file.commit();
+  std::string bytes(kMagic);
+  bytes.append(reinterpret_cast<const char*>(&kVersion), sizeof kVersion);
+  bytes.append(packed, 0, n);
+  return bytes;
+}
+
+void write_trace_file(const std::filesystem::path& path, const TraceResult& result,
+                      const TraceOrigin& origin) {
+  write_file(path, encode_trace(result, origin));
 }
 
 StoredTrace read_trace_file(const std::filesystem::path& path) {
-  const std::string all = read_file(path, kMaxTraceBytes);
+  return decode_trace(read_file(path, kMaxTraceBytes), path.string());
+}
+
+StoredTrace decode_trace(std::string_view bytes, const std::string& name) {
   constexpr std::size_t kHead = kMagic.size() + sizeof kVersion;
-  const std::string_view bytes = all;
   if (bytes.size() < kHead || !bytes.starts_with(kMagic))
-    throw_input_error(path.string(), "byte 0", "this is no trace of Lucerna's");
+    throw_input_error(name, "byte 0", "this is no trace of Lucerna's");
   std::uint32_t version = 0;
   std::memcpy(&version, bytes.data() + kMagic.size(), sizeof version);
   if (version != kVersion) {
-    throw_input_error(path.string(), fmt::format("byte {}", kMagic.size()), "version {}, expected {}",
-                      version, kVersion);
+    throw_input_error(name, fmt::format("byte {}", kMagic.size()), "version {}, expected {}", version,
+                      kVersion);
   }
   const std::string_view frame = bytes.substr(kHead);
   const unsigned long long size = ZSTD_getFrameContentSize(frame.data(), frame.size());
   // zstd packs at most about 1 : 2^17 (runs of one byte), so a small file cannot ask for much memory.
   if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > kMaxTraceBytes ||
       size / (1u << 17) > frame.size()) {
-    throw_input_error(path.string(), fmt::format("byte {}", kHead), "the packed part is damaged");
+    throw_input_error(name, fmt::format("byte {}", kHead), "the packed part is damaged");
   }
   std::string unpacked(static_cast<std::size_t>(size), '\0');
   const std::size_t n = ZSTD_decompress(unpacked.data(), unpacked.size(), frame.data(), frame.size());
   if (ZSTD_isError(n) != 0 || n != unpacked.size()) {
-    throw_input_error(path.string(), fmt::format("byte {}", kHead), "the packed part is damaged: {}",
+    throw_input_error(name, fmt::format("byte {}", kHead), "the packed part is damaged: {}",
                       ZSTD_getErrorName(n));
   }
-  Reader reader(unpacked, path.string());
+  Reader reader(unpacked, name);
   StoredTrace stored;
   describe_origin(reader, stored.origin);
   describe_head(reader, stored.result);
@@ -289,6 +296,18 @@ StoredTrace read_trace_file(const std::filesystem::path& path) {
   if (!reader.at_end()) reader.fail("more bytes than the sums need");
   check_shape(stored.result, reader);
   return stored;
+}
+
+std::string trace_bytes(const TraceResult& result) {
+  return encode_trace(result, {.program_version = std::string(version())});
+}
+
+TraceResult trace_from_bytes(std::string_view bytes, const std::string& name) {
+  return decode_trace(bytes, name).result;
+}
+
+TraceResult read_trace(const std::filesystem::path& folder) {
+  return read_trace_file(folder / kTraceFileName).result;
 }
 
 }  // namespace lucerna

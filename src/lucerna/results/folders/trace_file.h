@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "lucerna/progress.h"
@@ -17,6 +19,9 @@ namespace lucerna {
 void write_trace_file(const std::filesystem::path& path, const TraceResult& result,
                       const TraceOrigin& origin);
 
+/// The bytes of that file.
+std::string encode_trace(const TraceResult& result, const TraceOrigin& origin);
+
 struct StoredTrace {
   TraceResult result;
   TraceOrigin origin;
@@ -24,6 +29,8 @@ struct StoredTrace {
 
 /// Throws InputError, naming the file and place, on anything that `write_trace_file` cannot have written.
 StoredTrace read_trace_file(const std::filesystem::path& path);
+/// The same of the bytes; `name` is for messages.
+StoredTrace decode_trace(std::string_view bytes, const std::string& name);
 
 /// The name of that file in a trace's folder.
 inline constexpr const char* kTraceFileName = "trace.sums";

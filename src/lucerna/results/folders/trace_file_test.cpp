@@ -9,6 +9,7 @@
 #include "lucerna/source.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace/result/far_field_counts.h"
+#include "lucerna/trace_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {
@@ -26,6 +27,16 @@ TraceResult small_trace(std::uint64_t first, std::uint64_t last) {
                       {"eye", {placed, 50.0, 40.0, 3, 4}, 5.0, 300.0, 20.0}};
   scene.ray_detectors = {{"rays", "speos"}};
   return trace(scene, {.first_ray = first, .last_ray = last, .cells = 64});
+}
+
+TEST(TraceFile, BytesHoldATraceToTheBit) {
+  const TraceResult traced = small_trace(0, 9000);
+  const std::string bytes = trace_bytes(traced);
+  EXPECT_TRUE(trace_from_bytes(bytes) == traced);
+  EXPECT_THROW(trace_from_bytes(bytes.substr(0, bytes.size() / 2)), InputError);
+  const test::TempDir dir;
+  write_file(dir / kTraceFileName, bytes);
+  EXPECT_TRUE(read_trace(dir.path()) == traced);
 }
 
 TEST(TraceFile, WhatIsReadIsWhatWasWrittenAndRangesAdd) {

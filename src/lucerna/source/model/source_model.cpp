@@ -9,23 +9,42 @@
 #include "lucerna/source/adaptive/sampling/adaptive_model.h"
 #include "lucerna/source/clusters/cluster_model.h"
 #include "lucerna/source/file/nfl.h"
+#include "lucerna/source/model/model_etendue.h"
 
 namespace lucerna {
 
 std::unique_ptr<SourceModel> load_source_model(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path, kNflLargestFile);
-  const NflFile file = decode_nfl(bytes, path.string());
-  if (file.method == kClusterMethod) return ClusterModel::from_nfl(file, path.string());
-  if (file.method == kAdaptiveMethod) return AdaptiveModel::from_nfl(file, path.string());
-  throw_input_error(path.string(), "byte 12", "method '{}' is not known; expected '{}' or '{}'",
+  return source_model_from_bytes(read_file(path, kNflLargestFile), path.string());
+}
+
+std::unique_ptr<SourceModel> source_model_from_bytes(std::string_view bytes, const std::string& name) {
+  const NflFile file = decode_nfl(bytes, name);
+  if (file.method == kClusterMethod) return ClusterModel::from_nfl(file, name);
+  if (file.method == kAdaptiveMethod) return AdaptiveModel::from_nfl(file, name);
+  throw_input_error(name, "byte 12", "method '{}' is not known; expected '{}' or '{}'",
                     printable_tag(file.method), printable_tag(kClusterMethod),
                     printable_tag(kAdaptiveMethod));
 }
 
 std::uint64_t save_source_model(const std::filesystem::path& path, const SourceModel& model) {
-  const std::string bytes = encode_nfl(model.to_nfl());
+  const std::string bytes = source_model_bytes(model);
   write_file(path, bytes);
   return bytes.size();
+}
+
+std::string source_model_bytes(const SourceModel& model) { return encode_nfl(model.to_nfl()); }
+
+std::vector<double> etendue_mm2sr(const SourceModel& model, std::span<const double> shares,
+                                  std::uint64_t rays, std::uint64_t seed) {
+  for (const double share : shares) {
+    if (!(share >= 0.0 && share <= 1.0))
+      throw InputError(fmt::format("share of the flux: found {}, expected 0 to 1", share),
+                       ErrorCause::out_of_range);
+  }
+  const EtendueCurve curve = etendue_curve(model, rays, seed);
+  std::vector<double> out;
+  for (const double share : shares) out.push_back(curve.degenerate() ? 0.0 : curve.at(share));
+  return out;
 }
 
 bool is_source_model(const std::filesystem::path& path) {

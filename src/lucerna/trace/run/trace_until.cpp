@@ -36,18 +36,44 @@ bool has_finite_source(const Scene& scene) {
                      [](const PlacedSource& s) { return s.rays->ray_count().has_value(); });
 }
 
-/// Adds rays up to `last` to a trace, in pieces; stops early when `stop()`.
+/// Reports the rays of a trace in pieces as those of one.
+class PieceProgress final : public Progress {
+ public:
+  PieceProgress(Progress& all, std::uint64_t before, std::uint64_t total)
+      : all_(all), before_(before), total_(total) {}
+  void update(std::string_view phase, std::uint64_t done, std::uint64_t) override {
+    all_.update(phase, before_ + done, total_);
+  }
+  bool stop_requested() const override { return all_.stop_requested(); }
+
+ private:
+  Progress& all_;
+  std::uint64_t before_, total_;
+};
+
+/// Adds rays up to `last` to a trace, in pieces; stops early when `stop()`. False if progress stopped it,
+/// which is an error where there is no whole piece.
 template <class Stop>
-void trace_on_to(std::uint64_t last, const Scene& scene, TraceOptions options,
+bool trace_on_to(std::uint64_t last, const Scene& scene, TraceOptions options,
                  std::optional<TraceResult>& sum, const Stop& stop, Progress& progress) {
   std::uint64_t at = sum ? sum->last_ray : options.first_ray;
+  // Rays that an accelerator keeps cannot be added to others.
+  const bool whole = options.device != TraceDevice::cpu && !scene.ray_detectors.empty();
   while (at < last) {
     options.first_ray = at;
-    options.last_ray = at = std::min(last, at + kPiece);
-    TraceResult piece = trace(scene, options, progress);
-    sum = sum ? merge(*sum, piece) : std::move(piece);
-    if (stop()) return;
+    options.last_ray = at = whole ? last : std::min(last, at + kPiece);
+    const std::uint64_t begin = sum ? sum->first_ray : options.first_ray;
+    PieceProgress of_all(progress, options.first_ray - begin, last - begin);
+    try {
+      TraceResult piece = trace(scene, options, of_all);
+      sum = sum ? merge(*sum, piece) : std::move(piece);
+    } catch (const Interrupted&) {
+      if (!sum) throw;
+      return false;
+    }
+    if (stop()) return true;
   }
+  return true;
 }
 
 }  // namespace
@@ -64,6 +90,8 @@ std::string_view to_string(NoiseEnd end) {
       return "a ray file has given all its rays; a model of it would have more";
     case NoiseEnd::no_goal:
       return "no noise to go by without a far field, or with rays to keep";
+    case NoiseEnd::interrupted:
+      return "interrupted";
   }
   return "";
 }
@@ -83,8 +111,8 @@ NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const No
   std::optional<TraceResult> sum = std::move(from);
   if (scene.far_fields.empty() || !scene.ray_detectors.empty() || has_finite_source(scene)) {
     if (!scene.far_fields.empty() && scene.ray_detectors.empty()) out.end = NoiseEnd::finite_source;
-    trace_on_to(
-        once, scene, run, sum, [] { return false; }, progress);
+    const auto never = [] { return false; };
+    if (!trace_on_to(once, scene, run, sum, never, progress)) out.end = NoiseEnd::interrupted;
   } else {
     const auto late = [&] {
       return std::chrono::duration<double>(Clock::now() - start).count() >= goal.max_seconds;
@@ -107,12 +135,36 @@ NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const No
       if (sum && late()) break;
       const std::uint64_t first = sum ? sum->first_ray : run.first_ray;
       const std::uint64_t last = first + std::min({round, goal.max_rays, kMaxRays - first});
-      trace_on_to(last, scene, run, sum, late, progress);
+      if (trace_on_to(last, scene, run, sum, late, progress)) continue;
+      out.end = NoiseEnd::interrupted;
+      break;
     }
   }
   if (!sum) throw UsageError("no rays to trace");
   if (std::isnan(out.noise) || out.end != NoiseEnd::reached) out.noise = node_noise(*sum);
   if (out.end == NoiseEnd::finite_source && out.noise <= goal.noise) out.end = NoiseEnd::reached;
+  out.result = std::move(*sum);
+  return out;
+}
+
+NoiseTrace trace_rays(const Scene& scene, const TraceOptions& options, std::optional<TraceResult> from,
+                      Progress& progress) {
+  TraceOptions run = options;
+  const std::uint64_t last = options.last_ray.value_or(default_ray_count(scene));
+  if (from) {
+    if (options.first_ray != from->first_ray || last < from->last_ray) {
+      throw UsageError(fmt::format("rays {}:{} asked for, rays {}:{} are there already", options.first_ray,
+                                   last, from->first_ray, from->last_ray),
+                       "rays");
+    }
+    run.seed = from->seed;
+    run.sequence = from->sequence;
+  }
+  NoiseTrace out{{}, std::nan(""), NoiseEnd::rays};
+  std::optional<TraceResult> sum = std::move(from);
+  const auto never = [] { return false; };
+  if (!trace_on_to(last, scene, run, sum, never, progress)) out.end = NoiseEnd::interrupted;
+  if (!sum) throw UsageError(fmt::format("no rays to trace: {}:{}", run.first_ray, last), "rays");
   out.result = std::move(*sum);
   return out;
 }

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scenes as text: Python's values as the tables of a project file."""
+from __future__ import annotations
+
+import json
+import os
+import tomllib
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from . import _core
+
+
+class Table:
+    """A table of a project file; its keys are attributes of the scene, with their units in their names."""
+
+    name = ""
+
+    def __init__(self, **keys: Any) -> None:
+        self.keys = {key: value for key, value in keys.items() if value is not None}
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{key}={value!r}' for key, value in self.keys.items())})"
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and other.keys == self.keys  # type: ignore[attr-defined]
+
+
+class Source(Table):
+    """A [[source]]: a model, rays, a file, or (with `kind`) an analytic emitter.
+
+    Parameters
+    ----------
+    of : SourceModel, RaySet or path_like, optional
+        What the light comes from.
+    **keys
+        The keys of a [[source]] table of a project file: kind, flux_lm, position_mm, axis, turn_deg, ...
+    """
+
+    name = "source"
+
+    def __init__(self, of: Any = None, /, **keys: Any) -> None:
+        super().__init__(file=of, **keys) if of is not None else super().__init__(**keys)
+
+
+class Body(Table):
+    """A [[body]]: a housing, a lamp's body, a mirror of triangles, a cover glass.
+
+    Parameters
+    ----------
+    role : str
+        'absorber', 'mirror', 'lamp' or 'glass'.
+    **keys
+        The keys of a [[body]] table of a project file: file, reflectance, diameter_mm, thickness_mm, ...
+    """
+
+    name = "body"
+
+    def __init__(self, role: str = "absorber", /, **keys: Any) -> None:
+        super().__init__(role=role, **keys)
+
+
+class Detector(Table):
+    """A [[detector]]: what is recorded.
+
+    Parameters
+    ----------
+    kind : str
+        'far-field', 'plane', 'luminance' or 'rays'.
+    **keys
+        The keys of a [[detector]] table of a project file: name, c_step_deg, size_mm, cells, from_mm, ...
+    """
+
+    name = "detector"
+
+    def __init__(self, kind: str = "far-field", /, **keys: Any) -> None:
+        super().__init__(kind=kind, **keys)
+
+
+def _value(value: Any) -> str:
+    """A value as TOML."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (str, os.PathLike)):
+        # The strings of JSON are strings of TOML but for DEL.
+        return json.dumps(os.fspath(value), ensure_ascii=False).replace("\x7f", "\\u007F")
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items()) + "}"
+    if hasattr(value, "tolist"):  # numpy's arrays and numbers
+        return _value(value.tolist())
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, Iterable):
+        return "[" + ", ".join(_value(item) for item in value) + "]"
+    raise TypeError(f"expected a number, text, path, sequence or mapping, found {type(value).__name__}")
+
+
+def _key(key: str) -> str:
+    bare = key.isascii() and key.replace("_", "a").replace("-", "a").isalnum()
+    return key if bare else json.dumps(key)
+
+
+def _lines(keys: Mapping[str, Any]) -> str:
+    return "".join(f"{_key(key)} = {_value(value)}\n" for key, value in keys.items())
+
+
+def _with_absolute_file(keys: Mapping[str, Any]) -> dict[str, Any]:
+    keys = dict(keys)
+    if isinstance(keys.get("file"), (str, os.PathLike)):
+        keys["file"] = os.path.abspath(keys["file"])
+    return keys
+
+
+def reflector_text(family: str, **keys: Any) -> str:
+    """The [[reflector]] table of a mirror."""
+    given = {"family": family, **{key: value for key, value in keys.items() if value is not None}}
+    return "[[reflector]]\n" + _lines(_with_absolute_file(given))
+
+
+def _keys_of(table: Any, kind: type[Table]) -> dict[str, Any]:
+    if isinstance(table, kind):
+        return table.keys
+    if isinstance(table, Mapping):
+        return dict(table)
+    raise TypeError(f"expected a {kind.__name__} or a mapping, found {type(table).__name__}")
+
+
+class _Memory:
+    """Objects that a scene names as files."""
+
+    def __init__(self) -> None:
+        self.objects: dict[str, Any] = {}
+
+    def name(self, thing: Any) -> str:
+        for name, known in self.objects.items():
+            if known is thing:
+                return name
+        # The same from any folder, so that a design can be resumed from any.
+        form = {_core.SourceModel: "model-{}.nfl", _core.RaySet: "rays-{}.tm25ray",
+                _core.IntensityDistribution: "target-{}.ldt"}[type(thing)]
+        name = "/in-memory/" + form.format(len(self.objects) + 1)
+        self.objects[name] = thing
+        return name
+
+    def keys(self, keys: Mapping[str, Any]) -> dict[str, Any]:
+        """Keys whose file may be an object."""
+        keys = dict(keys)
+        if isinstance(keys.get("file"), (_core.SourceModel, _core.RaySet, _core.IntensityDistribution)):
+            keys["file"] = self.name(keys["file"])
+        return _with_absolute_file(keys)
+
+
+def _target_keys(target: Any) -> dict[str, Any]:
+    return dict(target) if isinstance(target, Mapping) else {"file": target}
+
+
+def scene_text(sources: Iterable[Any], reflectors: Iterable[Any], bodies: Iterable[Any],
+               detectors: Iterable[Any], target: Any, design: Any) -> tuple[str, dict[str, Any]]:
+    """The text of a scene, and the objects that it names as files."""
+    memory = _Memory()
+    parts = []
+    for source in _several(sources, "sources"):
+        things = (_core.SourceModel, _core.RaySet, str, os.PathLike)
+        keys = {"file": source} if isinstance(source, things) else _keys_of(source, Source)
+        parts.append("[[source]]\n" + _lines(memory.keys(keys)))
+    for mirror in _several(reflectors, "reflectors"):
+        parts.append(mirror.toml if isinstance(mirror, _core.Reflector) else reflector_text(**mirror))
+    for body in _several(bodies, "bodies"):
+        parts.append("[[body]]\n" + _lines(_with_absolute_file(_keys_of(body, Body))))
+    for detector in _several(detectors, "detectors"):
+        parts.append("[[detector]]\n" + _lines(_keys_of(detector, Detector)))
+    if target is not None:
+        parts.append("[target]\n" + _lines(memory.keys(_target_keys(target))))
+    if design is not None:
+        parts.append("[design]\n" + _lines(design))
+    return "\n".join(parts), memory.objects
+
+
+def _several(things: Any, name: str) -> list[Any]:
+    if isinstance(things, (str, os.PathLike, Mapping, Table)) or not isinstance(things, Iterable):
+        raise TypeError(f"{name}: expected a sequence, found {type(things).__name__}")
+    return list(things)
+
+
+def tables(scene: _core.Scene) -> dict[str, Any]:
+    """The tables of a scene's project file, as `tomllib` reads them."""
+    return tomllib.loads(scene.to_toml())
+
+
+def replaced(scene: _core.Scene, **changes: Any) -> _core.Scene:
+    """The scene with other tables."""
+    given = tables(scene)
+    text = []
+    for name in ("source", "reflector", "body", "detector"):
+        text += [f"[[{name}]]\n" + _lines(keys) for keys in given.get(name, ())]
+    memory = _Memory()
+    memory.objects.update(scene.memory)
+    for name in ("target", "design"):
+        keys = changes.get(name, given.get(name))
+        if keys is not None:
+            text.append(f"[{name}]\n" + _lines(memory.keys(keys)))
+    return _core.Scene.from_toml("\n".join(text), memory=memory.objects)
+
+
+def reflectors(scene: _core.Scene) -> list[_core.Reflector]:
+    """The mirrors of a scene but those of triangles."""
+    return [_core.Reflector(**keys) for keys in tables(scene).get("reflector", ()) if keys["family"] != "mesh"]

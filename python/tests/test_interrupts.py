@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Long calls: Ctrl-C, callbacks, and what other threads do meanwhile."""
+import os
+import signal
+import threading
+import time
+
+import lucerna as lu
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def ctrl_c():
+    """Presses Ctrl-C after some seconds."""
+    timers = []
+
+    def press(seconds):
+        timers.append(threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT)))
+        timers[-1].start()
+
+    yield press
+    for timer in timers:
+        timer.cancel()
+        timer.join()
+
+
+def test_a_trace_returns_what_is_there(lamp, ctrl_c):
+    steps = []
+
+    def after_the_first_piece(step):
+        steps.append(step)
+        if step.done > 2**22 and len(steps) < 10**6:
+            steps.extend([step] * 10**6)
+            os.kill(os.getpid(), signal.SIGINT)
+
+    part = lamp.trace(rays=1e10, callback=after_the_first_piece)
+    assert part.interrupted and part.end == "interrupted"
+    first, last = part.rays
+    assert first == 0 and last >= 2**22 and last % 2**22 == 0
+    assert part["far"].flux.value > 0
+    again = lamp.trace(rays=last + 1000, resume=part)
+    assert again.rays == (0, last + 1000) and not again.interrupted
+
+
+def test_what_has_no_result_raises(ctrl_c):
+    rays = lu.make_source("filament", 3e6, seed=1)
+    ctrl_c(0.3)
+    with pytest.raises(KeyboardInterrupt):
+        lu.compress(rays)
+
+
+def test_callbacks_report_and_may_raise(lamp):
+    times, steps = [], []
+
+    def callback(step):
+        times.append(time.monotonic())
+        steps.append((step.phase, step.done, step.total))
+        if len(steps) == 5:
+            raise ZeroDivisionError("enough")
+
+    with pytest.raises(ZeroDivisionError, match="enough"):
+        lamp.trace(rays=1e10, callback=callback)
+    assert len(steps) == 5
+    assert min(np.diff(times)) > 0.09, "at most ten a second"
+    assert all(phase == "trace" and total == 10**10 for phase, _, total in steps)
+    assert [done for _, done, _ in steps] == sorted(done for _, done, _ in steps)
+
+
+def test_a_short_call_reports_once(lamp):
+    steps = []
+    lamp.trace(rays=1000, callback=steps.append)
+    assert len(steps) == 1 and steps[0].done == 1000
+
+
+def test_what_is_no_callback_raises(lamp):
+    with pytest.raises(TypeError):
+        lamp.trace(rays=1e10, callback=3)
+
+
+def test_the_lock_is_released(lamp):
+    """Another thread counts while this one traces."""
+    ticks, done = [], threading.Event()
+
+    def tick():
+        while not done.is_set():
+            ticks.append(time.monotonic())
+            time.sleep(0.005)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    start = time.monotonic()
+    lamp.trace(rays=4e7)
+    end = time.monotonic()
+    done.set()
+    thread.join()
+    inside = [t for t in ticks if start < t < end]
+    assert len(inside) > 5, (end - start, len(inside))
+
+
+def test_a_thread_that_is_not_the_main_one_can_trace(lamp, traced):
+    found = []
+    thread = threading.Thread(target=lambda: found.append(lamp.trace(rays=traced.rays)))
+    thread.start()
+    thread.join()
+    assert found[0] == traced

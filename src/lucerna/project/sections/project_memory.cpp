@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/project/sections/project_memory.h"
+
+#include "lucerna/photometric_file.h"
+#include "lucerna/project/schema/project_tables.h"
+#include "lucerna/ray_file.h"
+
+namespace lucerna {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class Object>
+std::map<std::string, Object> absolute_keys(const std::map<std::string, Object>& objects,
+                                            const fs::path& folder) {
+  std::map<std::string, Object> out;
+  for (const auto& [name, object] : objects) out[(folder / name).lexically_normal().string()] = object;
+  return out;
+}
+
+/// Replaces the names of files in every table.
+void rename_files(toml::table& table, const std::map<std::string, std::string>& new_names) {
+  for (auto&& [key, node] : table) {
+    if (auto* inner = node.as_table()) rename_files(*inner, new_names);
+    if (auto* array = node.as_array()) {
+      for (auto&& item : *array) {
+        if (auto* inner = item.as_table()) rename_files(*inner, new_names);
+      }
+    }
+    if (key.str() != "file" || !node.is_string()) continue;
+    const auto found = new_names.find(node.as_string()->get());
+    if (found != new_names.end()) node.as_string()->get() = found->second;
+  }
+}
+
+/// A name of its own in `folder`: that of the object with another ending.
+fs::path place_of(const std::string& name, const fs::path& folder, const char* ending) {
+  return (fs::absolute(folder) / fs::path(name).filename()).replace_extension(ending).lexically_normal();
+}
+
+}  // namespace
+
+ProjectMemory absolute_names(const ProjectMemory& memory, const fs::path& path) {
+  const fs::path folder = fs::absolute(path).parent_path();
+  return {absolute_keys(memory.models, folder), absolute_keys(memory.rays, folder),
+          absolute_keys(memory.targets, folder)};
+}
+
+Project save_memory(const Project& project, const fs::path& folder) {
+  Project saved = project;
+  saved.memory = {};
+  std::map<std::string, std::string> new_names;
+  const auto add = [&](const std::string& name, const fs::path& file) {
+    new_names[name] = file.string();
+    saved.inputs.push_back(file);
+  };
+  for (const auto& [name, model] : project.memory.models) {
+    const fs::path file = place_of(name, folder, ".nfl");
+    save_source_model(file, *model);
+    add(name, file);
+  }
+  for (const auto& [name, rays] : project.memory.rays) {
+    const fs::path file = place_of(name, folder, ".tm25ray");
+    write_ray_set(file, *rays, "tm25");
+    add(name, file);
+  }
+  for (const auto& [name, target] : project.memory.targets) {
+    const bool lumen = target->unit == FluxUnit::lumen;
+    const fs::path file = place_of(name, folder, lumen ? ".ldt" : ".ies");
+    write_photometric_file(file, {*target, {}}, lumen ? PhotometricFormat::ldt : PhotometricFormat::ies_2019,
+                           {.digits = 17});
+    add(name, file);
+  }
+  rename_files(toml_tables(saved), new_names);
+  return saved;
+}
+
+}  // namespace lucerna
