@@ -25,6 +25,9 @@ a `UsageError` for a bad call, `Interrupted` where the caller's `Progress` asked
 `Error::option()` names the field of the call's options that would help, where there is one.
 A broken invariant of the library's own is a `std::logic_error`: please report it.
 
+`error_parts` takes the text apart: file, place, found, expected. In Python these are attributes of
+`lucerna.InputError`; errors of files are an `OSError` there, an interrupt a `KeyboardInterrupt`.
+
 | cause | `ErrorCause::` | meaning |
 |---|---|---|
 )";
