@@ -4,12 +4,18 @@ import importlib.util
 import sys
 
 NEEDED = ("numpy", "scipy", "matplotlib", "xarray", "pytest", "hypothesis")
-missing = [name for name in NEEDED if importlib.util.find_spec(name) is None]
-if missing:
-    print("skipped: these packages are missing (scripts/packages-python.txt):", *missing)
-    sys.exit(77)
 
-import pytest  # noqa: E402
 
-code = pytest.main(["-q", "-p", "no:cacheprovider", *sys.argv[1:]])
-sys.exit(0 if code == pytest.ExitCode.NO_TESTS_COLLECTED else code)
+def main():
+    missing = [name for name in NEEDED if importlib.util.find_spec(name) is None]
+    if missing:
+        print("skipped: these packages are missing (scripts/packages-python.txt):", *missing)
+        return 77
+    import pytest
+
+    code = pytest.main(["-q", "-p", "no:cacheprovider", *sys.argv[1:]])
+    return 0 if code == pytest.ExitCode.NO_TESTS_COLLECTED else code
+
+
+if __name__ == "__main__":  # processes that a test spawns import this file
+    sys.exit(main())
