@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a trace at its default noise prints, against a long trace with other random numbers: peak, beam and
-// field angles, angles of the written grid within three of their stated errors.
+// field angles, angles of the written grid within three of their stated errors. At the end a table of all
+// projects; brackets have the long trace.
 // Usage: bench_figures [TRUTH_RAYS [NOISE]] PROJECT.toml...   (default 300e6 0.01; bench/figures/*.toml)
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -65,10 +68,20 @@ Within within(const BinnedIntensity& test, const BinnedIntensity& truth) {
   return w;
 }
 
-void print(const char* what, const std::optional<Estimate>& test, const std::optional<Estimate>& truth) {
+/// A project's column of the table: what a row is about, and its cell.
+struct Column {
+  std::string name;
+  std::vector<std::pair<std::string, std::string>> cells;
+};
+
+std::string text_of(const std::optional<Estimate>& e) { return e ? estimate_text(*e) : "not determined"; }
+
+/// Prints the two side by side, and adds them to the column.
+void compare(const std::string& what, const std::optional<Estimate>& test,
+             const std::optional<Estimate>& truth, Column& column) {
+  column.cells.emplace_back(what, fmt::format("{} ({})", text_of(test), text_of(truth)));
   if (!test || !truth) {
-    fmt::print("  {:<18} {} / {}\n", what, test ? estimate_text(*test) : "not determined",
-               truth ? estimate_text(*truth) : "not determined");
+    fmt::print("  {:<18} {} / {}\n", what, text_of(test), text_of(truth));
     return;
   }
   fmt::print("  {:<18} {:>22} | {:>22} | {:+8.3f} {:+7.3f} % {:+5.1f} errors\n", what, estimate_text(*test),
@@ -76,7 +89,7 @@ void print(const char* what, const std::optional<Estimate>& test, const std::opt
              (test->mean - truth->mean) / std::hypot(test->standard_error, truth->standard_error));
 }
 
-void run(const std::string& file, std::uint64_t truth_rays, double noise) {
+Column run(const std::string& file, std::uint64_t truth_rays, double noise) {
   const Project project = read_project(file);
   NoiseTrace traced;
   const double trace_s =
@@ -86,9 +99,16 @@ void run(const std::string& file, std::uint64_t truth_rays, double noise) {
   fmt::print("{}: {:.1f} M rays, node noise {:.2f} %, trace {:.2f} s, figures {:.2f} s, {} threads {}\n",
              file, 1e-6 * static_cast<double>(traced.result.last_ray), 100.0 * traced.noise, trace_s, look_s,
              ThreadLimit::current(), to_string(traced.end));
+  Column column{std::filesystem::path(file).stem().string(), {}};
+  column.cells.emplace_back(
+      "rays, noise of the worst angle",
+      fmt::format("{:.1f} M, {:.2f} %", 1e-6 * static_cast<double>(traced.result.last_ray),
+                  100.0 * traced.noise));
+  column.cells.emplace_back("seconds of the trace, of the figures",
+                            fmt::format("{:.1f}, {:.1f}", trace_s, look_s));
   truth = look_at(trace(project.scene, {.last_ray = truth_rays, .seed = 4242}), project.scene);
   if (test.metrics.peak && truth.metrics.peak) {
-    print("peak", test.metrics.peak->cd, truth.metrics.peak->cd);
+    compare("peak, cd", test.metrics.peak->cd, truth.metrics.peak->cd, column);
     fmt::print(
         "  radius {:.2f} / {:.2f} deg, half width {:.2f} / {:.2f}; apart {:.2f} +- {:.2f} deg; max node "
         "{:.5g} / {:.5g}\n",
@@ -99,20 +119,42 @@ void run(const std::string& file, std::uint64_t truth_rays, double noise) {
         *std::max_element(test.nodes.distribution.cd.begin(), test.nodes.distribution.cd.end()),
         *std::max_element(truth.nodes.distribution.cd.begin(), truth.nodes.distribution.cd.end()));
   }
-  print("axis", test.metrics.axis_cd, truth.metrics.axis_cd);
+  compare("axis, cd", test.metrics.axis_cd, truth.metrics.axis_cd, column);
   for (std::size_t i = 0; i < test.metrics.planes.size(); ++i) {
     const auto &a = test.metrics.planes[i], &b = truth.metrics.planes[i];
     if (a.c_deg != 0.0 && a.c_deg != 90.0) continue;
-    print(fmt::format("C{:g} beam", a.c_deg).c_str(), a.beam_of_maximum, b.beam_of_maximum);
-    print(fmt::format("C{:g} field", a.c_deg).c_str(), a.field_of_maximum, b.field_of_maximum);
+    compare(fmt::format("beam C{:g}, deg", a.c_deg), a.beam_of_maximum, b.beam_of_maximum, column);
+    compare(fmt::format("field C{:g}, deg", a.c_deg), a.field_of_maximum, b.field_of_maximum, column);
   }
-  print("cut-off", test.metrics.cut_off_deg, truth.metrics.cut_off_deg);
-  print("flux 0-30", test.metrics.flux_0_30, truth.metrics.flux_0_30);
+  compare("flux 0-30, lm", test.metrics.flux_0_30, truth.metrics.flux_0_30, column);
   const Within w = within(test.nodes, truth.nodes);
   fmt::print(
       "  nodes within 3 errors: {:.2f} % of all, {:.2f} % of those above 1 % of the peak (2: {:.1f} %); "
       "largest difference {:.2f} % of the peak\n",
       100.0 * w.all_3, 100.0 * w.bright_3, 100.0 * w.bright_2, 100.0 * w.worst_share);
+  column.cells.emplace_back("angles of the grid within 3 stated errors, all",
+                            fmt::format("{:.2f} %", 100.0 * w.all_3));
+  column.cells.emplace_back("above 1 % of the peak", fmt::format("{:.2f} %", 100.0 * w.bright_3));
+  return column;
+}
+
+/// The columns side by side; rows are those of the first.
+void print_table(const std::vector<Column>& columns) {
+  if (columns.empty()) return;
+  std::string head = "| |", rule = "|---|";
+  for (const Column& c : columns) {
+    head += fmt::format(" {} |", c.name);
+    rule += "---|";
+  }
+  fmt::print("\n{}\n{}\n", head, rule);
+  for (const auto& [what, first] : columns.front().cells) {
+    fmt::print("| {} |", what);
+    for (const Column& c : columns) {
+      const auto cell = std::ranges::find(c.cells, what, &std::pair<std::string, std::string>::first);
+      fmt::print(" {} |", cell != c.cells.end() ? cell->second : "-");
+    }
+    fmt::print("\n");
+  }
 }
 
 }  // namespace
@@ -127,5 +169,8 @@ int main(int argc, char** argv) {
     if (error != std::errc() || end != word.data() + word.size()) break;
     ++at;
   }
-  for (; at < argc; ++at) run(argv[at], static_cast<std::uint64_t>(numbers[0]), numbers[1]);
+  std::vector<Column> columns;
+  for (; at < argc; ++at)
+    columns.push_back(run(argv[at], static_cast<std::uint64_t>(numbers[0]), numbers[1]));
+  print_table(columns);
 }
