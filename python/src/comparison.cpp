@@ -105,7 +105,7 @@ py::object compare_files(const fs::path& reference, const fs::path& test, double
   const FileComparison found = watched(
       callback, OnInterrupt::raise, [&](Watch& watch) { return compare(reference, test, options, watch); });
   if (found.rays) return views_record(found.rays->views);
-  const py::object out = distributions_record(found.light->distributions, true);
+  py::object out = distributions_record(found.light->distributions, true);
   out["boxes"] = design_error(found.light->boxes);
   return out;
 }

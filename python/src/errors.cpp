@@ -64,6 +64,7 @@ void set_error(const Error& error) {
 }  // namespace
 
 void translate_errors() {
+  // pybind11 wants a function of this type. NOLINTNEXTLINE(performance-unnecessary-value-param)
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);
