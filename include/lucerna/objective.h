@@ -64,11 +64,14 @@ class Objective {
   Objective(Project project, const std::string& name, const ObjectiveOptions& options = {},
             Progress& progress = no_progress());
   ~Objective();
+  /// Takes the problem of another, which may then only be destroyed or assigned to.
   Objective(Objective&&) noexcept;
+  /// Likewise.
   Objective& operator=(Objective&&) noexcept;
 
-  /// How many parameters and residuals there are.
+  /// How many parameters there are.
   std::size_t parameter_count() const;
+  /// How many residuals there are.
   std::size_t residual_count() const;
   /// The parameters of the mirror to begin with.
   std::vector<double> start() const;
