@@ -269,7 +269,7 @@ struct NoiseTrace {
                                      std::optional<TraceResult> from = std::nullopt,
                                      Progress& progress = no_progress());
 
-/// Traces the rays of `options` in pieces of 2^22: what `trace` returns, to the bit, but when progress asks
+/// Traces the rays of `options` in pieces of 2^24: what `trace` returns, to the bit, but when progress asks
 /// to stop, the pieces that were whole, with `end` saying so. With `from` its seed and sequence are gone on
 /// with from its last ray to `options.last_ray`. Throws as `trace`, and UsageError where `from` reaches
 /// beyond the last ray or begins at another one; Interrupted only where nothing was whole.

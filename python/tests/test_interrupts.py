@@ -30,14 +30,14 @@ def test_a_trace_returns_what_is_there(lamp, ctrl_c):
 
     def after_the_first_piece(step):
         steps.append(step)
-        if step.done > 2**22 and len(steps) < 10**6:
+        if step.done > 2**24 and len(steps) < 10**6:
             steps.extend([step] * 10**6)
             os.kill(os.getpid(), signal.SIGINT)
 
     part = lamp.trace(rays=1e10, callback=after_the_first_piece)
     assert part.interrupted and part.end == "interrupted"
     first, last = part.rays
-    assert first == 0 and last >= 2**22 and last % 2**22 == 0
+    assert first == 0 and last >= 2**24 and last % 2**24 == 0
     assert part["far"].flux.value > 0
     again = lamp.trace(rays=last + 1000, resume=part)
     assert again.rays == (0, last + 1000) and not again.interrupted

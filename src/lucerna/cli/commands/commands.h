@@ -8,7 +8,7 @@
 namespace lucerna::cli {
 
 /// Adds one command to the program. Its callback does the work when the command line names it; it may set
-/// `exit_code` (to 1: a check failed) and throws lucerna::Error otherwise.
+/// `exit_code` (to 1: a check failed, to 3: interrupted) and throws lucerna::Error otherwise.
 using AddCommand = void (*)(CLI::App& app, Session& session, int& exit_code);
 
 void add_init(CLI::App& app, Session& session, int& exit_code);

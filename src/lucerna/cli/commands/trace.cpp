@@ -52,23 +52,11 @@ std::optional<TraceResult> stored_trace(const TraceArguments& a, const TraceOrig
   return std::move(stored.result);
 }
 
-/// `--rays`: exactly those, with what is there already.
-NoiseTrace trace_given_rays(const Scene& scene, const TraceOptions& options, std::optional<TraceResult> from,
-                            Session& session) {
-  if (from) {
-    if (options.first_ray != from->first_ray || *options.last_ray < from->last_ray) {
-      throw UsageError(
-          fmt::format("--resume: rays {}:{} are there already", from->first_ray, from->last_ray));
-    }
-  }
-  return trace_rays(scene, options, std::move(from), session.progress());
-}
-
 NoiseTrace run_rays(const TraceArguments& a, const Scene& scene, const TraceOptions& options,
                     const TraceOrigin& origin, Session& session) {
   std::optional<TraceResult> from = stored_trace(a, origin);
   if (a.resume && !from) session.note(fmt::format("{}: no trace yet, starting anew", a.output));
-  if (!a.rays.empty()) return trace_given_rays(scene, options, std::move(from), session);
+  if (!a.rays.empty()) return trace_rays(scene, options, std::move(from), session.progress());
   NoiseGoal goal;
   goal.noise = parse_share(a.noise);
   goal.max_seconds = parse_number(a.time);
@@ -80,7 +68,7 @@ NoiseTrace run_rays(const TraceArguments& a, const Scene& scene, const TraceOpti
   return traced;
 }
 
-void run_trace(const TraceArguments& a, Session& session) {
+void run_trace(const TraceArguments& a, Session& session, int& exit_code) {
   session.start();
   const TraceOptions options = trace_options(a);
   const Project project = session.timed("read", [&] { return read_project(a.project, session.progress()); });
@@ -90,7 +78,10 @@ void run_trace(const TraceArguments& a, Session& session) {
   const TraceOrigin origin = session.timed("hash", [&] { return trace_origin(project); });
   const NoiseTrace traced =
       session.timed("trace", [&] { return run_rays(a, project.scene, options, origin, session); });
-  if (traced.end == NoiseEnd::interrupted) throw Interrupted();
+  if (traced.end == NoiseEnd::interrupted) {
+    session.note("interrupted: these are the rays that were traced; --resume goes on with them");
+    exit_code = 3;
+  }
   const TraceResult& result = traced.result;
   const TraceMetrics figures = session.timed("figures", [&] { return trace_metrics(result, project.scene); });
   const auto names = write_trace_output(a.output, result, origin, figures, session);
@@ -108,7 +99,7 @@ void run_trace(const TraceArguments& a, Session& session) {
 
 }  // namespace
 
-void add_trace(CLI::App& app, Session& session, int&) {
+void add_trace(CLI::App& app, Session& session, int& exit_code) {
   Command command(app, "trace", "Trace a project's sources through its mirrors");
   auto arguments = std::make_shared<TraceArguments>();
   TraceArguments& a = *arguments;
@@ -126,7 +117,7 @@ void add_trace(CLI::App& app, Session& session, int&) {
   command.flag("--force", session.force, "Write into a folder that is not empty");
   session.add_json(command);
   session.add_common(command);
-  command.on_run([arguments, &session] { run_trace(*arguments, session); });
+  command.on_run([arguments, &session, &exit_code] { run_trace(*arguments, session, exit_code); });
 }
 
 }  // namespace lucerna::cli

@@ -2,7 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "lucerna/core/io/file.h"
 #include "tests/support/run_program.h"
@@ -48,6 +51,25 @@ TEST(TraceNoiseCli, TracesUntilTheNoiseIsReachedAndSaysEveryError) {
   EXPECT_THAT(printed.out, HasSubstr("% of the peak at the noisiest angle"));
   EXPECT_EQ(test::slurp(dir / "again" / "far.ldt"), test::slurp(dir / "out" / "far.ldt"));
   EXPECT_EQ(run_lucerna(dir.path(), "trace p.toml -o bad --noise 0").exit_code, 2);
+}
+
+TEST(TraceNoiseCli, CtrlCWritesWhatWasWhole) {
+  const test::TempDir dir;
+  write_file(dir / "p.toml", kSpot);
+  const std::string trace = "'" + test::program().string() + "' trace p.toml --noise 0.0001% --time 600 ";
+  // Longer and longer, until one piece at least was whole.
+  for (int seconds = 2; seconds <= 64 && !std::filesystem::exists(dir / "out" / "trace.sums"); seconds *= 2) {
+    const std::string command = "cd '" + dir.path().string() + "' && " + "timeout --preserve-status -s INT " +
+                                std::to_string(seconds) + " " + trace + "-o out --force > log 2>&1";
+    const int status = std::system(command.c_str());
+    ASSERT_TRUE(WIFEXITED(status));
+    ASSERT_EQ(WEXITSTATUS(status), 3) << test::slurp(dir / "log");
+  }
+  EXPECT_THAT(test::slurp(dir / "log"), HasSubstr("interrupted"));
+  const Json json = Json::parse(test::slurp(dir / "out" / "result.json"));
+  const auto rays = std::to_string(json["ledger"]["rays"].get<std::uint64_t>());
+  ASSERT_EQ(run_lucerna(dir.path(), "trace p.toml -o same --rays " + rays).exit_code, 0);
+  EXPECT_EQ(test::slurp(dir / "out" / "trace.sums"), test::slurp(dir / "same" / "trace.sums"));
 }
 
 TEST(TraceNoiseCli, ATraceThatWasTooNoisyGoesOnToTheSameBits) {

@@ -39,14 +39,14 @@ DesignStep design_step(const FitRecord& r) {
 }
 
 /// What users of the library get of it.
-DesignedMirror designed_mirror(std::shared_ptr<const DesignRecord> record) {
+DesignedMirror designed_mirror(std::shared_ptr<const DesignRecord> record, TraceResult traced) {
   const DesignProblem& problem = record->problem;
   const DesignResult& result = record->result;
   DesignedMirror out{static_cast<const DesignFindings&>(result),
                      result.shape.reflector(),
                      problem.world_from_mirror,
                      project_text(with_shape(problem, result.shape)),
-                     record->traced,
+                     std::move(traced),
                      record->figures.trace,
                      record->figures.tolerances};
   for (const FitRecord& step : result.history) out.history.push_back(design_step(step));
@@ -107,8 +107,9 @@ DesignedMirror design(Project project, const std::string& name, const DesignSett
   }
   DesignRun run = run_design(problem, options, progress, observer);
   return designed_mirror(std::make_shared<const DesignRecord>(DesignRecord{
-      std::move(problem), std::move(run.result), std::move(run.figures), std::move(run.trace.result),
-      settings.seed, options.accelerator ? options.accelerator->name() : "cpu"}));
+                             std::move(problem), std::move(run.result), std::move(run.figures), settings.seed,
+                             options.accelerator ? options.accelerator->name() : "cpu"}),
+                         std::move(run.trace.result));
 }
 
 DesignedMirror design(const std::filesystem::path& project, const DesignSettings& settings,

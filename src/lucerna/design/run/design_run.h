@@ -22,12 +22,11 @@ struct DesignRun {
   double design_s = 0.0, trace_s = 0.0, figures_s = 0.0, tolerances_s = 0.0;
 };
 
-/// What `write_design` needs of a design beside what it returns.
+/// What `write_design` needs beside the rest of a DesignedMirror.
 struct DesignRecord {
   DesignProblem problem;
   DesignResult result;
   DesignMetrics figures;
-  TraceResult traced;
   std::uint64_t seed = 1;
   /// "cpu", or the name of the device that evaluated.
   std::string device;

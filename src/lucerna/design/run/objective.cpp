@@ -83,12 +83,9 @@ struct Objective::Problem {
     ResidualRows rows;
     residual = std::sqrt(fit.limits(at, rays.size(), jacobian != nullptr ? &rows : nullptr));
     if (jacobian == nullptr || !(residual > 0.0)) return;
-    NormalEquations sums;
-    const auto n = static_cast<Eigen::Index>(at.parameter_count());
-    sums.gradient = Eigen::VectorXd::Zero(n);
-    sums.hessian = Eigen::MatrixXd::Zero(n, n);
-    rows.add_to(sums);
-    jacobian->row(jacobian->rows() - 1) = sums.gradient.transpose() / residual;
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(at.parameter_count()));
+    rows.add_gradient_to(gradient);
+    jacobian->row(jacobian->rows() - 1) = gradient.transpose() / residual;
   }
 };
 

@@ -3,10 +3,17 @@
 
 namespace lucerna {
 
+void ResidualRows::add_gradient_to(Eigen::VectorXd& gradient) const {
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    for (std::size_t i = rows_[row].first; i < end(row); ++i)
+      gradient[index_[i]] += rows_[row].residual * slope_[i];
+  }
+}
+
 void ResidualRows::add_to(NormalEquations& equations) const {
+  add_gradient_to(equations.gradient);
   for (std::size_t row = 0; row < rows_.size(); ++row) {
     for (std::size_t i = rows_[row].first; i < end(row); ++i) {
-      equations.gradient[index_[i]] += rows_[row].residual * slope_[i];
       for (std::size_t k = rows_[row].first; k < end(row); ++k) {
         if (index_[k] <= index_[i]) equations.hessian(index_[i], index_[k]) += slope_[i] * slope_[k];
       }
@@ -25,12 +32,12 @@ void ResidualRows::add_to(SparseEquations& equations) const {
   };
   std::size_t joining = 0;
   for (std::size_t row = 0; row < rows_.size(); ++row) joining += is_product(row) ? 1 : 0;
+  add_gradient_to(equations.gradient);
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t row = 0; row < rows_.size(); ++row) {
     Eigen::VectorXd dense;
     if (joining <= kMaxProducts && is_product(row)) dense = Eigen::VectorXd::Zero(n);
     for (std::size_t i = rows_[row].first; i < end(row); ++i) {
-      equations.gradient[index_[i]] += rows_[row].residual * slope_[i];
       if (dense.size() > 0) {
         dense[index_[i]] += slope_[i];
       } else {

@@ -22,6 +22,8 @@ class ResidualRows {
   /// Adds gradients and Gauss-Newton Hessians; the cost is not touched.
   void add_to(NormalEquations& equations) const;
   void add_to(SparseEquations& equations) const;
+  /// Adds J^T r: half the derivative of the cost.
+  void add_gradient_to(Eigen::VectorXd& gradient) const;
 
  private:
   struct Row {

@@ -208,9 +208,9 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
   std::vector<PointPeak> tops;
   for (const Found& f : found) {
     tops.push_back(precise_peak(intensity, f.direction));
-    tops.back().cd.standard_error = std::hypot(tops.back().cd.standard_error, rest_cd);
     if (tops.back().cd.mean > best.cd.mean) best = tops.back();
   }
+  best.cd.standard_error = std::hypot(best.cd.standard_error, rest_cd);
   best.search_error_cd = search_error(std::move(tops));
   return best;
 }

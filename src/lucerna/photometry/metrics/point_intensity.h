@@ -29,7 +29,7 @@ struct PointPeak {
 };
 
 /// The brightest direction by pattern search about the brightest eight of `starts`, within about `radius_deg`
-/// of them. The value is from samples that the search has not seen. At least one start. Some 300 short
+/// of them. The value is from samples that the search has not seen. At least one start. Some 400 short
 /// estimates.
 PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direction> starts,
                           double radius_deg);
@@ -39,7 +39,7 @@ using DirectionAt = std::function<Direction(double angle_deg)>;
 
 /// The size of an arc on which the intensity is `threshold` or more, and falls below it at both ends. The
 /// ends are looked for from two `window_deg` outside of `near` (kernels widen an arc, or shift it) to its
-/// middle; nothing where they are not there. Some 60 short estimates.
+/// middle; nothing where they are not there. 60 to 150 short estimates.
 std::optional<Estimate> exact_arc_deg(const PointIntensity& intensity, const DirectionAt& at,
                                       const CircleArc& near, double window_deg, const Estimate& threshold);
 

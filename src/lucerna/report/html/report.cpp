@@ -47,11 +47,11 @@ std::vector<std::string> write_design(const std::filesystem::path& folder, const
   const DesignRecord& record = *mirror.record;
   DesignProblem problem = record.problem;
   problem.project = save_memory(problem.project, folder);
-  nlohmann::ordered_json json = run_json({.inputs = problem.project.inputs}, record.seed, record.traced.isa);
+  nlohmann::ordered_json json = run_json({.inputs = problem.project.inputs}, record.seed, mirror.traced.isa);
   json["device"] = record.device;
   json.update(design_json(problem, record.result, record.figures));
   json.update(trace_json(record.figures.trace));
-  return write_design_files(folder, problem, record.result, record.figures, record.traced,
+  return write_design_files(folder, problem, record.result, record.figures, mirror.traced,
                             history_csv(record.result.history), json);
 }
 

@@ -16,7 +16,7 @@ Scene disk() {
   return scene;
 }
 
-constexpr std::uint64_t kPiece = std::uint64_t{1} << 22;
+constexpr std::uint64_t kPiece = std::uint64_t{1} << 24;
 
 /// Asks to stop once a ray beyond `after` was reported.
 class StopAfter final : public Progress {

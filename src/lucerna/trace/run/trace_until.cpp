@@ -14,7 +14,10 @@ namespace {
 
 constexpr std::uint64_t kFirstRound = std::uint64_t{1} << 20;
 /// What is traced between two looks at the clock: a fraction of a second on two cores.
-constexpr std::uint64_t kPiece = std::uint64_t{1} << 22;
+constexpr std::uint64_t kTimedPiece = std::uint64_t{1} << 22;
+/// What is lost at most when a trace without a clock is stopped: seconds on two cores, beside which setting
+/// up the tracer and adding the bins cost nothing.
+constexpr std::uint64_t kUntimedPiece = std::uint64_t{1} << 24;
 
 /// The peak's error is asked for last: it takes longer to find, and most rounds end before.
 bool good_enough(const TraceResult& result, double node_noise, double goal) {
@@ -54,14 +57,14 @@ class PieceProgress final : public Progress {
 /// Adds rays up to `last` to a trace, in pieces; stops early when `stop()`. False if progress stopped it,
 /// which is an error where there is no whole piece.
 template <class Stop>
-bool trace_on_to(std::uint64_t last, const Scene& scene, TraceOptions options,
+bool trace_on_to(std::uint64_t last, std::uint64_t piece_rays, const Scene& scene, TraceOptions options,
                  std::optional<TraceResult>& sum, const Stop& stop, Progress& progress) {
   std::uint64_t at = sum ? sum->last_ray : options.first_ray;
   // Rays that an accelerator keeps cannot be added to others.
   const bool whole = options.device != TraceDevice::cpu && !scene.ray_detectors.empty();
   while (at < last) {
     options.first_ray = at;
-    options.last_ray = at = whole ? last : std::min(last, at + kPiece);
+    options.last_ray = at = whole ? last : std::min(last, at + piece_rays);
     const std::uint64_t begin = sum ? sum->first_ray : options.first_ray;
     PieceProgress of_all(progress, options.first_ray - begin, last - begin);
     try {
@@ -75,6 +78,8 @@ bool trace_on_to(std::uint64_t last, const Scene& scene, TraceOptions options,
   }
   return true;
 }
+
+bool never() { return false; }
 
 }  // namespace
 
@@ -111,8 +116,7 @@ NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const No
   std::optional<TraceResult> sum = std::move(from);
   if (scene.far_fields.empty() || !scene.ray_detectors.empty() || has_finite_source(scene)) {
     if (!scene.far_fields.empty() && scene.ray_detectors.empty()) out.end = NoiseEnd::finite_source;
-    const auto never = [] { return false; };
-    if (!trace_on_to(once, scene, run, sum, never, progress)) out.end = NoiseEnd::interrupted;
+    if (!trace_on_to(once, kUntimedPiece, scene, run, sum, never, progress)) out.end = NoiseEnd::interrupted;
   } else {
     const auto late = [&] {
       return std::chrono::duration<double>(Clock::now() - start).count() >= goal.max_seconds;
@@ -135,7 +139,7 @@ NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const No
       if (sum && late()) break;
       const std::uint64_t first = sum ? sum->first_ray : run.first_ray;
       const std::uint64_t last = first + std::min({round, goal.max_rays, kMaxRays - first});
-      if (trace_on_to(last, scene, run, sum, late, progress)) continue;
+      if (trace_on_to(last, kTimedPiece, scene, run, sum, late, progress)) continue;
       out.end = NoiseEnd::interrupted;
       break;
     }
@@ -162,8 +166,7 @@ NoiseTrace trace_rays(const Scene& scene, const TraceOptions& options, std::opti
   }
   NoiseTrace out{{}, std::nan(""), NoiseEnd::rays};
   std::optional<TraceResult> sum = std::move(from);
-  const auto never = [] { return false; };
-  if (!trace_on_to(last, scene, run, sum, never, progress)) out.end = NoiseEnd::interrupted;
+  if (!trace_on_to(last, kUntimedPiece, scene, run, sum, never, progress)) out.end = NoiseEnd::interrupted;
   if (!sum) throw UsageError(fmt::format("no rays to trace: {}:{}", run.first_ray, last), "rays");
   out.result = std::move(*sum);
   return out;
