@@ -129,10 +129,10 @@ void print_line(const std::string& name, const Validated& j, const std::string& 
   fmt::print(
       "{:28} 12/24/48 {} {} {} %  noise {:.2f}  in {:.4f}  outside {:.4f} (direct {:.4f}) error {:6.2f}  "
       "bound "
-      "{:.2f}  {}  validated in {:.1f} s, {:.1f} M rays\n",
+      "{:.2f}  {}  validated in {:.1f} s (mesh {:.2f} s, {} triangles), {:.1f} M rays\n",
       name, of(e.c12), of(e.c24), of(e.c48), 100.0 * e.c48.floor, e.in_rectangle.mean, e.outside_share.mean,
       e.outside_direct.mean, 100.0 * e.outside.excess, 100.0 * j.bound.error, end, j.validation.seconds,
-      1e-6 * static_cast<double>(j.validation.rays));
+      j.validation.mesh_s, j.validation.triangles, 1e-6 * static_cast<double>(j.validation.rays));
   std::fflush(stdout);
 }
 
@@ -319,7 +319,7 @@ DesignProblem hidden_problem(const Run& run, const Suite& s, const DesignShape& 
   Scene scene_of_truth = p.project.scene;
   scene_of_truth.reflectors.front().reflector = truth.reflector();
   p.target.distribution =
-      traced_table(scene_of_truth, s.revolution ? 2.0 : 0.5, s.revolution ? 0.25 : 0.5, run.target_rays);
+      traced_table(scene_of_truth, s.revolution ? 360.0 : 0.5, s.revolution ? 0.1 : 0.5, run.target_rays);
   return p;
 }
 

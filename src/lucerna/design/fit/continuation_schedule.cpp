@@ -112,7 +112,7 @@ std::size_t ContinuationSchedule::first_with(int intervals) const {
 std::size_t ContinuationSchedule::entry(InitialKnots entry) const {
   if (entry == InitialKnots::few_knots) return search_stages_;
   if (entry == InitialKnots::own_knots) return first_with(kKnotsOfGuesses);
-  return stages_.size() - 1;
+  return std::min(screening() + 1, stages_.size() - 1);
 }
 
 ContinuationSchedule ContinuationSchedule::up_to_screening() const {

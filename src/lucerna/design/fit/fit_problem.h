@@ -12,7 +12,7 @@
 namespace lucerna {
 
 /// Where in the schedule an initial guess begins: with few knots, which leave the details to what the light
-/// asks for; with most of its own; or in the last stage, where it is known to be near.
+/// asks for; with most of its own; or after the screening stage, where it is known to be near.
 enum class InitialKnots { few_knots, own_knots, end };
 
 /// A shape that a fit may begin with.

@@ -18,6 +18,10 @@ constexpr double kEndShare = 0.1;
 /// A restart has failed unless it brings the error down to this share of the incumbent's.
 constexpr double kGain = 0.97;
 
+/// A restart that ends a stage above so many times the incumbent's error does not go on to the next, which
+/// has more rays.
+constexpr double kHopeless = 1.5;
+
 /// A shape above so many times the noise at the screening stage, but with less than this error, is near the
 /// target in what seems another basin: the search looks for the right one, with so many restarts before the
 /// fit goes on and so many in a restart of the fit.
@@ -80,7 +84,11 @@ FitBranch RestartPolicy::after(std::size_t stage, const FitSnapshot& now, Restar
 }
 
 FitBranch RestartPolicy::next_after(std::size_t stage, const FitSnapshot& now, RestartState& state) const {
-  return stage + 1 < schedule_.size() ? FitBranch{} : after_last(now, state);
+  if (stage + 1 == schedule_.size()) return after_last(now, state);
+  const bool compared = stage > schedule_.screening() && state.best.exists();
+  if (!compared || now.cost <= kHopeless * kHopeless * state.best.cost) return {};
+  ++state.failed;
+  return restart(state);
 }
 
 FitBranch RestartPolicy::after_screening(std::size_t stage, const FitSnapshot& now,

@@ -11,6 +11,7 @@
 #include "lucerna/core/parallel/counted_progress.h"
 #include "lucerna/core/parallel/parallel.h"
 #include "lucerna/design/validation/mesh_hits.h"
+#include "lucerna/design/validation/mesh_tolerance.h"
 #include "lucerna/trace/engines/body_tracer.h"
 #include "lucerna/trace/engines/ray_numbering.h"
 #include "lucerna/trace/tally/flux_quanta.h"
@@ -37,14 +38,14 @@ double seconds_since(Clock::time_point begin) {
 /// are small. Mirrors come first, then the bodies.
 class Meshes {
  public:
-  Meshes(const Scene& scene, const ValidationOptions& options)
+  Meshes(const Scene& scene, const TargetRectangle& rectangle, const ValidationOptions& options)
       : scene_(scene),
         mirrors_(scene.reflectors.size()),
-        tolerance_(options.tolerance),
         local_from_world_(scene.reflectors.empty() ? Frame()
                                                    : scene.reflectors[0].world_from_reflector.inverse()) {
     for (const PlacedReflector& mirror : scene.reflectors) {
-      CadTolerance tolerance = options.tolerance;
+      CadTolerance tolerance =
+          options.tolerance.value_or(mesh_tolerance(rectangle, mirror.world_from_reflector.origin_mm()));
       Body body;
       body.mesh = std::make_shared<const Mesh>(cad_mesh_within(mirror.reflector, tolerance));
       body.world_from_body = local_from_world_ * mirror.world_from_reflector;
@@ -115,7 +116,8 @@ class Meshes {
 
   const Scene& scene_;
   std::size_t mirrors_, triangles_ = 0;
-  CadTolerance tolerance_;
+  /// The coarsest of the mirrors'.
+  CadTolerance tolerance_{.chord_mm = 0.0, .slope_deg = 0.0};
   Frame local_from_world_;
   double size_mm_ = 1.0;
   bool embree_ = false;
@@ -381,7 +383,7 @@ Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const
   // A seed of its own: neither the fit's rays nor those of the trace that follows a design.
   const RayNumbering numbering(scene.sources, requested.seed ^ 0x56414C4944415445ull);
   const ValidationOptions options = limited(requested, scene, numbering);
-  const Meshes meshes(scene, options);
+  const Meshes meshes(scene, boxes.rectangle(), options);
   Validation out{.triangles = meshes.triangles(), .tolerance = meshes.tolerance(), .embree = meshes.embree()};
   std::vector<BoxSums>& replicates = out.replicates;
   replicates.resize(kReplicates);

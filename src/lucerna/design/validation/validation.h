@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,9 +26,9 @@ struct ValidationOptions {
   std::uint64_t max_rays = std::uint64_t{1} << 27;
   /// Time only stops: fewer rays are traced than the above where they would take longer (at least 2^18).
   double max_s = std::numeric_limits<double>::infinity();
-  /// Of the mesh. Flat facets blur the light by about their angle to the surface; what these do to the error
-  /// is in docs/benchmarks/design.md.
-  CadTolerance tolerance = kOpticalTolerance;
+  /// Of the meshes; absent: mesh_tolerance of the boxes. Flat facets blur the light by about their angle to
+  /// the surface; what these do to the error is in docs/benchmarks/design.md.
+  std::optional<CadTolerance> tolerance;
   HitEngine engine = HitEngine::best;
   /// Zones whose light is counted too; then rays are also doubled until every zone's verdict is clear. Null:
   /// none. Must outlive the call.

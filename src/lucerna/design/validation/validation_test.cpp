@@ -48,7 +48,7 @@ ValidationOptions rays(std::uint64_t n, std::uint64_t seed = 1) {
   ValidationOptions o;
   o.seed = seed;
   o.min_rays = o.max_rays = n;
-  o.tolerance.slope_deg = 1.0;  // a quick mesh, where only the way counts
+  o.tolerance = CadTolerance{.slope_deg = 1.0};  // a quick mesh, where only the way counts
   return o;
 }
 
@@ -83,7 +83,7 @@ TEST(ValidationStatistical, SeesTheLightOfTheLibrarysOwnTracer) {
   const ErrorBoxes b = boxes();
   constexpr std::uint64_t kRays = 1 << 20;
   ValidationOptions fine = rays(kRays);
-  fine.tolerance.slope_deg = 0.3;
+  fine.tolerance = kOpticalTolerance;
   const Validation v = validate(bumpy_scene(), b, lambert(b), TargetMode::shape, fine);
   const auto own = traced(bumpy_scene(), b, kRays);
   // The tracer's mean as target: what is left is the noise of both. |v - own|^2 less both noises has a
@@ -136,7 +136,7 @@ TEST(Validation, OwnTreeAndEmbreeAgree) {
   if (!has_embree()) GTEST_SKIP() << "built without Embree";
   const ErrorBoxes b = boxes();
   ValidationOptions options = rays(1 << 16);
-  options.tolerance.slope_deg = 1.0;
+  options.tolerance = CadTolerance{.slope_deg = 1.0};
   options.engine = HitEngine::embree;
   const Validation a = validate(bumpy_scene(), b, lambert(b), TargetMode::shape, options);
   options.engine = HitEngine::tree;

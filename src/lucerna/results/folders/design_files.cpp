@@ -7,6 +7,7 @@
 #include "lucerna/cad.h"
 #include "lucerna/core/io/file.h"
 #include "lucerna/design/search/checkpoint.h"
+#include "lucerna/design/validation/mesh_tolerance.h"
 #include "lucerna/project/schema/project_tables.h"
 #include "lucerna/results/folders/trace_files.h"
 
@@ -60,11 +61,11 @@ DesignProgress read_design_progress(const std::filesystem::path& folder) {
 }
 
 std::vector<std::string> write_reflector_files(const std::filesystem::path& folder,
-                                               const Reflector& reflector) {
-  CadTolerance optical = kOpticalTolerance, tolerance;
+                                               const Reflector& reflector, CadTolerance stl) {
+  CadTolerance tolerance;
   const auto profile = cad_profile(reflector, tolerance);
   write_file(folder / "reflector.step", step_text(reflector));
-  write_file(folder / "reflector.stl", stl_bytes(cad_mesh_within(reflector, optical)));
+  write_file(folder / "reflector.stl", stl_bytes(cad_mesh_within(reflector, stl)));
   write_file(folder / "reflector.obj", obj_text(cad_mesh_within(reflector, tolerance)));
   write_file(folder / "reflector.dxf", dxf_profile(profile));
   write_file(folder / "reflector.csv", csv_profile(profile));
@@ -77,7 +78,10 @@ std::vector<std::string> write_design_files(const std::filesystem::path& folder,
                                             const nlohmann::ordered_json& json) {
   write_design_progress(folder, problem, result.shape, history, result.checkpoint);
   std::vector<std::string> names{"reflector.toml"};
-  for (std::string& name : write_reflector_files(folder, result.shape.reflector()))
+  // The mesh that the error was found with.
+  const CadTolerance stl =
+      mesh_tolerance(target_rectangle(problem.target), problem.world_from_mirror.origin_mm());
+  for (std::string& name : write_reflector_files(folder, result.shape.reflector(), stl))
     names.push_back(std::move(name));
   names.insert(names.end(), {"history.csv", "checkpoint"});
   if (figures.tolerances) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lucerna/cad.h"
 #include "lucerna/results/json/design_json.h"
 
 namespace lucerna {
@@ -23,9 +24,9 @@ struct DesignProgress {
 DesignProgress read_design_progress(const std::filesystem::path& folder);
 
 /// Writes the mirror as `reflector.step .stl .obj .dxf .csv` (in its own frame, mm; tolerances as
-/// `cad_mesh_within`). Throws InputError as the exporters do. Returns the names.
+/// `cad_mesh_within`, the STL file's is `stl`). Throws InputError as the exporters do. Returns the names.
 std::vector<std::string> write_reflector_files(const std::filesystem::path& folder,
-                                               const Reflector& reflector);
+                                               const Reflector& reflector, CadTolerance stl);
 
 /// Writes all that `design` leaves in a folder: the above, `tolerances.csv` where there
 /// was a sweep, and what `trace` leaves, `result.json` last. `traced` is the trace that `figures` are of.
