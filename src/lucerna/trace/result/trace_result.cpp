@@ -8,6 +8,7 @@
 #include "lucerna/core/math/units.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace/detectors/far_field_grid.h"
+#include "lucerna/trace/result/addition.h"
 #include "lucerna/trace/result/far_field_counts.h"
 #include "lucerna/trace/result/jackknifed_quanta.h"
 #include "lucerna/trace/tally/wide_sums.h"
@@ -182,9 +183,8 @@ PlaneImage luminance(const TraceResult& result, std::size_t index) {
                [&](std::size_t cell) { return 1.0 / etendue_mm2sr(d, cell); });
 }
 
-namespace {
-
-/// The kept rays of two ranges, the first of which ends where the other begins, in the order of one run.
+/// The kept rays of two traces in the order of one run. Where both have rays of one block and source, those
+/// of `first` come first.
 void join_rays(const TraceResult& first, const TraceResult& second, TraceResult& sum) {
   sum.out_rays = RayBlock();
   sum.out_runs.clear();
@@ -210,6 +210,8 @@ void join_rays(const TraceResult& first, const TraceResult& second, TraceResult&
   }
 }
 
+namespace {
+
 /// What is wrong with the ranges of two traces; nothing if they meet end to end.
 std::string range_fault(const TraceResult& a, const TraceResult& b) {
   const TraceResult &low = a.first_ray <= b.first_ray ? a : b, &high = &low == &a ? b : a;
@@ -221,7 +223,7 @@ std::string range_fault(const TraceResult& a, const TraceResult& b) {
 
 }  // namespace
 
-TraceResult merge(const TraceResult& a, const TraceResult& b) {
+void check_addable(const TraceResult& a, const TraceResult& b) {
   const auto need = [](bool same, const char* what) {
     if (!same)
       throw InputError(fmt::format("the traces cannot be added: they differ in {}", what),
@@ -239,13 +241,17 @@ TraceResult merge(const TraceResult& a, const TraceResult& b) {
   need(a.far_fields == b.far_fields && a.planes == b.planes && a.luminances == b.luminances &&
            a.ray_detectors == b.ray_detectors && a.replicates.size() == b.replicates.size(),
        "detectors");
-  if (const std::string fault = range_fault(a, b); !fault.empty())
-    throw InputError("the traces cannot be added: " + fault, ErrorCause::mismatch);
   for (const TraceResult* part : {&a, &b}) {
     if (part->out_runs.empty() && !part->out_rays.empty())
       throw InputError("the traces cannot be added: an accelerator keeps rays without their numbers",
                        ErrorCause::mismatch);
   }
+}
+
+TraceResult merge(const TraceResult& a, const TraceResult& b) {
+  check_addable(a, b);
+  if (const std::string fault = range_fault(a, b); !fault.empty())
+    throw InputError("the traces cannot be added: " + fault, ErrorCause::mismatch);
   const bool a_first = a.first_ray < b.first_ray;
   TraceResult sum = a;
   sum.first_ray = std::min(a.first_ray, b.first_ray);
