@@ -3,7 +3,7 @@
 # but for check-quick and format.
 # CUDA=1 compiles the CUDA back end too (needs nvcc).
 .PHONY: reference demo test check check-quick fuzz bench benchmarks test-report test-slow gallery docs program packages \
-        install deb api format clean python test-python
+        install deb api format clean python test-python test-mpi
 
 BUILD := build/release
 
@@ -32,6 +32,16 @@ python: program
 
 test-python: python
 	ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -L python
+
+# lucerna-mpi under both MPI libraries of Debian: the bits of one process, signals, kills. Some minutes each.
+test-mpi: packages
+	scripts/packages.sh scripts/packages-mpi.txt
+	for mpi in openmpi mpich; do \
+	  cmake -S . -B build/$$mpi -G Ninja -DCMAKE_BUILD_TYPE=Release -DLUCERNA_CUDA=OFF -DLUCERNA_PYTHON=OFF -DLUCERNA_MPI=ON \
+	    -DMPI_CXX_COMPILER=/usr/bin/mpicxx.$$mpi -DMPIEXEC_EXECUTABLE=/usr/bin/mpiexec.$$mpi && \
+	  cmake --build build/$$mpi --target mpi_tests && \
+	  ctest --test-dir build/$$mpi --output-on-failure --no-tests=error -L mpi || exit 1; \
+	done
 
 # make fuzz MINUTES=10: so many minutes for all targets together.
 MINUTES ?= 10
@@ -91,7 +101,7 @@ install: program
 
 # Debian packages in build/deb/packages; make check STAGES=deb installs, uses and removes them in a bare Debian.
 deb: packages
-	scripts/packages.sh scripts/packages-deb.txt scripts/packages-python.txt
+	scripts/packages.sh scripts/packages-deb.txt scripts/packages-python.txt scripts/packages-mpi.txt
 	cmake --preset deb
 	cmake --build --preset deb
 	cpack --config build/deb/CPackConfig.cmake

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Debian packages (make deb): lucerna (the program), liblucerna0.2 (the shared library), liblucerna-dev (all that compiling needs),
-# python3-lucerna (the Python module).
+# python3-lucerna (the Python module), lucerna-mpi (the program for many machines).
 # LUCERNA_DEBIAN adds what Debian wants in each package's folder of documents; only the preset `deb` sets it.
 option(LUCERNA_DEBIAN "Install copyright and changelogs as Debian packages carry them" OFF)
 if(NOT LUCERNA_DEBIAN)
@@ -27,6 +27,9 @@ set(debian_components "program|lucerna" "library|${library_package}" "developmen
 if(LUCERNA_PYTHON)
   list(APPEND debian_components "python|python3-lucerna")
 endif()
+if(LUCERNA_MPI)
+  list(APPEND debian_components "mpi|lucerna-mpi")
+endif()
 foreach(pair IN LISTS debian_components)
   string(REPLACE "|" ";" pair "${pair}")
   list(GET pair 0 component)
@@ -47,6 +50,9 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
 set(CPACK_COMPONENTS_ALL program library development)
 if(LUCERNA_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
+if(LUCERNA_MPI)
+  list(APPEND CPACK_COMPONENTS_ALL mpi)
 endif()
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -97,6 +103,17 @@ distribution.
 This package has what programs in C++20 that use the library are
 compiled with: headers, the static library, files for CMake and
 pkg-config.")
+
+set(CPACK_DEBIAN_MPI_PACKAGE_NAME lucerna-mpi)
+set(CPACK_DEBIAN_MPI_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_MPI_PACKAGE_SUGGESTS "lucerna, openmpi-bin, slurm-client")
+set(CPACK_DEBIAN_MPI_DESCRIPTION "illumination design: light tracing on many machines
+Lucerna makes small models of the ray files of light sources, traces
+light through mirrors, and designs the mirror that gives a wanted light
+distribution.
+
+This package has lucerna-mpi, which traces on many machines with MPI and
+writes the files of one process to the byte.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-lucerna)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

@@ -69,9 +69,10 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Whether a file belongs to the program: its folder, or one of its folders, is `cli`.
+/// Whether a file, named from the repository, belongs to a program: one of its folders is `cli` or `mpi`.
 bool of_the_program(const fs::path& file) {
-  return std::any_of(file.begin(), file.end(), [](const fs::path& part) { return part == "cli"; });
+  return std::any_of(file.begin(), file.end(),
+                     [](const fs::path& part) { return part == "cli" || part == "mpi"; });
 }
 
 TEST(Messages, OfTheLibraryNameNoOptionOfTheProgram) {
@@ -79,7 +80,9 @@ TEST(Messages, OfTheLibraryNameNoOptionOfTheProgram) {
   for (const auto& entry : fs::recursive_directory_iterator(lucerna::test::source_dir() / "src")) {
     const fs::path& file = entry.path();
     if (file.extension() != ".h" && file.extension() != ".cpp" && file.extension() != ".cu") continue;
-    if (of_the_program(file) || file.stem().string().ends_with("_test")) continue;
+    if (of_the_program(file.lexically_relative(lucerna::test::source_dir())) ||
+        file.stem().string().ends_with("_test"))
+      continue;
     for (const std::string& text : literals_of(text_of(file))) {
       ++literals;
       // Pages that the program writes or prints are for its users: the template of a project, reference

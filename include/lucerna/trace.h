@@ -32,7 +32,8 @@ inline constexpr std::size_t kMirrorLosses = 2;
 /// Number of LostCause values.
 inline constexpr std::size_t kLostCauses = 2;
 
-/// The sums of the rays of one replicate, in units.
+/// The sums of the rays of one replicate. Flux is in whole units of 2^-26 of a mean ray, so that sums do not
+/// depend on the order of adding.
 struct Tally {
   /// Rays that were traced.
   std::uint64_t rays = 0;
@@ -50,8 +51,12 @@ struct Tally {
   std::vector<std::uint64_t> lost_rays;
   /// One array of bins per detector: far fields, planes, luminances.
   std::vector<std::vector<std::int64_t>> bins;
+  /// Empty while every sum of flux above is below 2^62, about 2^36 rays. Beyond that each is two lanes, high
+  /// * 2^32 + low with low from 0 to 2^32 - 1: the low ones stand above, the high ones here, in the order
+  /// emitted, out_direct, out_reflected, absorbed, lost, bins.
+  std::vector<std::int64_t> high;
 
-  /// Adds another tally of the same scene.
+  /// Adds another tally of the same scene. Exact for any number of rays that a trace may have.
   Tally& operator+=(const Tally& other);
   friend bool operator==(const Tally&, const Tally&) = default;
 };
@@ -195,7 +200,7 @@ struct TraceOptions {
   /// The rays to trace, [first_ray, last_ray); by default all from 0 to the scene's own count
   /// (`default_ray_count`).
   std::uint64_t first_ray = 0;
-  /// One past the last ray; absent: `default_ray_count`.
+  /// One past the last ray, at most 2^53; absent: `default_ray_count`.
   std::optional<std::uint64_t> last_ray;
   /// Of the random numbers.
   std::uint64_t seed = 1;
@@ -232,8 +237,8 @@ struct NoiseGoal {
   double noise = 0.01;
   /// Seconds after which it stops with what it has; at least one round is traced.
   double max_seconds = 60.0;
-  /// Rays after which it stops; at most 2^34, which is the default.
-  std::uint64_t max_rays = std::uint64_t{1} << 34;
+  /// Rays after which it stops; at most 2^53, which is the default.
+  std::uint64_t max_rays = std::uint64_t{1} << 53;
 };
 
 /// Why it stopped.

@@ -32,10 +32,6 @@ std::string hint(const Error& error, const CLI::App& app, ExitCode code) {
   return known ? "; see " + name : "";
 }
 
-int report_error(const Error& error, const CLI::App& app, ExitCode code) {
-  return report_error((error.what() + hint(error, app, code)).c_str(), code);
-}
-
 }  // namespace
 
 void set_up(CLI::App& app, Session& session, int& exit_code) {
@@ -46,28 +42,36 @@ void set_up(CLI::App& app, Session& session, int& exit_code) {
   for (const AddCommand add : kCommands) add(app, session, exit_code);
 }
 
-int run(int argc, char** argv) {
-  CLI::App app;
-  Session session;
-  session.set_command(argc, argv);
-  int exit_code = kDone;
-  set_up(app, session, exit_code);
+int parse_and_run(CLI::App& app, int argc, char** argv, const int& exit_code, bool tell) {
+  const auto failed = [tell](const std::string& text, ExitCode code) {
+    return tell ? report_error(text.c_str(), code) : code;
+  };
   try {
     app.parse(argc, argv);
     return exit_code;
   } catch (const CLI::ParseError& e) {
+    if (!tell) return e.get_exit_code() == 0 ? kDone : kUsage;
     return app.exit(e) == 0 ? kDone : kUsage;
   } catch (const UsageError& e) {
-    return report_error(e, app, kUsage);
+    return failed(e.what() + hint(e, app, kUsage), kUsage);
   } catch (const Interrupted&) {
-    return report_error("interrupted", kInterrupted);
+    return failed("interrupted", kInterrupted);
   } catch (const Error& e) {
-    return report_error(e, app, kBadInput);
+    return failed(e.what() + hint(e, app, kBadInput), kBadInput);
   } catch (const std::bad_alloc&) {
-    return report_error("out of memory", kBadInput);
+    return failed("out of memory", kBadInput);
   } catch (const std::exception& e) {
-    return report_error(e.what(), kBadInput);
+    return failed(e.what(), kBadInput);
   }
+}
+
+int run(int argc, char** argv) {
+  CLI::App app;
+  Session session;
+  session.set_command("lucerna", argc, argv);
+  int exit_code = kDone;
+  set_up(app, session, exit_code);
+  return parse_and_run(app, argc, argv, exit_code);
 }
 
 }  // namespace lucerna::cli

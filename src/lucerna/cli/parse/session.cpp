@@ -101,8 +101,10 @@ void Session::add_seconds(const std::string& phase, double seconds) {
   }
 }
 
-void Session::set_command(int argc, char** argv) {
-  run_.command = "lucerna";
+void Session::stop_on_signal(int signal) { std::signal(signal, on_stop_signal); }
+
+void Session::set_command(const std::string& program, int argc, char** argv) {
+  run_.command = program;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     const bool plain =

@@ -55,6 +55,8 @@ class Session {
 
   /// To be called once all options are parsed and before any work.
   void start();
+  /// One more signal, beside SIGINT and SIGTERM, that asks the work to stop.
+  static void stop_on_signal(int signal);
   Progress& progress() { return *progress_; }
   /// A line of progress on a terminal, redrawn a few times a second.
   void show(const std::string& line) { progress_->show(line); }
@@ -70,7 +72,7 @@ class Session {
   void add_seconds(const std::string& phase, double seconds);
 
   /// Notes the words of the command line, for the record.
-  void set_command(int argc, char** argv);
+  void set_command(const std::string& program, int argc, char** argv);
 
   /// What the run was made of, so far.
   const RunRecord& record() const { return run_; }

@@ -2,6 +2,7 @@
 #include "lucerna/rayset/data/subset.h"
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/core/math/int128.h"
 #include "lucerna/random.h"
 
 namespace lucerna {
@@ -16,8 +17,7 @@ RaySubset::RaySubset(std::uint64_t available, std::uint64_t count, std::uint64_t
 std::uint64_t RaySubset::begin(std::uint64_t k) const {
   // k * available / count without overflow: files are far below 2^64 bytes, but the product need not be.
   const std::uint64_t whole = available_ / count_, rest = available_ % count_;
-  __extension__ using Wide = unsigned __int128;
-  return k * whole + static_cast<std::uint64_t>(Wide{k} * rest / count_);
+  return k * whole + static_cast<std::uint64_t>(UInt128{k} * rest / count_);
 }
 
 std::uint64_t RaySubset::at(std::uint64_t k) const {
@@ -31,8 +31,7 @@ void RaySubset::select(const RayBlock& block, std::uint64_t first, RayBlock& out
   if (count_ == 0 || block.empty()) return;
   if (out.empty()) out.extra.resize(block.extra.size());
   // The first stretch that may hold a ray of the block: begin(k + 1) > first.
-  __extension__ using Wide = unsigned __int128;
-  auto k = static_cast<std::uint64_t>(Wide{first} * count_ / available_);
+  auto k = static_cast<std::uint64_t>(UInt128{first} * count_ / available_);
   while (k > 0 && begin(k) > first) --k;
   for (; k < count_; ++k) {
     const std::uint64_t ray = at(k);

@@ -3,6 +3,7 @@
 
 #include <zstd.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <concepts>
@@ -15,6 +16,7 @@
 #include "lucerna/trace/detectors/far_field_grid.h"
 #include "lucerna/trace/engines/ray_numbering.h"
 #include "lucerna/trace/tally/flux_quanta.h"
+#include "lucerna/trace/tally/wide_sums.h"
 #include "lucerna/trace_file.h"
 #include "lucerna/version.h"
 
@@ -25,9 +27,10 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::string_view kMagic = "LUCTRACE";
-constexpr std::uint32_t kVersion = 3;
-/// Sixteen replicates of three detectors of 16 M cells of 8 bytes: more than any project needs.
-constexpr std::uint64_t kMaxTraceBytes = std::uint64_t{6} << 30;
+/// The second has sums of two lanes (Tally::high); it is written only where a sum needs them.
+constexpr std::uint32_t kVersion = 3, kTwoLanesVersion = 4;
+/// Sixteen replicates of three detectors of 16 M cells of two lanes of 8 bytes: more than any project needs.
+constexpr std::uint64_t kMaxTraceBytes = std::uint64_t{12} << 30;
 
 /// One description of the layout serves both ways: `archive(x)` writes or reads x.
 class Writer {
@@ -174,8 +177,9 @@ void describe_rays(Archive& archive, Result& r) {
     each(archive, *column, 4, archive);
 }
 
+/// `two_lanes`: the version that has Tally::high.
 template <class Archive, class Replicates>
-void describe_sums(Archive& archive, Replicates& replicates) {
+void describe_sums(Archive& archive, Replicates& replicates, bool two_lanes) {
   each(archive, replicates, 64, [&](auto& t) {
     archive(t.rays);
     archive(t.reflections);
@@ -186,6 +190,7 @@ void describe_sums(Archive& archive, Replicates& replicates) {
     each(archive, t.lost, 8, archive);
     each(archive, t.lost_rays, 8, archive);
     each(archive, t.bins, 8, [&](auto& bins) { each(archive, bins, 8, archive); });
+    if (two_lanes) each(archive, t.high, 8, archive);
   });
 }
 
@@ -210,6 +215,19 @@ void check_rays(const TraceResult& r, const Reader& reader) {
     reader.fail("kept rays that do not fit their runs");
 }
 
+/// Are the lanes of the sums such that many tallies add without overflow?
+bool can_be_added(const Tally& t) {
+  if (t.high.empty()) return fits_one_lane(t);
+  // 2^53 rays of 2^26 units are 2^79, of which the low lane has 32 bits.
+  constexpr std::int64_t kMostHigh = std::int64_t{1} << 50;
+  bool good = t.high.size() == sum_count(t);
+  for (const std::int64_t high : t.high) good = good && high >= -kMostHigh && high <= kMostHigh;
+  for_each_sum(t, [&](const std::int64_t* low, std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) good = good && low[i] >= 0 && low[i] < std::int64_t{1} << 32;
+  });
+  return good;
+}
+
 /// What merging and the figures rely on.
 void check_shape(const TraceResult& r, const Reader& reader) {
   if (!(r.first_ray < r.last_ray && r.last_ray <= kMaxRays))
@@ -222,15 +240,15 @@ void check_shape(const TraceResult& r, const Reader& reader) {
   for (const PlaneDetector& d : r.planes) check(d), sizes.push_back(d.grid.size());
   for (const LuminanceDetector& d : r.luminances) check(d), sizes.push_back(d.grid.size());
   std::uint64_t rays = 0;
-  std::int64_t emitted = 0;
+  Int128 emitted = 0;
   for (const Tally& t : r.replicates) {
     bool good = t.absorbed.size() == kMirrorLosses + r.body_names.size() && t.lost.size() == kLostCauses &&
-                t.lost_rays.size() == kLostCauses && t.bins.size() == sizes.size() && t.rays <= kMaxRays &&
-                t.emitted >= 0 && t.emitted <= INT64_MAX / static_cast<std::int64_t>(2 * kReplicates);
+                t.lost_rays.size() == kLostCauses && t.bins.size() == sizes.size() && t.rays <= kMaxRays;
     for (std::size_t d = 0; good && d < sizes.size(); ++d) good = t.bins[d].size() == sizes[d];
+    good = good && can_be_added(t) && emitted_of(t) >= 0;
     if (!good) reader.fail("sums that do not fit the detectors");
     rays += t.rays;
-    emitted += t.emitted;
+    emitted += emitted_of(t);
   }
   if (rays != r.last_ray - r.first_ray || emitted <= 0)
     reader.fail("{} rays in {}:{}", rays, r.first_ray, r.last_ray);
@@ -243,14 +261,17 @@ std::string encode_trace(const TraceResult& result, const TraceOrigin& origin) {
   Writer writer;
   describe_origin(writer, origin);
   describe_head(writer, result);
-  describe_sums(writer, result.replicates);
+  const bool two_lanes = std::any_of(result.replicates.begin(), result.replicates.end(),
+                                     [](const Tally& t) { return !t.high.empty(); });
+  describe_sums(writer, result.replicates, two_lanes);
   describe_rays(writer, result);
   std::string packed(ZSTD_compressBound(writer.bytes.size()), '\0');
   const std::size_t n =
       ZSTD_compress(packed.data(), packed.size(), writer.bytes.data(), writer.bytes.size(), 3);
   LUCERNA_CHECK(ZSTD_isError(n) == 0, "{}", ZSTD_getErrorName(n));
   std::string bytes(kMagic);
-  bytes.append(reinterpret_cast<const char*>(&kVersion), sizeof kVersion);
+  const std::uint32_t version = two_lanes ? kTwoLanesVersion : kVersion;
+  bytes.append(reinterpret_cast<const char*>(&version), sizeof version);
   bytes.append(packed, 0, n);
   return bytes;
 }
@@ -270,9 +291,9 @@ StoredTrace decode_trace(std::string_view bytes, const std::string& name) {
     throw_input_error(name, "byte 0", "this is no trace of Lucerna's");
   std::uint32_t version = 0;
   std::memcpy(&version, bytes.data() + kMagic.size(), sizeof version);
-  if (version != kVersion) {
-    throw_input_error(name, fmt::format("byte {}", kMagic.size()), "version {}, expected {}", version,
-                      kVersion);
+  if (version != kVersion && version != kTwoLanesVersion) {
+    throw_input_error(name, fmt::format("byte {}", kMagic.size()), "version {}, expected {} or {}", version,
+                      kVersion, kTwoLanesVersion);
   }
   const std::string_view frame = bytes.substr(kHead);
   const unsigned long long size = ZSTD_getFrameContentSize(frame.data(), frame.size());
@@ -291,10 +312,11 @@ StoredTrace decode_trace(std::string_view bytes, const std::string& name) {
   StoredTrace stored;
   describe_origin(reader, stored.origin);
   describe_head(reader, stored.result);
-  describe_sums(reader, stored.result.replicates);
+  describe_sums(reader, stored.result.replicates, version == kTwoLanesVersion);
   describe_rays(reader, stored.result);
   if (!reader.at_end()) reader.fail("more bytes than the sums need");
   check_shape(stored.result, reader);
+  for (Tally& t : stored.result.replicates) settle_lanes(t);
   return stored;
 }
 

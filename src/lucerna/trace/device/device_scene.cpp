@@ -271,6 +271,20 @@ void DeviceScene::add_detectors(const Scene& scene) {
   accelerator_.wait(0);
 }
 
+namespace {
+
+/// No light, with room for the same causes and detectors.
+Tally empty_like(const Tally& t) {
+  Tally empty;
+  empty.absorbed.resize(t.absorbed.size());
+  empty.lost.resize(t.lost.size());
+  empty.lost_rays.resize(t.lost_rays.size());
+  for (const auto& bins : t.bins) empty.bins.emplace_back(bins.size());
+  return empty;
+}
+
+}  // namespace
+
 void DeviceScene::add_to(std::vector<Tally>& replicates) const {
   std::vector<std::int64_t> bins(kReplicates * view_.bins_per_replicate);
   std::vector<std::int64_t> ledger(kReplicates * kLedgerSums);
@@ -281,7 +295,7 @@ void DeviceScene::add_to(std::vector<Tally>& replicates) const {
   accelerator_.wait(0);
   const auto index = [](auto cause) { return static_cast<std::size_t>(cause); };
   for (std::size_t r = 0; r < kReplicates; ++r) {
-    Tally& t = replicates[r];
+    Tally t = empty_like(replicates[r]);
     const std::int64_t* const sum = &ledger[r * kLedgerSums];
     t.rays += static_cast<std::uint64_t>(sum[kRays]);
     t.reflections += static_cast<std::uint64_t>(sum[kReflections]);
@@ -301,6 +315,7 @@ void DeviceScene::add_to(std::vector<Tally>& replicates) const {
     for (std::size_t d = 0; d < bin_counts_.size(); ++d) {
       for (std::size_t i = 0; i < bin_counts_[d]; ++i) t.bins[d][i] += *bin++;
     }
+    replicates[r] += t;
   }
 }
 

@@ -200,15 +200,15 @@ class Chunk {
   std::uint32_t blocks_ = 0;
 };
 
-/// Traces a range on one accelerator; adds its sums to `replicates`.
-ChunkRays trace_range(Accelerator& accelerator, const Scene& scene, const RayNumbering& numbering,
-                      const TraceOptions& options, const Range& range, std::vector<Tally>& replicates,
-                      SharedProgress& progress) {
+/// Traces a range on one accelerator, of no more rays than sums of one lane hold; adds its sums to
+/// `replicates` and its rays to `retained`.
+void trace_range(Accelerator& accelerator, const Scene& scene, const RayNumbering& numbering,
+                 const TraceOptions& options, const Range& range, std::vector<Tally>& replicates,
+                 ChunkRays& retained, SharedProgress& progress) {
   const DeviceScene device(accelerator, scene, numbering, options);
   std::vector<Chunk> chunks;
   for (int s = 0; s < Accelerator::kStreams; ++s)
     chunks.emplace_back(accelerator, s, scene, device, numbering);
-  ChunkRays retained;
   std::size_t next = 0;
   const std::uint64_t step = accelerator.chunk_blocks();
   for (std::uint64_t block = range.first_block(); block < range.end_block(); block += step) {
@@ -220,7 +220,6 @@ ChunkRays trace_range(Accelerator& accelerator, const Scene& scene, const RayNum
   for (std::size_t i = 0; i < chunks.size(); ++i)
     progress.add(chunks[next++ % chunks.size()].finish(retained));
   device.add_to(replicates);
-  return retained;
 }
 
 }  // namespace
@@ -243,7 +242,12 @@ void run_on(const Accelerators& accelerators, const Scene& scene, const RayNumbe
     const Range range{border(i), i + 1 == n ? result.last_ray : border(i + 1)};
     if (range.first >= range.last) return;
     try {
-      retained[i] = trace_range(*accelerators[i], scene, numbering, options, range, replicates[i], shared);
+      // A device's sums have one lane: they are fetched before they could be full.
+      for (std::uint64_t at = range.first, end = 0; at < range.last; at = end) {
+        end = std::min(range.last, (at / kBlockRays + kMaxRaysOfOneLane / kBlockRays) * kBlockRays);
+        trace_range(*accelerators[i], scene, numbering, options, {at, end}, replicates[i], retained[i],
+                    shared);
+      }
     } catch (...) {
       failed[i] = std::current_exception();
     }

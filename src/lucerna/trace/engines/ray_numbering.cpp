@@ -6,6 +6,7 @@
 #include <queue>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/core/math/int128.h"
 
 namespace lucerna {
 
@@ -13,8 +14,7 @@ namespace {
 
 /// round(n * part / whole), exact.
 std::uint64_t rounded_share(std::uint64_t n, std::uint64_t part, std::uint64_t whole) {
-  __extension__ using Wide = unsigned __int128;
-  return static_cast<std::uint64_t>((static_cast<Wide>(n) * part + whole / 2) / whole);
+  return static_cast<std::uint64_t>((static_cast<UInt128>(n) * part + whole / 2) / whole);
 }
 
 std::vector<std::uint64_t> source_shares(const std::vector<PlacedSource>& sources) {

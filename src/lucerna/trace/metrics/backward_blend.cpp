@@ -12,6 +12,7 @@
 #include "lucerna/core/parallel/parallel.h"
 #include "lucerna/estimate.h"
 #include "lucerna/random.h"
+#include "lucerna/trace/tally/wide_sums.h"
 
 namespace lucerna {
 
@@ -105,7 +106,7 @@ ImageBlend blend(const TraceResult& result, const PlaneImage& counted, double on
       std::clamp((result.last_ray - result.first_ray) / kForwardRays, kMinRays, kMaxBackwardRays);
   const std::uint64_t samples = std::bit_floor(rays / (seeds * count));
   const auto used = std::count_if(result.replicates.begin(), result.replicates.end(),
-                                  [](const Tally& t) { return t.emitted > 0; });
+                                  [](const Tally& t) { return emitted_of(t) > 0; });
   if (samples == 0 || static_cast<std::size_t>(used) != seeds) return {};
   ImageBlend out{0.0, JackknifedFlux(count, seeds)};
   const auto fill = [&](std::span<const std::size_t> cells) {

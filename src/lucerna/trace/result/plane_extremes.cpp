@@ -52,9 +52,8 @@ struct ImageBins {
   }
   /// Of all cells together.
   Jackknife mean() const {
-    const JackknifedFlux all = jackknifed_flux(result, 1, [&](const Tally& t, std::size_t) {
-      return std::accumulate(t.bins[bins].begin(), t.bins[bins].end(), std::int64_t{0});
-    });
+    const JackknifedFlux all =
+        jackknifed_flux(result, 1, [&](const Tally& t, std::size_t) { return all_bins_of(t, bins); });
     const std::vector<double>& value = image.counted.value;
     const auto cells = static_cast<double>(value.size());
     const double sum = std::accumulate(value.begin(), value.end(), 0.0), w = image.blend.weight;
@@ -69,7 +68,7 @@ struct ImageBins {
 LargestFigure extreme(const ImageBins& b, double sign, std::size_t& cell) {
   const std::vector<std::size_t> cells = contenders(b.image.average, sign);
   const JackknifedFlux flux = jackknifed_flux(
-      b.result, cells.size(), [&](const Tally& t, std::size_t k) { return t.bins[b.bins][cells[k]]; });
+      b.result, cells.size(), [&](const Tally& t, std::size_t k) { return bin_of(t, b.bins, cells[k]); });
   std::vector<Jackknife> values;
   for (std::size_t k = 0; k < cells.size(); ++k) values.push_back(b.value(flux, k, cells[k], sign));
   LargestFigure max = largest(values);

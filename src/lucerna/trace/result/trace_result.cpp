@@ -2,15 +2,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/math/units.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace/detectors/far_field_grid.h"
+#include "lucerna/trace/result/addition.h"
 #include "lucerna/trace/result/far_field_counts.h"
 #include "lucerna/trace/result/jackknifed_quanta.h"
+#include "lucerna/trace/tally/wide_sums.h"
 
 namespace lucerna {
 
@@ -23,7 +24,7 @@ class Normaliser {
  public:
   explicit Normaliser(const TraceResult& result) : result_(result) {
     for (const Tally& t : result.replicates) {
-      emitted_ += static_cast<double>(t.emitted);
+      emitted_ += static_cast<double>(emitted_of(t));
       if (t.rays > 0) ++used_;
     }
     LUCERNA_CHECK(emitted_ > 0.0, "nothing was emitted");
@@ -32,14 +33,14 @@ class Normaliser {
 
   template <class Pick>
   Estimate estimate(const Pick& pick) const {
-    std::int64_t sum = 0;
+    Int128 sum = 0;
     for (const Tally& t : result_.replicates) sum += pick(t);
     const double ratio = static_cast<double>(sum) / emitted_;
     Estimate e{static_cast<double>(sum) * per_unit_, std::numeric_limits<double>::quiet_NaN()};
     if (used_ < 2) return e;
     double squares = 0.0;
     for (const Tally& t : result_.replicates) {
-      const double d = static_cast<double>(pick(t)) - ratio * static_cast<double>(t.emitted);
+      const double d = static_cast<double>(pick(t)) - ratio * static_cast<double>(emitted_of(t));
       squares += d * d;
     }
     e.standard_error = std::sqrt(squares * used_ / (used_ - 1.0)) * per_unit_;
@@ -75,19 +76,22 @@ Ledger ledger(const TraceResult& result) {
   Ledger l;
   l.unit = result.unit;
   l.emitted = result.flux;
-  l.out_direct = normal.estimate([](const Tally& t) { return t.out_direct; });
-  l.out_reflected = normal.estimate([](const Tally& t) { return t.out_reflected; });
+  l.out_direct = normal.estimate(out_direct_of);
+  l.out_reflected = normal.estimate(out_reflected_of);
   std::vector<std::string> absorbed{"mirror", "mirror_back"};
   absorbed.insert(absorbed.end(), result.body_names.begin(), result.body_names.end());
   for (std::size_t i = 0; i < absorbed.size(); ++i) {
-    l.absorbed.emplace_back(absorbed[i], normal.estimate([i](const Tally& t) { return t.absorbed[i]; }));
+    l.absorbed.emplace_back(absorbed[i], normal.estimate([i](const Tally& t) { return absorbed_of(t, i); }));
   }
   const char* const lost[kLostCauses] = {"bounce_limit", "not_finite"};
   for (std::size_t i = 0; i < kLostCauses; ++i) {
-    l.lost.emplace_back(lost[i], normal.estimate([i](const Tally& t) { return t.lost[i]; }));
+    l.lost.emplace_back(lost[i], normal.estimate([i](const Tally& t) { return lost_of(t, i); }));
   }
-  l.all_lost = normal.estimate(
-      [](const Tally& t) { return std::accumulate(t.lost.begin(), t.lost.end(), std::int64_t{0}); });
+  l.all_lost = normal.estimate([](const Tally& t) {
+    Int128 sum = 0;
+    for (std::size_t i = 0; i < t.lost.size(); ++i) sum += lost_of(t, i);
+    return sum;
+  });
   for (const Tally& t : result.replicates) {
     l.rays += t.rays;
     for (const std::uint64_t n : t.lost_rays) l.lost_rays += n;
@@ -116,11 +120,10 @@ CountedFarField far_field(const TraceResult& result, std::size_t index) {
                       const std::size_t g = cell % gammas * parts.gamma, half = parts.gamma / 2;
                       const std::size_t from = g < half ? 0 : g - half,
                                         to = std::min(g + half + 1, counted.gamma_count());
-                      std::int64_t sum = 0;
+                      Int128 sum = 0;
                       for (std::size_t k = 0; k < parts.c; ++k) {
-                        const std::int64_t* const plane =
-                            t.bins[index].data() + (c + k) % counted.c_count() * counted.gamma_count();
-                        sum += std::accumulate(plane + from, plane + to, std::int64_t{0});
+                        const std::size_t plane = (c + k) % counted.c_count() * counted.gamma_count();
+                        for (std::size_t i = plane + from; i < plane + to; ++i) sum += bin_of(t, index, i);
                       }
                       return sum;
                     })};
@@ -135,13 +138,13 @@ CountedSphere counted_far_field(const TraceResult& result, std::size_t index) {
   const FarFieldGrid counted = FarFieldGrid::counted(result.far_fields[index]);
   return CountedSphere(counted.c_count(), counted.gamma_count(), result.unit,
                        jackknifed_flux(result, counted.size(), [&](const Tally& t, std::size_t cell) {
-                         return t.bins[index][cell];
+                         return bin_of(t, index, cell);
                        }));
 }
 
 Jackknife out_flux(const TraceResult& result) {
   return jackknifed_flux(result, 1,
-                         [](const Tally& t, std::size_t) { return t.out_direct + t.out_reflected; })
+                         [](const Tally& t, std::size_t) { return out_direct_of(t) + out_reflected_of(t); })
       .at(0);
 }
 
@@ -155,14 +158,12 @@ PlaneImage image(const TraceResult& result, std::size_t bins, const std::string&
                {}};
   const Normaliser normal(result);
   for (std::size_t k = 0; k < grid.size(); ++k) {
-    const Estimate e = normal.estimate([&](const Tally& t) { return t.bins[bins][k]; });
+    const Estimate e = normal.estimate([&](const Tally& t) { return bin_of(t, bins, k); });
     const double factor = kSquareMillimetresPerSquareMetre * per_flux(k);
     i.value[k] = e.mean * factor;
     i.standard_error[k] = e.standard_error * factor;
   }
-  i.flux = normal.estimate([&](const Tally& t) {
-    return std::accumulate(t.bins[bins].begin(), t.bins[bins].end(), std::int64_t{0});
-  });
+  i.flux = normal.estimate([&](const Tally& t) { return all_bins_of(t, bins); });
   return i;
 }
 
@@ -182,9 +183,8 @@ PlaneImage luminance(const TraceResult& result, std::size_t index) {
                [&](std::size_t cell) { return 1.0 / etendue_mm2sr(d, cell); });
 }
 
-namespace {
-
-/// The kept rays of two ranges, the first of which ends where the other begins, in the order of one run.
+/// The kept rays of two traces in the order of one run. Where both have rays of one block and source, those
+/// of `first` come first.
 void join_rays(const TraceResult& first, const TraceResult& second, TraceResult& sum) {
   sum.out_rays = RayBlock();
   sum.out_runs.clear();
@@ -210,6 +210,8 @@ void join_rays(const TraceResult& first, const TraceResult& second, TraceResult&
   }
 }
 
+namespace {
+
 /// What is wrong with the ranges of two traces; nothing if they meet end to end.
 std::string range_fault(const TraceResult& a, const TraceResult& b) {
   const TraceResult &low = a.first_ray <= b.first_ray ? a : b, &high = &low == &a ? b : a;
@@ -221,7 +223,7 @@ std::string range_fault(const TraceResult& a, const TraceResult& b) {
 
 }  // namespace
 
-TraceResult merge(const TraceResult& a, const TraceResult& b) {
+void check_addable(const TraceResult& a, const TraceResult& b) {
   const auto need = [](bool same, const char* what) {
     if (!same)
       throw InputError(fmt::format("the traces cannot be added: they differ in {}", what),
@@ -239,13 +241,17 @@ TraceResult merge(const TraceResult& a, const TraceResult& b) {
   need(a.far_fields == b.far_fields && a.planes == b.planes && a.luminances == b.luminances &&
            a.ray_detectors == b.ray_detectors && a.replicates.size() == b.replicates.size(),
        "detectors");
-  if (const std::string fault = range_fault(a, b); !fault.empty())
-    throw InputError("the traces cannot be added: " + fault, ErrorCause::mismatch);
   for (const TraceResult* part : {&a, &b}) {
     if (part->out_runs.empty() && !part->out_rays.empty())
       throw InputError("the traces cannot be added: an accelerator keeps rays without their numbers",
                        ErrorCause::mismatch);
   }
+}
+
+TraceResult merge(const TraceResult& a, const TraceResult& b) {
+  check_addable(a, b);
+  if (const std::string fault = range_fault(a, b); !fault.empty())
+    throw InputError("the traces cannot be added: " + fault, ErrorCause::mismatch);
   const bool a_first = a.first_ray < b.first_ray;
   TraceResult sum = a;
   sum.first_ray = std::min(a.first_ray, b.first_ray);

@@ -12,6 +12,7 @@
 #include "lucerna/trace/device/device_trace.h"
 #include "lucerna/trace/engines/ray_numbering.h"
 #include "lucerna/trace/engines/trace_engine.h"
+#include "lucerna/trace/run/empty_trace.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
 namespace lucerna {
@@ -92,6 +93,17 @@ TraceResult empty_result(const Scene& scene, const RayNumbering& numbering, cons
   return result;
 }
 
+Tally empty_tally(const Scene& scene) {
+  Tally empty;
+  empty.absorbed.resize(kMirrorLosses + scene.bodies.size() + scene.glasses.size());
+  empty.lost.resize(kLostCauses);
+  empty.lost_rays.resize(kLostCauses);
+  for (const FarFieldDetector& d : scene.far_fields) empty.bins.emplace_back(FarFieldGrid::counted(d).size());
+  for (const PlaneDetector& d : scene.planes) empty.bins.emplace_back(d.grid.size());
+  for (const LuminanceDetector& d : scene.luminances) empty.bins.emplace_back(d.grid.size());
+  return empty;
+}
+
 /// The accelerators that `options` ask for; none: the CPU traces.
 Accelerators chosen_accelerators(const TraceOptions& options) {
   if (options.device == TraceDevice::cpu) return {};
@@ -110,6 +122,14 @@ TraceResult trace_on_cpu(const Scene& scene, const RayNumbering& numbering, cons
 
 }  // namespace
 
+TraceResult empty_trace(const Scene& scene, const TraceOptions& options) {
+  check(scene);
+  TraceResult result = empty_result(scene, RayNumbering(scene.sources, options.seed), options);
+  result.isa = options.isa;
+  result.replicates.assign(kReplicates, empty_tally(scene));
+  return result;
+}
+
 TraceResult trace(const Scene& scene, const TraceOptions& options, Progress& progress) {
   check(scene);
   const Accelerators devices = chosen_accelerators(options);
@@ -123,14 +143,7 @@ TraceResult trace_on(const Accelerators& accelerators, const Scene& scene, const
   const RayNumbering numbering(scene.sources, options.seed);
   TraceResult result = empty_result(scene, numbering, options);
   result.isa = accelerators.front()->isa();
-  Tally empty;
-  empty.absorbed.resize(kMirrorLosses + result.body_names.size());
-  empty.lost.resize(kLostCauses);
-  empty.lost_rays.resize(kLostCauses);
-  for (const FarFieldDetector& d : scene.far_fields) empty.bins.emplace_back(FarFieldGrid::counted(d).size());
-  for (const PlaneDetector& d : scene.planes) empty.bins.emplace_back(d.grid.size());
-  for (const LuminanceDetector& d : scene.luminances) empty.bins.emplace_back(d.grid.size());
-  result.replicates.assign(kReplicates, empty);
+  result.replicates.assign(kReplicates, empty_tally(scene));
   run_on(accelerators, scene, numbering, options, result, progress);
   return result;
 }

@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/distributed/distributed_trace.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <barrier>
+#include <cstdlib>
+#include <numeric>
+#include <thread>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/core/io/file.h"
+#include "lucerna/core/math/int128.h"
+#include "lucerna/random.h"
+#include "lucerna/results/folders/trace_file.h"
+#include "lucerna/source.h"
+#include "lucerna/trace/run/empty_trace.h"
+#include "lucerna/trace/tally/flux_quanta.h"
+#include "lucerna/trace/tally/wide_sums.h"
+#include "lucerna/trace_file.h"
+#include "tests/support/temp_dir.h"
+
+namespace lucerna {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What threads that play ranks share.
+struct LocalWorld {
+  explicit LocalWorld(int n) : size(n), meet(n), texts(static_cast<std::size_t>(n)), sums(texts.size()) {}
+  int size;
+  std::barrier<> meet;
+  std::vector<std::string> texts;
+  std::vector<std::span<std::int64_t>> sums;
+  std::atomic<std::uint64_t> next{0};
+};
+
+/// Ranks as threads of one process: the algorithm without MPI.
+class LocalRanks final : public Ranks {
+ public:
+  LocalRanks(LocalWorld& world, int rank) : world_(world), rank_(rank) {}
+  int rank() const override { return rank_; }
+  int size() const override { return world_.size; }
+  std::uint64_t take_number() override { return world_.next.fetch_add(1); }
+  void skip_numbers() override { world_.next.fetch_add(std::uint64_t{1} << 40); }
+  void poll() override {}
+  std::string broadcast(const std::string& text) override {
+    world_.meet.arrive_and_wait();
+    if (rank_ == 0) world_.texts[0] = text;
+    world_.meet.arrive_and_wait();
+    return world_.texts[0];
+  }
+  std::vector<std::string> gather(const std::string& text) override {
+    world_.meet.arrive_and_wait();
+    world_.texts[static_cast<std::size_t>(rank_)] = text;
+    world_.meet.arrive_and_wait();
+    return rank_ == 0 ? world_.texts : std::vector<std::string>();
+  }
+  void add_to_first(std::span<std::int64_t> numbers) override {
+    world_.sums[static_cast<std::size_t>(rank_)] = numbers;
+    world_.meet.arrive_and_wait();
+    if (rank_ == 0) {
+      for (std::size_t r = 1; r < world_.sums.size(); ++r) {
+        for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] += world_.sums[r][i];
+      }
+    }
+    world_.meet.arrive_and_wait();
+  }
+  [[noreturn]] void abort(int) override { std::abort(); }
+
+ private:
+  LocalWorld& world_;
+  int rank_;
+};
+
+/// What the ranks of a run returned or threw.
+struct Outcome {
+  std::vector<DistributedTrace> traces;
+  std::vector<std::string> errors;
+  std::string notes;
+};
+
+using Body = std::function<DistributedTrace(Ranks& ranks)>;
+
+Outcome on_ranks(int n, const Body& body) {
+  LocalWorld world(n);
+  Outcome out;
+  out.traces.resize(static_cast<std::size_t>(n));
+  out.errors.resize(out.traces.size());
+  std::vector<std::thread> threads;
+  for (int r = 0; r < n; ++r) {
+    threads.emplace_back([&, r] {
+      LocalRanks ranks(world, r);
+      const auto at = static_cast<std::size_t>(r);
+      try {
+        out.traces[at] = body(ranks);
+      } catch (const std::exception& e) {
+        out.errors[at] = e.what();
+      }
+    });
+  }
+  for (std::thread& t : threads) t.join();
+  return out;
+}
+
+/// A progress that asks to stop at its `calls`-th report.
+class StopAfter final : public Progress {
+ public:
+  explicit StopAfter(int calls) : left_(calls) {}
+  void update(std::string_view, std::uint64_t, std::uint64_t) override { --left_; }
+  bool stop_requested() const override { return left_ <= 0; }
+
+ private:
+  std::atomic<int> left_;
+};
+
+Scene lamp() {
+  const Reflector mirror = conic_reflector(ConicPreset::parabola, 15.0, 0.0, Aperture::circle(100.0));
+  const Frame placed = Frame::from_axis(Direction::from({0, 0, -1}), 0.0, {0, 0, 15});
+  Scene scene;
+  scene.sources = {{make_emitter({.kind = EmitterKind::cylinder}), {}, std::nullopt},
+                   {make_emitter({.kind = EmitterKind::disk}), {}, std::nullopt}};
+  scene.reflectors = {{mirror, placed, Reflectance(0.9)}};
+  scene.far_fields = {{"far", 30.0, 10.0}};
+  scene.planes = {{"floor", {placed, 500.0, 400.0, 7, 5}}};
+  scene.luminances = {{"view", {placed, 50.0, 40.0, 3, 4}, 5.0}};
+  scene.ray_detectors = {{"rays", "tm25"}};
+  return scene;
+}
+
+class DistributedTraceTest : public testing::Test {
+ protected:
+  TraceOptions options(std::uint64_t first, std::uint64_t last) const {
+    return {.first_ray = first, .last_ray = last, .cells = 64, .isa = "portable"};
+  }
+  Outcome run(int ranks, std::uint64_t chunk, int stop_after = 1 << 30, int stopped_rank = 0,
+              std::uint64_t seed = 1) {
+    TraceOptions all = options(100, 30'011);
+    all.seed = seed;
+    const TraceResult empty = empty_trace(scene_, all);
+    return on_ranks(ranks, [&, all](Ranks& of) {
+      const RangeTracer tracer = [&](const RayInterval& rays, Progress& progress) {
+        TraceOptions o = all;
+        o.first_ray = rays.first;
+        o.last_ray = rays.last;
+        return trace(scene_, o, progress);
+      };
+      StopAfter progress(of.rank() == stopped_rank ? stop_after : 1 << 30);
+      DistributedOptions how{.parts = dir_.path(), .chunk_rays = chunk, .checkpoint_s = 1e-4, .note = {}};
+      how.note = [&](const std::string& text) { notes_ += text + "\n"; };
+      return trace_on_ranks(of, empty, tracer, origin_, how, progress);
+    });
+  }
+  TraceResult whole() const { return trace(scene_, options(100, 30'011)); }
+  std::vector<fs::path> parts() const {
+    std::vector<fs::path> found;
+    for (const auto& e : fs::directory_iterator(dir_.path())) found.push_back(e.path());
+    return found;
+  }
+  void clear() const {
+    for (const fs::path& p : parts()) fs::remove(p);
+  }
+
+  test::TempDir dir_;
+  Scene scene_ = lamp();
+  TraceOrigin origin_{"id", "1", "text", 2.0, 3.0};
+  std::string notes_;
+};
+
+TEST_F(DistributedTraceTest, IsTheTraceOfOneProcessForAnyRanksAndChunks) {
+  const TraceResult expected = whole();
+  for (const int ranks : {1, 2, 3, 5, 8}) {
+    for (const std::uint64_t chunk : {512u, 1024u, 8192u, 1u << 20}) {
+      clear();
+      const Outcome o = run(ranks, chunk);
+      ASSERT_EQ(o.errors[0], "");
+      ASSERT_TRUE(o.traces[0].result.has_value());
+      EXPECT_TRUE(*o.traces[0].result == expected) << ranks << " ranks, chunks of " << chunk;
+      for (int r = 1; r < ranks; ++r) EXPECT_FALSE(o.traces[static_cast<std::size_t>(r)].result.has_value());
+    }
+  }
+}
+
+// Stopped on a rank at a moment, again and again, with another number of ranks and other chunks each time.
+TEST_F(DistributedTraceTest, GoesOnFromAnySplitToTheSameBits) {
+  const TraceResult expected = whole();
+  Rng rng(5, 0);
+  for (int round = 0; round < 20; ++round) {
+    clear();
+    int stops = 0;
+    for (;;) {
+      const int ranks = 1 + static_cast<int>(rng.bits() % 5);
+      const std::uint64_t chunk = 512u << (rng.bits() % 4);
+      const bool last = ++stops > 4;
+      const int after = last ? 1 << 30 : 1 + static_cast<int>(rng.bits() % 400);
+      const int stopped = static_cast<int>(rng.bits() % static_cast<unsigned>(ranks));
+      const Outcome o = run(ranks, chunk, after, stopped);
+      ASSERT_EQ(o.errors[0], "");
+      if (!o.traces[0].result) {
+        EXPECT_TRUE(o.traces[0].interrupted);
+        continue;
+      }
+      EXPECT_TRUE(*o.traces[0].result == expected) << round;
+      break;
+    }
+  }
+}
+
+TEST_F(DistributedTraceTest, ATornPartIsToldOfAndTracedAgain) {
+  const TraceResult expected = whole();
+  run(2, 512, 200);
+  ASSERT_FALSE(parts().empty());
+  const std::string good = read_file(parts()[0], 1 << 26);
+  Rng rng(7, 0);
+  for (int i = 0; i < 6; ++i) {
+    std::string bad = i < 3 ? good.substr(0, rng.bits() % good.size()) : good;
+    if (i >= 3) bad[rng.bits() % bad.size()] ^= 1;
+    clear();
+    write_file(dir_ / "0001-000000.part", bad);
+    notes_.clear();
+    const Outcome o = run(3, 2048);
+    EXPECT_TRUE(o.traces[0].result && *o.traces[0].result == expected) << i;
+    EXPECT_TRUE(notes_.find("traced again") != std::string::npos) << notes_;
+  }
+}
+
+TEST_F(DistributedTraceTest, APartThatIsThereTwiceCountsOnce) {
+  const TraceResult expected = whole();
+  run(1, 512, 200);
+  ASSERT_EQ(parts().size(), 1u);
+  fs::copy(parts()[0], dir_ / "0003-000009.part");
+  const Outcome o = run(2, 1024);
+  EXPECT_TRUE(o.traces[0].result && *o.traces[0].result == expected);
+  EXPECT_TRUE(notes_.find("left out") != std::string::npos) << notes_;
+}
+
+TEST_F(DistributedTraceTest, PartsOfOtherRunsAreRefusedOnAllRanks) {
+  run(2, 512, 200);
+  const auto refused = [&](const std::string& why, std::uint64_t seed = 1) {
+    const Outcome o = run(3, 1024, 1 << 30, 0, seed);
+    for (const std::string& e : o.errors) EXPECT_TRUE(e.find(why) != std::string::npos) << e;
+  };
+  refused("seed", 2);
+  origin_.program_version = "2";
+  refused("traced by lucerna 1, this is 2");
+  origin_.program_version = "1";
+  origin_.scene_id = "other";
+  refused("another project");
+}
+
+TEST_F(DistributedTraceTest, RanksOfOtherVersionsOrProjectsAreRefused) {
+  const TraceResult empty = empty_trace(scene_, options(0, 5000));
+  for (const bool version : {true, false}) {
+    const Outcome o = on_ranks(3, [&](Ranks& of) {
+      TraceOrigin origin = origin_;
+      if (of.rank() == 2) (version ? origin.program_version : origin.scene_id) = "odd";
+      const RangeTracer none = [](const RayInterval&, Progress&) -> TraceResult { throw InputError("ran"); };
+      return trace_on_ranks(of, empty, none, origin, {.parts = dir_.path()});
+    });
+    for (const std::string& e : o.errors) EXPECT_TRUE(e.find("rank 2: has the version") == 0) << e;
+  }
+}
+
+TEST_F(DistributedTraceTest, WhatFailsOnOneRankEndsAll) {
+  const TraceResult empty = empty_trace(scene_, options(0, 1 << 20));
+  const Outcome o = on_ranks(4, [&](Ranks& of) {
+    const RangeTracer bad = [&](const RayInterval&, Progress&) -> TraceResult {
+      throw InputError("no memory here");
+    };
+    return trace_on_ranks(of, empty, bad, origin_, {.parts = dir_.path(), .chunk_rays = 512});
+  });
+  for (const std::string& e : o.errors) EXPECT_TRUE(e.find("no memory here") != std::string::npos) << e;
+}
+
+TEST_F(DistributedTraceTest, TheLeastInstructionSetIsAgreedOn) {
+  const auto agreed = [&](std::vector<std::string> best) {
+    std::string isa;
+    on_ranks(static_cast<int>(best.size()), [&](Ranks& of) {
+      const std::string common = common_isa(of, best[static_cast<std::size_t>(of.rank())]);
+      if (of.rank() == 1) isa = common;
+      return DistributedTrace();
+    });
+    return isa;
+  };
+  EXPECT_EQ(agreed({"avx512", "avx512"}), "avx512");
+  EXPECT_EQ(agreed({"avx512", "avx2", "avx512"}), "avx2");
+  EXPECT_EQ(agreed({"portable", "avx2"}), "portable");
+  EXPECT_EQ(agreed({"avx512", "sse9"}), "") << "an unknown one is refused";
+}
+
+// 2^43 rays of a stub on 5 ranks: lanes travel apart and are settled at the end; nothing is rounded.
+TEST(DistributedStub, SumsBeyond63BitsAreExact) {
+  constexpr std::uint64_t kRays = std::uint64_t{1} << 43, kChunk = std::uint64_t{1} << 36;
+  TraceResult empty;
+  empty.last_ray = kRays;
+  empty.isa = "stub";
+  empty.flux = 1.0;
+  empty.planes = {{"floor", {Frame(), 10.0, 10.0, 2, 1}}};
+  Tally zero;
+  zero.absorbed.resize(kMirrorLosses);
+  zero.lost.resize(kLostCauses);
+  zero.lost_rays.resize(kLostCauses);
+  zero.bins.emplace_back(2);
+  empty.replicates.assign(kReplicates, zero);
+  const RangeTracer stub = [&](const RayInterval& rays, Progress&) {
+    TraceResult t = empty;
+    t.first_ray = rays.first;
+    t.last_ray = rays.last;
+    for (Tally& tally : t.replicates) {
+      tally.rays = (rays.last - rays.first) / kReplicates;
+      tally.emitted = tally.out_direct = static_cast<std::int64_t>(tally.rays) << 26;
+      tally.bins[0][1] = tally.emitted + 3;
+    }
+    return t;
+  };
+  const test::TempDir dir;
+  const Outcome o = on_ranks(5, [&](Ranks& of) {
+    return trace_on_ranks(of, empty, stub, {"id", "1", "text", 0.0, 0.0},
+                          {.parts = dir.path(), .chunk_rays = kChunk, .checkpoint_s = 0.01});
+  });
+  ASSERT_TRUE(o.traces[0].result.has_value()) << o.errors[0];
+  for (const Tally& t : o.traces[0].result->replicates) {
+    EXPECT_TRUE(emitted_of(t) == Int128{kRays / kReplicates} << 26);
+    EXPECT_TRUE(bin_of(t, 0, 1) == emitted_of(t) + Int128{3 * (kRays / kChunk)});
+    EXPECT_FALSE(t.high.empty());
+  }
+  EXPECT_TRUE(trace_from_bytes(trace_bytes(*o.traces[0].result)) == *o.traces[0].result);
+}
+
+}  // namespace
+}  // namespace lucerna

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "lucerna/cli/commands/run.h"
+#include "lucerna/mpi/mpi_ranks.h"
+#include "lucerna/mpi/trace_command.h"
+#include "lucerna/version.h"
+
+int main(int argc, char** argv) {
+  lucerna::MpiRanks ranks(argc, argv);
+  CLI::App app("Lucerna on many machines", "lucerna-mpi");
+  app.set_version_flag("--version", std::string(lucerna::version()));
+  app.require_subcommand(1);
+  lucerna::cli::Session session;
+  session.set_command("lucerna-mpi", argc, argv);
+  lucerna::cli::add_mpi_trace(app, session, ranks);
+  const int done = 0;
+  return lucerna::cli::parse_and_run(app, argc, argv, done, ranks.is_first());
+}

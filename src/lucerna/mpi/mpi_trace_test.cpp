@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program under mpirun: files to the byte those of `lucerna trace`.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "lucerna/core/io/file.h"
+#include "lucerna/random.h"
+#include "tests/support/paths.h"
+#include "tests/support/temp_dir.h"
+
+namespace lucerna {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint64_t kMost = 1u << 26;
+
+/// More ranks than cores, also as root: what each library needs for that.
+std::vector<std::string> mpi_command(int ranks) {
+  std::vector<std::string> words{LUCERNA_MPIEXEC};
+  if (std::string(LUCERNA_MPI_LIBRARY).find("openmpi") != std::string::npos)
+    words.insert(words.end(), {"--allow-run-as-root", "--oversubscribe", "--quiet"});
+  words.insert(words.end(), {"-n", std::to_string(ranks), LUCERNA_MPI_PROGRAM, "trace"});
+  return words;
+}
+
+/// Starts a command in a group of its own, its output in a file; returns its process.
+pid_t start(const std::vector<std::string>& words, const fs::path& log) {
+  const pid_t child = ::fork();
+  if (child != 0) return child;
+  ::setpgid(0, 0);
+  if (std::freopen(log.c_str(), "w", stdout) == nullptr) std::_Exit(126);
+  ::dup2(1, 2);
+  std::vector<char*> argv;
+  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  ::execvp(argv[0], argv.data());
+  std::_Exit(127);
+}
+
+int wait_for(pid_t child) {
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+/// The children of a process and theirs that run lucerna-mpi: the ranks.
+std::vector<pid_t> ranks_below(pid_t top) {
+  std::vector<pid_t> all{top}, ranks;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::error_code none;
+    const fs::path tasks = fs::path("/proc") / std::to_string(all[i]) / "task";
+    for (const auto& task : fs::directory_iterator(tasks, none)) {
+      // Files of /proc have no size: they are read as streams.
+      std::ifstream children(task.path() / "children");
+      for (pid_t child = 0; children >> child;) all.push_back(child);
+    }
+    const fs::path program = fs::read_symlink(fs::path("/proc") / std::to_string(all[i]) / "exe", none);
+    if (program.filename() == "lucerna-mpi") ranks.push_back(all[i]);
+  }
+  return ranks;
+}
+
+constexpr const char* kLamp = R"([[source]]
+kind = "led"
+[[reflector]]
+family = "revolution"
+preset = "parabola"
+focal_mm = 15
+diameter_mm = 60
+hole_diameter_mm = 6
+position_mm = [0, 0, 15]
+axis = "-z"
+reflectance = 0.9
+[[detector]]
+kind = "far-field"
+[[detector]]
+kind = "plane"
+position_mm = [0, 0, -1000]
+normal = "+z"
+size_mm = [2000, 2000]
+[[detector]]
+kind = "luminance"
+from = [0.1, 0, -1]
+size_mm = [80, 80]
+cells = [20, 20]
+)";
+constexpr const char* kKept = "[[detector]]\nkind = \"rays\"\n";
+
+class MpiTraceTest : public testing::Test {
+ protected:
+  /// The trace of one process, which all others are to equal.
+  void trace_alone(const std::string& project, const std::string& rays) {
+    rays_ = rays;
+    write_file(dir_ / "lamp.toml", project);
+    const fs::path log = dir_ / "alone.log";
+    ASSERT_EQ(wait_for(start({test::program().string(), "trace", lamp(), "-o", (dir_ / "alone").string(),
+                              "--rays", rays, "--quiet"},
+                             log)),
+              0)
+        << read_file(log, kMost);
+  }
+  std::string lamp() const { return (dir_ / "lamp.toml").string(); }
+  std::string log() const { return read_file(dir_ / "log", kMost); }
+
+  pid_t start_ranks(int ranks, const std::string& out, const std::vector<std::string>& more) const {
+    std::vector<std::string> words = mpi_command(ranks);
+    words.insert(words.end(), {lamp(), "-o", (dir_ / out).string(), "--rays", rays_});
+    words.insert(words.end(), more.begin(), more.end());
+    return start(words, dir_ / "log");
+  }
+
+  /// Every file of the one folder is in the other to the byte; of result.json all but how it was made.
+  void expect_same(const std::string& out, const std::string& what) const {
+    std::size_t files = 0;
+    for (const auto& entry : fs::directory_iterator(dir_ / "alone")) {
+      const fs::path name = entry.path().filename();
+      const std::string a = read_file(entry.path(), kMost), b = read_file(dir_ / out / name, kMost);
+      ++files;
+      if (name == "result.json") {
+        EXPECT_EQ(without_run(a), without_run(b)) << what;
+      } else {
+        EXPECT_TRUE(a == b) << name << ", " << what;
+      }
+    }
+    EXPECT_GE(files, 8u);
+    EXPECT_FALSE(fs::exists(dir_ / out / "parts")) << what;
+  }
+  static std::string without_run(const std::string& json) {
+    Json j = Json::parse(json);
+    for (const char* key : {"command", "threads", "wall_s"}) j.erase(key);
+    return j.dump();
+  }
+
+  test::TempDir dir_;
+  std::string rays_;
+};
+
+TEST_F(MpiTraceTest, FilesAreThoseOfOneProcessMpi) {
+  trace_alone(std::string(kLamp) + kKept, "100:40011");
+  int run = 0;
+  for (const int ranks : {1, 2, 3, 5, 8}) {
+    for (const char* threads : {"1", "2"}) {
+      for (const char* chunk : {"512", "4096", "1e6"}) {
+        const std::string out = "out" + std::to_string(run++);
+        const int code = wait_for(start_ranks(ranks, out, {"--threads", threads, "--chunk", chunk}));
+        ASSERT_EQ(code, 0) << log();
+        expect_same(out, fmt::format("{} ranks, {} threads, chunks of {}", ranks, threads, chunk));
+      }
+    }
+  }
+}
+
+TEST_F(MpiTraceTest, ASignalWritesAndExitsWithThreeMpi) {
+  trace_alone(kLamp, "8e6");
+  for (const int signal : {SIGUSR1, SIGTERM}) {
+    const std::string out = "out" + std::to_string(signal);
+    const pid_t run = start_ranks(2, out, {"--threads", "1", "--chunk", "65536"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+    const std::vector<pid_t> ranks = ranks_below(run);
+    ASSERT_EQ(ranks.size(), 2u) << log();
+    ::kill(ranks[1], signal);
+    EXPECT_EQ(wait_for(run), 3) << log();
+    EXPECT_FALSE(fs::is_empty(dir_ / out / "parts"));
+    EXPECT_FALSE(fs::exists(dir_ / out / "result.json"));
+    ASSERT_EQ(wait_for(start_ranks(3, out, {"--resume", "--threads", "1"})), 0) << log();
+    EXPECT_NE(log().find("are there already"), std::string::npos) << log();
+    expect_same(out, "after a signal");
+  }
+}
+
+// A random rank is killed at a random moment, twenty times; runs that go on have other numbers of ranks.
+TEST_F(MpiTraceTest, AnyKillCostsAnIntervalAndNoBitMpiSlow) {
+  trace_alone(std::string(kLamp) + kKept, "2e6");
+  Rng rng(11, 0);
+  int kills = 0;
+  for (int round = 0; kills < 20; ++round) {
+    const std::string out = "out" + std::to_string(round);
+    for (int attempt = 0;; ++attempt) {
+      const int ranks = 1 + static_cast<int>(rng.bits() % 4);
+      const pid_t run =
+          start_ranks(ranks, out, {"--resume", "--threads", "1", "--chunk", "16384", "--checkpoint", "0.05"});
+      if (attempt < 4) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(300 + rng.bits() % 2000));
+        const std::vector<pid_t> there = ranks_below(run);
+        if (!there.empty()) {
+          ::kill(there[rng.bits() % there.size()], SIGKILL);
+          ++kills;
+        }
+      }
+      if (wait_for(run) == 0) break;
+      ASSERT_LT(attempt, 6) << log();
+    }
+    expect_same(out, "after kills");
+  }
+}
+
+TEST_F(MpiTraceTest, ErrorsAreToldOnceAndEndAllMpi) {
+  rays_ = "1000";
+  write_file(dir_ / "lamp.toml", "[[source]]\nkind = \"nothing\"\n");
+  EXPECT_EQ(wait_for(start_ranks(3, "out", {})), 1) << log();
+  const std::string text = log();
+  const std::size_t first = text.find("nothing");
+  ASSERT_NE(first, std::string::npos) << text;
+  write_file(dir_ / "lamp.toml", kLamp);
+  EXPECT_EQ(wait_for(start_ranks(2, "out", {"--chunk", "0"})), 2) << log();
+  EXPECT_EQ(wait_for(start_ranks(2, "out", {"--no-such-option"})), 2) << log();
+}
+
+}  // namespace
+}  // namespace lucerna

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/mpi/trace_command.h"
+
+#include <fmt/format.h>
+
+#include <csignal>
+#include <memory>
+
+#include "lucerna/cli/output/trace_output.h"
+#include "lucerna/cli/parse/arguments.h"
+#include "lucerna/core/io/error.h"
+#include "lucerna/core/io/file.h"
+#include "lucerna/distributed/distributed_trace.h"
+#include "lucerna/project.h"
+#include "lucerna/report/html/report_trace.h"
+#include "lucerna/results/folders/trace_folder.h"
+#include "lucerna/trace/run/empty_trace.h"
+
+namespace lucerna::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct MpiTraceArguments {
+  std::string project, output, rays, seed = "1", sequence = "sobol", chunk, checkpoint = "300", report;
+  bool resume = false;
+};
+
+constexpr std::uint64_t kBlock = 512;
+
+/// Does `work` and tells all ranks what went wrong on one.
+template <class Work>
+void together(Ranks& ranks, const Work& work) {
+  std::string error;
+  try {
+    work();
+  } catch (const std::exception& e) {
+    error = e.what();
+  }
+  agree(ranks, error);
+}
+
+TraceOptions trace_options(const MpiTraceArguments& a) {
+  TraceOptions options;
+  options.seed = parse_count(a.seed);
+  options.sequence = sequence_kind(a.sequence);
+  const RayRange range = parse_range(a.rays);
+  options.first_ray = range.first;
+  options.last_ray = range.last;
+  return options;
+}
+
+DistributedOptions distributed_options(const MpiTraceArguments& a, Session& session) {
+  DistributedOptions how{.parts = fs::path(a.output) / "parts", .note = {}};
+  if (!a.chunk.empty()) {
+    const std::uint64_t rays = parse_count(a.chunk);
+    if (rays == 0) throw UsageError("chunks of 0 rays: expected at least one");
+    how.chunk_rays = (rays + kBlock - 1) / kBlock * kBlock;
+  }
+  how.checkpoint_s = parse_number(a.checkpoint);
+  how.note = [&session](const std::string& text) { session.note(text); };
+  return how;
+}
+
+/// The first rank makes the folder; parts that are not gone on with would be mixed with the new ones.
+void prepare(const MpiTraceArguments& a, const fs::path& parts, const Session& session) {
+  prepare_folder(a.output, session.force || a.resume);
+  if (!a.resume) fs::remove_all(parts);
+  fs::create_directories(parts);
+}
+
+/// What the first rank does once the light is counted.
+void write_results(const MpiTraceArguments& a, const Project& project, const TraceOrigin& origin,
+                   const TraceResult& result, int ranks, Session& session) {
+  const TraceMetrics figures = session.timed("figures", [&] { return trace_metrics(result, project.scene); });
+  const auto names = write_trace_output(a.output, result, origin, figures, session);
+  const double seconds = session.seconds("trace");
+  session.print_line(fmt::format("{}: {} rays in {:.3g} s, {:.3g} M rays/s ({}, {} ranks of {} threads)",
+                                 a.output, figures.ledger.rays, seconds,
+                                 1e-6 * static_cast<double>(figures.ledger.rays) / seconds, result.isa, ranks,
+                                 ThreadLimit::current()));
+  print_trace_summary(figures, names, session);
+  if (a.report.empty()) return;
+  write_file(a.report, trace_report_html(read_trace_folder(a.output), {.scene = &project.scene}));
+  session.print_line(fmt::format("  report: {}", a.report));
+}
+
+void run_mpi_trace(const MpiTraceArguments& a, Session& session, Ranks& ranks) {
+  session.quiet = session.quiet || !ranks.is_first();
+  session.start();
+  session.stop_on_signal(SIGUSR1);
+  TraceOptions options = trace_options(a);
+  const DistributedOptions how = distributed_options(a, session);
+  Project project;
+  TraceOrigin origin;
+  together(ranks, [&] {
+    project = session.timed("read", [&] { return read_project(a.project); });
+    origin = session.timed("hash", [&] { return trace_origin(project); });
+    if (ranks.is_first()) prepare(a, how.parts, session);
+  });
+  if (ranks.is_first()) {
+    for (const std::string& warning : project.warnings) session.note(warning);
+    for (const auto& input : project.inputs) session.add_input(input);
+  }
+  options.isa = common_isa(ranks, best_isa());
+  const RangeTracer tracer = [&](const RayInterval& rays, Progress& progress) {
+    TraceOptions some = options;
+    some.first_ray = rays.first;
+    some.last_ray = rays.last;
+    return trace(project.scene, some, progress);
+  };
+  const TraceResult empty = empty_trace(project.scene, options);
+  const DistributedTrace traced = session.timed(
+      "trace", [&] { return trace_on_ranks(ranks, empty, tracer, origin, how, session.progress()); });
+  if (traced.interrupted) throw Interrupted();
+  together(ranks, [&] {
+    if (!traced.result) return;
+    write_results(a, project, origin, *traced.result, ranks.size(), session);
+    fs::remove_all(how.parts);
+  });
+}
+
+}  // namespace
+
+void add_mpi_trace(CLI::App& app, Session& session, Ranks& ranks) {
+  Command command(app, "trace", "Trace a project's sources through its mirrors, on all ranks together");
+  auto arguments = std::make_shared<MpiTraceArguments>();
+  MpiTraceArguments& a = *arguments;
+  command.required("PROJECT", a.project, "Project file (see: lucerna init)");
+  command.required("-o,--output", a.output, "Folder for the results, which all ranks see");
+  command.required("--rays", a.rays, "A number of rays, or a range A:B of ray numbers");
+  command.flag("--resume", a.resume, "Go on with the parts in the folder, of any number of ranks");
+  command.option("--checkpoint", a.checkpoint, "Seconds between two writings of a rank's part");
+  command.option("--chunk", a.chunk,
+                 "Rays that a rank takes at a time (default: by their number, 2^24 at most)");
+  command.option("--seed", a.seed, "Seed of the random numbers");
+  command.option("--sequence", a.sequence, "random or sobol");
+  command.option("--report", a.report, "Also write the report as one HTML file");
+  command.flag("--force", session.force, "Write into a folder that is not empty");
+  session.add_json(command);
+  session.add_common(command);
+  command.on_run([arguments, &session, &ranks] {
+    try {
+      run_mpi_trace(*arguments, session, ranks);
+    } catch (const AgreedError&) {
+      throw;
+    } catch (const UsageError&) {
+      throw;  // the same line on all ranks
+    } catch (const Interrupted&) {
+      throw;  // after all have agreed
+    } catch (const std::exception& e) {
+      fmt::print(stderr, "lucerna-mpi: rank {}: {}\n", ranks.rank(), e.what());
+      ranks.abort(1);
+    }
+  });
+}
+
+}  // namespace lucerna::cli
