@@ -9,7 +9,7 @@ import sys
 import lucerna as lu
 import numpy as np
 import pytest
-from conftest import RAYS
+from conftest import RAYS, SANITIZED
 
 
 def digest(path):
@@ -75,6 +75,7 @@ def test_design(tmp_path, program):
         assert digest(tmp_path / "mine" / name) == digest(tmp_path / "theirs" / name), name
 
 
+@pytest.mark.skipif(SANITIZED, reason="program and module have a sanitizer each")
 def test_python_m_is_the_program(capfd, program):
     place = os.path.dirname(os.environ.get("LUCERNA_PROGRAM", ""))
     path = os.pathsep.join([place, os.environ["PATH"]])
