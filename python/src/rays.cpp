@@ -412,6 +412,7 @@ Rays from_state(const py::tuple& s) {
   std::vector<std::vector<float>*> places{&b.x_mm, &b.y_mm, &b.z_mm, &b.kx, &b.ky, &b.kz, &b.weight};
   for (auto& column : b.extra) places.push_back(&column);
   if (arrays.size() != places.size()) throw InputError("a damaged pickle of rays", ErrorCause::damaged);
+  if (!arrays.empty()) b.reserve(py::len(arrays[0]));
   for (std::size_t i = 0; i < places.size(); ++i) {
     // Stokes and additional columns may hold what is no number: taken as it is.
     const auto column = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(arrays[i]);
