@@ -71,7 +71,7 @@ def test_design(tmp_path, program):
     found = lu.design(lu.Scene.load("lamp.toml"), max_rays=16384)
     found.save("mine")
     assert found.end == "converged"
-    for name in ("reflector.toml", "reflector.step", "reflector.stl", "reflector.csv", "far.ldt", "checkpoint"):
+    for name in ("reflector.toml", "reflector.step", "reflector.stl", "reflector.csv", "far-field.ldt", "checkpoint"):
         assert digest(tmp_path / "mine" / name) == digest(tmp_path / "theirs" / name), name
 
 
