@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The C++ side of bench/python_overhead.py, which starts it: reads commands, a line each, and answers with the
-// seconds of the call alone and figures that Python must have to the bit.
+// The C++ side of bench/python_overhead.py, which starts it: reads commands, a line each, and answers with
+// the seconds of the call alone and figures that Python must have to the bit.
 //   sample MODEL RAYS SEED   -> seconds, x of the middle ray, kz of the last
 //   open PROJECT RAYS SEED   -> number of parameters
 //   evaluate STEP            -> seconds, sum of the squared residuals, of the Jacobian's entries;
