@@ -121,6 +121,7 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 math(EXPR next_python "${Python_VERSION_MINOR} + 1")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${library_package} (= ${debian_version}), python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next_python}), python3-numpy")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "lucerna, python3-matplotlib, python3-scipy, python3-xarray")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${debian_dir}/python/postinst;${debian_dir}/python/prerm")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${PROJECT_BINARY_DIR}/src/lucerna")
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "illumination design: Python module
 Lucerna makes small models of the ray files of light sources, traces

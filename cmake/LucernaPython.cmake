@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The Python package, python/: where pybind11 and Python's headers are installed. Another interpreter: -DPython3_EXECUTABLE=...
-# A module under a sanitizer needs its run-time library in the interpreter (LD_PRELOAD), so that it is built on demand only.
+# A module under a sanitizer needs its run-time library in the interpreter, so that it is built on demand only (the stage
+# asan-python of scripts/check.sh); its tests preload the library.
 if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
   set(Python3_EXECUTABLE /usr/bin/python3)  # the one whose packages Debian installs, whatever else is first on the path
 endif()

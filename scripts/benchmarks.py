@@ -9,7 +9,7 @@ A page has blocks between two comments:
     ...
     <!-- /measured -->
 
-The commands are run from build/release/bench, one after another. The rows that they print as a Markdown
+The commands are run from build/release/bench (those that end in .py from bench), one after another. The rows that they print as a Markdown
 table, with commit and date, become the block. A plot draws the named columns of the table as bars, with
 that unit. `measured: by hand` is a table that no program writes; only its plot is drawn.
 
@@ -119,7 +119,9 @@ def measured(block, build):
     for command in block.commands:
         print(f"{command} ...", flush=True)
         program, *arguments = command.split()
-        printed += subprocess.run([build / "bench" / program, *arguments], cwd=ROOT, stdout=subprocess.PIPE, text=True,
+        script = [sys.executable, ROOT / "bench" / program, "--build", build]
+        called = script if program.endswith(".py") else [build / "bench" / program]
+        printed += subprocess.run([*called, *arguments], cwd=ROOT, stdout=subprocess.PIPE, text=True,
                                   check=True).stdout
     table = table_of(printed)
     if not table:
@@ -129,7 +131,8 @@ def measured(block, build):
 
 def faults(page, block):
     for command in [] if block.by_hand else block.commands:
-        source = ROOT / "bench" / (command.split()[0].removeprefix("bench_") + ".cpp")
+        program = command.split()[0]
+        source = ROOT / "bench" / (program if program.endswith(".py") else program.removeprefix("bench_") + ".cpp")
         if not source.exists():
             yield f"{page.name}: {source.relative_to(ROOT)} is not there"
     rows = rows_of(block.body)

@@ -14,9 +14,10 @@
 #   site          the site of the documentation is made without a warning (needs sphinx and doxygen)
 #   deb           Debian packages, by lintian, and installed, used and removed in a bare Debian 12 (needs root and debootstrap)
 #   clang asan tsan   the same tests under those presets
+#   asan-python   the Python module with the address sanitizer, and its quick tests (needs scripts/packages-python.txt)
 set -u
 cd "$(dirname "$0")/.."
-stages="${*:-format tidy tree docs release install consumers api site deb clang asan tsan}"
+stages="${*:-format tidy tree docs release install consumers api site deb clang asan asan-python tsan}"
 # `make` waits for two compilers at once on two cores; the presets' tests run two at a time too.
 jobs=${JOBS:-$(nproc)}
 base=${BASE:-origin/main}
@@ -106,6 +107,14 @@ within_sources() {
     consume "$place/ray_file_to_ldt" "$place"
 }
 
+module_under_asan() {
+  needs clang++ || return
+  [ -e /usr/share/cmake/pybind11/pybind11Config.cmake ] || [ -e /usr/lib/cmake/pybind11/pybind11Config.cmake ] ||
+    { echo "skipped: no pybind11"; return 77; }
+  cmake --preset asan -DLUCERNA_PYTHON=ON >/dev/null && cmake --build --preset asan -j "$jobs" --target python_package lucerna_cli &&
+    ctest --preset asan -L python
+}
+
 stage() {
   case $1 in
     format) git ls-files '*.h' '*.cpp' '*.cu' | xargs clang-format --dry-run -Werror ;;
@@ -121,6 +130,7 @@ stage() {
     consumers) within_sources ;;
     clang) build_and_test clang all benchmarks ;;
     asan | tsan) build_and_test "$1" all ;;
+    asan-python) module_under_asan ;;
     *)
       echo "no stage $1" >&2
       return 2

@@ -16,9 +16,9 @@ namespace lucerna {
 /// Some rays as a structure of arrays, in the precision of ray files (float32). All arrays have the same
 /// length. The unit of streaming: readers fill it, sources emit it, tracers take it.
 struct RayBlock {
-  /// Where each ray starts, mm.
+  /// Where each ray starts, mm. New large columns are made equally far apart, if the allocator allows it.
   std::vector<float> x_mm, y_mm, z_mm;
-  /// Its direction cosines; unit length to float precision once a reader has checked them.
+  /// Its direction cosines; unit length to float precision once a reader has checked them. Placed likewise.
   std::vector<float> kx, ky, kz;
   /// Relative flux, >= 0. A ray carries flux * weight / (sum of all weights), whatever unit the file gave its
   /// weights.

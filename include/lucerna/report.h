@@ -9,6 +9,7 @@
 #include "lucerna/progress.h"
 #include "lucerna/project.h"
 #include "lucerna/trace.h"
+#include "lucerna/trace_metrics.h"
 
 #pragma GCC visibility push(default)
 namespace lucerna {
@@ -21,6 +22,11 @@ namespace lucerna {
 /// written. Reads all of the project's files, for their hashes.
 std::vector<std::string> write_trace(const std::filesystem::path& folder, const Project& project,
                                      const TraceResult& result, std::vector<std::string>* warnings = nullptr);
+/// The same with the figures of the trace, `trace_metrics(result, project.scene)`, where they are there
+/// already.
+std::vector<std::string> write_trace(const std::filesystem::path& folder, const Project& project,
+                                     const TraceResult& result, const TraceMetrics& figures,
+                                     std::vector<std::string>* warnings = nullptr);
 
 /// Writes what `lucerna design` leaves in a folder, which is made if it is missing: what `write_trace` leaves
 /// of the finished project, and reflector.toml .step .stl .obj .dxf .csv, history.csv, checkpoint,

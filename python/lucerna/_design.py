@@ -84,7 +84,7 @@ class Objective(_core._Objective):
     through all reflections, by the same rays each time. Parameters are heights in mm of the mirror's
     coefficients over its paraboloid. The sum of the squares of the first residuals, one a bin, is the squared
     relative error; one more is for light that misses the target's window (in shape mode), one for the limits.
-    It never changes, so threads may share it.
+    It never changes, so threads may share it. It pickles as its scene and options, and draws its rays anew.
 
     Parameters
     ----------

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import tempfile
 import threading
 from typing import Any, NamedTuple
 
@@ -114,9 +115,32 @@ def write_whole(path: os.PathLike[str] | str, data: bytes) -> None:
         raise
 
 
-def make_intensity(c_deg: Any, gamma_deg: Any, cd: Any, unit: str, standard_error: Any, luminaire: Any) -> Any:
-    """An IntensityDistribution of its pickle."""
+def make_intensity(c_deg: Any, gamma_deg: Any, cd: Any, unit: str, standard_error: Any, luminaire: Any,
+                   flux: Any = None, metrics: Any = None) -> Any:
+    """An IntensityDistribution of its pickle; flux and metrics where it was traced."""
     from . import _core
 
-    return _core.IntensityDistribution(c_deg, gamma_deg, cd, unit=unit, standard_error=standard_error,
-                                       luminaire=luminaire)
+    values = _core.IntensityDistribution(c_deg, gamma_deg, cd, unit=unit, standard_error=standard_error,
+                                         luminaire=luminaire)
+    return values if flux is None else _core._with_figures(values, flux, metrics)
+
+
+def read_folder(write: Any) -> tuple[list[str], dict[str, bytes]]:
+    """What `write(folder)` returns, and the files that it leaves there."""
+    with tempfile.TemporaryDirectory() as folder:
+        names = write(folder)
+        found = {}
+        for place, _, files in os.walk(folder):
+            for name in sorted(files):
+                path = os.path.join(place, name)
+                with open(path, "rb") as file:
+                    found[os.path.relpath(path, folder)] = file.read()
+        return names, found
+
+
+def write_folder(folder: os.PathLike[str] | str, files: dict[str, bytes]) -> None:
+    """Writes files into a folder, each whole or not at all."""
+    for name, data in files.items():
+        path = os.path.join(folder, name)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        write_whole(path, data)

@@ -5,7 +5,9 @@
 #include <pybind11/pybind11.h>
 
 #include <cmath>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -36,6 +38,21 @@ py::array_t<T> view(const std::vector<T>& values, const Shape& shape, py::handle
 template <class T>
 py::array_t<T> view(const std::vector<T>& values, py::handle owner) {
   return view(values, row(values.size()), owner);
+}
+
+/// A read-only array of shape (n, 3) across three columns that `owner` has, if the second lies as far from
+/// the first as the third from the second. No copy.
+template <class T>
+std::optional<py::array_t<T>> stacked_view(const std::vector<T>& x, const std::vector<T>& y,
+                                           const std::vector<T>& z, py::handle owner) {
+  const auto place = [](const std::vector<T>& column) {
+    return static_cast<py::ssize_t>(reinterpret_cast<std::uintptr_t>(column.data()));
+  };
+  const py::ssize_t step = place(y) - place(x);
+  if (place(z) - place(y) != step || y.size() != x.size() || z.size() != x.size()) return std::nullopt;
+  py::array_t<T> array(grid(x.size(), 3), Shape{static_cast<py::ssize_t>(sizeof(T)), step}, x.data(), owner);
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
 }
 
 /// A read-only array that takes the memory of `values`. No copy.

@@ -19,7 +19,8 @@ namespace {
 constexpr const char* kDesignResultClassDoc =
     R"(A designed mirror, its light, and how far that is from the target.
 
-A result never changes, so threads may share it.)";
+A result never changes, so threads may share it. It pickles with all its figures and the files that `save`
+writes.)";
 
 constexpr const char* kSaveDoc = R"(save(folder)
 --
@@ -129,8 +130,8 @@ py::list list_of(const std::vector<Item>& items, const Make& make) {
   return out;
 }
 
-py::object history(const Designed& d) {
-  const std::vector<DesignStep>& steps = d.mirror->history;
+py::object history(const DesignedMirror& d) {
+  const std::vector<DesignStep>& steps = d.history;
   const auto column = [&](auto member) {
     using T = std::remove_cvref_t<decltype(steps.front().*member)>;
     std::vector<std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>> values;
@@ -173,7 +174,7 @@ Designed run_design(const SceneHandle& scene, const DesignSettings& settings, co
     state->project = parse_project(state->text, state->path, state->memory);
     Designed out{mirror, {state}, nullptr};
     out.traced = std::make_shared<Traced>(state, NoiseTrace{mirror->traced, std::nan(""), NoiseEnd::time},
-                                          mirror->light);
+                                          std::shared_ptr<const TraceMetrics>(mirror, &mirror->light));
     return out;
   });
 }
@@ -196,70 +197,93 @@ Designed design_scene(const SceneHandle& scene, std::uint64_t seed, std::optiona
   return run_design(scene, settings, callback);
 }
 
-template <class Get>
-void fact(py::class_<Designed>& c, const char* name, const Get& get, const char* doc) {
-  c.def_property_readonly(
-      name, [get](const Designed& d) { return get(*d.mirror); }, doc);
+/// A property of a design that a pickle keeps as it is.
+struct Finding {
+  const char* name;
+  py::object (*get)(const DesignedMirror&);
+  const char* doc;
+};
+
+const Finding kFindings[] = {
+    {"error", [](const DesignedMirror& d) { return design_error(d.error); },
+     "Error against the target, by fresh rays through the exported mesh, as a Record."},
+    {"start_error", [](const DesignedMirror& d) { return design_error(d.start_error); },
+     "The same of the mirror that was given."},
+    {"relative_rms",
+     [](const DesignedMirror& d) {
+       return estimate(Estimate{d.error.c48.excess, d.error.c48.standard_error});
+     },
+     "The headline: relative error in 48 x 48 boxes with the noise taken out, an Estimate."},
+    {"floor", [](const DesignedMirror& d) { return py::object(py::cast(d.error.c48.floor)); },
+     "What the noise alone makes of the error in 48 x 48 boxes."},
+    {"efficiency", [](const DesignedMirror& d) { return estimate(d.efficiency); },
+     "Share of the sources' flux that leaves the luminaire."},
+    {"end", [](const DesignedMirror& d) { return py::object(py::cast(std::string(to_string(d.end)))); },
+     "Why it ended: 'converged', 'time' or 'interrupted'."},
+    {"interrupted",
+     [](const DesignedMirror& d) { return py::object(py::cast(d.end == DesignTermination::interrupted)); },
+     "True if Ctrl-C stopped it; the mirror is then the best so far."},
+    {"zones", [](const DesignedMirror& d) { return py::object(list_of(d.zones, &zone_record)); },
+     "The target's zones in the light of the result, as Records."},
+    {"limits", [](const DesignedMirror& d) { return py::object(list_of(d.limits, &limit_record)); },
+     "Every limit as found in the exported mesh and its light, as Records."},
+    {"bound", [](const DesignedMirror& d) { return bound_record(d.bound); },
+     "What no mirror of this aperture and height can be better than, as a Record."},
+    {"remarks", [](const DesignedMirror& d) { return py::object(py::cast(d.remarks)); },
+     "What is known of why the error is not smaller, one sentence each."},
+    {"pareto", [](const DesignedMirror& d) { return py::object(list_of(d.pareto, &pareto_record)); },
+     "The trade between error and light, if it was asked for."},
+    {"advice", [](const DesignedMirror& d) { return py::object(list_of(d.advice, &advice_record)); },
+     "What other outlines and families would bring, if it was asked for."},
+    {"tolerances",
+     [](const DesignedMirror& d) {
+       return d.tolerances ? py::object(list_of(d.tolerances->spread, &spread_record))
+                           : py::object(py::none());
+     },
+     "How figures vary over inexact luminaires, as Records, if it was asked for."},
+    {"evaluations", [](const DesignedMirror& d) { return py::object(py::cast(d.evaluations)); },
+     "Evaluations of the objective."},
+    {"rays", [](const DesignedMirror& d) { return py::object(py::cast(d.rays)); },
+     "Rays of all evaluations."},
+    {"checkpoint", [](const DesignedMirror& d) { return py::object(py::bytes(d.checkpoint)); },
+     "The state that `design(resume=...)` goes on from."},
+    {"history", &history, "Every step, as a Record of arrays."},
+};
+
+py::object finding(const Designed& d, const Finding& f) {
+  return d.mirror ? f.get(*d.mirror) : d.figures->get()[f.name];
 }
 
 void add_findings(py::class_<Designed>& c) {
-  fact(
-      c, "error", [](const DesignedMirror& d) { return design_error(d.error); },
-      "Error against the target, by fresh rays through the exported mesh, as a Record.");
-  fact(
-      c, "start_error", [](const DesignedMirror& d) { return design_error(d.start_error); },
-      "The same of the mirror that was given.");
-  fact(
-      c, "relative_rms",
-      [](const DesignedMirror& d) {
-        return estimate(Estimate{d.error.c48.excess, d.error.c48.standard_error});
-      },
-      "The headline: relative error in 48 x 48 boxes with the noise taken out, an Estimate.");
-  fact(
-      c, "floor", [](const DesignedMirror& d) { return d.error.c48.floor; },
-      "What the noise alone makes of the error in 48 x 48 boxes.");
-  fact(
-      c, "efficiency", [](const DesignedMirror& d) { return estimate(d.efficiency); },
-      "Share of the sources' flux that leaves the luminaire.");
-  fact(
-      c, "end", [](const DesignedMirror& d) { return std::string(to_string(d.end)); },
-      "Why it ended: 'converged', 'time' or 'interrupted'.");
-  fact(
-      c, "interrupted", [](const DesignedMirror& d) { return d.end == DesignTermination::interrupted; },
-      "True if Ctrl-C stopped it; the mirror is then the best so far.");
-  fact(
-      c, "zones", [](const DesignedMirror& d) { return list_of(d.zones, &zone_record); },
-      "The target's zones in the light of the result, as Records.");
-  fact(
-      c, "limits", [](const DesignedMirror& d) { return list_of(d.limits, &limit_record); },
-      "Every limit as found in the exported mesh and its light, as Records.");
-  fact(
-      c, "bound", [](const DesignedMirror& d) { return bound_record(d.bound); },
-      "What no mirror of this aperture and height can be better than, as a Record.");
-  fact(
-      c, "remarks", [](const DesignedMirror& d) { return d.remarks; },
-      "What is known of why the error is not smaller, one sentence each.");
-  fact(
-      c, "pareto", [](const DesignedMirror& d) { return list_of(d.pareto, &pareto_record); },
-      "The trade between error and light, if it was asked for.");
-  fact(
-      c, "advice", [](const DesignedMirror& d) { return list_of(d.advice, &advice_record); },
-      "What other outlines and families would bring, if it was asked for.");
-  fact(
-      c, "tolerances",
-      [](const DesignedMirror& d) {
-        return d.tolerances ? py::object(list_of(d.tolerances->spread, &spread_record))
-                            : py::object(py::none());
-      },
-      "How figures vary over inexact luminaires, as Records, if it was asked for.");
-  fact(
-      c, "evaluations", [](const DesignedMirror& d) { return d.evaluations; },
-      "Evaluations of the objective.");
-  fact(
-      c, "rays", [](const DesignedMirror& d) { return d.rays; }, "Rays of all evaluations.");
-  fact(
-      c, "checkpoint", [](const DesignedMirror& d) { return py::bytes(d.checkpoint); },
-      "The state that `design(resume=...)` goes on from.");
+  for (const Finding& f : kFindings)
+    c.def_property_readonly(
+        f.name, [&f](const Designed& d) { return finding(d, f); }, f.doc);
+}
+
+py::list save(const Designed& d, const fs::path& folder) {
+  if (d.mirror) return py::cast(released([&] { return write_design(folder, *d.mirror); }));
+  const auto kept = d.files->get().cast<py::tuple>();
+  python_name("lucerna._types", "write_folder")(folder, kept[1]);
+  return kept[0];
+}
+
+/// Every finding, the light, and the files that `save` writes.
+py::tuple state(const py::object& self) {
+  const auto& d = self.cast<const Designed&>();
+  py::dict figures;
+  for (const Finding& f : kFindings) figures[f.name] = finding(d, f);
+  return py::make_tuple(figures, d.scene, d.traced,
+                        python_name("lucerna._types", "read_folder")(self.attr("save")));
+}
+
+Designed from_state(const py::tuple& s) {
+  if (s.size() != 4) throw InputError("a pickle of another version of lucerna", ErrorCause::damaged);
+  const auto figures = s[0].cast<py::dict>();
+  for (const Finding& f : kFindings) {
+    if (!figures.contains(f.name)) throw InputError("a damaged pickle of a design", ErrorCause::damaged);
+  }
+  return {nullptr, s[1].cast<SceneHandle>(), s[2].cast<TracedPointer>(),
+          std::make_shared<const Kept>(figures), std::make_shared<const Kept>(s[3].cast<py::tuple>())};
 }
 
 }  // namespace
@@ -282,17 +306,12 @@ py::object design_error(const DesignError& e) {
 void add_designs(py::module_& m) {
   auto c = py::class_<Designed>(m, "DesignResult", kDesignResultClassDoc);
   add_findings(c);
-  c.def_property_readonly("history", &history, "Every step, as a Record of arrays.");
   c.def_property_readonly(
       "scene", [](const Designed& d) { return d.scene; }, "The project with the mirror that was found.");
   c.def_property_readonly(
       "traced", [](const Designed& d) { return d.traced; }, "The light of that project, a TraceResult.");
-  c.def(
-      "save",
-      [](const Designed& d, const fs::path& folder) {
-        return released([&] { return write_design(folder, *d.mirror); });
-      },
-      "folder"_a, kSaveDoc);
+  c.def("save", &save, "folder"_a, kSaveDoc);
+  c.def(py::pickle(&state, &from_state));
   m.def("_design", &design_scene, "scene"_a, py::kw_only(), "seed"_a, "time_s"_a, "max_rays"_a, "device"_a,
         "tolerances"_a, "pareto"_a, "advise"_a, "checkpoint"_a, "callback"_a);
 }

@@ -72,6 +72,8 @@ void translate_errors() {
       PyErr_SetNone(PyExc_KeyboardInterrupt);
     } catch (const Error& error) {
       set_error(error);
+    } catch (const py::cast_error&) {
+      PyErr_SetString(PyExc_TypeError, "found a value of a wrong type within an argument");
     } catch (const fs::filesystem_error& error) {
       PyErr_SetObject(PyExc_OSError,
                       py::make_tuple(error.code().value(), error.what(), error.path1().string()).ptr());

@@ -6,7 +6,8 @@
 namespace lucerna::python {
 
 /// What the library throws as Python's exceptions: OSError for files, lucerna.InputError for other input,
-/// KeyboardInterrupt for a call that was stopped without a result.
+/// TypeError for values of a wrong type within an argument, KeyboardInterrupt for a call that was stopped
+/// without a result.
 void translate_errors();
 
 }  // namespace lucerna::python

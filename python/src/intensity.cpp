@@ -226,7 +226,7 @@ Intensity make_intensity(const py::object& c_deg, const py::object& gamma_deg, c
   };
   d.cd = values(cd, "cd");
   if (const std::string fault = grid_fault(d); !fault.empty()) throw InputError(fault);
-  Intensity out{file, {}, nullptr};
+  Intensity out{file};
   if (!standard_error.is_none()) out.standard_error = values(standard_error, "standard_error");
   if (!luminaire.is_none()) file->luminaire = luminaire_of(luminaire.cast<py::dict>());
   return out;
@@ -246,9 +246,8 @@ PhotometricReadOptions read_options(bool strict, int ies_turn_deg, const std::st
 
 Intensity read_intensity(const fs::path& path, bool strict, int ies_turn_deg, const std::string& isym3) {
   const PhotometricReadOptions options = read_options(strict, ies_turn_deg, isym3);
-  return released([&] {
-    return Intensity{std::make_shared<PhotometricFile>(read_photometric_file(path, options)), {}, nullptr};
-  });
+  return released(
+      [&] { return Intensity{std::make_shared<PhotometricFile>(read_photometric_file(path, options))}; });
 }
 
 PhotometricFormat format_of(const fs::path& path, const std::optional<std::string>& format) {
@@ -376,7 +375,7 @@ Intensity scaled(const Intensity& intensity, double factor) {
                      ErrorCause::out_of_range);
   auto file = std::make_shared<PhotometricFile>(*intensity.file);
   scale(file->distribution, factor);
-  Intensity out{file, intensity.standard_error, nullptr};
+  Intensity out{file, intensity.standard_error};
   for (double& e : out.standard_error) e *= factor;
   return out;
 }
@@ -419,7 +418,7 @@ void add_values(py::class_<Intensity>& c) {
   c.def_property_readonly(
       "flux",
       [](const Intensity& i) {
-        return i.traced ? estimate(i.traced->flux) : py::object(py::float_(total_flux(i.values())));
+        return i.flux ? estimate(*i.flux) : py::object(py::float_(total_flux(i.values())));
       },
       "Total flux, lm (or W): an Estimate where the light was traced, else a float.");
   c.def_property_readonly(
@@ -432,8 +431,24 @@ void add_values(py::class_<Intensity>& c) {
 }  // namespace
 
 py::object intensity_metrics(const Intensity& i) {
-  return i.traced ? traced_metrics(*i.traced) : file_metrics(*i.file);
+  if (i.figures) return i.figures->get();
+  if (!i.trace) return file_metrics(*i.file);
+  const Traced::Figures exact = released([&] { return i.trace->far_fields(); });
+  return traced_metrics(exact->far_fields[i.far_field].metrics);
 }
+
+namespace {
+
+/// Of a pickle: the same values with the figures that their trace had.
+Intensity with_figures(const Intensity& values, const std::array<double, 2>& flux,
+                       const py::object& metrics) {
+  Intensity out = values;
+  out.flux = Estimate{flux[0], flux[1]};
+  out.figures = std::make_shared<const Kept>(metrics);
+  return out;
+}
+
+}  // namespace
 
 void add_intensity(py::module_& m) {
   auto c = py::class_<Intensity>(m, "IntensityDistribution", kIntensityDistributionClassDoc);
@@ -455,11 +470,15 @@ void add_intensity(py::module_& m) {
   c.attr("__hash__") = py::none();
   c.def("__reduce__", [](const py::object& self) {
     const auto& i = self.cast<const Intensity&>();
+    const py::object flux =
+        i.flux ? py::object(py::make_tuple(i.flux->mean, i.flux->standard_error)) : py::none();
     return py::make_tuple(
         python_name("lucerna._types", "make_intensity"),
         py::make_tuple(self.attr("c_deg"), self.attr("gamma_deg"), self.attr("cd"), self.attr("unit"),
-                       self.attr("standard_error"), luminaire_record(i.file->luminaire)));
+                       self.attr("standard_error"), luminaire_record(i.file->luminaire), flux,
+                       i.flux ? intensity_metrics(i) : py::none()));
   });
+  m.def("_with_figures", &with_figures);
   m.def("read_intensity", &read_intensity, "path"_a, py::kw_only(), "strict"_a = false, "ies_turn_deg"_a = 0,
         "isym3"_a = "standard", kReadIntensityDoc);
 }

@@ -97,8 +97,8 @@ ObjectiveHandle make_objective(const SceneHandle& scene, double rays, std::uint6
   const ObjectiveOptions options{ray_count(rays), seed, rim_mm};
   return watched(callback, OnInterrupt::raise, [&](Watch& watch) {
     const SceneState& s = *scene.state;
-    return ObjectiveHandle{std::make_shared<Objective>(s.project, s.path.string(), options, watch),
-                           scene.state};
+    return ObjectiveHandle{std::make_shared<Objective>(s.project, s.path.string(), options, watch), scene,
+                           options};
   });
 }
 
@@ -126,7 +126,7 @@ py::object metrics(const ObjectiveHandle& f, const py::object& x) {
 
 SceneHandle scene_at(const ObjectiveHandle& f, const py::object& x) {
   const std::string text = f.objective->project_text(parameters_of(x));
-  return read_scene(text, f.scene->path, f.scene->memory);
+  return read_scene(text, f.scene.state->path, f.scene.state->memory);
 }
 
 }  // namespace
@@ -165,6 +165,15 @@ void add_objective(py::module_& m) {
       "x"_a, kJacobianDoc);
   c.def("metrics", &metrics, "x"_a, kMetricsDoc);
   c.def("scene", &scene_at, "x"_a, kSceneDoc);
+  c.def(py::pickle(
+      [](const ObjectiveHandle& f) {
+        return py::make_tuple(f.scene, f.options.rays, f.options.seed, f.options.rim_mm);
+      },
+      [](const py::tuple& s) {
+        if (s.size() != 4) throw InputError("a pickle of another version of lucerna", ErrorCause::damaged);
+        return make_objective(s[0].cast<SceneHandle>(), s[1].cast<double>(), s[2].cast<std::uint64_t>(),
+                              s[3].cast<std::optional<double>>(), py::none());
+      }));
 }
 
 }  // namespace lucerna::python

@@ -175,8 +175,8 @@ namespace {
 const RayBlock& block(const Rays& rays) { return rays.set->rays; }
 
 /// Three columns as an array of shape (n, 3).
-py::array_t<float> stacked(const std::vector<float>& x, const std::vector<float>& y,
-                           const std::vector<float>& z) {
+py::array_t<float> copied(const std::vector<float>& x, const std::vector<float>& y,
+                          const std::vector<float>& z) {
   std::vector<float> out(3 * x.size());
   {
     const py::gil_scoped_release unlocked;
@@ -188,6 +188,16 @@ py::array_t<float> stacked(const std::vector<float>& x, const std::vector<float>
   }
   const Shape shape = grid(x.size(), 3);
   return owned(std::move(out), shape);
+}
+
+/// The same as a view where the columns lie equally far apart, as what is allocated one after another usually
+/// does; else a copy.
+py::array_t<float> stacked(const py::object& self, std::vector<float> RayBlock::*x_of,
+                           std::vector<float> RayBlock::*y_of, std::vector<float> RayBlock::*z_of) {
+  const RayBlock& b = block(self.cast<const Rays&>());
+  const std::vector<float>&x = b.*x_of, &y = b.*y_of, &z = b.*z_of;
+  if (auto seen = stacked_view(x, y, z, self)) return *std::move(seen);
+  return copied(x, y, z);
 }
 
 /// The columns of an array of shape (n, 3), whatever precision it is in.
@@ -380,7 +390,10 @@ Rays from_state(const py::tuple& s) {
   h.flux_w = s[2].cast<std::optional<double>>();
   for (const auto& c : s[3].cast<py::list>()) {
     const auto spec = c.cast<py::tuple>();
-    h.columns.push_back({static_cast<ColumnKind>(spec[0].cast<int>()), spec[1].cast<std::string>()});
+    const int kind = spec[0].cast<int>();
+    if (kind < 0 || kind > static_cast<int>(ColumnKind::additional))
+      throw InputError("a damaged pickle of rays", ErrorCause::damaged);
+    h.columns.push_back({static_cast<ColumnKind>(kind), spec[1].cast<std::string>()});
   }
   for (const auto& t : s[4].cast<py::list>()) {
     const auto table = t.cast<py::tuple>();
@@ -399,6 +412,7 @@ Rays from_state(const py::tuple& s) {
   std::vector<std::vector<float>*> places{&b.x_mm, &b.y_mm, &b.z_mm, &b.kx, &b.ky, &b.kz, &b.weight};
   for (auto& column : b.extra) places.push_back(&column);
   if (arrays.size() != places.size()) throw InputError("a damaged pickle of rays", ErrorCause::damaged);
+  if (!arrays.empty()) b.reserve(py::len(arrays[0]));
   for (std::size_t i = 0; i < places.size(); ++i) {
     // Stokes and additional columns may hold what is no number: taken as it is.
     const auto column = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(arrays[i]);
@@ -470,11 +484,14 @@ void add_columns(py::class_<Rays>& c) {
   column("weight", &RayBlock::weight,
          "Relative flux of each ray, as the file has it: float32 (n,), a read-only view.");
   c.def_property_readonly(
-      "position_mm", [](const Rays& r) { return stacked(block(r).x_mm, block(r).y_mm, block(r).z_mm); },
-      "Starts, mm: float32 (n, 3). Rays are kept by column, so this is a new array at each access.");
+      "position_mm",
+      [](const py::object& self) { return stacked(self, &RayBlock::x_mm, &RayBlock::y_mm, &RayBlock::z_mm); },
+      "Starts, mm: float32 (n, 3), a read-only view across the columns where they lie equally far apart in "
+      "memory, as those of large sets do; else a new array at each access.");
   c.def_property_readonly(
-      "direction", [](const Rays& r) { return stacked(block(r).kx, block(r).ky, block(r).kz); },
-      "Unit directions: float32 (n, 3). Rays are kept by column, so this is a new array at each access.");
+      "direction",
+      [](const py::object& self) { return stacked(self, &RayBlock::kx, &RayBlock::ky, &RayBlock::kz); },
+      "Unit directions: float32 (n, 3), a view or a new array as `position_mm`.");
   c.def_property_readonly("flux", &flux_per_ray,
                           "Flux of each ray in lm (or W): float64 (n,), a new array at each access.");
   c.def_property_readonly("columns", &columns,

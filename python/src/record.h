@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 
 #include "arrays.h"
 #include "lucerna/estimate.h"
@@ -19,6 +20,18 @@ inline py::object python_name(const char* module, const char* name) {
 
 /// lucerna.Record: named figures.
 inline py::object record(const py::dict& fields) { return python_name("lucerna._types", "Record")(fields); }
+
+/// A Python object kept as the bytes of its pickle, so that nobody can change it and any thread may drop it.
+class Kept {
+ public:
+  explicit Kept(const py::object& object)
+      : bytes_(python_name("pickle", "dumps")(object).cast<py::bytes>()) {}
+  /// A new copy each time.
+  py::object get() const { return python_name("pickle", "loads")(py::bytes(bytes_)); }
+
+ private:
+  std::string bytes_;
+};
 
 /// lucerna.Estimate.
 inline py::object estimate(const Estimate& e) {

@@ -100,14 +100,18 @@ namespace fs = std::filesystem;
 ProjectMemory memory_of(const py::dict& objects) {
   ProjectMemory memory;
   for (const auto& [key, object] : objects) {
+    if (!py::isinstance<py::str>(key)) throw py::type_error("memory: expected names that are text");
     const auto name = key.cast<std::string>();
     if (py::isinstance<Model>(object)) {
       memory.models[name] = object.cast<const Model&>().model;
     } else if (py::isinstance<Rays>(object)) {
       memory.rays[name] = object.cast<const Rays&>().set;
-    } else {
+    } else if (py::isinstance<Intensity>(object)) {
       const auto& file = object.cast<const Intensity&>().file;
       memory.targets[name] = {file, &file->distribution};
+    } else {
+      throw py::type_error("memory: expected a SourceModel, RaySet or IntensityDistribution as '" + name +
+                           "'");
     }
   }
   return memory;
@@ -120,7 +124,7 @@ py::dict objects_of(const ProjectMemory& memory) {
   for (const auto& [name, target] : memory.targets) {
     auto file = std::make_shared<PhotometricFile>();
     file->distribution = *target;
-    out[py::str(name)] = Intensity{file, {}, nullptr};
+    out[py::str(name)] = Intensity{file};
   }
   return out;
 }

@@ -95,9 +95,10 @@ TraceResult)";
 
 constexpr const char* kTraceResultClassDoc = R"(Where the light went.
 
-`result[name]` is what a detector recorded: an IntensityDistribution, a PlaneImage or a RaySet. Figures are
-worked out when they are first asked for. A result never changes, so threads may share it. It pickles as the
-raw sums, which `merge` adds.)";
+`result[name]` is what a detector recorded: an IntensityDistribution, a PlaneImage or a RaySet. Counts and
+the arrays of far fields are there at once. Figures are worked out when they are first asked for, by any of
+`metrics`, `summary`, `save` or `report`: the exact peak of a far field takes seconds. A result never changes,
+so threads may share it. It pickles as the raw sums, which `merge` adds.)";
 
 constexpr const char* kSummaryDoc = R"(summary()
 --
@@ -127,23 +128,78 @@ list of str
 
 }  // namespace
 
-Traced::Traced(ScenePointer scene, NoiseTrace trace, TraceMetrics metrics)
+namespace {
+
+/// A trace as if the scene had only its far fields, or only its planes and images.
+TraceResult part_of(const TraceResult& whole, bool far_fields) {
+  TraceResult part;
+  part.first_ray = whole.first_ray;
+  part.last_ray = whole.last_ray;
+  part.seed = whole.seed;
+  part.sequence = whole.sequence;
+  part.max_bounces = whole.max_bounces;
+  part.isa = whole.isa;
+  part.flux = whole.flux;
+  part.unit = whole.unit;
+  part.body_names = whole.body_names;
+  if (far_fields) {
+    part.far_fields = whole.far_fields;
+  } else {
+    part.planes = whole.planes;
+    part.luminances = whole.luminances;
+  }
+  const auto first = static_cast<std::ptrdiff_t>(whole.far_fields.size());
+  for (const Tally& t : whole.replicates) {
+    Tally& counts = part.replicates.emplace_back();
+    counts.rays = t.rays;
+    counts.reflections = t.reflections;
+    counts.emitted = t.emitted;
+    counts.out_direct = t.out_direct;
+    counts.out_reflected = t.out_reflected;
+    counts.absorbed = t.absorbed;
+    counts.lost = t.lost;
+    counts.lost_rays = t.lost_rays;
+    counts.bins.assign(far_fields ? t.bins.begin() : t.bins.begin() + first,
+                       far_fields ? t.bins.begin() + first : t.bins.end());
+  }
+  return part;
+}
+
+}  // namespace
+
+Traced::Traced(ScenePointer scene, NoiseTrace trace, const Figures& figures)
     : scene_(std::move(scene)),
       trace_(std::move(trace)),
-      metrics_(std::make_shared<TraceMetrics>(std::move(metrics))) {}
+      counted_(figures),
+      far_fields_(figures),
+      images_(figures),
+      all_(figures) {}
 
-std::shared_ptr<const TraceMetrics> Traced::metrics() const {
-  const std::lock_guard lock(mutex_);
-  if (!metrics_)
-    metrics_ = std::make_shared<const TraceMetrics>(trace_metrics(result(), scene_->project.scene));
-  return metrics_;
+Traced::Figures Traced::counted() const {
+  return counted_.get([&] { return trace_metrics(result()); });
+}
+
+Traced::Figures Traced::far_fields() const {
+  return far_fields_.get([&] { return trace_metrics(part_of(result(), true), scene_->project.scene); });
+}
+
+Traced::Figures Traced::images() const {
+  return images_.get([&] { return trace_metrics(part_of(result(), false), scene_->project.scene); });
+}
+
+Traced::Figures Traced::all() const {
+  return all_.get([&] {
+    TraceMetrics figures = *counted();
+    figures.far_fields = far_fields()->far_fields;
+    figures.planes = images()->planes;
+    figures.luminances = images()->luminances;
+    return figures;
+  });
 }
 
 namespace {
 
 namespace fs = std::filesystem;
-using TracedPointer = std::shared_ptr<Traced>;
-
 /// A number of rays, or a pair of ray numbers.
 void set_rays(const py::object& rays, TraceOptions& options) {
   if (py::isinstance<py::sequence>(rays) && !py::isinstance<py::str>(rays)) {
@@ -249,16 +305,18 @@ py::object detector(const TracedPointer& t, const std::string& name) {
   };
   if (!known(r.far_fields) && !known(r.planes) && !known(r.luminances))
     throw py::key_error("no detector is named '" + name + "'");
-  const std::shared_ptr<const TraceMetrics> all = released([&] { return t->metrics(); });
-  for (const FarFieldResult& f : all->far_fields) {
+  const Traced::Figures counted = released([&] { return t->counted(); });
+  for (std::size_t i = 0; i < counted->far_fields.size(); ++i) {
+    const FarFieldResult& f = counted->far_fields[i];
     if (f.field.name != name) continue;
     auto file = std::make_shared<PhotometricFile>();
     file->distribution = f.intensity.distribution;
-    return py::cast(Intensity{file, f.intensity.standard_error_cd, {all, &f.metrics}});
+    return py::cast(Intensity{file, f.intensity.standard_error_cd, f.metrics.flux, t, i});
   }
-  for (const auto* planes : {&all->planes, &all->luminances}) {
-    for (const PlaneMetrics& p : *planes) {
-      if (p.image.name == name) return py::cast(Plane{{all, &p}});
+  for (const auto* images : {&counted->planes, &counted->luminances}) {
+    for (std::size_t i = 0; i < images->size(); ++i) {
+      const PlaneMetrics& p = (*images)[i];
+      if (p.image.name == name) return py::cast(Plane{{counted, &p}, t, images == &counted->luminances, i});
     }
   }
   throw py::key_error("no detector is named '" + name + "'");
@@ -293,13 +351,13 @@ std::string end_name(NoiseEnd end) {
 }
 
 std::vector<std::string> summary(const Traced& t) {
-  return released([&] { return trace_summary(*t.metrics()); });
+  return released([&] { return trace_summary(*t.all()); });
 }
 
 Warnings save_trace(const Traced& t, const fs::path& folder) {
   return released([&] {
     Warnings warnings;
-    write_trace(folder, t.scene()->project, t.result(), &warnings);
+    write_trace(folder, t.scene()->project, t.result(), *t.all(), &warnings);
     return warnings;
   });
 }
@@ -384,10 +442,11 @@ void add_traces(py::module_& m) {
       },
       [](const py::tuple& s) {
         if (s.size() != 4) throw InputError("a pickle of another version of lucerna", ErrorCause::damaged);
+        const auto end = static_cast<NoiseEnd>(s[3].cast<int>());
+        if (end_name(end).empty()) throw InputError("a damaged pickle of a trace", ErrorCause::damaged);
         return std::make_shared<Traced>(
             s[1].cast<SceneHandle>().state,
-            NoiseTrace{trace_from_bytes(s[0].cast<std::string>(), "pickle"), s[2].cast<double>(),
-                       static_cast<NoiseEnd>(s[3].cast<int>())});
+            NoiseTrace{trace_from_bytes(s[0].cast<std::string>(), "pickle"), s[2].cast<double>(), end});
       }));
   add_trace_call(m);
 }

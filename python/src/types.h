@@ -18,6 +18,8 @@
 #include "lucerna/source_model.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace_metrics.h"
+#include "made.h"
+#include "record.h"
 
 /// What the classes of the module hold. All are immutable once made, so that threads may share them.
 namespace lucerna::python {
@@ -38,20 +40,32 @@ struct Model {
   Warnings warnings;
 };
 
+class Traced;
+
 /// lucerna.IntensityDistribution: of a file, of arrays or of a trace.
 struct Intensity {
   std::shared_ptr<const PhotometricFile> file;
   /// Standard errors of the values; empty where they are not known.
-  std::vector<double> standard_error;
-  /// Of a trace.
-  std::shared_ptr<const FarFieldMetrics> traced;
+  std::vector<double> standard_error{};
+  /// Of a trace: its flux, and where its other figures are: in the trace, or in a pickle.
+  std::optional<Estimate> flux{};
+  std::shared_ptr<const Traced> trace{};
+  std::size_t far_field = 0;
+  std::shared_ptr<const Kept> figures{};
 
   const IntensityDistribution& values() const { return file->distribution; }
 };
 
-/// lucerna.PlaneImage.
+/// lucerna.PlaneImage: of a trace or of a pickle.
 struct Plane {
-  std::shared_ptr<const PlaneMetrics> metrics;
+  /// What the counted rays say: all that does not depend on the figures. Of a pickle: everything.
+  std::shared_ptr<const PlaneMetrics> counted;
+  std::shared_ptr<const Traced> trace{};
+  bool is_luminance = false;
+  std::size_t index = 0;
+
+  /// To be called without the interpreter's lock: takes seconds the first time.
+  std::shared_ptr<const PlaneMetrics> figures() const;
 };
 
 /// lucerna.Reflector: a mirror, and the table that describes it.
@@ -78,37 +92,67 @@ struct SceneHandle {
 SceneHandle read_scene(const std::string& text, const std::filesystem::path& path,
                        const ProjectMemory& memory, const py::object& callback = py::none());
 
-/// lucerna.TraceResult. Figures are worked out when they are first asked for.
+/// Worked out once, when it is first asked for, whichever thread asks. To be asked without the interpreter's
+/// lock.
+template <class T>
+class Lazy {
+ public:
+  explicit Lazy(std::shared_ptr<const T> value = nullptr) : value_(std::move(value)) {}
+
+  template <class Make>
+  std::shared_ptr<const T> get(const Make& make) const {
+    const std::lock_guard lock(mutex_);
+    if (!value_) value_ = std::make_shared<const T>(make());
+    return value_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::shared_ptr<const T> value_;
+};
+
+/// lucerna.TraceResult. Figures are worked out when they are first asked for, each kind by itself.
 class Traced {
  public:
-  Traced(ScenePointer scene, NoiseTrace trace) : scene_(std::move(scene)), trace_(std::move(trace)) {}
-  /// With figures that are there already.
-  Traced(ScenePointer scene, NoiseTrace trace, TraceMetrics metrics);
+  using Figures = std::shared_ptr<const TraceMetrics>;
+
+  /// `figures`: all of them, where they are there already.
+  Traced(ScenePointer scene, NoiseTrace trace, const Figures& figures = nullptr);
 
   const ScenePointer& scene() const { return scene_; }
   const NoiseTrace& trace() const { return trace_; }
   const TraceResult& result() const { return trace_.result; }
-  /// To be called without the interpreter's lock: takes seconds the first time.
-  std::shared_ptr<const TraceMetrics> metrics() const;
+
+  // To be called without the interpreter's lock.
+  /// What the counted rays alone say: quick.
+  Figures counted() const;
+  /// The far fields with exact peaks, seconds each; the planes and images with backward light. The others of
+  /// TraceMetrics are not in them.
+  Figures far_fields() const;
+  Figures images() const;
+  /// All together: what the library's `trace_metrics` has.
+  Figures all() const;
 
  private:
   ScenePointer scene_;
   NoiseTrace trace_;
-  mutable std::mutex mutex_;
-  mutable std::shared_ptr<const TraceMetrics> metrics_;
+  Lazy<TraceMetrics> counted_, far_fields_, images_, all_;
 };
+using TracedPointer = std::shared_ptr<Traced>;
 
-/// lucerna.DesignResult.
+/// lucerna.DesignResult: of `design`, or of a pickle, which has its figures and the files of its folder.
 struct Designed {
   std::shared_ptr<const DesignedMirror> mirror;
   SceneHandle scene;
-  std::shared_ptr<Traced> traced;
+  TracedPointer traced;
+  std::shared_ptr<const Kept> figures{}, files{};
 };
 
 /// lucerna.Objective.
 struct ObjectiveHandle {
   std::shared_ptr<const Objective> objective;
-  ScenePointer scene;
+  SceneHandle scene;
+  ObjectiveOptions options;
 };
 
 // The classes and functions of each file.
@@ -138,3 +182,15 @@ py::object intensity_metrics(const Intensity& intensity);
 py::object design_error(const DesignError& error);
 
 }  // namespace lucerna::python
+
+// An object whose __init__ did not run holds nothing: TypeError instead of what pybind11 makes of it.
+LUCERNA_PYTHON_CLASS(lucerna::python::Rays)
+LUCERNA_PYTHON_CLASS(lucerna::python::Model)
+LUCERNA_PYTHON_CLASS(lucerna::python::Intensity)
+LUCERNA_PYTHON_CLASS(lucerna::python::Plane)
+LUCERNA_PYTHON_CLASS(lucerna::python::Mirror)
+LUCERNA_PYTHON_CLASS(lucerna::python::SceneHandle)
+LUCERNA_PYTHON_CLASS(lucerna::python::Traced)
+LUCERNA_PYTHON_CLASS(lucerna::python::Designed)
+LUCERNA_PYTHON_CLASS(lucerna::python::ObjectiveHandle)
+LUCERNA_PYTHON_HOLDER(lucerna::python::Traced)

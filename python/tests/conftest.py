@@ -13,6 +13,10 @@ matplotlib.use("Agg")
 # No test needs more, and a lost callback or lock shows as a test that hangs.
 RAYS = 200_000
 
+# Whether the module is under the address sanitizer, whose library is preloaded then: not into the program, which has its own.
+SANITIZED = "asan" in os.environ.get("LD_PRELOAD", "")
+BARE = {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}
+
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "slow: takes longer than some seconds")
@@ -66,7 +70,8 @@ def program():
         pytest.skip("no program: LUCERNA_PROGRAM is not set")
 
     def run(*arguments):
-        done = subprocess.run([found, *map(str, arguments)], capture_output=True, text=True, check=False)
+        done = subprocess.run([found, *map(str, arguments)], capture_output=True, text=True, check=False,
+                              env=BARE)
         assert done.returncode == 0, done.stderr
         return done.stdout
 

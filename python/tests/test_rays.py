@@ -73,6 +73,23 @@ def test_views_share_memory(rays):
     assert np.shares_memory(rays.x_mm, rays.x_mm)
 
 
+@pytest.mark.parametrize("n", [0, 1, 2, 1000, 100_000, 1_000_000])
+def test_vectors_are_views_across_columns_or_copies(n):
+    """Whatever the allocator did: the same numbers, read-only, and a view's owner is the set."""
+    rays = lu.make_source("led", n, seed=3)
+    for whole, columns in ((rays.position_mm, (rays.x_mm, rays.y_mm, rays.z_mm)),
+                           (rays.direction, (rays.kx, rays.ky, rays.kz))):
+        assert whole.shape == (n, 3) and whole.dtype == np.float32 and not whole.flags.writeable
+        np.testing.assert_array_equal(whole, np.stack(columns, axis=1))
+        assert (whole.base is rays) == (np.shares_memory(whole, columns[0]) or n == 0 and whole.base is rays)
+        assert pickle.loads(pickle.dumps(whole)).tobytes() == whole.tobytes()
+    kept = rays.position_mm
+    expected = kept.copy()
+    del rays
+    lu.make_source("led", n, seed=4)
+    np.testing.assert_array_equal(kept, expected)
+
+
 def test_wavelengths_are_a_column():
     rays = lu.RaySet.from_arrays(np.zeros((3, 3)), np.tile([0, 0, 1.0], (3, 1)), wavelength_nm=[400, 500, 600])
     (name,) = rays.columns

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
 #include "lucerna/core/cpu/huge_pages.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/rays.h"
@@ -14,9 +19,44 @@ void make_room(std::vector<float>& array, std::size_t n) {
   advise_huge_pages(array.data() + array.size(), (n - array.size()) * sizeof(float));
 }
 
+/// Sets below this are copied in no time.
+constexpr std::size_t kFewRays = std::size_t{1} << 14;
+/// Memory that is freed leaves holes, which the next columns fall into.
+constexpr std::size_t kMostCandidates = 12;
+
+std::uintptr_t bytes_between(const std::vector<float>& a, const std::vector<float>& b) {
+  return reinterpret_cast<std::uintptr_t>(b.data()) - reinterpret_cast<std::uintptr_t>(a.data());
+}
+
+/// Room for three empty columns, equally far apart if the allocator has such places: then an array of vectors
+/// can be laid across them without a copy. What is allocated in turn is, but for holes; room that is not
+/// touched costs next to nothing.
+void make_even_room(std::vector<float>& x, std::vector<float>& y, std::vector<float>& z, std::size_t n) {
+  const bool is_new = x.capacity() == 0 && y.capacity() == 0 && z.capacity() == 0;
+  if (n < kFewRays || !is_new) return;
+  std::vector<std::vector<float>> rooms(2);
+  for (auto& room : rooms) room.reserve(n);
+  while (rooms.size() < kMostCandidates) {
+    auto& last = rooms.emplace_back();
+    last.reserve(n);
+    for (std::size_t j = rooms.size() - 2; j > 0; --j) {
+      for (std::size_t i = j; i-- > 0;) {
+        if (bytes_between(rooms[i], rooms[j]) != bytes_between(rooms[j], last)) continue;
+        x = std::move(rooms[i]);
+        y = std::move(rooms[j]);
+        z = std::move(last);
+        for (auto* column : {&x, &y, &z}) advise_huge_pages(column->data(), n * sizeof(float));
+        return;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void RayBlock::resize(std::size_t n, std::size_t columns) {
+  make_even_room(x_mm, y_mm, z_mm, n);
+  make_even_room(kx, ky, kz, n);
   for (auto* array : {&x_mm, &y_mm, &z_mm, &kx, &ky, &kz, &weight}) {
     if (array->empty()) make_room(*array, n);
     array->resize(n);
@@ -26,6 +66,8 @@ void RayBlock::resize(std::size_t n, std::size_t columns) {
 }
 
 void RayBlock::reserve(std::size_t n) {
+  make_even_room(x_mm, y_mm, z_mm, n);
+  make_even_room(kx, ky, kz, n);
   for (auto* array : {&x_mm, &y_mm, &z_mm, &kx, &ky, &kz, &weight}) make_room(*array, n);
   for (auto& column : extra) column.reserve(n);
 }

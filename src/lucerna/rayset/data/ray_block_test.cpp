@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <vector>
+
 #include "lucerna/random.h"
 #include "lucerna/rays.h"
 
@@ -29,6 +32,27 @@ TEST(RayBlock, AppendingRayByRayOrAllAtOnceIsTheSame) {
   RayBlock from_nothing;
   from_nothing.append(a);
   EXPECT_EQ(from_nothing, a);
+}
+
+TEST(RayBlock, LargeColumnsLieEquallyFarApart) {
+  const auto gap = [](const std::vector<float>& a, const std::vector<float>& b) {
+    return reinterpret_cast<std::uintptr_t>(b.data()) - reinterpret_cast<std::uintptr_t>(a.data());
+  };
+  for (const std::size_t n : {20'000u, 99'999u, 1'000'000u, 9'999'999u}) {
+    std::vector<float> first(n), between(100), second(n);
+    first = {};
+    first.shrink_to_fit();  // leaves a hole of one column
+    RayBlock block;
+    if (n % 3 == 0) {
+      block.reserve(n);
+    } else {
+      block.resize(n, 1);
+    }
+    EXPECT_EQ(gap(block.x_mm, block.y_mm), gap(block.y_mm, block.z_mm)) << n;
+    EXPECT_EQ(gap(block.kx, block.ky), gap(block.ky, block.kz)) << n;
+    block.resize(n, 1);
+    EXPECT_EQ(block.z_mm, std::vector<float>(n));
+  }
 }
 
 TEST(RayBlock, MixedColumnsAndMissingRaysAreOurBug) {

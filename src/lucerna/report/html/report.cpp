@@ -32,14 +32,21 @@ void make_folder(const std::filesystem::path& folder) {
 
 }  // namespace
 
-std::vector<std::string> write_trace(const std::filesystem::path& folder, const Project& given,
+std::vector<std::string> write_trace(const std::filesystem::path& folder, const Project& project,
                                      const TraceResult& result, std::vector<std::string>* warnings) {
+  make_folder(folder);  // before the seconds that the figures take
+  return write_trace(folder, project, result, trace_metrics(result, project.scene), warnings);
+}
+
+std::vector<std::string> write_trace(const std::filesystem::path& folder, const Project& given,
+                                     const TraceResult& result, const TraceMetrics& figures,
+                                     std::vector<std::string>* warnings) {
   make_folder(folder);
   const Project project = save_memory(given, folder);
   nlohmann::ordered_json json = run_json({.inputs = project.inputs}, result.seed, result.isa);
   std::vector<std::string> lost;
-  return write_trace_results(folder, result, trace_origin(project), trace_metrics(result, project.scene),
-                             json, warnings != nullptr ? *warnings : lost);
+  return write_trace_results(folder, result, trace_origin(project), figures, json,
+                             warnings != nullptr ? *warnings : lost);
 }
 
 std::vector<std::string> write_design(const std::filesystem::path& folder, const DesignedMirror& mirror) {
