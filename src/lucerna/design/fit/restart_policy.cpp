@@ -20,7 +20,7 @@ constexpr double kGain = 0.97;
 
 /// A restart that ends a stage above so many times the incumbent's error does not go on to the next, which
 /// has more rays.
-constexpr double kHopeless = 1.5;
+constexpr double kEndedAbove = 1.5;
 
 /// A shape above so many times the noise at the screening stage, but with less than this error, is near the
 /// target in what seems another basin: the search looks for the right one, with so many restarts before the
@@ -86,7 +86,7 @@ FitBranch RestartPolicy::after(std::size_t stage, const FitSnapshot& now, Restar
 FitBranch RestartPolicy::next_after(std::size_t stage, const FitSnapshot& now, RestartState& state) const {
   if (stage + 1 == schedule_.size()) return after_last(now, state);
   const bool compared = stage > schedule_.screening() && state.best.exists();
-  if (!compared || now.cost <= kHopeless * kHopeless * state.best.cost) return {};
+  if (!compared || now.cost <= kEndedAbove * kEndedAbove * state.best.cost) return {};
   ++state.failed;
   return restart(state);
 }
