@@ -37,7 +37,7 @@ test-python: python
 test-mpi: packages
 	scripts/packages.sh scripts/packages-mpi.txt
 	for mpi in openmpi mpich; do \
-	  cmake -S . -B build/$$mpi -G Ninja -DCMAKE_BUILD_TYPE=Release -DLUCERNA_CUDA=OFF -DLUCERNA_PYTHON=OFF -DLUCERNA_MPI=ON \
+	  cmake -S . -B build/$$mpi -G Ninja -DCMAKE_BUILD_TYPE=Release -DLUCERNA_CUDA=OFF -DLUCERNA_PYTHON=OFF -DLUCERNA_MPI=ON -DLUCERNA_MPI_TESTS=ON \
 	    -DMPI_CXX_COMPILER=/usr/bin/mpicxx.$$mpi -DMPIEXEC_EXECUTABLE=/usr/bin/mpiexec.$$mpi && \
 	  cmake --build build/$$mpi --target mpi_tests && \
 	  ctest --test-dir build/$$mpi --output-on-failure --no-tests=error -L mpi || exit 1; \

@@ -21,8 +21,8 @@ struct CadTolerance {
 };
 
 /// What a mesh keeps that light is traced through: flat facets blur a beam by about their angle to the
-/// surface, and this is a fifth of a 48th of a wide beam. The mesh of a design for a narrower beam, in its STL
-/// file and its validation, is up to twice as fine.
+/// surface, and this is a fifth of a 48th of a wide beam. The mesh of a design for a narrower beam, in its
+/// STL file and its validation, is up to twice as fine.
 inline constexpr CadTolerance kOpticalTolerance{.chord_mm = 0.01, .slope_deg = 0.3};
 
 /// A reflector as triangles, for STL and OBJ: a grid over the aperture (from the hole's rim outwards where
