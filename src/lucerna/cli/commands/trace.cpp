@@ -19,8 +19,8 @@ namespace lucerna::cli {
 namespace {
 
 struct TraceArguments {
-  std::string project, output, rays, noise = "1%", time = "60", seed = "1", sequence = "sobol",
-                                     device = "auto", report;
+  std::string project, output, rays, noise = "1%", time = "60", seed, sequence = "sobol", device = "auto",
+                                     report;
   bool resume = false;
 };
 
@@ -28,7 +28,7 @@ TraceOptions trace_options(const TraceArguments& a) {
   TraceOptions options;
   options.device = trace_device(a.device);
   if (options.device == TraceDevice::cuda) require_cuda();
-  options.seed = parse_count(a.seed);
+  if (!a.seed.empty()) options.seed = parse_count(a.seed);
   options.sequence = sequence_kind(a.sequence);
   if (!a.rays.empty()) {
     const RayRange range = parse_range(a.rays);
@@ -48,6 +48,10 @@ std::optional<TraceResult> stored_trace(const TraceArguments& a, const TraceOrig
   if (stored.origin.program_version != origin.program_version) {
     throw InputError(fmt::format("{}: was traced by lucerna {}, this is {}", a.output,
                                  stored.origin.program_version, origin.program_version));
+  }
+  if (!a.seed.empty() && parse_count(a.seed) != stored.result.seed) {
+    throw InputError(
+        fmt::format("{}: was traced with seed {}, found --seed {}", a.output, stored.result.seed, a.seed));
   }
   return std::move(stored.result);
 }
@@ -110,7 +114,7 @@ void add_trace(CLI::App& app, Session& session, int& exit_code) {
   command.option("--time", a.time, "Seconds after which to stop with the noise that is left");
   command.option("--rays", a.rays, "Instead: a number of rays, or a range A:B of ray numbers");
   command.flag("--resume", a.resume, "Go on with the trace in the folder");
-  command.option("--seed", a.seed, "Seed of the random numbers");
+  command.option("--seed", a.seed, "Seed of the random numbers (default 1; with --resume that of the trace)");
   command.option("--sequence", a.sequence, "random or sobol");
   command.option("--device", a.device, "cpu, cuda or auto");
   command.option("--report", a.report, "Also write the report as one HTML file");

@@ -78,6 +78,9 @@ TEST(TraceNoiseCli, ATraceThatWasTooNoisyGoesOnToTheSameBits) {
   ASSERT_EQ(run_lucerna(dir.path(), "trace p.toml -o whole --rays 50000").exit_code, 0);
   ASSERT_EQ(run_lucerna(dir.path(), "trace p.toml -o parts --rays 20000").exit_code, 0);
   EXPECT_EQ(run_lucerna(dir.path(), "trace p.toml -o parts --rays 50000").exit_code, 1) << "not empty";
+  const auto other_seed = run_lucerna(dir.path(), "trace p.toml -o parts --rays 50000 --resume --seed 3");
+  EXPECT_EQ(other_seed.exit_code, 1);
+  EXPECT_THAT(other_seed.err, HasSubstr("was traced with seed 1, found --seed 3"));
   ASSERT_EQ(run_lucerna(dir.path(), "trace p.toml -o parts --rays 50000 --resume").exit_code, 0);
   for (const char* file : {"far.csv", "far.ldt", "trace.sums"})
     EXPECT_EQ(test::slurp(dir / "parts" / file), test::slurp(dir / "whole" / file)) << file;
