@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lucerna/cli/commands/commands.h"
+#include "lucerna/cli/output/trace_output.h"
 #include "lucerna/cli/parse/arguments.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
@@ -76,8 +77,7 @@ DesignRun run(const DesignProblem& problem, const DesignOptions& options, Design
   session.add_seconds("figures", made.figures_s);
   if (made.figures.tolerances) session.add_seconds("tolerances", made.tolerances_s);
   if (made.trace.end == NoiseEnd::time) {
-    session.note(fmt::format("the trace of the result has {:.2g} % noise, {:.2g} % requested: {}",
-                             100.0 * made.trace.noise, 100.0 * made.noise_goal, to_string(made.trace.end)));
+    note_noise("trace of the result: ", made.trace, made.noise_goal, session);
   }
   return made;
 }

@@ -66,8 +66,7 @@ NoiseTrace run_rays(const TraceArguments& a, const Scene& scene, const TraceOpti
   goal.max_seconds = parse_number(a.time);
   NoiseTrace traced = trace_until(scene, options, goal, std::move(from), session.progress());
   if (traced.end == NoiseEnd::time || traced.end == NoiseEnd::finite_source) {
-    session.note(fmt::format("noise {:.2g} % of the peak, {:.2g} % requested: {}", 100.0 * traced.noise,
-                             100.0 * goal.noise, to_string(traced.end)));
+    note_noise("", traced, goal.noise, session);
   }
   return traced;
 }

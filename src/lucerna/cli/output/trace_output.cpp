@@ -20,6 +20,19 @@ std::vector<std::string> write_trace_output(const std::string& folder, const Tra
   return names;
 }
 
+void note_noise(const std::string& of, const NoiseTrace& traced, double goal, Session& session) {
+  const std::string_view why = to_string(traced.end);
+  if (traced.noise > goal) {
+    session.note(fmt::format("{}noise {:.2g} % of the peak, {:.2g} % requested: {}", of, 100.0 * traced.noise,
+                             100.0 * goal, why));
+  } else {  // what trace_until asks for last
+    session.note(fmt::format(
+        "{}noise {:.2g} % of the peak, as requested, but the peak itself is not known to {:.2g} % "
+        "yet: {}",
+        of, 100.0 * traced.noise, 50.0 * goal, why));
+  }
+}
+
 void print_trace_summary(const TraceMetrics& figures, const std::vector<std::string>& names,
                          Session& session) {
   for (const std::string& line : trace_summary(figures)) session.print_line(line);

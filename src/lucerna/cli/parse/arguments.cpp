@@ -43,7 +43,7 @@ double parse_share(std::string_view word) {
   while (number.ends_with(' ')) number.remove_suffix(1);
   const double share = parse_number(number) * (percent ? 0.01 : 1.0);
   if (!(share > 0.0 && share <= 1.0))
-    throw UsageError(fmt::format("'{}': expected a share above 0, like 1% or 0.01", word));
+    throw UsageError(fmt::format("'{}': expected a share above 0 and at most 1, like 1% or 0.01", word));
   return share;
 }
 
