@@ -322,7 +322,7 @@ TEST(DistributedStub, SumsBeyond63BitsAreExact) {
   ASSERT_TRUE(o.traces[0].result.has_value()) << o.errors[0];
   for (const Tally& t : o.traces[0].result->replicates) {
     EXPECT_TRUE(emitted_of(t) == Int128{kRays / kReplicates} << 26);
-    EXPECT_TRUE(bin_of(t, 0, 1) == emitted_of(t) + Int128{3 * (kRays / kChunk)});
+    EXPECT_TRUE(bin_of(t, 0, 1) == emitted_of(t) + 3 * Int128{kRays / kChunk});
     EXPECT_FALSE(t.high.empty());
   }
   EXPECT_TRUE(trace_from_bytes(trace_bytes(*o.traces[0].result)) == *o.traces[0].result);

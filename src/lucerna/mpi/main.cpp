@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
 #include <string>
 
 #include "lucerna/cli/commands/run.h"
@@ -7,7 +9,9 @@
 #include "lucerna/mpi/trace_command.h"
 #include "lucerna/version.h"
 
-int main(int argc, char** argv) {
+namespace {
+
+int run(int argc, char** argv) {
   lucerna::MpiRanks ranks(argc, argv);
   CLI::App app("Lucerna on many machines", "lucerna-mpi");
   app.set_version_flag("--version", std::string(lucerna::version()));
@@ -17,4 +21,15 @@ int main(int argc, char** argv) {
   lucerna::cli::add_mpi_trace(app, session, ranks);
   const int done = 0;
   return lucerna::cli::parse_and_run(app, argc, argv, done, ranks.is_first());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& e) {  // the options' description, which parse_and_run does not see
+    std::fprintf(stderr, "lucerna-mpi: %s\n", e.what());
+    return 1;
+  }
 }
