@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/distributed/partial_trace.h"
 
-#include <cstring>
 #include <utility>
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
 #include "lucerna/core/io/sha256.h"
+#include "lucerna/distributed/message_bytes.h"
 #include "lucerna/results/folders/trace_file.h"
 #include "lucerna/trace/result/addition.h"
 
@@ -17,17 +17,6 @@ namespace {
 constexpr std::string_view kMagic = "LUCPART1";
 constexpr std::size_t kHashBytes = 64;
 constexpr std::uint64_t kMaxPartBytes = std::uint64_t{16} << 30;
-
-void append(std::string& bytes, std::uint64_t number) {
-  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
-}
-
-std::uint64_t take(std::string_view& bytes) {
-  std::uint64_t number = 0;
-  std::memcpy(&number, bytes.data(), sizeof number);
-  bytes.remove_prefix(sizeof number);
-  return number;
-}
 
 /// Do the rays of `range` all come after those of `sum`? Then they are appended, which costs nothing.
 bool follow(const TraceResult& sum, const TraceResult& range) {

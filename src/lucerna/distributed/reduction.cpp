@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <span>
 #include <string_view>
 #include <tuple>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/distributed/message_bytes.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 #include "lucerna/trace/tally/wide_sums.h"
 
@@ -37,22 +37,6 @@ void add_tally(Ranks& ranks, Tally& tally, bool two_lanes) {
 /// The columns of a block of rays, in one fixed order.
 auto columns(auto& rays) {
   return std::array{&rays.x_mm, &rays.y_mm, &rays.z_mm, &rays.kx, &rays.ky, &rays.kz, &rays.weight};
-}
-
-template <class T>
-void append(std::string& bytes, const std::vector<T>& items) {
-  const std::uint64_t n = items.size();
-  bytes.append(reinterpret_cast<const char*>(&n), sizeof n);
-  bytes.append(reinterpret_cast<const char*>(items.data()), n * sizeof(T));
-}
-
-template <class T>
-void take(std::string_view& bytes, std::vector<T>& items) {
-  std::uint64_t n = 0;
-  std::memcpy(&n, bytes.data(), sizeof n);
-  items.resize(n);
-  std::memcpy(items.data(), bytes.data() + sizeof n, n * sizeof(T));
-  bytes.remove_prefix(sizeof n + n * sizeof(T));
 }
 
 struct KeptRays {
