@@ -12,9 +12,8 @@
 #include "lucerna/core/io/file.h"
 #include "lucerna/distributed/distributed_trace.h"
 #include "lucerna/project.h"
-#include "lucerna/report/html/report_trace.h"
-#include "lucerna/results/folders/trace_folder.h"
 #include "lucerna/trace/run/empty_trace.h"
+#include "lucerna/trace/tally/flux_quanta.h"
 
 namespace lucerna::cli {
 
@@ -26,8 +25,6 @@ struct MpiTraceArguments {
   std::string project, output, rays, seed = "1", sequence = "sobol", chunk, checkpoint = "300", report;
   bool resume = false;
 };
-
-constexpr std::uint64_t kBlock = 512;
 
 /// Does `work` and tells all ranks what went wrong on one.
 template <class Work>
@@ -56,7 +53,7 @@ DistributedOptions distributed_options(const MpiTraceArguments& a, Session& sess
   if (!a.chunk.empty()) {
     const std::uint64_t rays = parse_count(a.chunk);
     if (rays == 0) throw UsageError("chunks of 0 rays: expected at least one");
-    how.chunk_rays = (rays + kBlock - 1) / kBlock * kBlock;
+    how.chunk_rays = (rays + kBlockRays - 1) / kBlockRays * kBlockRays;
   }
   how.checkpoint_s = parse_number(a.checkpoint);
   how.note = [&session](const std::string& text) { session.note(text); };
@@ -81,9 +78,7 @@ void write_results(const MpiTraceArguments& a, const Project& project, const Tra
                                  1e-6 * static_cast<double>(figures.ledger.rays) / seconds, result.isa, ranks,
                                  ThreadLimit::current()));
   print_trace_summary(figures, names, session);
-  if (a.report.empty()) return;
-  write_file(a.report, trace_report_html(read_trace_folder(a.output), {.scene = &project.scene}));
-  session.print_line(fmt::format("  report: {}", a.report));
+  if (!a.report.empty()) write_trace_report(a.report, a.output, project.scene, session);
 }
 
 void run_mpi_trace(const MpiTraceArguments& a, Session& session, Ranks& ranks) {

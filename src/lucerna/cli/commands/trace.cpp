@@ -9,9 +9,7 @@
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
 #include "lucerna/project.h"
-#include "lucerna/report/html/report_trace.h"
 #include "lucerna/results/folders/trace_file.h"
-#include "lucerna/results/folders/trace_folder.h"
 #include "lucerna/trace/device/accelerator.h"
 
 namespace lucerna::cli {
@@ -94,10 +92,7 @@ void run_trace(const TraceArguments& a, Session& session, int& exit_code) {
       figures.ledger.rays, seconds, 1e-6 * static_cast<double>(figures.ledger.rays) / seconds, result.isa,
       ThreadLimit::current(), session.seconds("read"), session.seconds("figures")));
   print_trace_summary(figures, names, session);
-  if (!a.report.empty()) {
-    write_file(a.report, trace_report_html(read_trace_folder(a.output), {.scene = &project.scene}));
-    session.print_line(fmt::format("  report: {}", a.report));
-  }
+  if (!a.report.empty()) write_trace_report(a.report, a.output, project.scene, session);
 }
 
 }  // namespace

@@ -5,6 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "lucerna/core/io/file.h"
+#include "lucerna/report/html/report_trace.h"
+#include "lucerna/results/folders/trace_folder.h"
 #include "lucerna/results/folders/trace_results.h"
 
 namespace lucerna::cli {
@@ -37,6 +40,12 @@ void print_trace_summary(const TraceMetrics& figures, const std::vector<std::str
                          Session& session) {
   for (const std::string& line : trace_summary(figures)) session.print_line(line);
   session.print_line(fmt::format("  written: {}", fmt::join(names, " ")));
+}
+
+void write_trace_report(const std::string& html, const std::string& folder, const Scene& scene,
+                        Session& session) {
+  write_file(html, trace_report_html(read_trace_folder(folder), {.scene = &scene}));
+  session.print_line(fmt::format("  report: {}", html));
 }
 
 }  // namespace lucerna::cli

@@ -24,4 +24,8 @@ void note_noise(const std::string& of, const NoiseTrace& traced, double goal, Se
 void print_trace_summary(const TraceMetrics& figures, const std::vector<std::string>& names,
                          Session& session);
 
+/// The report of a folder that write_trace_output() filled, as one HTML file.
+void write_trace_report(const std::string& html, const std::string& folder, const Scene& scene,
+                        Session& session);
+
 }  // namespace lucerna::cli
