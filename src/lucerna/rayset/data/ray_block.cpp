@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstddef>
 #include <cstdint>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -31,7 +32,7 @@ std::uintptr_t bytes_between(const std::vector<float>& a, const std::vector<floa
 /// Room for three empty columns, equally far apart if the allocator has such places: then an array of vectors
 /// can be laid across them without a copy. What is allocated in turn is, but for holes; room that is not
 /// touched costs next to nothing.
-void make_even_room(std::vector<float>& x, std::vector<float>& y, std::vector<float>& z, std::size_t n) {
+void look_for_even_room(std::vector<float>& x, std::vector<float>& y, std::vector<float>& z, std::size_t n) {
   const bool is_new = x.capacity() == 0 && y.capacity() == 0 && z.capacity() == 0;
   if (n < kFewRays || !is_new) return;
   std::vector<std::vector<float>> rooms(2);
@@ -49,6 +50,14 @@ void make_even_room(std::vector<float>& x, std::vector<float>& y, std::vector<fl
         return;
       }
     }
+  }
+}
+
+/// Where a process may not reserve more than it uses, the columns lie as they fall.
+void make_even_room(std::vector<float>& x, std::vector<float>& y, std::vector<float>& z, std::size_t n) {
+  try {
+    look_for_even_room(x, y, z, n);
+  } catch (const std::bad_alloc&) {
   }
 }
 
