@@ -8,7 +8,8 @@
 // options: --time S (60), --rays N (of the validation, 16 M), --target-rays N (of tables, 64 M), --family
 // bspline|revolution, --light-weight W (0.1), --source led|filament|FILE (led; `attainable`: both in turn),
 // --targets N (of `hidden`, 10), --seed S, --start (judges only the mirror to begin with), --history (prints
-// every step), --keep (the models and tables that were made), --fixed-knots (of `hidden`), --device cuda. The
+// every step), --keep (the models and tables that were made), --fixed-knots (of `hidden`), --slope DEG
+// (largest angle between facets and surface in the validation; default: the design's own), --device cuda. The
 // mirror of all but `hidden`: 120 mm over f = 20 mm, hole 8 mm, reflectance 0.9. Each line: excess at n = 12,
 // 24 and 48 with its standard error, noise, light in the rectangle, light and error outside, bound, seconds
 // of the design and of the validation, rays of the design, why it ended.
@@ -20,6 +21,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +51,7 @@ struct Run {
   std::uint64_t rays = std::uint64_t{1} << 24, target_rays = std::uint64_t{1} << 26, seed = 1;
   std::string family = "bspline", source, mode;
   int targets = 10;
+  std::optional<double> slope_deg;
   bool start_only = false, history = false, keep = false, fixed_knots = false;
   std::vector<std::string> names;
   fs::path folder;
@@ -114,6 +117,7 @@ Validated validated(const Run& run, const DesignProblem& p, const DesignShape& s
   ValidationOptions options;
   options.seed = run.seed + 1000;
   options.max_rays = run.rays;
+  if (run.slope_deg) options.tolerance = CadTolerance{.slope_deg = *run.slope_deg};
   Validated out{validate(scene, boxes, target, p.target.mode, options), {}};
   SourceEtendue etendue(rays);
   out.bound =
@@ -354,6 +358,8 @@ Run parsed(int argc, char** argv) {
       run.target_rays = static_cast<std::uint64_t>(std::stod(value(i)));
     } else if (a == "--seed") {
       run.seed = std::stoull(value(i));
+    } else if (a == "--slope") {
+      run.slope_deg = std::stod(value(i));
     } else if (a == "--targets") {
       run.targets = std::stoi(value(i));
     } else if (a == "--light-weight") {
