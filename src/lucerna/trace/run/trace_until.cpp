@@ -15,8 +15,8 @@ namespace {
 constexpr std::uint64_t kFirstRound = std::uint64_t{1} << 20;
 /// What is traced between two looks at the clock: a fraction of a second on two cores.
 constexpr std::uint64_t kTimedPiece = std::uint64_t{1} << 22;
-/// What is lost at most when a trace without a clock is stopped: seconds on two cores, beside which setting
-/// up the tracer and adding the bins cost nothing.
+/// What is lost at most when a trace without a clock is stopped: a second or so on two cores, beside which
+/// setting up the tracer and adding the bins cost nothing.
 constexpr std::uint64_t kUntimedPiece = std::uint64_t{1} << 24;
 
 /// The peak's error is asked for last: it takes longer to find, and most rounds end before.

@@ -49,7 +49,7 @@ void for_each_sum(TallyType& tally, const Visit& visit) {
 bool fits_one_lane(const Tally& tally);
 
 /// Makes two lanes of each sum; lanes of many tallies can then be added one by one, in any order, up to 2^31
-/// of them. `settle` is to follow.
+/// of them. `settle_lanes` is to follow.
 void split_lanes(Tally& tally);
 
 /// After lanes were added: carries, and goes back to one lane where that holds all. The outcome depends on
