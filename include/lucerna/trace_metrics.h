@@ -64,14 +64,24 @@ struct TraceMetrics {
   std::vector<RayOutputMetrics> rays;
 };
 
+/// For which figures light is followed backward, where it can be.
+struct BackwardLight {
+  /// Peaks and axes of far fields: some seconds each.
+  bool far_fields = true;
+  /// Planes and luminance images.
+  bool images = true;
+};
+
 /// The figures of a trace. Thread safe. Cost: a few passes over the bins.
 [[nodiscard]] TraceMetrics trace_metrics(const TraceResult& result);
 /// The same with the scene that was traced, where all sources know their luminance (models, simple emitters),
 /// light can be followed backward through the scene and a ray is reflected three times or less on average:
 /// the far fields' peaks and axes are then exact, without bins and kernels, and planes and luminance images
 /// that few rays find are averaged with backward light. Some seconds a far field; as many backward rays for a
-/// plane or image as a sixteenth of those traced, 2^18 to 2^21, about 1 us each on a simple scene.
-[[nodiscard]] TraceMetrics trace_metrics(const TraceResult& result, const Scene& scene);
+/// plane or image as a sixteenth of those traced, 2^18 to 2^21, about 1 us each on a simple scene. What
+/// `backward` leaves out is as without the scene.
+[[nodiscard]] TraceMetrics trace_metrics(const TraceResult& result, const Scene& scene,
+                                         BackwardLight backward = {});
 
 /// "C 12.3 +- 0.4, gamma 30.2 +- 0.1 deg", or what is known of it: "on the axis within 0.3 deg", "gamma 30.2
 /// +- 0.1 deg, C not determined", "not determined".

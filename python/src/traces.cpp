@@ -128,45 +128,6 @@ list of str
 
 }  // namespace
 
-namespace {
-
-/// A trace as if the scene had only its far fields, or only its planes and images.
-TraceResult part_of(const TraceResult& whole, bool far_fields) {
-  TraceResult part;
-  part.first_ray = whole.first_ray;
-  part.last_ray = whole.last_ray;
-  part.seed = whole.seed;
-  part.sequence = whole.sequence;
-  part.max_bounces = whole.max_bounces;
-  part.isa = whole.isa;
-  part.flux = whole.flux;
-  part.unit = whole.unit;
-  part.body_names = whole.body_names;
-  if (far_fields) {
-    part.far_fields = whole.far_fields;
-  } else {
-    part.planes = whole.planes;
-    part.luminances = whole.luminances;
-  }
-  const auto first = static_cast<std::ptrdiff_t>(whole.far_fields.size());
-  for (const Tally& t : whole.replicates) {
-    Tally& counts = part.replicates.emplace_back();
-    counts.rays = t.rays;
-    counts.reflections = t.reflections;
-    counts.emitted = t.emitted;
-    counts.out_direct = t.out_direct;
-    counts.out_reflected = t.out_reflected;
-    counts.absorbed = t.absorbed;
-    counts.lost = t.lost;
-    counts.lost_rays = t.lost_rays;
-    counts.bins.assign(far_fields ? t.bins.begin() : t.bins.begin() + first,
-                       far_fields ? t.bins.begin() + first : t.bins.end());
-  }
-  return part;
-}
-
-}  // namespace
-
 Traced::Traced(ScenePointer scene, NoiseTrace trace, const Figures& figures)
     : scene_(std::move(scene)),
       trace_(std::move(trace)),
@@ -180,11 +141,11 @@ Traced::Figures Traced::counted() const {
 }
 
 Traced::Figures Traced::far_fields() const {
-  return far_fields_.get([&] { return trace_metrics(part_of(result(), true), scene_->project.scene); });
+  return far_fields_.get([&] { return trace_metrics(result(), scene_->project.scene, {.images = false}); });
 }
 
 Traced::Figures Traced::images() const {
-  return images_.get([&] { return trace_metrics(part_of(result(), false), scene_->project.scene); });
+  return images_.get([&] { return trace_metrics(result(), scene_->project.scene, {.far_fields = false}); });
 }
 
 Traced::Figures Traced::all() const {

@@ -28,13 +28,14 @@ template <class T>
 void append(std::string& bytes, const std::vector<T>& items) {
   static_assert(std::is_trivially_copyable_v<T>);
   append(bytes, std::uint64_t{items.size()});
-  bytes.append(reinterpret_cast<const char*>(items.data()), items.size() * sizeof(T));
+  if (!items.empty()) bytes.append(reinterpret_cast<const char*>(items.data()), items.size() * sizeof(T));
 }
 
 template <class T>
 void take(std::string_view& bytes, std::vector<T>& items) {
   static_assert(std::is_trivially_copyable_v<T>);
   items.resize(take(bytes));
+  if (items.empty()) return;
   std::memcpy(items.data(), bytes.data(), items.size() * sizeof(T));
   bytes.remove_prefix(items.size() * sizeof(T));
 }

@@ -18,7 +18,7 @@ TEST(MessageBytes, AreTakenInTheOrderTheyWereAppended) {
 
   std::string_view rest = bytes;
   std::vector<float> taken;
-  std::vector<std::uint32_t> empty{3};
+  std::vector<std::uint32_t> empty;
   EXPECT_EQ(take(rest), std::uint64_t{1} << 53);
   take(rest, taken);
   take(rest, empty);

@@ -60,6 +60,28 @@ TEST(BackwardBlendStatistical, SmallPlanesAreKnownBetter) {
   EXPECT_LT(known.extremes.max.mean - known.extremes.min.mean, 0.06 * known.extremes.mean.mean + 4.0 * error);
 }
 
+TEST(BackwardLight, IsFollowedForWhatWantsIt) {
+  Scene luminaire = scene();
+  luminaire.far_fields.emplace_back();
+  const TraceResult few = run(luminaire, 1 << 16);
+  const TraceMetrics counted = trace_metrics(few), all = trace_metrics(few, luminaire);
+  const TraceMetrics none = trace_metrics(few, luminaire, {.far_fields = false, .images = false});
+  const TraceMetrics far_fields = trace_metrics(few, luminaire, {.images = false});
+  const TraceMetrics images = trace_metrics(few, luminaire, {.far_fields = false});
+
+  const auto axis = [](const TraceMetrics& m) { return m.far_fields.at(0).metrics.axis_cd.mean; };
+  ASSERT_NE(axis(all), axis(counted));
+  EXPECT_EQ(axis(none), axis(counted));
+  EXPECT_EQ(axis(far_fields), axis(all));
+  EXPECT_EQ(axis(images), axis(counted));
+
+  const auto cells = [](const TraceMetrics& m) { return m.planes.at(0).image.value; };
+  ASSERT_NE(cells(all), cells(counted));
+  EXPECT_EQ(cells(none), cells(counted));
+  EXPECT_EQ(cells(far_fields), cells(counted));
+  EXPECT_EQ(cells(images), cells(all));
+}
+
 // A sensor that is much smaller than what one of 2^16 rays stands for.
 TEST(BackwardBlendStatistical, ASensorThatNoRayFindsIsNotDark) {
   Scene luminaire = scene();

@@ -110,15 +110,15 @@ namespace {
 /// Light that is reflected more often than this on average is found backward by chance only, and slowly.
 constexpr double kMaxReflections = 3.0;
 
-TraceMetrics figures_of(const TraceResult& result, const Scene* scene) {
+TraceMetrics figures_of(const TraceResult& result, const Scene* scene, const BackwardLight& wanted) {
   TraceMetrics figures{ledger(result), {}, {}, {}, {}};
   if (figures.ledger.reflections_per_ray.mean > kMaxReflections) scene = nullptr;
   // Everything that leaves is in the far field, in every direction.
   const Estimate out = out_flux(result).estimate();
   for (std::size_t i = 0; i < result.far_fields.size(); ++i)
-    figures.far_fields.push_back(far_field_result(result, i, scene));
+    figures.far_fields.push_back(far_field_result(result, i, wanted.far_fields ? scene : nullptr));
   std::optional<BackwardImage> backward;
-  const bool images = !result.planes.empty() || !result.luminances.empty();
+  const bool images = wanted.images && (!result.planes.empty() || !result.luminances.empty());
   if (images && scene != nullptr && no_backward_reason(*scene).empty())
     backward.emplace(*scene, result.max_bounces);
   for (std::size_t i = 0; i < result.planes.size(); ++i) {
@@ -168,10 +168,10 @@ void far_field_lines(const FarFieldResult& f, std::vector<std::string>& lines) {
 
 }  // namespace
 
-TraceMetrics trace_metrics(const TraceResult& result) { return figures_of(result, nullptr); }
+TraceMetrics trace_metrics(const TraceResult& result) { return figures_of(result, nullptr, {}); }
 
-TraceMetrics trace_metrics(const TraceResult& result, const Scene& scene) {
-  return figures_of(result, &scene);
+TraceMetrics trace_metrics(const TraceResult& result, const Scene& scene, BackwardLight backward) {
+  return figures_of(result, &scene, backward);
 }
 
 std::vector<std::string> trace_summary(const TraceMetrics& figures) {
