@@ -31,8 +31,8 @@ inline constexpr CadTolerance kOpticalTolerance{.chord_mm = 0.01, .slope_deg = 0
 /// tolerance is not above 0, or would need more than 4 M triangles; says what would do.
 [[nodiscard]] Mesh cad_mesh(const Reflector& reflector, const CadTolerance& tolerance = {});
 
-/// The same with a tolerance that is doubled until 1 M triangles do; it then says what is kept. For a surface
-/// that bends too sharply for any, the InputError of `cad_mesh`.
+/// The same with a tolerance that is raised until 1 M triangles do, to within a fifth; it then says what is
+/// kept. For a surface that bends too sharply for any, the InputError of `cad_mesh`.
 [[nodiscard]] Mesh cad_mesh_within(const Reflector& reflector, CadTolerance& tolerance);
 
 /// Binary STL (Stereolithography Interface Specification, 3D Systems 1989), normals towards the light.

@@ -232,10 +232,26 @@ Mesh cad_mesh(const Reflector& reflector, const CadTolerance& tolerance) {
 
 Mesh cad_mesh_within(const Reflector& reflector, CadTolerance& tolerance) {
   check_tolerance(tolerance);
-  for (; tolerance.slope_deg < 45.0; tolerance.chord_mm *= 2.0, tolerance.slope_deg *= 2.0) {
-    if (const auto grid = grid_for(reflector, tolerance, std::size_t{1} << 20)) return mesh_of(*grid);
+  const CadTolerance wanted = tolerance;
+  std::optional<Mesh> mesh;
+  double kept = 1.0;
+  const auto fits = [&](double factor) {
+    const CadTolerance some{factor * wanted.chord_mm, factor * wanted.slope_deg};
+    const auto grid = grid_for(reflector, some, std::size_t{1} << 20);
+    if (!grid) return false;
+    mesh = mesh_of(*grid);
+    tolerance = some;
+    kept = factor;
+    return true;
+  };
+  double factor = 1.0;
+  while (!fits(factor) && factor * wanted.slope_deg < 45.0) factor *= 2.0;
+  if (!mesh) return cad_mesh(reflector, {factor * wanted.chord_mm, factor * wanted.slope_deg});
+  // Half of what is kept was too fine; what lies between may not be.
+  if (kept > 1.0) {
+    for (const double step : {std::sqrt(0.5), std::sqrt(std::sqrt(0.5))}) fits(step * kept);
   }
-  return cad_mesh(reflector, tolerance);
+  return *std::move(mesh);
 }
 
 std::string stl_bytes(const Mesh& mesh) {

@@ -77,6 +77,24 @@ TEST(CadExport, PiecesKeepTheSlopeTolerance) {
   }
 }
 
+TEST(CadExport, WhatAMillionTrianglesCannotKeepIsRaisedByLittle) {
+  const Reflector reflector = wavy(Aperture::circle(50, 10));
+  int raised = 0;
+  for (const double slope_deg : {0.04, 0.06, 0.09, 3.0}) {
+    CadTolerance tolerance{.chord_mm = 1.0, .slope_deg = slope_deg};
+    const Mesh mesh = cad_mesh_within(reflector, tolerance);
+    const double factor = tolerance.slope_deg / slope_deg;
+    EXPECT_NEAR(tolerance.chord_mm, factor, 1e-12);
+    EXPECT_LE(mesh.triangles.size(), std::size_t{1} << 20);
+    EXPECT_EQ(mesh.triangles.size(), cad_mesh(reflector, tolerance).triangles.size());
+    if (factor == 1.0) continue;
+    ++raised;
+    const CadTolerance finer{tolerance.chord_mm / 1.2, tolerance.slope_deg / 1.2};
+    EXPECT_GT(cad_mesh(reflector, finer).triangles.size(), std::size_t{1} << 20) << slope_deg;
+  }
+  EXPECT_EQ(raised, 3);
+}
+
 TEST(CadExport, RimsKeepTheChordTolerance) {
   const Mesh mesh = cad_mesh(wavy(Aperture::circle(50, 10)), {.chord_mm = 0.01, .slope_deg = 80.0});
   double min = 1e9, widest = 0.0;
