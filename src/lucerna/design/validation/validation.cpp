@@ -38,14 +38,15 @@ double seconds_since(Clock::time_point begin) {
 /// are small. Mirrors come first, then the bodies.
 class Meshes {
  public:
-  Meshes(const Scene& scene, const TargetRectangle& rectangle, const ValidationOptions& options)
+  Meshes(const Scene& scene, const ErrorBoxes& boxes, std::span<const double> target,
+         const ValidationOptions& options)
       : scene_(scene),
         mirrors_(scene.reflectors.size()),
         local_from_world_(scene.reflectors.empty() ? Frame()
                                                    : scene.reflectors[0].world_from_reflector.inverse()) {
     for (const PlacedReflector& mirror : scene.reflectors) {
       CadTolerance tolerance =
-          options.tolerance.value_or(mesh_tolerance(rectangle, mirror.world_from_reflector.origin_mm()));
+          options.tolerance.value_or(mesh_tolerance(boxes, target, mirror.world_from_reflector.origin_mm()));
       Body body;
       body.mesh = std::make_shared<const Mesh>(cad_mesh_within(mirror.reflector, tolerance));
       body.world_from_body = local_from_world_ * mirror.world_from_reflector;
@@ -383,7 +384,7 @@ Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const
   // A seed of its own: neither the fit's rays nor those of the trace that follows a design.
   const RayNumbering numbering(scene.sources, requested.seed ^ 0x56414C4944415445ull);
   const ValidationOptions options = limited(requested, scene, numbering);
-  const Meshes meshes(scene, boxes.rectangle(), options);
+  const Meshes meshes(scene, boxes, target, options);
   Validation out{.triangles = meshes.triangles(), .tolerance = meshes.tolerance(), .embree = meshes.embree()};
   std::vector<BoxSums>& replicates = out.replicates;
   replicates.resize(kReplicates);

@@ -7,6 +7,7 @@
 #include "lucerna/cad.h"
 #include "lucerna/core/io/file.h"
 #include "lucerna/design/search/checkpoint.h"
+#include "lucerna/design/validation/box_error.h"
 #include "lucerna/design/validation/mesh_tolerance.h"
 #include "lucerna/project/schema/project_tables.h"
 #include "lucerna/results/folders/trace_files.h"
@@ -79,8 +80,9 @@ std::vector<std::string> write_design_files(const std::filesystem::path& folder,
   write_design_progress(folder, problem, result.shape, history, result.checkpoint);
   std::vector<std::string> names{"reflector.toml"};
   // The mesh that the error was found with.
+  const ErrorBoxes boxes(target_rectangle(problem.target));
   const CadTolerance stl =
-      mesh_tolerance(target_rectangle(problem.target), problem.world_from_mirror.origin_mm());
+      mesh_tolerance(boxes, box_target(boxes, problem.target, 1.0), problem.world_from_mirror.origin_mm());
   for (std::string& name : write_reflector_files(folder, result.shape.reflector(), stl))
     names.push_back(std::move(name));
   names.insert(names.end(), {"history.csv", "checkpoint"});
