@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lucerna/far_field_metrics.h"
+#include "lucerna/progress.h"
 #include "lucerna/trace.h"
 
 #pragma GCC visibility push(default)
@@ -79,9 +80,11 @@ struct BackwardLight {
 /// the far fields' peaks and axes are then exact, without bins and kernels, and planes and luminance images
 /// that few rays find are averaged with backward light. Some seconds a far field; as many backward rays for a
 /// plane or image as a sixteenth of those traced, 2^18 to 2^21, about 1 us each on a simple scene. What
-/// `backward` leaves out is as without the scene.
+/// `backward` leaves out is as without the scene. Once `progress` asks to stop, before or meanwhile, all
+/// figures are those of the counted rays, as above.
 [[nodiscard]] TraceMetrics trace_metrics(const TraceResult& result, const Scene& scene,
-                                         BackwardLight backward = {});
+                                         BackwardLight backward = {},
+                                         const Progress& progress = no_progress());
 
 /// "C 12.3 +- 0.4, gamma 30.2 +- 0.1 deg", or what is known of it: "on the axis within 0.3 deg", "gamma 30.2
 /// +- 0.1 deg, C not determined", "not determined".

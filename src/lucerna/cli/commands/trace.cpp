@@ -69,6 +69,14 @@ NoiseTrace run_rays(const TraceArguments& a, const Scene& scene, const TraceOpti
   return traced;
 }
 
+/// Without the light that is followed backward, figures are those of `merge`.
+void note_interrupted(const NoiseTrace& traced, Session& session) {
+  session.note(traced.end == NoiseEnd::interrupted
+                   ? "interrupted: these are the rays that were traced, with the figures that they alone "
+                     "give; --resume goes on with them"
+                   : "interrupted: all rays were traced; the figures are those that they alone give");
+}
+
 void run_trace(const TraceArguments& a, Session& session, int& exit_code) {
   session.start();
   const TraceOptions options = trace_options(a);
@@ -79,12 +87,13 @@ void run_trace(const TraceArguments& a, Session& session, int& exit_code) {
   const TraceOrigin origin = session.timed("hash", [&] { return trace_origin(project); });
   const NoiseTrace traced =
       session.timed("trace", [&] { return run_rays(a, project.scene, options, origin, session); });
-  if (traced.end == NoiseEnd::interrupted) {
-    session.note("interrupted: these are the rays that were traced; --resume goes on with them");
+  const TraceResult& result = traced.result;
+  const TraceMetrics figures =
+      session.timed("figures", [&] { return trace_metrics(result, project.scene, {}, session.progress()); });
+  if (session.progress().stop_requested()) {
+    note_interrupted(traced, session);
     exit_code = 3;
   }
-  const TraceResult& result = traced.result;
-  const TraceMetrics figures = session.timed("figures", [&] { return trace_metrics(result, project.scene); });
   const auto names = write_trace_output(a.output, result, origin, figures, session);
   const double seconds = session.seconds("trace");
   session.print_line(fmt::format(

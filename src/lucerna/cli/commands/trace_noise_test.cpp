@@ -65,7 +65,8 @@ TEST(TraceNoiseCli, CtrlCWritesWhatWasWhole) {
     ASSERT_TRUE(WIFEXITED(status));
     ASSERT_EQ(WEXITSTATUS(status), 3) << test::slurp(dir / "log");
   }
-  EXPECT_THAT(test::slurp(dir / "log"), HasSubstr("interrupted"));
+  EXPECT_THAT(test::slurp(dir / "log"), HasSubstr("interrupted: these are the rays"));
+  EXPECT_THAT(test::slurp(dir / "log"), HasSubstr("Ctrl-C again ends the program at once"));
   const Json json = Json::parse(test::slurp(dir / "out" / "result.json"));
   const auto rays = std::to_string(json["ledger"]["rays"].get<std::uint64_t>());
   ASSERT_EQ(run_lucerna(dir.path(), "trace p.toml -o same --rays " + rays).exit_code, 0);

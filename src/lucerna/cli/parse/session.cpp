@@ -5,8 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "lucerna/cli/parse/arguments.h"
@@ -18,8 +20,40 @@ namespace lucerna::cli {
 namespace {
 
 volatile std::sig_atomic_t stop_signal = 0;
+/// Whether the first Ctrl-C says what a second one does, and on a line that holds something already.
+volatile std::sig_atomic_t tell_of_signals = 0, on_terminal = 0;
+/// When the first SIGINT came, in ms; 0 before.
+volatile std::sig_atomic_t first_interrupt_ms = 0;
+
+/// `timeout` and launchers send one Ctrl-C twice, to the program and to its group; nobody types so fast.
+constexpr long kOneCtrlC_ms = 250;
+
+long monotonic_ms() {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  // The low bits are enough for differences, and fit any sig_atomic_t.
+  return ((now.tv_sec & 0xfffff) * 1000 + now.tv_nsec / 1'000'000) | 1;
+}
 
 extern "C" void on_stop_signal(int) { stop_signal = 1; }
+
+/// Asks the work to stop; a second one ends the program as if there were no handler. Calls only what a
+/// handler may call (POSIX: async-signal-safe).
+extern "C" void on_interrupt(int signal) {
+  const int saved_errno = errno;
+  stop_signal = 1;
+  const long now = monotonic_ms();
+  if (first_interrupt_ms != 0 && now - first_interrupt_ms > kOneCtrlC_ms) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  } else if (first_interrupt_ms == 0) {
+    first_interrupt_ms = static_cast<std::sig_atomic_t>(now);
+    constexpr std::string_view kNote = "\nlucerna: stopping; Ctrl-C again ends the program at once\n";
+    const std::string_view note = kNote.substr(on_terminal != 0 ? 0 : 1);
+    if (tell_of_signals != 0 && ::write(STDERR_FILENO, note.data(), note.size()) < 0) stop_signal = 1;
+  }
+  errno = saved_errno;
+}
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -84,8 +118,11 @@ void Session::add_strict(Command& command) {
 
 void Session::start() {
   if (threads > 0) limit_ = std::make_unique<ThreadLimit>(threads);
-  progress_ = std::make_unique<TerminalProgress>(!quiet && ::isatty(STDERR_FILENO) == 1);
-  std::signal(SIGINT, on_stop_signal);
+  const bool terminal = ::isatty(STDERR_FILENO) == 1;
+  progress_ = std::make_unique<TerminalProgress>(!quiet && terminal);
+  tell_of_signals = quiet ? 0 : 1;
+  on_terminal = terminal ? 1 : 0;
+  std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_stop_signal);
 }
 

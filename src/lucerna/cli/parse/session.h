@@ -22,7 +22,7 @@ namespace lucerna::cli {
 using Json = nlohmann::ordered_json;
 
 /// Progress on a terminal's stderr: phase, share, rate and time left, redrawn a few times a second. Ctrl-C
-/// (SIGINT) and SIGTERM ask the work to stop.
+/// (SIGINT) and SIGTERM ask the work to stop; a second Ctrl-C ends the program at once.
 class TerminalProgress final : public Progress {
  public:
   explicit TerminalProgress(bool visible) : visible_(visible) {}

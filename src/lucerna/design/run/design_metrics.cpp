@@ -25,9 +25,9 @@ PlaneSummary summary_of(const std::vector<double>& values, double factor) {
 }  // namespace
 
 DesignMetrics design_metrics(const DesignProblem& problem, const DesignResult& result,
-                             const TraceResult& traced, const Scene& scene) {
+                             const TraceResult& traced, const Scene& scene, const Progress& progress) {
   DesignMetrics f;
-  f.trace = trace_metrics(traced, scene);
+  f.trace = trace_metrics(traced, scene, {}, progress);
   const DesignTarget& target = problem.target;
   if (target.zones_only) return f;  // a guide is nothing to compare with
   if (target.mode == TargetMode::shape && result.error.scale > 0.0) {

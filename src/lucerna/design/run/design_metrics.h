@@ -33,8 +33,9 @@ struct DesignMetrics {
 };
 
 /// `traced` is a trace of `scene`, that of `with_shape(problem, result.shape)`. About two seconds for a
-/// far-field target.
+/// far-field target, less once `progress` asks to stop (trace_metrics).
 DesignMetrics design_metrics(const DesignProblem& problem, const DesignResult& result,
-                             const TraceResult& traced, const Scene& scene);
+                             const TraceResult& traced, const Scene& scene,
+                             const Progress& progress = no_progress());
 
 }  // namespace lucerna

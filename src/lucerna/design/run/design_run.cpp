@@ -76,8 +76,8 @@ DesignRun run_design(const DesignProblem& problem, DesignOptions options, Progre
   goal.max_seconds = std::clamp(kFinalTraceShare * options.time_s.value_or(problem.time_s), 1.0, 10.0);
   run.noise_goal = goal.noise;
   run.trace = timed(run.trace_s, [&] { return trace_until(scene, {.seed = options.seed + 1}, goal); });
-  run.figures =
-      timed(run.figures_s, [&] { return design_metrics(problem, run.result, run.trace.result, scene); });
+  run.figures = timed(run.figures_s,
+                      [&] { return design_metrics(problem, run.result, run.trace.result, scene, progress); });
   if (problem.tolerances && run.result.end != DesignTermination::interrupted) {
     run.figures.tolerances = timed(run.tolerances_s, [&] {
       return tolerance_sweep(scene, *problem.tolerances, options.seed + 2, progress);

@@ -100,7 +100,7 @@ bool agree(const PlaneImage& counted, const JackknifedFlux& values, double one_r
 /// `look(cell, samples, seeds)`: one value a seed, in the image's unit. `stream` numbers the detector.
 template <class Look>
 ImageBlend blend(const TraceResult& result, const PlaneImage& counted, double one_ray, std::uint64_t stream,
-                 const Look& look) {
+                 const StopCheck& stop, const Look& look) {
   const std::size_t count = counted.value.size(), seeds = result.replicates.size();
   const std::uint64_t rays =
       std::clamp((result.last_ray - result.first_ray) / kForwardRays, kMinRays, kMaxBackwardRays);
@@ -111,6 +111,7 @@ ImageBlend blend(const TraceResult& result, const PlaneImage& counted, double on
   ImageBlend out{0.0, JackknifedFlux(count, seeds)};
   const auto fill = [&](std::span<const std::size_t> cells) {
     parallel_blocks(cells.size(), 1, [&](std::size_t i, std::size_t) {
+      stop();
       const std::size_t k = cells[i];
       leave_one_out(look(k, samples, seeds_of(result, stream, k)), out.values.row(k));
     });
@@ -133,20 +134,20 @@ double one_ray(const TraceResult& result, double cell_mm2) {
 }  // namespace
 
 ImageBlend backward_illuminance(const BackwardImage& backward, const TraceResult& result, std::size_t index,
-                                const PlaneImage& counted) {
+                                const PlaneImage& counted, const StopCheck& stop) {
   const PlaneGrid& grid = result.planes[index].grid;
   if (!backward.can_see(grid)) return {};
-  return blend(result, counted, one_ray(result, grid.cell_mm2()), index,
+  return blend(result, counted, one_ray(result, grid.cell_mm2()), index, stop,
                [&](std::size_t cell, std::uint64_t samples, std::span<const std::uint64_t> seeds) {
                  return backward.illuminance(grid, cell, samples, seeds);
                });
 }
 
 ImageBlend backward_luminance(const BackwardImage& backward, const TraceResult& result, std::size_t index,
-                              const PlaneImage& counted) {
+                              const PlaneImage& counted, const StopCheck& stop) {
   const LuminanceDetector& detector = result.luminances[index];
   return blend(result, counted, one_ray(result, etendue_mm2sr(detector, 0)), result.planes.size() + index,
-               [&](std::size_t cell, std::uint64_t samples, std::span<const std::uint64_t> seeds) {
+               stop, [&](std::size_t cell, std::uint64_t samples, std::span<const std::uint64_t> seeds) {
                  return backward.luminance(detector, cell, samples, seeds);
                });
 }

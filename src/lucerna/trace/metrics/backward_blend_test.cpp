@@ -119,7 +119,7 @@ TEST(BackwardBlend, WideFloorsStayCounted) {
   const Scene luminaire = scene();
   const TraceResult result = run(luminaire, 1 << 22);
   const PlaneImage counted = illuminance(result, 1);
-  EXPECT_EQ(backward_illuminance(BackwardImage(luminaire, 100), result, 1, counted).weight, 0.0);
+  EXPECT_EQ(backward_illuminance(BackwardImage(luminaire, 100), result, 1, counted, no_stop()).weight, 0.0);
 }
 
 // A scene that is not the one that was traced: its light is dimmer by a third.
@@ -128,9 +128,9 @@ TEST(BackwardBlend, LightThatDoesNotAgreeIsNotUsed) {
   luminaire.planes[0].grid.size_x_mm = luminaire.planes[0].grid.size_y_mm = 20.0;
   const TraceResult result = run(luminaire, 1 << 20);
   const PlaneImage counted = illuminance(result, 0);
-  EXPECT_GT(backward_illuminance(BackwardImage(luminaire, 100), result, 0, counted).weight, 0.5);
+  EXPECT_GT(backward_illuminance(BackwardImage(luminaire, 100), result, 0, counted, no_stop()).weight, 0.5);
   luminaire.reflectors[0].reflectance = Reflectance(0.6);
-  EXPECT_EQ(backward_illuminance(BackwardImage(luminaire, 100), result, 0, counted).weight, 0.0);
+  EXPECT_EQ(backward_illuminance(BackwardImage(luminaire, 100), result, 0, counted, no_stop()).weight, 0.0);
 }
 
 TEST(BackwardBlend, IsTheSameForAnyThreads) {
@@ -139,7 +139,7 @@ TEST(BackwardBlend, IsTheSameForAnyThreads) {
   const PlaneImage counted = illuminance(result, 0);
   const auto with = [&](int threads) {
     const ThreadLimit limit(threads);
-    return backward_illuminance(BackwardImage(luminaire, 100), result, 0, counted);
+    return backward_illuminance(BackwardImage(luminaire, 100), result, 0, counted, no_stop());
   };
   const ImageBlend one = with(1), two = with(2);
   ASSERT_GT(one.weight, 0.9);

@@ -66,7 +66,7 @@ bool agree(const BackwardEstimator& estimator, const CountedFarField& f, const C
 }  // namespace
 
 PointIntensity backward_intensity(const Scene& scene, int max_bounces, std::uint64_t run_seed,
-                                  const CountedFarField& field) {
+                                  const CountedFarField& field, const StopCheck& stop) {
   if (!no_backward_reason(scene).empty() || field.tent || field.replicated.replicates() < 2) return {};
   const auto estimator = std::make_shared<const BackwardEstimator>(scene, max_bounces);
   const std::vector<double> cd = node_intensity(field).distribution.cd;
@@ -76,7 +76,8 @@ PointIntensity backward_intensity(const Scene& scene, int max_bounces, std::uint
              block_about(field, brightest / field.gamma_count, brightest % field.gamma_count)) ||
       !agree(*estimator, field, block_about(field, 0, pole)))
     return {};
-  return [estimator, run_seed](const Direction& d, std::uint64_t samples, std::uint64_t seed) {
+  return [estimator, run_seed, &stop](const Direction& d, std::uint64_t samples, std::uint64_t seed) {
+    stop();
     return estimator->intensity_cd(d, samples, 16, detail::mix_bits(run_seed) + seed);
   };
 }

@@ -64,7 +64,7 @@ TEST(BackwardIntensityStatistical, IntervalsHoldTheTruth) {
   const CountedFarField field = far_field(trace(scene, {.last_ray = 1 << 18}), 0);
   int held = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    const PointIntensity intensity = backward_intensity(scene, 100, seed, field);
+    const PointIntensity intensity = backward_intensity(scene, 100, seed, field, no_stop());
     ASSERT_TRUE(intensity);
     const Estimate e = intensity(Direction::from_unit({0.0, 0.0, -1.0}), 1024, 1);
     held += std::abs(e.mean - axis_cd(1.0)) <= kIntervalErrors * e.standard_error ? 1 : 0;
@@ -92,19 +92,46 @@ TEST(BackwardIntensity, IsNotUsedWhereItDisagreesWithCountedLight) {
   const Scene scene = disk_in_paraboloid(1.0);
   const TraceResult traced = trace(scene, {.last_ray = 1 << 18});
   CountedFarField field = far_field(traced, 0);
-  EXPECT_TRUE(backward_intensity(scene, 100, 1, field));
+  EXPECT_TRUE(backward_intensity(scene, 100, 1, field, no_stop()));
   for (std::size_t i = 0; i < field.replicated.cells(); ++i) {
     field.flux[i] *= 1.1;
     for (double& v : field.replicated.row(i)) v *= 1.1;
   }
-  EXPECT_FALSE(backward_intensity(scene, 100, 1, field));
+  EXPECT_FALSE(backward_intensity(scene, 100, 1, field, no_stop()));
 }
 
 TEST(BackwardIntensity, NeedsLuminance) {
   Scene scene = disk_in_paraboloid(1.0);
   const TraceResult traced = trace(scene, {.last_ray = 1 << 16});
   scene.sources[0].rays = make_emitter({.kind = EmitterKind::point});
-  EXPECT_FALSE(backward_intensity(scene, 100, 1, far_field(traced, 0)));
+  EXPECT_FALSE(backward_intensity(scene, 100, 1, far_field(traced, 0), no_stop()));
+}
+
+/// Wants to end once it was asked so often.
+class AskedOften final : public Progress {
+ public:
+  explicit AskedOften(int patience) : left_(patience) {}
+  void update(std::string_view, std::uint64_t, std::uint64_t) override {}
+  bool stop_requested() const override { return left_-- <= 0; }
+  bool stopped() const { return left_ < 0; }
+
+ private:
+  mutable int left_;
+};
+
+TEST(BackwardIntensity, FiguresThatAreStoppedAreThoseOfTheCountedRays) {
+  const Scene scene = disk_in_paraboloid(0.5);
+  const TraceResult traced = trace(scene, {.last_ray = 1 << 18});
+  const double counted = trace_metrics(traced).far_fields[0].metrics.peak->cd.mean;
+  const double exact = trace_metrics(traced, scene).far_fields[0].metrics.peak->cd.mean;
+  ASSERT_NE(counted, exact);
+  for (const int patience : {0, 1, 50}) {
+    const AskedOften progress(patience);
+    EXPECT_EQ(trace_metrics(traced, scene, {}, progress).far_fields[0].metrics.peak->cd.mean, counted);
+    EXPECT_TRUE(progress.stopped()) << patience;
+  }
+  const AskedOften never(1 << 30);
+  EXPECT_EQ(trace_metrics(traced, scene, {}, never).far_fields[0].metrics.peak->cd.mean, exact);
 }
 
 }  // namespace

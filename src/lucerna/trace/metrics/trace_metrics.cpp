@@ -31,12 +31,13 @@ double relative_noise(const BinnedIntensity& intensity, const IntensityBins& bin
   return signal > 0.0 ? std::sqrt(noise / signal) : std::nan("");
 }
 
-FarFieldResult far_field_result(const TraceResult& result, std::size_t index, const Scene* scene) {
+FarFieldResult far_field_result(const TraceResult& result, std::size_t index, const Scene* scene,
+                                const StopCheck& stop) {
   FarFieldResult f;
   CountedFarField field = far_field(result, index);
   f.intensity = node_intensity(field);
   const PointIntensity exact = scene != nullptr
-                                   ? backward_intensity(*scene, result.max_bounces, result.seed, field)
+                                   ? backward_intensity(*scene, result.max_bounces, result.seed, field, stop)
                                    : PointIntensity();
   f.field = std::move(field);
   f.metrics = far_field_metrics(counted_far_field(result, index), f.intensity.distribution.c_deg, exact);
@@ -110,25 +111,28 @@ namespace {
 /// Light that is reflected more often than this on average is found backward by chance only, and slowly.
 constexpr double kMaxReflections = 3.0;
 
-TraceMetrics figures_of(const TraceResult& result, const Scene* scene, const BackwardLight& wanted) {
+TraceMetrics figures_of(const TraceResult& result, const Scene* scene, const BackwardLight& wanted,
+                        const StopCheck& stop) {
   TraceMetrics figures{ledger(result), {}, {}, {}, {}};
   if (figures.ledger.reflections_per_ray.mean > kMaxReflections) scene = nullptr;
   // Everything that leaves is in the far field, in every direction.
   const Estimate out = out_flux(result).estimate();
   for (std::size_t i = 0; i < result.far_fields.size(); ++i)
-    figures.far_fields.push_back(far_field_result(result, i, wanted.far_fields ? scene : nullptr));
+    figures.far_fields.push_back(far_field_result(result, i, wanted.far_fields ? scene : nullptr, stop));
   std::optional<BackwardImage> backward;
   const bool images = wanted.images && (!result.planes.empty() || !result.luminances.empty());
   if (images && scene != nullptr && no_backward_reason(*scene).empty())
     backward.emplace(*scene, result.max_bounces);
   for (std::size_t i = 0; i < result.planes.size(); ++i) {
     PlaneImage counted = illuminance(result, i);
-    const ImageBlend blend = backward ? backward_illuminance(*backward, result, i, counted) : ImageBlend();
+    const ImageBlend blend =
+        backward ? backward_illuminance(*backward, result, i, counted, stop) : ImageBlend();
     figures.planes.push_back(image_metrics(result, i, std::move(counted), blend, illuminance_extremes));
   }
   for (std::size_t i = 0; i < result.luminances.size(); ++i) {
     PlaneImage counted = luminance(result, i);
-    const ImageBlend blend = backward ? backward_luminance(*backward, result, i, counted) : ImageBlend();
+    const ImageBlend blend =
+        backward ? backward_luminance(*backward, result, i, counted, stop) : ImageBlend();
     figures.luminances.push_back(image_metrics(result, i, std::move(counted), blend, luminance_extremes));
     figures.luminances.back().view = result.luminances[i];
   }
@@ -168,10 +172,16 @@ void far_field_lines(const FarFieldResult& f, std::vector<std::string>& lines) {
 
 }  // namespace
 
-TraceMetrics trace_metrics(const TraceResult& result) { return figures_of(result, nullptr, {}); }
+TraceMetrics trace_metrics(const TraceResult& result) { return figures_of(result, nullptr, {}, no_stop()); }
 
-TraceMetrics trace_metrics(const TraceResult& result, const Scene& scene, BackwardLight backward) {
-  return figures_of(result, &scene, backward);
+TraceMetrics trace_metrics(const TraceResult& result, const Scene& scene, BackwardLight backward,
+                           const Progress& progress) {
+  if (progress.stop_requested()) return trace_metrics(result);
+  try {
+    return figures_of(result, &scene, backward, StopCheck(progress));
+  } catch (const Interrupted&) {
+    return trace_metrics(result);
+  }
 }
 
 std::vector<std::string> trace_summary(const TraceMetrics& figures) {

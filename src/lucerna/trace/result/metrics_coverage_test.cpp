@@ -96,7 +96,7 @@ void check(const Runs& runs, double min, double mean_min, double mean_max) {
   const Scene of_project = test::project_scene(test::source_dir() / "bench" / "figures" / (scene + ".toml"));
   const auto figures_of = [&](const TraceResult& result) {
     return figures(result, runs.with_scene ? backward_intensity(of_project, result.max_bounces, result.seed,
-                                                                far_field(result, 0))
+                                                                far_field(result, 0), no_stop())
                                            : PointIntensity());
   };
   TraceOptions options;
