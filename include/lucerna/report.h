@@ -18,8 +18,8 @@ namespace lucerna {
 /// the raw sums, and for each detector NAME: far field NAME.ldt .ies .csv .svg, plane and luminance NAME.csv
 /// .png, rays NAME with the ending of their format. `result` is a trace of `project.scene`. Files of these
 /// names are replaced, each whole or not at all; what of the project is in memory is written, too. Returns
-/// their names; what a format had to leave out goes to `warnings`. Throws InputError where a file cannot be
-/// written. Reads all of the project's files, for their hashes.
+/// their names; what the figures may mislead about and what a format had to leave out goes to `warnings`.
+/// Throws InputError where a file cannot be written. Reads all of the project's files, for their hashes.
 std::vector<std::string> write_trace(const std::filesystem::path& folder, const Project& project,
                                      const TraceResult& result, std::vector<std::string>* warnings = nullptr);
 /// The same with the figures of the trace, `trace_metrics(result, project.scene)`, where they are there

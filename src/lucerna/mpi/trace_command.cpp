@@ -12,6 +12,7 @@
 #include "lucerna/core/io/file.h"
 #include "lucerna/distributed/distributed_trace.h"
 #include "lucerna/project.h"
+#include "lucerna/results/metrics/trace_warnings.h"
 #include "lucerna/trace/run/empty_trace.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
@@ -71,7 +72,8 @@ void prepare(const MpiTraceArguments& a, const fs::path& parts, const Session& s
 void write_results(const MpiTraceArguments& a, const Project& project, const TraceOrigin& origin,
                    const TraceResult& result, int ranks, Session& session) {
   const TraceMetrics figures = session.timed("figures", [&] { return trace_metrics(result, project.scene); });
-  const auto names = write_trace_output(a.output, result, origin, figures, session);
+  const auto names =
+      write_trace_output(a.output, result, origin, figures, trace_warnings(figures, project.scene), session);
   const double seconds = session.seconds("trace");
   session.print_line(fmt::format("{}: {} rays in {:.3g} s, {:.3g} M rays/s ({}, {} ranks of {} threads)",
                                  a.output, figures.ledger.rays, seconds,

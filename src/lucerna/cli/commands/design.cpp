@@ -12,6 +12,7 @@
 #include "lucerna/report/html/report_design.h"
 #include "lucerna/results/folders/design_files.h"
 #include "lucerna/results/json/trace_json.h"
+#include "lucerna/results/metrics/trace_warnings.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace/device/accelerator.h"
 
@@ -112,6 +113,9 @@ void design_mirror(const DesignArguments& a, Session& session, int& exit_code) {
     return write_design_files(a.output, problem, result, figures, traced, watch.history(), json);
   });
   session.print_json(json);
+  const std::vector<std::string> warnings = trace_warnings(figures.trace);
+  for (const std::string& warning : warnings) session.note(warning);
+  json["warnings"] = warnings;
   session.print_line(fmt::format("{}: {} parameters, {} evaluations, {:.3g} M rays in {:.3g} s ({})",
                                  a.output, result.shape.parameter_count(), result.evaluations,
                                  1e-6 * static_cast<double>(result.rays), session.seconds("design"),

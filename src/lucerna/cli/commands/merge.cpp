@@ -6,6 +6,7 @@
 #include "lucerna/cli/commands/commands.h"
 #include "lucerna/cli/output/trace_output.h"
 #include "lucerna/results/folders/trace_file.h"
+#include "lucerna/results/metrics/trace_warnings.h"
 
 namespace lucerna::cli {
 
@@ -25,7 +26,8 @@ void run_merge(const MergeArguments& a, Session& session) {
     session.add_input(std::filesystem::path(folder) / kTraceFileName);
   prepare_folder(a.output, session.force);
   const TraceMetrics figures = session.timed("figures", [&] { return trace_metrics(sum.result); });
-  const auto names = write_trace_output(a.output, sum.result, sum.origin, figures, session);
+  const auto names =
+      write_trace_output(a.output, sum.result, sum.origin, figures, trace_warnings(figures), session);
   session.print_line(fmt::format("{}: {} traces of one scene, rays {}:{} ({})", a.output, a.folders.size(),
                                  sum.result.first_ray, sum.result.last_ray, sum.result.isa));
   print_trace_summary(figures, names, session);

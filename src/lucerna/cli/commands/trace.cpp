@@ -10,6 +10,7 @@
 #include "lucerna/core/io/file.h"
 #include "lucerna/project.h"
 #include "lucerna/results/folders/trace_file.h"
+#include "lucerna/results/metrics/trace_warnings.h"
 #include "lucerna/trace/device/accelerator.h"
 
 namespace lucerna::cli {
@@ -94,7 +95,8 @@ void run_trace(const TraceArguments& a, Session& session, int& exit_code) {
     note_interrupted(traced, session);
     exit_code = 3;
   }
-  const auto names = write_trace_output(a.output, result, origin, figures, session);
+  const auto names =
+      write_trace_output(a.output, result, origin, figures, trace_warnings(figures, project.scene), session);
   const double seconds = session.seconds("trace");
   session.print_line(fmt::format(
       "{}: {} rays in {:.3g} s, {:.3g} M rays/s ({}, {} threads); read {:.3g} s, figures {:.3g} s", a.output,

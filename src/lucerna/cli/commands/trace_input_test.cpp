@@ -107,6 +107,16 @@ TEST_F(TraceInputCli, KeysNameTheirNearest) {
          "two detectors are named 'a'");
 }
 
+TEST_F(TraceInputCli, LightThatReachesNoMirrorIsTold) {
+  write_file(dir / "p.toml", "[[source]]\nkind = \"disk\"\naxis = \"-z\"\n" + std::string(kBowl));
+  const auto run = run_lucerna(dir.path(), "trace p.toml -o out --rays 2000");
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_NE(run.err.find("lucerna: no light reaches a mirror"), std::string::npos) << run.err;
+  const auto json = nlohmann::json::parse(test::slurp(dir / "out" / "result.json"));
+  ASSERT_EQ(json["warnings"].size(), 1u);
+  EXPECT_NE(run.err.find(json["warnings"][0].get<std::string>()), std::string::npos);
+}
+
 TEST_F(TraceInputCli, BenchHasNoCudaHere) {
   const auto cuda = run_lucerna(dir.path(), "bench --device cuda");
   EXPECT_EQ(cuda.exit_code, 1);

@@ -14,9 +14,8 @@ namespace lucerna::cli {
 
 std::vector<std::string> write_trace_output(const std::string& folder, const TraceResult& result,
                                             const TraceOrigin& origin, const TraceMetrics& figures,
-                                            Session& session) {
+                                            std::vector<std::string> warnings, Session& session) {
   Json json = session.json_head(result.seed, result.isa);
-  std::vector<std::string> warnings;
   auto names = write_trace_results(folder, result, origin, figures, json, warnings);
   for (const std::string& warning : warnings) session.note(warning);
   session.print_json(json);

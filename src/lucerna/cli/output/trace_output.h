@@ -11,11 +11,11 @@
 namespace lucerna::cli {
 
 /// The end of `trace` and `merge`: fills `folder` (files by detector, result.json, the raw sums that `merge`
-/// takes), prints the JSON, and tells of warnings. Returns the names of the files. `seed` and inputs are what
-/// the session's head says.
+/// takes), prints the JSON, and tells of `warnings` (trace_warnings) and others. Returns the names of the
+/// files. `seed` and inputs are what the session's head says.
 std::vector<std::string> write_trace_output(const std::string& folder, const TraceResult& result,
                                             const TraceOrigin& origin, const TraceMetrics& figures,
-                                            Session& session);
+                                            std::vector<std::string> warnings, Session& session);
 
 /// Says what of the noise that was asked for (`goal`) is missing, and why. `of`: begins the sentence.
 void note_noise(const std::string& of, const NoiseTrace& traced, double goal, Session& session);

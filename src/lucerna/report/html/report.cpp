@@ -16,6 +16,7 @@
 #include "lucerna/results/json/model_json.h"
 #include "lucerna/results/json/run_json.h"
 #include "lucerna/results/json/trace_json.h"
+#include "lucerna/results/metrics/trace_warnings.h"
 #include "lucerna/source_model.h"
 
 namespace lucerna {
@@ -44,9 +45,10 @@ std::vector<std::string> write_trace(const std::filesystem::path& folder, const 
   make_folder(folder);
   const Project project = save_memory(given, folder);
   nlohmann::ordered_json json = run_json({.inputs = project.inputs}, result.seed, result.isa);
-  std::vector<std::string> lost;
-  return write_trace_results(folder, result, trace_origin(project), figures, json,
-                             warnings != nullptr ? *warnings : lost);
+  std::vector<std::string> found = trace_warnings(figures, project.scene);
+  auto names = write_trace_results(folder, result, trace_origin(project), figures, json, found);
+  if (warnings != nullptr) warnings->insert(warnings->end(), found.begin(), found.end());
+  return names;
 }
 
 std::vector<std::string> write_design(const std::filesystem::path& folder, const DesignedMirror& mirror) {
@@ -58,6 +60,7 @@ std::vector<std::string> write_design(const std::filesystem::path& folder, const
   json["device"] = record.device;
   json.update(design_json(problem, record.result, record.figures));
   json.update(trace_json(record.figures.trace));
+  json["warnings"] = trace_warnings(record.figures.trace);
   return write_design_files(folder, problem, record.result, record.figures, mirror.traced,
                             history_csv(record.result.history), json);
 }

@@ -16,6 +16,7 @@ std::vector<std::string> write_trace_results(const std::filesystem::path& folder
   json["sequence"] = std::string(to_string(result.sequence));
   json["rays"] = {{"first", result.first_ray}, {"last", result.last_ray}};
   json.update(trace_json(figures));
+  json["warnings"] = warnings;
   write_trace_file(folder / kTraceFileName, result, origin);
   auto names = write_trace_files(folder, origin, figures, result.out_rays, json, &warnings);
   names.insert(names.end() - 2, kTraceFileName);

@@ -13,7 +13,8 @@ namespace lucerna {
 
 /// Fills `folder` with what `trace` and `merge` leave: files by detector (trace_files.h), result.json, and
 /// the raw sums that `merge` takes. `json` begins with run_json and gets the rest. Returns the names of the
-/// files; what a format had to leave out goes to `warnings`.
+/// files. `warnings` begins with those of the figures (trace_warnings), which result.json has; what a format
+/// had to leave out is added to it.
 std::vector<std::string> write_trace_results(const std::filesystem::path& folder, const TraceResult& result,
                                              const TraceOrigin& origin, const TraceMetrics& figures,
                                              nlohmann::ordered_json& json,

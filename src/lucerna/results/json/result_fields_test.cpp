@@ -115,6 +115,7 @@ Json trace_file_json(const Project& project) {
   Json json = run_json({"lucerna trace", project.inputs, {{"trace", 1.0}}}, 1, result.isa);
   json["sequence"] = "sobol";
   json["rays"] = {{"first", 0}, {"last", 1}};
+  json["warnings"] = {"none"};
   json.update(trace_json(trace_metrics(result)));
   return json;
 }
