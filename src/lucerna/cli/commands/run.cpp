@@ -8,6 +8,7 @@
 #include <string>
 
 #include "lucerna/cli/commands/commands.h"
+#include "lucerna/cli/parse/usage_text.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/version.h"
 
@@ -50,8 +51,9 @@ int parse_and_run(CLI::App& app, int argc, char** argv, const int& exit_code, bo
     app.parse(argc, argv);
     return exit_code;
   } catch (const CLI::ParseError& e) {
-    if (!tell) return e.get_exit_code() == 0 ? kDone : kUsage;
-    return app.exit(e) == 0 ? kDone : kUsage;
+    if (e.get_exit_code() != 0) return failed(usage_text(app, e, argc, argv), kUsage);
+    if (tell) app.exit(e);  // --help, --version
+    return kDone;
   } catch (const UsageError& e) {
     return failed(e.what() + hint(e, app, kUsage), kUsage);
   } catch (const Interrupted&) {

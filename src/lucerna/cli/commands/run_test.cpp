@@ -304,6 +304,28 @@ TEST(ProgramCli, UsageErrorsExitWithTwo) {
   EXPECT_EQ(run_lucerna(dir.path(), "--version").exit_code, 0);
 }
 
+TEST(ProgramCli, UsageErrorsSayWhatWasMeant) {
+  const TempDir dir;
+  const auto expect = [&](const std::string& arguments, const std::string& text) {
+    const auto run = run_lucerna(dir.path(), arguments);
+    EXPECT_EQ(run.exit_code, 2) << arguments;
+    EXPECT_EQ(run.err, "lucerna: " + text + "\n");
+    EXPECT_EQ(run.out, "");
+  };
+  expect("", "no command; see lucerna --help");
+  expect("tracee p.toml -o out", "unknown command \"tracee\"; did you mean trace?; see lucerna --help");
+  expect("frobnicate", "unknown command \"frobnicate\"; see lucerna --help");
+  expect("trace p.toml -o out --nois 1%",
+         "unknown option \"--nois\"; did you mean --noise?; see lucerna trace --help");
+  expect("trace p.toml -o out --nois=1%",
+         "unknown option \"--nois\"; did you mean --noise?; see lucerna trace --help");
+  expect("trace p.toml q.toml -o out", "unexpected argument \"q.toml\"; see lucerna trace --help");
+  expect("trace p.toml", "--output is required; see lucerna trace --help");
+  expect("trace p.toml -o out --threads 0",
+         "--threads: Value 0 not in range 1 to 4096; see lucerna trace --help");
+  EXPECT_EQ(entries(dir.path()), 0u);
+}
+
 TEST(ProgramData, MeasuredLedHasItsFluxFocusAndBackwardShare) {
   LUCERNA_DATA_FILE(file, "rayfiles/rayfile_LERTDUW_S2WP_green_100k_20161013_IES_TM25.TM25RAY");
   const TempDir dir;

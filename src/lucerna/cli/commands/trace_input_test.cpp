@@ -107,6 +107,17 @@ TEST_F(TraceInputCli, KeysNameTheirNearest) {
          "two detectors are named 'a'");
 }
 
+TEST_F(TraceInputCli, StepsThatDoNotDivideTheCircleAreToldAtTheirKey) {
+  const std::string far = std::string(kLamp) + kBowl + "[[detector]]\nkind = 'far-field'\n";
+  refuse(far + "gamma_step_deg = 0.7\n",
+         "detector[0].gamma_step_deg: detector 'far-field': gamma_step_deg = 0.7");
+  refuse(far + "gamma_step_deg = 1\nc_step_deg = 7\n",
+         "detector[0].c_step_deg: detector 'far-field': c_step_deg = 7");
+  refuse(far + "c_step_deg = 0.05\ngamma_step_deg = 0.01\n",
+         "detector[0].gamma_step_deg: detector 'far-field'");
+  refuse(far + "c_step_deg = 0.001\n", "detector[0].c_step_deg: detector 'far-field'");
+}
+
 TEST_F(TraceInputCli, LightThatReachesNoMirrorIsTold) {
   write_file(dir / "p.toml", "[[source]]\nkind = \"disk\"\naxis = \"-z\"\n" + std::string(kBowl));
   const auto run = run_lucerna(dir.path(), "trace p.toml -o out --rays 2000");

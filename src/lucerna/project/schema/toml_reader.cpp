@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <sstream>
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
+#include "lucerna/core/io/spelling.h"
 #include "lucerna/project/schema/toml_text.h"
 
 namespace lucerna {
@@ -18,25 +18,13 @@ namespace {
 /// Larger project files than this are something else.
 constexpr std::uint64_t kLargestProject = 64 << 20;
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
-    }
-  }
-  return row.back();
-}
+/// A word without what stands after its last underscore: "focal" of "focal_mm".
+std::string_view without_unit(std::string_view key) { return key.substr(0, key.rfind('_')); }
 
-/// One letter too many, too few or wrong, or two that changed places. More would take one key for another.
-bool is_misspelt(std::string_view word, std::string_view meant) {
-  if (edit_distance(word, meant) == 1) return true;
-  const auto [a, b] = std::mismatch(word.begin(), word.end(), meant.begin(), meant.end());
-  if (word.size() != meant.size() || a == word.end() || a + 1 == word.end()) return false;
-  return a[0] == b[1] && a[1] == b[0] && std::equal(a + 2, word.end(), b + 2);
+/// Misspelt, or with another unit or none: "focal_in" or "focal" for "focal_mm".
+bool is_meant(std::string_view word, std::string_view key) {
+  if (is_misspelt(word, key)) return true;
+  return !unit_of(key).empty() && without_unit(word) == without_unit(key);
 }
 
 std::string_view type_name(const toml::node& node) {
@@ -80,13 +68,6 @@ toml::source_index first_line(const toml::node& node) {
 }
 
 }  // namespace
-
-std::string nearest_word(std::string_view word, const std::set<std::string, std::less<>>& candidates) {
-  const auto best = std::min_element(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
-    return edit_distance(word, a) < edit_distance(word, b);
-  });
-  return best == candidates.end() ? std::string() : *best;
-}
 
 toml::table parse_toml_file(const std::filesystem::path& path) {
   return parse_toml_text(read_file(path, kLargestProject), path.string());
@@ -143,7 +124,8 @@ std::string TomlReader::full_key(std::string_view key) const {
 std::string TomlReader::misspelt(std::string_view key) const {
   for (const auto& [other, node] : *table_) {
     const std::string_view name = other.str();
-    if (!known_.contains(name) && is_misspelt(name, key)) return std::string(name);
+    const bool known = known_.contains(name) || find_key(keys_, table_path_, name) != nullptr;
+    if (!known && is_meant(name, key)) return std::string(name);
   }
   return "";
 }
@@ -310,9 +292,11 @@ std::vector<TomlReader> TomlReader::tables(std::string_view key) {
 
 void TomlReader::finish() const {
   for (const auto& [key, node] : *table_) {
-    if (known_.contains(std::string_view(key.str()))) continue;
-    const std::string nearest = nearest_word(key.str(), known_);
-    fail(key.str(),
+    const std::string_view word = key.str();
+    if (known_.contains(word)) continue;
+    const auto meant = std::ranges::find_if(known_, [&](const auto& k) { return is_meant(word, k); });
+    const std::string nearest = meant != known_.end() ? *meant : nearest_word(word, known_);
+    fail(word,
          nearest.empty() ? "unknown key" : fmt::format("unknown key; the nearest known one is '{}'", nearest),
          ErrorCause::unknown_key);
   }

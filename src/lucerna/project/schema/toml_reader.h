@@ -69,7 +69,8 @@ class TomlReader {
   const std::string& path() const { return path_; }
 
  private:
-  /// A key of the table that was not asked for and looks like `key` misspelt; empty if there is none.
+  /// A key of the table that no table of this kind has and that looks like `key`, misspelt or with another
+  /// unit; empty if there is none.
   std::string misspelt(std::string_view key) const;
   /// What the schema says of a key of this table.
   const ProjectKey& key_of(std::string_view key) const;
@@ -89,8 +90,5 @@ class TomlReader {
 
 /// Parses a TOML file; syntax errors become InputErrors with line and column.
 toml::table parse_toml_file(const std::filesystem::path& path);
-
-/// The member of `candidates` with the smallest edit distance to `word`; empty if there are none.
-std::string nearest_word(std::string_view word, const std::set<std::string, std::less<>>& candidates);
 
 }  // namespace lucerna

@@ -93,6 +93,28 @@ TEST(TomlReader, AnUnknownKeyNamesTheNearestKnownOne) {
   EXPECT_TRUE(has(text, "line 2: focal_mn: unknown key; the nearest known one is 'focal_mm'")) << text;
 }
 
+// A wrong unit is two letters or more away from the right one, and another key may be nearer.
+TEST(TomlReader, AKeyWithAnotherUnitIsNamed) {
+  for (const char* key : {"focal_in", "focal_inch", "focal"}) {
+    const std::string text = std::string("x = 1\n") + key + " = 3\n";
+    const std::string expected =
+        std::string("line 2: ") + key + ": unknown key; the nearest known one is 'focal_mm'";
+    const std::string optional = reader_message(text, [](TomlReader& r) {
+      r.number("x");
+      r.number("focal_mm");
+      r.flag("on");
+    });
+    EXPECT_TRUE(has(optional, expected)) << optional;
+    const std::string required = reader_message(text, [](TomlReader& r) {
+      r.number("x");
+      if (!r.number("focal_mm")) r.missing("focal_mm");
+    });
+    EXPECT_TRUE(has(required, expected + ", which is missing")) << required;
+  }
+  // A key of the same kind of table that was only not asked for yet is none.
+  EXPECT_TRUE(has(reader_message("x = 1\n", [](TomlReader& r) { r.missing("n"); }), "n: is missing"));
+}
+
 TEST(TomlReader, WrongTypesAndValuesAreNamed) {
   const auto number = [](TomlReader& r) { r.number("x"); };
   const auto focal = [](TomlReader& r) { r.number("focal_mm"); };

@@ -30,13 +30,22 @@ void read_cells(TomlReader& reader, PlaneGrid& grid) {
   }
 }
 
+/// Told at the step that is wrong; of too many cells, at the one that is given.
+void check_steps(TomlReader& reader, const FarFieldDetector& d) {
+  FarFieldDetector planes = d;
+  planes.gamma_step_deg = 180.0;
+  at_key(reader, "c_step_deg", [&] { return FarFieldGrid(planes).size(); });
+  at_key(reader, reader.has("gamma_step_deg") ? "gamma_step_deg" : "c_step_deg",
+         [&] { return FarFieldGrid(d).size(); });
+}
+
 void read_far_field(TomlReader& reader, Scene& scene) {
   FarFieldDetector d;
   d.name = read_name(reader, "far-field");
   d.c_step_deg = reader.number("c_step_deg", d.c_step_deg);
   d.gamma_step_deg = reader.number("gamma_step_deg", d.gamma_step_deg);
   d.tent = reader.word("bins").value_or("hard") == "tent";
-  at_key(reader, "kind", [&] { return FarFieldGrid(d).size(); });
+  check_steps(reader, d);
   scene.far_fields.push_back(std::move(d));
 }
 
