@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lucerna/cli/commands/commands.h"
+#include "lucerna/cli/parse/input_kind.h"
 #include "lucerna/cli/parse/photometric_arguments.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/ray_file.h"
@@ -34,6 +35,7 @@ std::vector<Diagnostic> check_file(const std::string& path, const PhotometricArg
     }
     if (is_photometric_file(path))
       return check_photometric_file(path, photometric.read_options(session.strict));
+    require_ray_file(path);
     return check_rays(path, session);
   } catch (const InputError& e) {
     return {{Severity::error, "", e.what()}};

@@ -6,6 +6,7 @@
 
 #include "lucerna/cli/commands/commands.h"
 #include "lucerna/cli/parse/arguments.h"
+#include "lucerna/cli/parse/input_kind.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/report/html/write_model_report.h"
 #include "lucerna/source_model.h"
@@ -33,6 +34,14 @@ CompressOptions compress_options(const CompressArguments& a) {
   return options;
 }
 
+/// Other programs, and `check` of a folder, know a source model by its ending.
+void check_output(const CompressArguments& a) {
+  if (std::filesystem::path(a.output).extension() != ".nfl")
+    throw UsageError(fmt::format("{}: a source model is written, expected the ending .nfl", a.output));
+  require_writable(a.output);
+  require_writable(a.report);
+}
+
 CompressedFiles make_model(const CompressArguments& a, Session& session) {
   const CompressOptions options = compress_options(a);
   CompressedFiles made = compress({a.inputs.begin(), a.inputs.end()}, options, session.progress());
@@ -47,6 +56,8 @@ CompressedFiles make_model(const CompressArguments& a, Session& session) {
 
 void run_compress(const CompressArguments& a, Session& session) {
   session.start();
+  check_output(a);
+  for (const std::string& input : a.inputs) require_ray_file(input);
   const auto made = session.timed("compress", [&] { return make_model(a, session); });
   const SourceModel* model = made.model.get();
   const std::uint64_t rays = made.rays;

@@ -5,6 +5,7 @@
 
 #include "lucerna/cli/commands/commands.h"
 #include "lucerna/cli/parse/arguments.h"
+#include "lucerna/cli/parse/input_kind.h"
 #include "lucerna/cli/parse/photometric_arguments.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/ray_file.h"
@@ -80,6 +81,7 @@ void convert(const ConvertArguments& a, Session& session) {
   if (a.from.empty() && is_photometric_file(a.input)) {
     convert_photometry(a, session);
   } else {
+    if (a.from.empty()) require_ray_file(a.input);
     convert_rays(a, session);
   }
 }

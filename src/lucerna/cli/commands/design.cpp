@@ -32,7 +32,10 @@ DesignOptions design_options(const DesignArguments& a) {
   options.seed = parse_count(a.seed);
   options.pareto = a.pareto;
   options.advise = a.advise;
-  if (!a.time.empty()) options.time_s = parse_number(a.time);
+  if (!a.time.empty()) {
+    options.time_s = parse_number(a.time);
+    if (!(*options.time_s > 0.0)) throw UsageError(fmt::format("--time {} is not > 0", a.time));
+  }
   if (!a.rays.empty()) {
     options.max_rays = parse_count(a.rays);
     options.validation_rays = 4 * options.max_rays;
@@ -85,13 +88,14 @@ DesignRun run(const DesignProblem& problem, const DesignOptions& options, Design
 
 void design_mirror(const DesignArguments& a, Session& session, int& exit_code) {
   session.start();
+  DesignOptions options = design_options(a);
   const auto accelerator = design_accelerator(trace_device(a.device));
   DesignProblem problem = session.timed(
       "read", [&] { return design_problem(read_project(a.project, session.progress()), a.project); });
   if (a.tolerances && !problem.tolerances) problem.tolerances = ToleranceRanges{};
-  DesignOptions options = design_options(a);
   options.accelerator = accelerator;
   prepare_folder(a.output, session.force || a.resume);
+  require_writable(a.report);
   for (const std::string& warning : problem.project.warnings) session.note(warning);
   for (const auto& input : problem.project.inputs) session.add_input(input);
   DesignProgress start;
@@ -109,13 +113,13 @@ void design_mirror(const DesignArguments& a, Session& session, int& exit_code) {
   json["device"] = accelerator ? accelerator->name() : "cpu";
   json.update(design_json(problem, result, figures));
   json.update(trace_json(figures.trace));
+  const std::vector<std::string> warnings = trace_warnings(figures.trace);
+  for (const std::string& warning : warnings) session.note(warning);
+  json["warnings"] = warnings;
   const auto names = session.timed("files", [&] {
     return write_design_files(a.output, problem, result, figures, traced, watch.history(), json);
   });
   session.print_json(json);
-  const std::vector<std::string> warnings = trace_warnings(figures.trace);
-  for (const std::string& warning : warnings) session.note(warning);
-  json["warnings"] = warnings;
   session.print_line(fmt::format("{}: {} parameters, {} evaluations, {:.3g} M rays in {:.3g} s ({})",
                                  a.output, result.shape.parameter_count(), result.evaluations,
                                  1e-6 * static_cast<double>(result.rays), session.seconds("design"),

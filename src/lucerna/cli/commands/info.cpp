@@ -3,6 +3,7 @@
 
 #include "lucerna/cli/commands/commands.h"
 #include "lucerna/cli/output/describe.h"
+#include "lucerna/cli/parse/input_kind.h"
 #include "lucerna/cli/parse/photometric_arguments.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/source_model.h"
@@ -22,6 +23,7 @@ Description describe(const std::string& path, const InfoArguments& a, Session& s
   if (a.format.empty() && is_photometric_file(path)) {
     return describe_photometry(path, a.photometric.read_options(session.strict));
   }
+  if (a.format.empty()) require_ray_file(path);
   return describe_rays(path, a.format, session);
 }
 

@@ -326,6 +326,64 @@ TEST(ProgramCli, UsageErrorsSayWhatWasMeant) {
   EXPECT_EQ(entries(dir.path()), 0u);
 }
 
+TEST(ProgramCli, OptionsThatWouldBeIgnoredAreRefused) {
+  const TempDir dir;
+  make_source(dir, "disk -n 1000");
+  write_file(dir / "p.toml", kProject);
+  const std::size_t before = entries(dir.path());
+  const auto refuse = [&](const std::string& arguments, const std::string& part) {
+    const auto run = run_lucerna(dir.path(), arguments);
+    EXPECT_EQ(run.exit_code, 2) << arguments;
+    EXPECT_EQ(lines(run.err), 1u) << run.err;
+    EXPECT_TRUE(has(run.err, part)) << run.err;
+  };
+  refuse("trace p.toml -o out --rays 1000 --noise 1%", "--noise excludes --rays");
+  refuse("trace p.toml -o out --time 3 --rays 1000", "--time excludes --rays");
+  refuse("design p.toml -o out --time 0", "--time 0 is not > 0");
+  refuse("compress s.tm25ray -o led.txt", "led.txt: a source model is written, expected the ending .nfl");
+  EXPECT_EQ(entries(dir.path()), before);
+}
+
+// Half a minute of tracing would be lost otherwise.
+TEST(ProgramCli, AReportThatCannotBeWrittenIsFoundBeforeTheWork) {
+  const TempDir dir;
+  make_source(dir, "disk -n 1000");
+  write_file(dir / "p.toml", kProject);
+  write_file(dir / "old.html", "old");
+  for (const char* work : {"trace p.toml -o out --rays 1000", "compress s.tm25ray -o s.nfl"}) {
+    const auto run = run_lucerna(dir.path(), std::string(work) + " --report missing/r.html");
+    EXPECT_EQ(run.exit_code, 1) << work;
+    EXPECT_EQ(lines(run.err), 1u) << run.err;
+    EXPECT_TRUE(has(run.err, "missing/r.html: cannot write")) << run.err;
+    EXPECT_EQ(run.out, "");
+  }
+  EXPECT_FALSE(std::filesystem::exists(dir / "out" / "result.json"));
+  EXPECT_FALSE(std::filesystem::exists(dir / "s.nfl"));
+  // What is there stays as it is while nothing replaces it.
+  EXPECT_EQ(run_lucerna(dir.path(), "compress none.tm25ray -o s.nfl --report old.html").exit_code, 1);
+  EXPECT_EQ(slurp(dir / "old.html"), "old");
+  EXPECT_EQ(run_lucerna(dir.path(), "trace p.toml -o out --rays 1000 --report out/r.html").exit_code, 0);
+  EXPECT_GT(std::filesystem::file_size(dir / "out" / "r.html"), 1000u);
+}
+
+// "No ray file of a known format" would hide what the file is.
+TEST(ProgramCli, FilesOfOtherKindsAreNamed) {
+  const TempDir dir;
+  make_source(dir, "disk -n 5000");
+  write_file(dir / "p.toml", kProject);
+  ASSERT_EQ(run_lucerna(dir.path(), "compress s.tm25ray -o s.nfl").exit_code, 0);
+  ASSERT_EQ(run_lucerna(dir.path(), "trace p.toml -o out --rays 2000").exit_code, 0);
+  expect_refusal(dir, "compress s.nfl -o t.nfl",
+                 "s.nfl: rays expected, this is a source model; lucerna sample");
+  expect_refusal(dir, "convert s.nfl t.tm25ray", "this is a source model");
+  expect_refusal(dir, "compress out/far-field.ldt -o t.nfl", "this is a light distribution");
+  expect_refusal(dir, "compress p.toml -o t.nfl", "this is a project file; lucerna trace and lucerna design");
+  expect_refusal(dir, "info p.toml", "this is a project file");
+  const auto checked = run_lucerna(dir.path(), "check p.toml");
+  EXPECT_EQ(checked.exit_code, 1);
+  EXPECT_TRUE(has(checked.out, "this is a project file")) << checked.out;
+}
+
 TEST(ProgramData, MeasuredLedHasItsFluxFocusAndBackwardShare) {
   LUCERNA_DATA_FILE(file, "rayfiles/rayfile_LERTDUW_S2WP_green_100k_20161013_IES_TM25.TM25RAY");
   const TempDir dir;

@@ -83,6 +83,7 @@ void run_trace(const TraceArguments& a, Session& session, int& exit_code) {
   const TraceOptions options = trace_options(a);
   const Project project = session.timed("read", [&] { return read_project(a.project, session.progress()); });
   prepare_folder(a.output, session.force || a.resume);
+  require_writable(a.report);
   for (const std::string& warning : project.warnings) session.note(warning);
   for (const auto& input : project.inputs) session.add_input(input);
   const TraceOrigin origin = session.timed("hash", [&] { return trace_origin(project); });
@@ -117,7 +118,9 @@ void add_trace(CLI::App& app, Session& session, int& exit_code) {
   command.option("--noise", a.noise,
                  "Trace until no angle above 1 % of the peak has a larger error, as a share of the peak");
   command.option("--time", a.time, "Seconds after which to stop with the noise that is left");
-  command.option("--rays", a.rays, "Instead: a number of rays, or a range A:B of ray numbers");
+  command.option("--rays", a.rays, "Instead of both: a number of rays, or a range A:B of ray numbers");
+  command.exclusive("--rays", "--noise");
+  command.exclusive("--rays", "--time");
   command.flag("--resume", a.resume, "Go on with the trace in the folder");
   command.option("--seed", a.seed, "Seed of the random numbers (default 1; with --resume that of the trace)");
   command.option("--sequence", a.sequence, "random or sobol");

@@ -39,6 +39,10 @@ void Command::flag(const std::string& names, bool& value, const std::string& hel
   app_.add_flag(names, value, help);
 }
 
+void Command::exclusive(const std::string& name, const std::string& other) {
+  app_.get_option(name)->excludes(app_.get_option(other));
+}
+
 void Command::on_run(std::function<void()> work) { app_.callback(std::move(work)); }
 
 }  // namespace lucerna::cli

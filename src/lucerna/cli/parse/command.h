@@ -30,6 +30,8 @@ class Command {
   /// Takes one word each time that it is given.
   void repeated(const std::string& names, std::vector<std::string>& values, const std::string& help);
   void flag(const std::string& names, bool& value, const std::string& help);
+  /// Of two options that are there already, one at most may be given.
+  void exclusive(const std::string& name, const std::string& other);
   /// What the command does, once the line is parsed.
   void on_run(std::function<void()> work);
 

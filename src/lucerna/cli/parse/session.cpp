@@ -192,4 +192,9 @@ void prepare_folder(const std::filesystem::path& folder, bool force) {
   }
 }
 
+void require_writable(const std::filesystem::path& file) {
+  if (file.empty()) return;
+  const OutputFile probe(file);  // not committed: leaves nothing behind
+}
+
 }  // namespace lucerna::cli

@@ -107,4 +107,8 @@ class Session {
 /// `force`.
 void prepare_folder(const std::filesystem::path& folder, bool force);
 
+/// Throws InputError where a file could not be written there, before the work that ends in it; an empty path
+/// is none. What is there stays as it is.
+void require_writable(const std::filesystem::path& file);
+
 }  // namespace lucerna::cli

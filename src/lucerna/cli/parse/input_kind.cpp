@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/cli/parse/input_kind.h"
+
+#include <fmt/format.h>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/photometric_file.h"
+#include "lucerna/source_model.h"
+
+namespace lucerna::cli {
+
+namespace {
+
+/// Empty for what may be a ray file.
+std::string other_kind(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) return "a folder; lucerna check takes folders of files";
+  if (!std::filesystem::is_regular_file(path, ignored)) return "";
+  if (is_source_model(path)) {
+    return "a source model; lucerna sample draws rays from it, lucerna info, check, compare and projects "
+           "take it as it is";
+  }
+  if (is_photometric_file(path))
+    return "a light distribution (IES or EULUMDAT); lucerna info, check, convert and compare take it";
+  if (path.extension() == ".toml") return "a project file; lucerna trace and lucerna design take it";
+  return "";
+}
+
+}  // namespace
+
+void require_ray_file(const std::filesystem::path& path) {
+  const std::string kind = other_kind(path);
+  if (!kind.empty()) throw InputError(fmt::format("{}: rays expected, this is {}", path.string(), kind));
+}
+
+}  // namespace lucerna::cli

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+namespace lucerna::cli {
+
+/// For commands that take rays. Throws InputError for a file of another kind that the program knows: a source
+/// model, a light distribution, a project. Says what it is, and which commands take it. Anything else passes:
+/// the reader of rays says what is wrong with it.
+void require_ray_file(const std::filesystem::path& path);
+
+}  // namespace lucerna::cli
