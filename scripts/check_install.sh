@@ -37,6 +37,19 @@ for name in lucerna $(for c in $commands; do echo "lucerna-$c"; done); do
 done
 bash -c ". '$place/share/bash-completion/completions/lucerna' && complete -p lucerna"
 
+# docs/install.md: below another prefix PYTHONPATH names the folder.
+package=$(find "$place/lib" -type d -path '*/python3*-packages/lucerna')
+python=$(sed -n 's/^_Python_EXECUTABLE:INTERNAL=//p' "$build/CMakeCache.txt")
+if [ -n "$package" ] && [ -n "$python" ]; then
+  echo "== the Python package"
+  version=$("$python" -c 'import sys; print("python%d.%d" % sys.version_info[:2])')
+  case $package in
+    "$place/lib/$version/dist-packages/lucerna" | "$place/lib/$version/site-packages/lucerna") ;;
+    *) fail "the Python package is in $package" ;;
+  esac
+  PYTHONPATH=$(dirname "$package") "$python" -B -c 'import lucerna; print(lucerna.__file__, lucerna.__version__)'
+fi
+
 echo "== the shared library's names: all of the headers' functions, nothing but ours"
 nm -DC --defined-only "$lib/liblucerna.so" | cut -c20- | sed 's/\[abi:cxx11\]//g' >"$work/names"
 ! grep -vE '^(typeinfo (name )?for |vtable for )?lucerna::' "$work/names" || fail "names that are not ours"

@@ -185,6 +185,7 @@ TEST(ProgramCli, PhotometricFilesAreDescribedCheckedConvertedAndCompared) {
   ASSERT_EQ(run_lucerna(dir.path(), "trace p.toml -o out --rays 2e4").exit_code, 0);
   const Json info = Json::parse(run_lucerna(dir.path(), "info out/far-field.ldt --json").out)["files"][0];
   EXPECT_NEAR(info["flux_lm"].get<double>(), 900.0, 1.0);
+  EXPECT_TRUE(has(run_lucerna(dir.path(), "info out/far-field.ldt").out, "(of its grid's maximum)"));
   ASSERT_EQ(run_lucerna(dir.path(), "convert out/far-field.ldt b.ies --to ies-2002").exit_code, 0);
   const Json compared = Json::parse(run_lucerna(dir.path(), "compare out/far-field.ldt b.ies --json").out);
   EXPECT_LT(compared["relative_rms"]["value"].get<double>(), 1e-5);
