@@ -18,6 +18,7 @@
 #include "lucerna/geometry.h"
 #include "lucerna/intensity.h"
 #include "lucerna/intensity_comparison.h"
+#include "lucerna/material.h"
 #include "lucerna/mesh.h"
 #include "lucerna/objective.h"
 #include "lucerna/photometric_file.h"

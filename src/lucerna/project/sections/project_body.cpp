@@ -2,11 +2,27 @@
 #include <algorithm>
 #include <utility>
 
+#include "lucerna/material.h"
 #include "lucerna/project/sections/project_parts.h"
 
 namespace lucerna::project_parts {
 
+namespace {
+
+constexpr double kWavelengthNm = 555.0;
+
+Reflectance read_metal(TomlReader& reader) {
+  if (reader.has("reflectance")) reader.fail("reflectance", "found `metal` too, which says what it is");
+  const std::string metal = reader.required_word("metal");
+  const double wavelength_nm = reader.number("wavelength_nm", kWavelengthNm);
+  return at_key(reader, "wavelength_nm", [&] { return metal_reflectance(metal, wavelength_nm); });
+}
+
+}  // namespace
+
 Reflectance read_reflectance(TomlReader& reader) {
+  if (reader.has("metal")) return read_metal(reader);
+  if (reader.has("wavelength_nm")) reader.fail("wavelength_nm", "belongs to `metal`, which is not there");
   return at_key(reader, "reflectance", [&] {
     if (!reader.has_array("reflectance")) return Reflectance(reader.number("reflectance", 1.0));
     std::vector<Reflectance::Entry> table;
@@ -49,6 +65,19 @@ std::string read_cause(TomlReader& reader, const Scene& scene, const std::string
 
 namespace {
 
+double read_index(TomlReader& reader, double otherwise) {
+  const auto material = reader.word("material");
+  if (!material) {
+    if (reader.has("wavelength_nm"))
+      reader.fail("wavelength_nm", "belongs to `material`, which is not there");
+    return reader.number("refractive_index", otherwise);
+  }
+  if (reader.has("refractive_index"))
+    reader.fail("refractive_index", "found `material` too, which says what it is");
+  const double wavelength_nm = reader.number("wavelength_nm", kWavelengthNm);
+  return at_key(reader, "wavelength_nm", [&] { return refractive_index(*material, wavelength_nm).n; });
+}
+
 CoverGlass read_glass(TomlReader& reader, const Scene& scene) {
   if (reader.has("file")) reader.fail("file", "belongs to bodies of triangles; a glass is flat");
   CoverGlass glass;
@@ -56,7 +85,7 @@ CoverGlass read_glass(TomlReader& reader, const Scene& scene) {
   glass.world_from_glass = read_placement(reader);
   glass.aperture = read_aperture(reader, std::nullopt);
   glass.thickness_mm = reader.number("thickness_mm", glass.thickness_mm);
-  glass.refractive_index = reader.number("refractive_index", glass.refractive_index);
+  glass.refractive_index = read_index(reader, glass.refractive_index);
   glass.absorption_per_mm = reader.number("absorption_per_mm", glass.absorption_per_mm);
   at_key(reader, "role", [&] { check(glass); });
   return glass;
@@ -75,10 +104,10 @@ void read_body(TomlReader reader, Project& project) {
   body.world_from_body = read_placement(reader);
   body.only_returning_light = role == "lamp";
   if (role == "mirror") {
-    body.reflectance = reader.has("reflectance") ? read_reflectance(reader) : Reflectance(1.0);
+    body.reflectance = read_reflectance(reader);
     body.slope_error_mrad = read_slope_error(reader);
   }
-  for (const char* key : {"reflectance", "slope_error_mrad"}) {
+  for (const char* key : {"reflectance", "metal", "wavelength_nm", "slope_error_mrad"}) {
     if (role != "mirror" && reader.has(key))
       reader.fail(key, fmt::format("belongs to role = \"mirror\"; this is {}", role));
   }

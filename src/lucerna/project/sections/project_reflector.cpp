@@ -188,7 +188,7 @@ void read_mesh_mirror(TomlReader& reader, Project& project) {
   Body body;
   body.name = read_cause(reader, project.scene, "body");
   body.world_from_body = read_placement(reader);
-  body.reflectance = reader.has("reflectance") ? read_reflectance(reader) : Reflectance(1.0);
+  body.reflectance = read_reflectance(reader);
   body.slope_error_mrad = read_slope_error(reader);
   const bool smooth = reader.flag("smooth_normals").value_or(false);
   if (!smooth && reader.has("crease_deg")) reader.fail("crease_deg", "needs smooth_normals = true");

@@ -307,6 +307,33 @@ TEST(Project, BadMirrorsNameTheirKey) {
   expect(std::string(kSource) + "[[detector]]\nkind = 'far-field'\nname = '../x'\n", "no slash");
 }
 
+TEST(Project, MetalsAndGlassesHaveTheirMaterials) {
+  const std::string mirror = "family = 'revolution'\npreset = 'parabola'\nfocal_mm = 10\ndiameter_mm = 80\n";
+  const auto reflectance = [&](const std::string& keys) {
+    return read(reflector(mirror + keys)).scene.reflectors[0].reflectance;
+  };
+  EXPECT_EQ(reflectance("metal = 'silver'\n").at(0.5), metal_reflectance("silver", 555.0).at(0.5));
+  EXPECT_EQ(reflectance("metal = 'aluminium'\nwavelength_nm = 700\n").at(1.0),
+            metal_reflectance("aluminium", 700.0).at(1.0));
+  const std::string glass = std::string(kSource) + "[[body]]\nrole = 'glass'\ndiameter_mm = 9\n";
+  EXPECT_EQ(read(glass + "material = 'bk7'\nwavelength_nm = 650\n").scene.glasses[0].refractive_index,
+            refractive_index("bk7", 650.0).n);
+
+  const auto expect = [](const std::string& text, const std::string& part) {
+    EXPECT_THAT(message(text), testing::HasSubstr(part));
+  };
+  expect(reflector(mirror + "metal = 'aluminum'\n"), "reflector[0].metal: found 'aluminum'");
+  expect(reflector(mirror + "metal = 'silver'\nreflectance = 0.9\n"),
+         "reflector[0].reflectance: found `metal`");
+  expect(reflector(mirror + "wavelength_nm = 600\n"), "belongs to `metal`");
+  expect(reflector(mirror + "metal = 'silver'\nwavelength_nm = 900\n"), "expected 380 to 780");
+  expect(glass + "material = 'silver'\n", "body[0].material: found 'silver'");
+  expect(glass + "material = 'pmma'\nrefractive_index = 1.5\n", "body[0].refractive_index: found `material`");
+  expect(glass + "material = 'pmma'\nwavelength_nm = 400\n", "expected 420 to 1620 nm");
+  expect(glass + "wavelength_nm = 600\n", "belongs to `material`");
+  expect(glass + "metal = 'silver'\n", "body[0].metal: unknown key");
+}
+
 TEST(Project, AMisspeltKeyIsNamedWhereItsMeaningIsMissing) {
   const test::TempDir dir;
   const auto message = [&](const std::string& reflector) {

@@ -53,7 +53,7 @@ slope_error_mrad = 0.0        # Gaussian tilt of the normal, standard deviation 
 #profile_mm = [[0, 0], [20, 6], [40, 24]]
 #position_mm = [200, 0, 15]
 #axis = "-z"
-#reflectance = [[0, 0.92], [60, 0.90], [85, 0.95]]
+#reflectance = [[0, 0.92], [60, 0.90], [85, 0.95]]   # or metal = "aluminium", wavelength_nm = 555
 
 # A profile that is no function of r, vertex first: deep concentrators, mirrors that close in again. Or file = "profile.csv"
 # with lines r,z.
@@ -153,7 +153,7 @@ slope_error_mrad = 0.0        # Gaussian tilt of the normal, standard deviation 
 #role = "glass"
 #diameter_mm = 110.0
 #thickness_mm = 3.0
-#refractive_index = 1.52
+#refractive_index = 1.52       # or material = "pmma", wavelength_nm = 555
 #absorption_per_mm = 0.002
 #position_mm = [0, 0, -20]
 

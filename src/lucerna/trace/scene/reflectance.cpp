@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/material.h"
 #include "lucerna/scene.h"
 
 namespace lucerna {
@@ -33,6 +35,18 @@ double Reflectance::max() const {
 Reflectance Reflectance::shifted(double change) const {
   std::vector<Entry> table = table_;
   for (Entry& e : table) e.value = std::clamp(e.value + change, 0.0, 1.0);
+  return Reflectance(std::move(table));
+}
+
+Reflectance metal_reflectance(std::string_view material, double wavelength_nm) {
+  const RefractiveIndex index = refractive_index(material, wavelength_nm);
+  if (index.k == 0.0) throw InputError(fmt::format("material '{}' is clear, expected a metal", material));
+  std::vector<ReflectanceEntry> table;
+  // The reflectance bends most towards grazing incidence.
+  for (int deg = 0; deg <= 90; deg += deg < 60 ? 5 : deg < 80 ? 2 : 1) {
+    const double cosine = deg == 90 ? 0.0 : std::cos(radians(deg));
+    table.push_back({static_cast<double>(deg), std::min(1.0, fresnel_reflectance(cosine, index))});
+  }
   return Reflectance(std::move(table));
 }
 
