@@ -33,11 +33,13 @@ python: program
 test-python: python
 	ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -L python
 
-# lucerna-mpi under both MPI libraries of Debian: the bits of one process, signals, kills. Some minutes each.
+# lucerna-mpi under both MPI libraries of Debian: the bits of one process, signals, kills. Some minutes each. With OpenMPI, which
+# Debian's mpi4py is built for, the Python package too; and a Slurm of one node where Slurm is installed.
 test-mpi: packages
-	scripts/packages.sh scripts/packages-mpi.txt
+	scripts/packages.sh scripts/packages-mpi.txt scripts/packages-python.txt
 	for mpi in openmpi mpich; do \
-	  cmake -S . -B build/$$mpi -G Ninja -DCMAKE_BUILD_TYPE=Release -DLUCERNA_CUDA=OFF -DLUCERNA_PYTHON=OFF -DLUCERNA_MPI=ON -DLUCERNA_MPI_TESTS=ON \
+	  python=OFF; [ $$mpi = mpich ] || python=ON; \
+	  cmake -S . -B build/$$mpi -G Ninja -DCMAKE_BUILD_TYPE=Release -DLUCERNA_CUDA=OFF -DLUCERNA_PYTHON=$$python -DLUCERNA_MPI=ON -DLUCERNA_MPI_TESTS=ON \
 	    -DMPI_CXX_COMPILER=/usr/bin/mpicxx.$$mpi -DMPIEXEC_EXECUTABLE=/usr/bin/mpiexec.$$mpi && \
 	  cmake --build build/$$mpi --target mpi_tests && \
 	  ctest --test-dir build/$$mpi --output-on-failure --no-tests=error -L mpi || exit 1; \

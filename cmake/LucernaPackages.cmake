@@ -72,7 +72,7 @@ light through mirrors, and designs the mirror that gives a wanted light
 distribution.
 
 It reads and writes ray files (TM-25, Zemax, LightTools, SPEOS, ASAP,
-text), light distributions (IES LM-63, EULUMDAT) and mirrors for CAD
+MCPL, text), light distributions (IES LM-63, EULUMDAT) and mirrors for CAD
 (STEP, STL, OBJ, DXF), and writes reports as HTML.")
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME ${library_package})

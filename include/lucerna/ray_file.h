@@ -115,8 +115,8 @@ std::string_view ray_file_ending(std::string_view format);
                                                          std::uint64_t ray_count,
                                                          const WriteOptions& options = {});
 
-/// The format to write `path` in: `to` if not empty, else what the ending says ("tm25ray", "sdf", "dis").
-/// Throws UsageError if it is no format, or if the ending could mean several or none.
+/// The format to write `path` in: `to` if not empty, else what the ending says ("tm25ray", "sdf", "dis",
+/// "mcpl"). Throws UsageError if it is no format, or if the ending could mean several or none.
 [[nodiscard]] std::string ray_format_for(const std::filesystem::path& path, std::string_view to = {});
 
 /// The whole file in memory. `warnings`, if given, gets the reader's.

@@ -69,9 +69,10 @@ Writes the rays as a file, whole or not at all.
 Parameters
 ----------
 path : path_like
-    Its ending says the format where it means only one: .tm25ray, .sdf, .dis.
+    Its ending says the format where it means only one: .tm25ray, .sdf, .dis, .mcpl.
 format : str, optional
-    'tm25', 'zemax-binary', 'zemax-text', 'lighttools-binary', 'lighttools-ascii', 'speos', 'asap' or 'text'.
+    'tm25', 'zemax-binary', 'zemax-text', 'lighttools-binary', 'lighttools-ascii', 'speos', 'mcpl', 'asap'
+    or 'text'.
 length_unit : str
     Unit of the file's lengths, for formats that have a choice.
 
@@ -84,7 +85,7 @@ constexpr const char* kReadRaysDoc =
     R"(read_rays(path, *, salvage=False, format=None, text_columns=[], callback=None)
 --
 
-Reads a ray file: TM-25, Zemax, LightTools, SPEOS, ASAP or text, found from its content.
+Reads a ray file: TM-25, Zemax, LightTools, SPEOS, MCPL, ASAP or text, found from its content.
 
 Parameters
 ----------

@@ -20,6 +20,7 @@ BARE = {name: value for name, value in os.environ.items() if name != "LD_PRELOAD
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "slow: takes longer than some seconds")
+    config.addinivalue_line("markers", "mpi: starts ranks of MPI (make test-mpi)")
 
 
 @pytest.fixture(autouse=True)

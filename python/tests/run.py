@@ -1,9 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the tests that are named, or says which packages they miss and ends with 77."""
+"""Runs the tests that are named, or says which packages they miss and ends with 77; also where all tests are skipped."""
 import importlib.util
 import sys
 
 NEEDED = ("numpy", "scipy", "matplotlib", "xarray", "pytest", "hypothesis")
+
+
+class Outcomes:
+    """What became of the tests: where all were skipped, ctest is to say so."""
+
+    def __init__(self):
+        self.found = set()
+
+    def pytest_runtest_logreport(self, report):
+        if report.when == "call" or report.outcome != "passed":
+            self.found.add(report.outcome)
 
 
 def main():
@@ -13,7 +24,10 @@ def main():
         return 77
     import pytest
 
-    code = pytest.main(["-q", "-p", "no:cacheprovider", *sys.argv[1:]])
+    outcomes = Outcomes()
+    code = pytest.main(["-q", "-rs", "-p", "no:cacheprovider", *sys.argv[1:]], plugins=[outcomes])
+    if code == pytest.ExitCode.OK and outcomes.found == {"skipped"}:
+        return 77
     return 0 if code == pytest.ExitCode.NO_TESTS_COLLECTED else code
 
 

@@ -131,7 +131,7 @@ def test_statistics_of_a_known_source():
     assert lu.RaySet.from_arrays(np.zeros((0, 3)), np.zeros((0, 3))).statistics().extent_min_mm is None
 
 
-@pytest.mark.parametrize("form", ["zemax-binary", "zemax-text", "speos", "asap", "text", "lighttools-ascii"])
+@pytest.mark.parametrize("form", ["zemax-binary", "zemax-text", "speos", "mcpl", "asap", "text", "lighttools-ascii"])
 def test_formats(tmp_path, rays, form):
     path = tmp_path / "rays.any"
     rays.save(path, format=form)

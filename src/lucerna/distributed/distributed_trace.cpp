@@ -9,9 +9,12 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
+#include "lucerna/distributed/message_bytes.h"
 #include "lucerna/distributed/reduction.h"
 #include "lucerna/simd/processor.h"
 #include "lucerna/trace/result/addition.h"
+#include "lucerna/trace/result/node_noise.h"
+#include "lucerna/trace/run/noise_rounds.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
 namespace lucerna {
@@ -65,10 +68,19 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 /// What all ranks know of the parts of earlier runs.
 struct Earlier {
-  /// Names of those that are good, the rays that they hold, and the number of this run.
+  /// Names of those that are good, the rays that they and the trace to go on with hold, and the number of
+  /// this run.
   std::vector<std::string> names;
   RayIntervals done;
   std::uint64_t attempt = 1;
+};
+
+/// How the tracing of some chunks ended, for all ranks alike.
+enum class ChunksEnd { done, time, interrupted };
+
+/// What all ranks know of the rays that are traced.
+struct Traced {
+  std::uint64_t count = 0, last = 0;
 };
 
 /// One run of one rank.
@@ -82,19 +94,86 @@ class RankTrace {
         origin_(origin),
         options_(options),
         progress_(progress),
-        mine_{empty, {}} {}
+        mine_{empty, {}},
+        old_{empty, {}} {}
 
   DistributedTrace run() {
-    agree_on_scene();
-    const Earlier earlier = read_earlier();
-    own_part_ = part_path(options_.parts, earlier.attempt, ranks_.rank());
-    const bool interrupted = trace_chunks(earlier);
-    if (interrupted) return {std::nullopt, true};
-    add_earlier(earlier);
-    return {sum_of_all(), false};
+    begin();
+    if (trace_chunks(whole_.last, std::nullopt) == ChunksEnd::interrupted) return {std::nullopt, true};
+    load_earlier();
+    const Traced traced = count_all();
+    std::optional<TraceResult> sum = sum_of_all(std::exchange(old_, {}), traced);
+    const std::uint64_t rays = whole_.last - whole_.first;
+    agree(ranks_, traced.count == rays ? "" : fmt::format("{} of {} rays were traced", traced.count, rays));
+    return {std::move(sum), false};
+  }
+
+  /// In rounds, until the first rank has enough.
+  DistributedNoise run_rounds(const NoiseGoal& goal) {
+    const Clock::time_point end = deadline(goal);
+    begin();
+    load_earlier();
+    const std::uint64_t most = std::min(goal.max_rays, whole_.last - whole_.first);
+    std::uint64_t before = earlier_.done.empty() ? 0 : earlier_.done.all().back().last - whole_.first;
+    // Rays within a round are looked at when it is whole: those of rounds before were not enough.
+    std::uint64_t round = before == 0 ? kFirstRound : next_round(before - 1);
+    for (;;) {
+      const auto by = before < kFirstRound ? std::nullopt : std::optional(end);
+      const ChunksEnd how = trace_chunks(whole_.first + std::min(round, most), by);
+      if (how == ChunksEnd::interrupted) return {std::nullopt, true};
+      const Traced traced = count_all();
+      LUCERNA_CHECK(traced.last == whole_.first + traced.count, "{} rays up to {}", traced.count,
+                    traced.last);
+      NoiseTrace result;
+      std::optional<TraceResult> sum = sum_of_all(old_, traced);
+      if (sum) result = judged(std::move(*sum), goal, most, how == ChunksEnd::time || Clock::now() >= end);
+      if (ranks_.broadcast(!sum || result.end != kGoOn ? "end" : "go on") == "end") {
+        if (!sum) return {};
+        return {std::move(result), false};
+      }
+      before = traced.count;
+      round = next_round(before);
+    }
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+  /// What a round that is followed by another ends with.
+  static constexpr NoiseEnd kGoOn = NoiseEnd::no_goal;
+
+  static Clock::time_point deadline(const NoiseGoal& goal) {
+    // A year, if it is more: durations overflow.
+    constexpr double kMostSeconds = 3.2e7;
+    return Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                              std::chrono::duration<double>(std::clamp(goal.max_seconds, 0.0, kMostSeconds)));
+  }
+
+  /// What trace_until does with what it has, in its order.
+  static NoiseTrace judged(TraceResult sum, const NoiseGoal& goal, std::uint64_t most, bool late) {
+    const std::uint64_t rays = sum.last_ray - sum.first_ray;
+    NoiseTrace out{std::move(sum), 0.0, kGoOn};
+    out.noise = node_noise(out.result);
+    if (is_round(rays) && good_enough(out.result, out.noise, goal.noise)) {
+      out.end = NoiseEnd::reached;
+    } else if (rays >= most) {
+      out.end = NoiseEnd::rays;
+    } else if (late) {
+      out.end = NoiseEnd::time;
+    }
+    return out;
+  }
+
+  void begin() {
+    agree_on_scene();
+    earlier_ = read_earlier();
+    own_part_ = part_path(options_.parts, earlier_.attempt, ranks_.rank());
+    if (!earlier_.done.empty()) {
+      const std::size_t parts = earlier_.names.size();
+      tell(fmt::format("{} rays are there already{}", earlier_.done.count(),
+                       parts == 0 ? "" : fmt::format(", {} parts among them", parts)));
+    }
+  }
+
   void agree_on_scene() {
     const std::string mine = origin_.program_version + " " + mine_.sums.isa + " " + origin_.scene_id;
     const std::string first = ranks_.broadcast(mine);
@@ -128,8 +207,38 @@ class RankTrace {
     return std::move(stored.part);
   }
 
+  /// The rays of the trace that is gone on with, on all ranks; none if there is none.
+  RayInterval agree_on_from() {
+    std::string error;
+    RayInterval rays;
+    if (options_.from != nullptr) {
+      const TraceResult& from = *options_.from;
+      rays = {from.first_ray, from.last_ray};
+      try {
+        check_addable(mine_.sums, from);
+      } catch (const InputError& e) {
+        error = e.what();
+      }
+      if (rays.first != whole_.first || rays.last > whole_.last) {
+        error = fmt::format("rays {}:{} asked for, rays {}:{} are there already", whole_.first, whole_.last,
+                            rays.first, rays.last);
+      }
+    }
+    agree(ranks_, error);
+    std::string bytes;
+    append(bytes, rays.first);
+    append(bytes, rays.last);
+    const std::string all = ranks_.broadcast(bytes);
+    std::string_view view = all;
+    rays.first = take(view);
+    rays.last = take(view);
+    return rays;
+  }
+
   /// Every rank reads some of the parts; all learn of all. One that overlaps those before it is left out.
   Earlier read_earlier() {
+    Earlier earlier;
+    if (const RayInterval from = agree_on_from(); from.first < from.last) earlier.done.add(from);
     std::string listed;
     if (ranks_.is_first()) {
       for (const std::string& name : part_names(options_.parts)) listed += name + "\n";
@@ -148,7 +257,6 @@ class RankTrace {
       found += "\n";
     }
     agree(ranks_, error);
-    Earlier earlier;
     for (const std::string& name : names) earlier.attempt = std::max(earlier.attempt, attempt_of(name) + 1);
     for (const std::string& some : gather_everywhere(ranks_, found)) {
       for (const std::string& line : lines_of(some)) take_in(line, earlier);
@@ -180,19 +288,18 @@ class RankTrace {
     earlier.done.add(done);
   }
 
-  /// False if a rank was asked to stop. What goes wrong on one rank ends the run of all.
-  bool trace_chunks(const Earlier& earlier) {
-    const std::uint64_t rays = whole_.last - whole_.first;
-    const auto chunks = earlier.done.missing(whole_, chosen_chunk(options_, rays, ranks_.size()));
-    if (ranks_.is_first() && !earlier.names.empty()) {
-      tell(fmt::format("{} of {} rays are there already, in {} parts", earlier.done.count(), rays,
-                       earlier.names.size()));
-    }
-    bool interrupted = false;
+  /// Traces what there is not yet of the rays up to `last`, with `by` until that time. What goes wrong on one
+  /// rank ends the run of all.
+  ChunksEnd trace_chunks(std::uint64_t last, std::optional<Clock::time_point> by) {
+    RayIntervals there = earlier_.done;
+    if (traced_to_ > whole_.first) there = RayIntervals();
+    const RayInterval asked{std::max(whole_.first, traced_to_), std::max(last, traced_to_)};
+    const auto chunks = there.missing(asked, chosen_chunk(options_, asked.last - asked.first, ranks_.size()));
     std::string error;
+    ChunksEnd end = ChunksEnd::done;
     try {
-      interrupted = !trace_dealt(chunks);
-      if (interrupted) {
+      end = trace_dealt(chunks, by);
+      if (end == ChunksEnd::interrupted) {
         // Before anything that waits for others: one of them may be dead.
         checkpoint();
         ranks_.skip_numbers();
@@ -202,30 +309,42 @@ class RankTrace {
       ranks_.skip_numbers();
     }
     agree(ranks_, error);
-    bool any = false;
-    for (const std::string& one : gather_everywhere(ranks_, interrupted ? "1" : "0")) any = any || one == "1";
+    const ChunksEnd own_end = end;
+    for (const std::string& one : gather_everywhere(ranks_, std::to_string(static_cast<int>(end))))
+      end = std::max(end, static_cast<ChunksEnd>(one[0] - '0'));
     try {
-      if (any && !interrupted) checkpoint();
+      if (end == ChunksEnd::interrupted && own_end != end) checkpoint();
     } catch (const std::exception& e) {
       error = e.what();
     }
     agree(ranks_, error);
-    return any;
+    // Every rank has taken one number more than there were chunks.
+    numbers_before_ += chunks.size() + stride();
+    traced_to_ = asked.last;
+    return end;
   }
 
-  /// False if asked to stop.
-  bool trace_dealt(const std::vector<RayInterval>& chunks) {
-    using Clock = std::chrono::steady_clock;
+  /// Takes chunks until there are none, `by` is over or it is asked to stop.
+  ChunksEnd trace_dealt(const std::vector<RayInterval>& chunks, std::optional<Clock::time_point> by) {
+    const std::uint64_t earlier_last = earlier_.done.empty() ? 0 : earlier_.done.all().back().last;
     auto written = Clock::now();
+    // No ray before the last one of earlier runs may be left out: chunks are dealt in order.
+    bool may_end = false;
+    ChunksEnd end = ChunksEnd::done;
     for (;;) {
-      if (progress_.stop_requested()) return false;
-      const std::uint64_t number = ranks_.take_number();
-      if (number >= chunks.size()) return true;
+      if (progress_.stop_requested()) return ChunksEnd::interrupted;
+      if (by && may_end && Clock::now() >= *by) {
+        ranks_.skip_numbers();
+        return ChunksEnd::time;
+      }
+      const std::uint64_t number = ranks_.take_number() - numbers_before_;
+      if (number >= chunks.size()) return end;
+      may_end = chunks[number].last > earlier_last;
       try {
         ChunkProgress progress(*this, chunks, number);
         mine_.add(tracer_(chunks[number], progress));
       } catch (const Interrupted&) {
-        return false;
+        return ChunksEnd::interrupted;
       }
       if (std::chrono::duration<double>(Clock::now() - written).count() < options_.checkpoint_s) continue;
       checkpoint();
@@ -237,30 +356,50 @@ class RankTrace {
     if (!mine_.done.empty()) write_file(own_part_, encode_part(mine_, origin_));
   }
 
-  /// The parts of earlier runs are dealt to the ranks.
-  void add_earlier(const Earlier& earlier) {
+  /// The parts of earlier runs are dealt to the ranks; the first one has the trace that is gone on with.
+  void load_earlier() {
     std::string error;
     try {
-      for (std::size_t i = own(0); i < earlier.names.size(); i += stride())
-        mine_.add(checked_part(earlier.names[i]));
+      if (options_.from != nullptr) old_.add(*options_.from);
+      for (std::size_t i = own(0); i < earlier_.names.size(); i += stride())
+        old_.add(checked_part(earlier_.names[i]));
     } catch (const std::exception& e) {
       error = e.what();
     }
     agree(ranks_, error);
   }
 
-  std::optional<TraceResult> sum_of_all() {
-    const std::uint64_t rays = whole_.last - whole_.first;
-    std::array<std::int64_t, 1> done{static_cast<std::int64_t>(mine_.done.count())};
-    ranks_.add_to_first(done);
-    add_sums_to_first(ranks_, mine_.sums, rays);
-    add_rays_to_first(ranks_, mine_.sums);
+  Traced count_all() {
+    std::string mine;
+    for (const PartialTrace* part : {&mine_, &old_}) {
+      append(mine, part->done.count());
+      append(mine, part->done.empty() ? 0 : part->done.all().back().last);
+    }
+    Traced all;
+    for (const std::string& one : gather_everywhere(ranks_, mine)) {
+      for (std::string_view bytes = one; !bytes.empty();) {
+        all.count += take(bytes);
+        all.last = std::max(all.last, take(bytes));
+      }
+    }
+    return all;
+  }
+
+  /// All rays that were traced, at the first rank; `sum` is what this one has of earlier runs. The trace that
+  /// is gone on with may end within a block, whose other rays come after its.
+  std::optional<TraceResult> sum_of_all(PartialTrace sum, const Traced& traced) {
     std::string error;
-    if (ranks_.is_first() && static_cast<std::uint64_t>(done[0]) != rays)
-      error = fmt::format("{} of {} rays were traced", done[0], rays);
+    try {
+      sum.add(mine_);
+    } catch (const std::exception& e) {
+      error = e.what();
+    }
     agree(ranks_, error);
+    sum.sums.last_ray = sum.sums.first_ray + traced.count;
+    add_sums_to_first(ranks_, sum.sums, traced.count);
+    add_rays_to_first(ranks_, sum.sums);
     if (!ranks_.is_first()) return std::nullopt;
-    return std::move(mine_.sums);
+    return std::move(sum.sums);
   }
 
   /// Reports the chunks dealt so far as work done, and lets messages pass.
@@ -293,8 +432,12 @@ class RankTrace {
   const TraceOrigin& origin_;
   const DistributedOptions& options_;
   Progress& progress_;
-  PartialTrace mine_;
+  /// What this rank traces, which its part has; and what it has of earlier runs.
+  PartialTrace mine_, old_;
+  Earlier earlier_;
   fs::path own_part_;
+  /// Numbers that were taken for chunks of the rounds before, and the end of those rounds.
+  std::uint64_t numbers_before_ = 0, traced_to_ = 0;
 };
 
 constexpr std::array<const char*, 3> kIsas{"portable", "avx2", "avx512"};
@@ -306,6 +449,26 @@ DistributedTrace trace_on_ranks(Ranks& ranks, const TraceResult& empty, const Ra
                                 Progress& progress) {
   LUCERNA_CHECK(options.chunk_rays % kBlockRays == 0, "chunks of {} rays", options.chunk_rays);
   return RankTrace(ranks, empty, tracer, origin, options, progress).run();
+}
+
+DistributedNoise trace_until_on_ranks(Ranks& ranks, const Scene& scene, TraceResult empty,
+                                      const RangeTracer& tracer, const TraceOrigin& origin,
+                                      const DistributedOptions& options, const NoiseGoal& goal,
+                                      Progress& progress) {
+  LUCERNA_CHECK(options.chunk_rays % kBlockRays == 0, "chunks of {} rays", options.chunk_rays);
+  if (goes_by_noise(scene)) {
+    empty.last_ray = kMaxRays;
+    return RankTrace(ranks, empty, tracer, origin, options, progress).run_rounds(goal);
+  }
+  empty.last_ray = default_ray_count(scene);
+  DistributedTrace traced = RankTrace(ranks, empty, tracer, origin, options, progress).run();
+  DistributedNoise out{std::nullopt, traced.interrupted};
+  if (!traced.result) return out;
+  out.result = {std::move(*traced.result), 0.0, end_without_noise(scene)};
+  out.result->noise = node_noise(out.result->result);
+  if (out.result->end == NoiseEnd::finite_source && out.result->noise <= goal.noise)
+    out.result->end = NoiseEnd::reached;
+  return out;
 }
 
 std::string best_isa() { return has_avx512() ? kIsas[2] : has_avx2() ? kIsas[1] : kIsas[0]; }

@@ -25,6 +25,9 @@ struct DistributedOptions {
   std::uint64_t chunk_rays = 0;
   /// Seconds between two writings of a rank's part.
   double checkpoint_s = 300.0;
+  /// On the first rank: a finished trace to go on with, which begins at the run's first ray. Elsewhere, and
+  /// where there is none, null.
+  const TraceResult* from = nullptr;
   /// Told by the first rank, for people.
   std::function<void(const std::string&)> note = [](const std::string&) {};
 };
@@ -45,6 +48,24 @@ struct DistributedTrace {
 DistributedTrace trace_on_ranks(Ranks& ranks, const TraceResult& empty, const RangeTracer& tracer,
                                 const TraceOrigin& origin, const DistributedOptions& options,
                                 Progress& progress = no_progress());
+
+struct DistributedNoise {
+  /// On the first rank, where the run came to its end.
+  std::optional<NoiseTrace> result;
+  /// As DistributedTrace::interrupted.
+  bool interrupted = false;
+};
+
+/// `trace_until` by all ranks together; collective. The rounds are those of one process, and the first rank
+/// looks at the noise after each and tells the others: unless the time ends it, the result is that of one
+/// process for any number of ranks, to the bit. Time is seconds on the clock of any rank, looked at between
+/// chunks once the first round is whole; what was dealt by then is finished. `empty` names the first ray; its
+/// last one is not looked at. Parts and `options.from` are gone on with at the end of the round that they
+/// reach into. Memory: that of `trace_on_ranks` and one more tally.
+DistributedNoise trace_until_on_ranks(Ranks& ranks, const Scene& scene, TraceResult empty,
+                                      const RangeTracer& tracer, const TraceOrigin& origin,
+                                      const DistributedOptions& options, const NoiseGoal& goal,
+                                      Progress& progress = no_progress());
 
 /// The instruction set that all ranks have: the least of the best ones of each. Collective.
 std::string common_isa(Ranks& ranks, const std::string& best);

@@ -135,7 +135,7 @@ class DistributedTraceTest : public testing::Test {
     return {.first_ray = first, .last_ray = last, .cells = 64, .isa = "portable"};
   }
   Outcome run(int ranks, std::uint64_t chunk, int stop_after = 1 << 30, int stopped_rank = 0,
-              std::uint64_t seed = 1) {
+              std::uint64_t seed = 1, const TraceResult* from = nullptr) {
     TraceOptions all = options(100, 30'011);
     all.seed = seed;
     const TraceResult empty = empty_trace(scene_, all);
@@ -147,7 +147,11 @@ class DistributedTraceTest : public testing::Test {
         return trace(scene_, o, progress);
       };
       StopAfter progress(of.rank() == stopped_rank ? stop_after : 1 << 30);
-      DistributedOptions how{.parts = dir_.path(), .chunk_rays = chunk, .checkpoint_s = 1e-4, .note = {}};
+      DistributedOptions how{.parts = dir_.path(),
+                             .chunk_rays = chunk,
+                             .checkpoint_s = 1e-4,
+                             .from = of.is_first() ? from : nullptr,
+                             .note = {}};
       how.note = [&](const std::string& text) { notes_ += text + "\n"; };
       return trace_on_ranks(of, empty, tracer, origin_, how, progress);
     });
@@ -247,6 +251,137 @@ TEST_F(DistributedTraceTest, PartsOfOtherRunsAreRefusedOnAllRanks) {
   origin_.program_version = "1";
   origin_.scene_id = "other";
   refused("another project");
+}
+
+TEST_F(DistributedTraceTest, GoesOnFromAFinishedTraceToTheBitsOfOneRun) {
+  // The first one ends within a block.
+  const TraceResult expected = whole(), first = trace(scene_, options(100, 12'345));
+  for (const int ranks : {1, 2, 3}) {
+    clear();
+    // Stopped on the way: the finished trace and the parts are gone on with.
+    EXPECT_TRUE(run(ranks, 512, 30, 0, 1, &first).traces[0].interrupted);
+    const Outcome o = run(ranks + 1, 1024, 1 << 30, 0, 1, &first);
+    ASSERT_EQ(o.errors[0], "");
+    EXPECT_TRUE(*o.traces[0].result == expected) << ranks;
+    EXPECT_NE(notes_.find("rays are there already"), std::string::npos) << notes_;
+  }
+  // Parts of rays that the finished trace has are left out: results were written, and the run died.
+  const Outcome again = run(2, 512, 1 << 30, 0, 1, &expected);
+  EXPECT_TRUE(again.traces[0].result && *again.traces[0].result == expected) << again.errors[0];
+}
+
+TEST_F(DistributedTraceTest, AFinishedTraceOfOtherRaysIsRefusedOnAllRanks) {
+  const TraceResult early = trace(scene_, options(0, 5000)), late = trace(scene_, options(100, 30'012));
+  for (const TraceResult* from : {&early, &late}) {
+    const Outcome o = run(2, 1024, 1 << 30, 0, 1, from);
+    for (const std::string& e : o.errors) EXPECT_TRUE(e.find("are there already") != std::string::npos) << e;
+  }
+}
+
+/// Runs that go by the noise of a disk's bare light.
+class DistributedNoiseTest : public testing::Test {
+ protected:
+  DistributedNoiseTest() {
+    scene_.sources = {{make_emitter({.kind = EmitterKind::disk}), {}, std::nullopt}};
+    scene_.far_fields = {{"far", 30.0, 10.0}};
+  }
+  /// What the ranks returned: that of the first, which alone has a result.
+  DistributedNoise run(int ranks, std::uint64_t chunk, const NoiseGoal& goal, int stop_after = 1 << 30,
+                       const TraceResult* from = nullptr) {
+    const TraceOptions all{.isa = "portable"};
+    const TraceResult empty = empty_trace(scene_, all);
+    std::vector<DistributedNoise> found(static_cast<std::size_t>(ranks));
+    const Outcome o = on_ranks(ranks, [&](Ranks& of) {
+      const RangeTracer tracer = [&](const RayInterval& rays, Progress& progress) {
+        TraceOptions some = all;
+        some.first_ray = rays.first;
+        some.last_ray = rays.last;
+        return trace(scene_, some, progress);
+      };
+      StopAfter progress(stop_after);
+      const DistributedOptions how{.parts = dir_.path(),
+                                   .chunk_rays = chunk,
+                                   .checkpoint_s = 1e-3,
+                                   .from = of.is_first() ? from : nullptr};
+      found[static_cast<std::size_t>(of.rank())] =
+          trace_until_on_ranks(of, scene_, empty, tracer, {"id", "1", "text", 2.0, 3.0}, how, goal, progress);
+      return DistributedTrace();
+    });
+    for (const std::string& e : o.errors) EXPECT_EQ(e, "");
+    for (std::size_t r = 1; r < found.size(); ++r) EXPECT_FALSE(found[r].result.has_value());
+    return std::move(found[0]);
+  }
+  NoiseTrace alone(const NoiseGoal& goal, std::optional<TraceResult> from = std::nullopt) const {
+    return trace_until(scene_, {.isa = "portable"}, goal, std::move(from));
+  }
+  void clear() const {
+    for (const auto& e : fs::directory_iterator(dir_.path())) fs::remove(e.path());
+  }
+  static bool same(const NoiseTrace& a, const NoiseTrace& b) {
+    return a.result == b.result && a.noise == b.noise && a.end == b.end;
+  }
+
+  test::TempDir dir_;
+  Scene scene_;
+};
+
+TEST_F(DistributedNoiseTest, EndsAtTheRoundAndTheBitsOfOneProcess) {
+  const NoiseTrace first = alone({.noise = 0.0, .max_rays = 1 << 20});
+  // Less than the first round has: a later one ends it.
+  const NoiseGoal goal{.noise = 0.8 * first.noise, .max_seconds = 1e9};
+  const NoiseTrace expected = alone(goal);
+  ASSERT_EQ(expected.end, NoiseEnd::reached);
+  ASSERT_GT(expected.result.last_ray, 1u << 20);
+  for (const int ranks : {1, 2, 5}) {
+    for (const std::uint64_t chunk : {0u, 1u << 18}) {
+      clear();
+      const DistributedNoise found = run(ranks, chunk, goal);
+      ASSERT_TRUE(found.result.has_value());
+      EXPECT_TRUE(same(*found.result, expected)) << ranks << " ranks, " << found.result->result.last_ray;
+    }
+  }
+  // From the first round on, and stopped on the way.
+  clear();
+  EXPECT_TRUE(run(2, 1 << 16, goal, 2, &first.result).interrupted);
+  const DistributedNoise on = run(3, 1 << 17, goal, 1 << 30, &first.result);
+  ASSERT_TRUE(on.result.has_value());
+  EXPECT_TRUE(same(*on.result, expected));
+  const DistributedNoise there = run(2, 0, goal, 1 << 30, &expected.result);
+  EXPECT_TRUE(there.result && same(*there.result, expected)) << "nothing is traced";
+}
+
+TEST_F(DistributedNoiseTest, StopsByRaysAndTimeWithAWholeRange) {
+  const NoiseTrace expected = alone({.noise = 0.0, .max_rays = (1 << 20) + 5000});
+  const DistributedNoise rays =
+      run(3, 1 << 17, {.noise = 0.0, .max_seconds = 1e9, .max_rays = (1 << 20) + 5000});
+  ASSERT_TRUE(rays.result.has_value());
+  EXPECT_TRUE(same(*rays.result, expected)) << rays.result->result.last_ray;
+  clear();
+  const DistributedNoise none = run(2, 1 << 17, {.noise = 0.0, .max_seconds = 0.0});
+  ASSERT_TRUE(none.result.has_value());
+  EXPECT_EQ(none.result->end, NoiseEnd::time);
+  EXPECT_EQ(none.result->result.last_ray, 1u << 20) << "the first round is traced whatever the time";
+  clear();
+  // Within a round each rank traces a chunk at least; whatever was dealt is whole.
+  const DistributedNoise some =
+      run(3, 1 << 12, {.noise = 0.0, .max_seconds = 0.0}, 1 << 30, &expected.result);
+  ASSERT_TRUE(some.result.has_value());
+  EXPECT_EQ(some.result->end, NoiseEnd::time);
+  const std::uint64_t last = some.result->result.last_ray;
+  EXPECT_GT(last, expected.result.last_ray);
+  EXPECT_LT(last, 3u << 19);
+  EXPECT_TRUE(some.result->result == trace(scene_, {.last_ray = last, .isa = "portable"})) << last;
+}
+
+TEST_F(DistributedNoiseTest, WithoutANoiseTheDefaultRaysAreTraced) {
+  scene_.far_fields.clear();
+  scene_.planes = {{"floor", {Frame(), 500.0, 400.0, 7, 5}}};
+  const NoiseTrace expected = alone({});
+  ASSERT_EQ(expected.end, NoiseEnd::no_goal);
+  const DistributedNoise found = run(2, 1 << 18, {});
+  ASSERT_TRUE(found.result.has_value());
+  EXPECT_TRUE(found.result->result == expected.result);
+  EXPECT_EQ(found.result->end, expected.end);
 }
 
 TEST_F(DistributedTraceTest, RanksOfOtherVersionsOrProjectsAreRefused) {

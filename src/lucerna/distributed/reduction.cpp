@@ -50,7 +50,8 @@ struct Place {
   std::size_t part, first;
 };
 
-/// Blocks are traced whole by one rank, so no two runs have one key.
+/// Blocks are traced whole by one rank, but for the one that a trace to go on with ends in: the first rank
+/// has its first rays.
 void join(const std::vector<KeptRays>& parts, TraceResult& sums) {
   std::vector<Place> places;
   std::size_t total = 0;
@@ -63,7 +64,7 @@ void join(const std::vector<KeptRays>& parts, TraceResult& sums) {
     total += first;
   }
   std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
-    return std::tuple(a.run.block, a.run.source) < std::tuple(b.run.block, b.run.source);
+    return std::tuple(a.run.block, a.run.source, a.part) < std::tuple(b.run.block, b.run.source, b.part);
   });
   sums.out_runs.clear();
   sums.out_rays = RayBlock();
@@ -71,7 +72,13 @@ void join(const std::vector<KeptRays>& parts, TraceResult& sums) {
   for (const Place& place : places) {
     for (std::uint32_t i = 0; i < place.run.rays; ++i)
       sums.out_rays.append(parts[place.part].rays, place.first + i);
-    sums.out_runs.push_back(place.run);
+    const bool same_run = !sums.out_runs.empty() && sums.out_runs.back().block == place.run.block &&
+                          sums.out_runs.back().source == place.run.source;
+    if (same_run) {
+      sums.out_runs.back().rays += place.run.rays;
+    } else {
+      sums.out_runs.push_back(place.run);
+    }
   }
 }
 

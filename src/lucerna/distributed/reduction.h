@@ -12,8 +12,9 @@ namespace lucerna {
 /// says whether sums need two lanes on the way. Collective.
 void add_sums_to_first(Ranks& ranks, TraceResult& sums, std::uint64_t rays);
 
-/// Joins the kept rays of all ranks at the first, in the order of one run; elsewhere they are left.
-/// Collective. Memory at the first: the rays twice.
+/// Joins the kept rays of all ranks at the first, in the order of one run; elsewhere they are left. Where two
+/// ranks have rays of one block, those of the lower rank come first. Collective. Memory at the first: the
+/// rays twice.
 void add_rays_to_first(Ranks& ranks, TraceResult& sums);
 
 }  // namespace lucerna

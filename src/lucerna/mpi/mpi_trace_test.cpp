@@ -103,22 +103,25 @@ constexpr const char* kKept = "[[detector]]\nkind = \"rays\"\n";
 class MpiTraceTest : public testing::Test {
  protected:
   /// The trace of one process, which all others are to equal.
-  void trace_alone(const std::string& project, const std::string& rays) {
-    rays_ = rays;
+  void trace_alone(const std::string& project, const std::vector<std::string>& how) {
+    how_ = how;
     write_file(dir_ / "lamp.toml", project);
     const fs::path log = dir_ / "alone.log";
-    ASSERT_EQ(wait_for(start({test::program().string(), "trace", lamp(), "-o", (dir_ / "alone").string(),
-                              "--rays", rays, "--quiet"},
-                             log)),
-              0)
-        << read_file(log, kMost);
+    std::vector<std::string> words{test::program().string(),  "trace",  lamp(), "-o",
+                                   (dir_ / "alone").string(), "--quiet"};
+    words.insert(words.end(), how.begin(), how.end());
+    ASSERT_EQ(wait_for(start(words, log)), 0) << read_file(log, kMost);
+  }
+  void trace_alone(const std::string& project, const std::string& rays) {
+    trace_alone(project, std::vector<std::string>{"--rays", rays});
   }
   std::string lamp() const { return (dir_ / "lamp.toml").string(); }
   std::string log() const { return read_file(dir_ / "log", kMost); }
 
   pid_t start_ranks(int ranks, const std::string& out, const std::vector<std::string>& more) const {
     std::vector<std::string> words = mpi_command(ranks);
-    words.insert(words.end(), {lamp(), "-o", (dir_ / out).string(), "--rays", rays_});
+    words.insert(words.end(), {lamp(), "-o", (dir_ / out).string()});
+    words.insert(words.end(), how_.begin(), how_.end());
     words.insert(words.end(), more.begin(), more.end());
     return start(words, dir_ / "log");
   }
@@ -146,7 +149,8 @@ class MpiTraceTest : public testing::Test {
   }
 
   test::TempDir dir_;
-  std::string rays_;
+  /// The options that say how much is traced.
+  std::vector<std::string> how_;
 };
 
 TEST_F(MpiTraceTest, FilesAreThoseOfOneProcessMpi) {
@@ -162,6 +166,26 @@ TEST_F(MpiTraceTest, FilesAreThoseOfOneProcessMpi) {
       }
     }
   }
+}
+
+TEST_F(MpiTraceTest, ByNoiseTheRoundsAreThoseOfOneProcessMpi) {
+  trace_alone(kLamp, std::vector<std::string>{"--noise", "2%", "--time", "1e6"});
+  for (const int ranks : {1, 3}) {
+    const std::string out = "out" + std::to_string(ranks);
+    ASSERT_EQ(wait_for(start_ranks(ranks, out, {"--threads", "1", "--chunk", "65536"})), 0) << log();
+    expect_same(out, fmt::format("{} ranks", ranks));
+  }
+}
+
+TEST_F(MpiTraceTest, AFinishedTraceGetsMoreRaysMpi) {
+  trace_alone(std::string(kLamp) + kKept, "40011");
+  how_ = {"--rays", "12345"};
+  ASSERT_EQ(wait_for(start_ranks(2, "out", {"--seed", "1"})), 0) << log();
+  how_ = {"--rays", "40011"};
+  ASSERT_EQ(wait_for(start_ranks(3, "out", {"--resume", "--chunk", "512"})), 0) << log();
+  EXPECT_NE(log().find("12345 rays are there already"), std::string::npos) << log();
+  expect_same("out", "after going on");
+  EXPECT_EQ(wait_for(start_ranks(2, "out", {"--resume", "--seed", "7"})), 1) << log();
 }
 
 TEST_F(MpiTraceTest, ASignalWritesAndExitsWithThreeMpi) {
@@ -209,7 +233,7 @@ TEST_F(MpiTraceTest, AnyKillCostsAnIntervalAndNoBitMpiSlow) {
 }
 
 TEST_F(MpiTraceTest, ErrorsAreToldOnceAndEndAllMpi) {
-  rays_ = "1000";
+  how_ = {"--rays", "1000"};
   write_file(dir_ / "lamp.toml", "[[source]]\nkind = \"nothing\"\n");
   EXPECT_EQ(wait_for(start_ranks(3, "out", {})), 1) << log();
   const std::string text = log();

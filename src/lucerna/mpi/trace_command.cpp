@@ -6,6 +6,7 @@
 #include <csignal>
 #include <memory>
 
+#include "lucerna/cli/output/stored_trace.h"
 #include "lucerna/cli/output/trace_output.h"
 #include "lucerna/cli/parse/arguments.h"
 #include "lucerna/core/io/error.h"
@@ -23,7 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct MpiTraceArguments {
-  std::string project, output, rays, seed = "1", sequence = "sobol", chunk, checkpoint = "300", report;
+  std::string project, output, noise = "1%", time = "60", rays, seed, sequence = "sobol", chunk,
+                               checkpoint = "300", report;
   bool resume = false;
 };
 
@@ -41,8 +43,9 @@ void together(Ranks& ranks, const Work& work) {
 
 TraceOptions trace_options(const MpiTraceArguments& a) {
   TraceOptions options;
-  options.seed = parse_count(a.seed);
+  if (!a.seed.empty()) options.seed = parse_count(a.seed);
   options.sequence = sequence_kind(a.sequence);
+  if (a.rays.empty()) return options;
   const RayRange range = parse_range(a.rays);
   options.first_ray = range.first;
   options.last_ray = range.last;
@@ -69,6 +72,49 @@ void prepare(const MpiTraceArguments& a, const fs::path& parts, const Session& s
   fs::create_directories(parts);
 }
 
+/// The trace in the folder, on the first rank; its seed and sequence on all.
+std::optional<TraceResult> finished_trace(const MpiTraceArguments& a, const TraceOrigin& origin, Ranks& ranks,
+                                          TraceOptions& options) {
+  std::optional<TraceResult> from;
+  std::string numbers;
+  together(ranks, [&] {
+    if (!a.resume || !ranks.is_first()) return;
+    from = stored_trace(a.output, a.seed, origin);
+    if (from) numbers = fmt::format("{} {}", from->seed, to_string(from->sequence));
+  });
+  numbers = ranks.broadcast(numbers);
+  if (numbers.empty()) return from;
+  const std::size_t blank = numbers.find(' ');
+  options.seed = parse_count(numbers.substr(0, blank));
+  options.sequence = sequence_kind(numbers.substr(blank + 1));
+  return from;
+}
+
+/// By the number of rays, or by their noise.
+DistributedNoise trace_all(const MpiTraceArguments& a, const Project& project, const TraceOrigin& origin,
+                           const TraceOptions& options, const DistributedOptions& how, Ranks& ranks,
+                           Session& session) {
+  const RangeTracer tracer = [&](const RayInterval& rays, Progress& progress) {
+    TraceOptions some = options;
+    some.first_ray = rays.first;
+    some.last_ray = rays.last;
+    return trace(project.scene, some, progress);
+  };
+  TraceResult empty = empty_trace(project.scene, options);
+  if (a.rays.empty()) {
+    const NoiseGoal goal{.noise = parse_share(a.noise), .max_seconds = parse_number(a.time)};
+    DistributedNoise traced = trace_until_on_ranks(ranks, project.scene, std::move(empty), tracer, origin,
+                                                   how, goal, session.progress());
+    if (traced.result &&
+        (traced.result->end == NoiseEnd::time || traced.result->end == NoiseEnd::finite_source))
+      note_noise("", *traced.result, goal.noise, session);
+    return traced;
+  }
+  DistributedTrace traced = trace_on_ranks(ranks, empty, tracer, origin, how, session.progress());
+  if (!traced.result) return {std::nullopt, traced.interrupted};
+  return {NoiseTrace{std::move(*traced.result), 0.0, NoiseEnd::rays}, false};
+}
+
 /// What the first rank does once the light is counted.
 void write_results(const MpiTraceArguments& a, const Project& project, const TraceOrigin& origin,
                    const TraceResult& result, int ranks, Session& session) {
@@ -89,7 +135,7 @@ void run_mpi_trace(const MpiTraceArguments& a, Session& session, Ranks& ranks) {
   session.start();
   session.stop_on_signal(SIGUSR1);
   TraceOptions options = trace_options(a);
-  const DistributedOptions how = distributed_options(a, session);
+  DistributedOptions how = distributed_options(a, session);
   Project project;
   TraceOrigin origin;
   together(ranks, [&] {
@@ -102,19 +148,14 @@ void run_mpi_trace(const MpiTraceArguments& a, Session& session, Ranks& ranks) {
     for (const auto& input : project.inputs) session.add_input(input);
   }
   options.isa = common_isa(ranks, best_isa());
-  const RangeTracer tracer = [&](const RayInterval& rays, Progress& progress) {
-    TraceOptions some = options;
-    some.first_ray = rays.first;
-    some.last_ray = rays.last;
-    return trace(project.scene, some, progress);
-  };
-  const TraceResult empty = empty_trace(project.scene, options);
-  const DistributedTrace traced = session.timed(
-      "trace", [&] { return trace_on_ranks(ranks, empty, tracer, origin, how, session.progress()); });
+  const std::optional<TraceResult> from = finished_trace(a, origin, ranks, options);
+  if (from) how.from = &*from;
+  const DistributedNoise traced =
+      session.timed("trace", [&] { return trace_all(a, project, origin, options, how, ranks, session); });
   if (traced.interrupted) throw Interrupted();
   together(ranks, [&] {
     if (!traced.result) return;
-    write_results(a, project, origin, *traced.result, ranks.size(), session);
+    write_results(a, project, origin, traced.result->result, ranks.size(), session);
     fs::remove_all(how.parts);
   });
 }
@@ -127,12 +168,16 @@ void add_mpi_trace(CLI::App& app, Session& session, Ranks& ranks) {
   MpiTraceArguments& a = *arguments;
   command.required("PROJECT", a.project, "Project file (see: lucerna init)");
   command.required("-o,--output", a.output, "Folder for the results, which all ranks see");
-  command.required("--rays", a.rays, "A number of rays, or a range A:B of ray numbers");
-  command.flag("--resume", a.resume, "Go on with the parts in the folder, of any number of ranks");
+  command.option("--noise", a.noise,
+                 "Trace until no angle above 1 % of the peak has a larger error, as a share of the peak");
+  command.option("--time", a.time, "Seconds after which to stop with the noise that is left");
+  command.option("--rays", a.rays, "Instead: a number of rays, or a range A:B of ray numbers");
+  command.flag("--resume", a.resume,
+               "Go on with the parts in the folder, of any number of ranks, or with a finished trace");
   command.option("--checkpoint", a.checkpoint, "Seconds between two writings of a rank's part");
   command.option("--chunk", a.chunk,
                  "Rays that a rank takes at a time (default: by their number, 2^24 at most)");
-  command.option("--seed", a.seed, "Seed of the random numbers");
+  command.option("--seed", a.seed, "Seed of the random numbers (default 1; with --resume that of the trace)");
   command.option("--sequence", a.sequence, "random or sobol");
   command.option("--report", a.report, "Also write the report as one HTML file");
   command.flag("--force", session.force, "Write into a folder that is not empty");

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include "lucerna/cli/commands/commands.h"
+#include "lucerna/cli/output/stored_trace.h"
 #include "lucerna/cli/output/trace_output.h"
 #include "lucerna/cli/parse/arguments.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
 #include "lucerna/project.h"
-#include "lucerna/results/folders/trace_file.h"
 #include "lucerna/results/metrics/trace_warnings.h"
 #include "lucerna/trace/device/accelerator.h"
 
@@ -37,27 +37,9 @@ TraceOptions trace_options(const TraceArguments& a) {
   return options;
 }
 
-/// The trace that is in the folder, if it is one of this project.
-std::optional<TraceResult> stored_trace(const TraceArguments& a, const TraceOrigin& origin) {
-  const std::filesystem::path file = std::filesystem::path(a.output) / kTraceFileName;
-  if (!a.resume || !std::filesystem::exists(file)) return std::nullopt;
-  StoredTrace stored = read_trace_file(file);
-  if (stored.origin.scene_id != origin.scene_id)
-    throw InputError(fmt::format("{}: is a trace of another project, or of other input files", a.output));
-  if (stored.origin.program_version != origin.program_version) {
-    throw InputError(fmt::format("{}: was traced by lucerna {}, this is {}", a.output,
-                                 stored.origin.program_version, origin.program_version));
-  }
-  if (!a.seed.empty() && parse_count(a.seed) != stored.result.seed) {
-    throw InputError(
-        fmt::format("{}: was traced with seed {}, found --seed {}", a.output, stored.result.seed, a.seed));
-  }
-  return std::move(stored.result);
-}
-
 NoiseTrace run_rays(const TraceArguments& a, const Scene& scene, const TraceOptions& options,
                     const TraceOrigin& origin, Session& session) {
-  std::optional<TraceResult> from = stored_trace(a, origin);
+  std::optional<TraceResult> from = a.resume ? stored_trace(a.output, a.seed, origin) : std::nullopt;
   if (a.resume && !from) session.note(fmt::format("{}: no trace yet, starting anew", a.output));
   if (!a.rays.empty()) return trace_rays(scene, options, std::move(from), session.progress());
   NoiseGoal goal;

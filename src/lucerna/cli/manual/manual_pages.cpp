@@ -167,7 +167,7 @@ constexpr std::string_view kProgramHead = R"(.SH SYNOPSIS
 .SH DESCRIPTION
 Lucerna makes small models of the ray files of light sources, traces light through mirrors, designs the
 mirror that gives a wanted light distribution, and reads and writes the files of the trade: ray files
-(TM\-25, Zemax, LightTools, SPEOS, ASAP, text), light distributions (IES LM\-63, EULUMDAT), and mirrors
+(TM\-25, Zemax, LightTools, SPEOS, ASAP, MCPL, text), light distributions (IES LM\-63, EULUMDAT), and mirrors
 for CAD (STEP, STL, OBJ, DXF).
 .PP
 Each command has a page of its own, and says what it takes with \fB\-\-help\fR.

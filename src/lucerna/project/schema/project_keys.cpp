@@ -115,7 +115,7 @@ constexpr std::array kKeys{
     ProjectKey{"detector", "up", Type::axis, kAny, "", "\"+z\"", "Luminance: what is up in the picture."},
     ProjectKey{"detector", "half_angle_deg", Type::number, up_to(90, true), "", "2", "Luminance, distant observer: half angle of the cone of light that counts."},
     ProjectKey{"detector", "pupil_radius_mm", Type::number, kAboveZero, "", "0.02 of the distance", "Luminance, near observer: radius of the pupil."},
-    ProjectKey{"detector", "format", Type::word, kAny, "tm25 zemax-binary zemax-text lighttools-binary lighttools-ascii speos asap text", "\"tm25\"", "Rays: format of the file."},
+    ProjectKey{"detector", "format", Type::word, kAny, "tm25 zemax-binary zemax-text lighttools-binary lighttools-ascii speos mcpl asap text", "\"tm25\"", "Rays: format of the file."},
 
     ProjectKey{"target", "kind", Type::word, kAny, "far-field plane", "\"far-field\"", "Intensity by direction, or illuminance on a plane."},
     ProjectKey{"target", "file", Type::file, kAny, "", "none", "IES or EULUMDAT; for a plane .csv (lx) or .png. Needed unless a zone has a minimum."},

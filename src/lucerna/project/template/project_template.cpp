@@ -196,7 +196,7 @@ bins = "hard"                 # tent: a ray counts for its four neighbours; smoo
 #size_mm = [200, 200]
 #cells = [100, 100]
 
-# All rays that leave, as a new source: tm25 zemax-binary zemax-text lighttools-binary lighttools-ascii speos asap text
+# All rays that leave, as a new source: tm25 zemax-binary zemax-text lighttools-binary lighttools-ascii speos mcpl asap text
 #[[detector]]
 #kind = "rays"
 #name = "luminaire"

@@ -10,6 +10,7 @@
 #include "lucerna/rayset/formats/asap/asap.h"
 #include "lucerna/rayset/formats/lighttools/lighttools_ascii.h"
 #include "lucerna/rayset/formats/lighttools/lighttools_binary.h"
+#include "lucerna/rayset/formats/mcpl/mcpl.h"
 #include "lucerna/rayset/formats/speos/speos.h"
 #include "lucerna/rayset/formats/text/text_rays.h"
 #include "lucerna/rayset/formats/tm25/tm25.h"
@@ -36,6 +37,7 @@ constexpr std::array kFormats{
     Format{"lighttools-binary", looks_like_lighttools_binary, open_lighttools_binary,
            create_lighttools_binary, ".ray"},
     Format{"speos", looks_like_speos, open_speos, create_speos, ".ray"},
+    Format{"mcpl", looks_like_mcpl, open_mcpl, create_mcpl, ".mcpl"},
     Format{"asap", looks_like_asap, open_asap, create_asap, ".dis"},
     Format{"lighttools-ascii", looks_like_lighttools_ascii, open_lighttools_ascii, create_lighttools_ascii,
            ".ray"},
@@ -109,6 +111,7 @@ std::string ray_format_for(const std::filesystem::path& path, std::string_view t
   if (ending == ".tm25ray" || ending == ".tm25") return "tm25";
   if (ending == ".sdf") return "zemax-binary";
   if (ending == ".dis") return "asap";
+  if (ending == ".mcpl") return "mcpl";
   throw UsageError(fmt::format("{}: the ending '{}' does not say the format: expected one of {}",
                                path.string(), ending, fmt::join(kNames, ", ")),
                    "format");

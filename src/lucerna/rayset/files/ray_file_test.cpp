@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "lucerna/core/io/error.h"
 #include "tests/support/data_dir.h"
 #include "tests/support/random_rays.h"
@@ -32,6 +34,17 @@ RayBlock bare(RayBlock rays) {
   return rays;
 }
 
+/// What is left of the rays in such a file: MCPL makes the largest cosine of the other two and its sign.
+RayBlock kept_by(std::string_view format, RayBlock rays) {
+  for (std::size_t i = 0; format == "mcpl" && i < rays.size(); ++i) {
+    float* k[] = {&rays.kx[i], &rays.ky[i], &rays.kz[i]};
+    std::ranges::sort(k, {}, [](const float* c) { return std::abs(*c); });
+    const double a = *k[0], b = *k[1];
+    *k[2] = std::copysign(static_cast<float>(std::sqrt(1.0 - (a * a + b * b))), *k[2]);
+  }
+  return rays;
+}
+
 TEST(RayFile, EveryPairOfFormatsKeepsEveryBit) {
   const TempDir dir;
   for (const std::string_view a : ray_formats()) {
@@ -42,7 +55,8 @@ TEST(RayFile, EveryPairOfFormatsKeepsEveryBit) {
         const RaySet first = read_ray_set(dir / "a");
         write_ray_set(dir / "b", first, b);
         const RaySet second = read_ray_set(dir / "b");
-        ASSERT_EQ(bare(second.rays), bare(set.rays)) << a << " to " << b << ", " << n << " rays";
+        ASSERT_EQ(bare(second.rays), kept_by(b, kept_by(a, bare(set.rays))))
+            << a << " to " << b << ", " << n << " rays";
         ASSERT_EQ(second.header.flux_unit, FluxUnit::watt) << a << " to " << b;
         if (a != "zemax-text" && b != "zemax-text") {
           ASSERT_EQ(second.header.flux(), 1.25) << a << " to " << b;
@@ -60,7 +74,7 @@ TEST(RayFile, EveryFormatKeepsLumens) {
     EXPECT_EQ(detect_ray_format(dir / "a"), format);
     const RaySet back = read_ray_set(dir / "a");
     EXPECT_EQ(back.header.flux_unit, FluxUnit::lumen) << format;
-    EXPECT_EQ(bare(back.rays), set.rays) << format;
+    EXPECT_EQ(bare(back.rays), kept_by(format, set.rays)) << format;
     if (format != "zemax-text") {
       EXPECT_EQ(back.header.flux(), 337.5) << format;
     }
@@ -73,7 +87,7 @@ TEST(RayFile, WavelengthsSurviveWhereThereIsAPlaceAndAWarningSaysWhereNot) {
     const RaySet set = radiant_set(501, kWavelength);
     const auto warnings = write_ray_set(dir / "a", set, format);
     const RaySet back = read_ray_set(dir / "a");
-    EXPECT_EQ(bare(back.rays), bare(set.rays)) << format;
+    EXPECT_EQ(bare(back.rays), kept_by(format, bare(set.rays))) << format;
     if (format == "asap") {
       EXPECT_THAT(warnings, Contains(HasSubstr("wavelength nm")));
       continue;
@@ -97,10 +111,10 @@ TEST(RayFile, OddColumnsAndTablesAreKeptOrNamed) {
   for (const std::string_view format : ray_formats()) {
     const auto warnings = write_ray_set(dir / "a", set, format);
     const RaySet back = read_ray_set(dir / "a");
-    EXPECT_EQ(bare(back.rays), bare(set.rays)) << format;
+    EXPECT_EQ(bare(back.rays), kept_by(format, bare(set.rays))) << format;
     if (format == "tm25") continue;
     EXPECT_THAT(warnings, Contains(HasSubstr("texts"))) << format;
-    if (format != "speos") {
+    if (format != "speos" && format != "mcpl") {
       EXPECT_THAT(warnings, Contains(HasSubstr("spectral table"))) << format;
     }
     if (format == "text") {
@@ -188,6 +202,7 @@ TEST(RayFile, NamesAreChecked) {
               AllOf(HasSubstr("tm26"), HasSubstr("speos")));
   EXPECT_EQ(ray_format_for("a.TM25RAY"), "tm25");
   EXPECT_EQ(ray_format_for("a.ray", "speos"), "speos");
+  EXPECT_EQ(ray_format_for("a.mcpl"), "mcpl");
   EXPECT_THROW(ray_format_for("a.ray"), UsageError);
   EXPECT_THROW(open_ray_file("/nonexistent/file"), InputError);
   EXPECT_THROW(create_ray_file("/nonexistent/file", "tm25", {}, 0), InputError);

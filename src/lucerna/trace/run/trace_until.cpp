@@ -6,38 +6,18 @@
 #include "lucerna/core/io/error.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace/result/node_noise.h"
+#include "lucerna/trace/run/noise_rounds.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
 namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kFirstRound = std::uint64_t{1} << 20;
 /// What is traced between two looks at the clock: a fraction of a second on two cores.
 constexpr std::uint64_t kTimedPiece = std::uint64_t{1} << 22;
 /// What is lost at most when a trace without a clock is stopped: a second or so on two cores, beside which
 /// setting up the tracer and adding the bins cost nothing.
 constexpr std::uint64_t kUntimedPiece = std::uint64_t{1} << 24;
-
-/// The peak's error is asked for last: it takes longer to find, and most rounds end before.
-bool good_enough(const TraceResult& result, double node_noise, double goal) {
-  return node_noise <= goal && !(peak_noise(result) > 0.5 * goal);
-}
-
-/// The smallest total of the rounds that is above `rays`.
-std::uint64_t next_round(std::uint64_t rays) {
-  std::uint64_t whole = kFirstRound;
-  while (whole <= rays) {
-    if (whole + whole / 2 > rays) return whole + whole / 2;
-    whole *= 2;
-  }
-  return whole;
-}
-
-bool has_finite_source(const Scene& scene) {
-  return std::any_of(scene.sources.begin(), scene.sources.end(),
-                     [](const PlacedSource& s) { return s.rays->ray_count().has_value(); });
-}
 
 /// Reports the rays of a trace in pieces as those of one.
 class PieceProgress final : public Progress {
@@ -114,8 +94,8 @@ NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const No
   const std::uint64_t once = default_ray_count(scene);
   NoiseTrace out{{}, std::nan(""), NoiseEnd::no_goal};
   std::optional<TraceResult> sum = std::move(from);
-  if (scene.far_fields.empty() || !scene.ray_detectors.empty() || has_finite_source(scene)) {
-    if (!scene.far_fields.empty() && scene.ray_detectors.empty()) out.end = NoiseEnd::finite_source;
+  if (!goes_by_noise(scene)) {
+    out.end = end_without_noise(scene);
     if (!trace_on_to(once, kUntimedPiece, scene, run, sum, never, progress)) out.end = NoiseEnd::interrupted;
   } else {
     const auto late = [&] {
@@ -125,8 +105,7 @@ NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const No
     for (;;) {
       const std::uint64_t round = sum ? next_round(rays()) : kFirstRound;
       // A trace that was stopped within a round is evaluated at the round's end only, as it would have been.
-      const bool at_round = sum && next_round(rays() - 1) == rays();
-      if (at_round) {
+      if (sum && is_round(rays())) {
         out.noise = node_noise(*sum);
         if (good_enough(*sum, out.noise, goal.noise)) {
           out.end = NoiseEnd::reached;

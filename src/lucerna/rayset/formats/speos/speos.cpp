@@ -5,8 +5,8 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/rayset/formats/common/little_endian.h"
+#include "lucerna/rayset/formats/common/ray_wavelengths.h"
 #include "lucerna/rayset/formats/common/record_file.h"
-#include "lucerna/rayset/formats/speos/spectrum_sampler.h"
 
 namespace lucerna {
 
@@ -14,18 +14,16 @@ namespace {
 
 constexpr std::size_t kWatts = 0, kVersion = 4, kVersions = 5, kLumens = 24, kSpeosHeaderSize = 28;
 constexpr std::size_t kPlain = 8, kPolarised = 13;
-constexpr float kGreen_nm = 555.0F;  // the peak of V(lambda)
 
 class SpeosWriter final : public RayWriter {
  public:
   SpeosWriter(const std::filesystem::path& path, const RaySetHeader& header)
-      : wavelength_(find_column(header.columns, ColumnKind::wavelength_nm)),
-        writer_(path, layout_for(header)) {
-    warnings_ =
-        losses(header, "speos", {.wavelengths = true, .one_wavelength = true, .table = true, .texts = false});
-    if (!wavelength_) choose_wavelengths(header);
+      : wavelengths_(header, warnings_), writer_(path, layout_for(header)) {
+    for (std::string& lost : losses(
+             header, "speos", {.wavelengths = true, .one_wavelength = true, .table = true, .texts = false}))
+      warnings_.push_back(std::move(lost));
     // Lumen weights with a wavelength each are no watts: then only the lumens may be stated.
-    const bool lumen_only = header.flux_unit == FluxUnit::lumen && (wavelength_ || !header.flux_w);
+    const bool lumen_only = header.flux_unit == FluxUnit::lumen && (wavelengths_.column() || !header.flux_w);
     if (lumen_only)
       warnings_.push_back("speos energies are meant in watt; the lumens of the rays are written");
     std::vector<std::byte> head(kSpeosHeaderSize);
@@ -36,11 +34,11 @@ class SpeosWriter final : public RayWriter {
   }
 
   void write(const RayBlock& block) override {
-    if (wavelength_) return writer_.write_rays(block);
+    if (wavelengths_.column()) return writer_.write_rays(block);
     RayBlock with = block;
-    with.extra.emplace_back(block.size(), one_);
-    for (std::size_t i = 0; spectrum_ && i < block.size(); ++i)
-      with.extra.back()[i] = (*spectrum_)(writer_.ray_count() + i);
+    with.extra.emplace_back(block.size());
+    for (std::size_t i = 0; i < block.size(); ++i)
+      with.extra.back()[i] = wavelengths_.of(block, i, writer_.ray_count() + i);
     writer_.write_rays(with);
   }
 
@@ -51,24 +49,12 @@ class SpeosWriter final : public RayWriter {
     RecordLayout layout;
     layout.floats = kPlain;
     layout.main[6].at = 7;
-    layout.extra.assign(header.columns.size() + (wavelength_ ? 0 : 1), RecordColumn{});
-    layout.extra[wavelength_.value_or(header.columns.size())].at = 6;
+    layout.extra.assign(header.columns.size() + (wavelengths_.column() ? 0 : 1), RecordColumn{});
+    layout.extra[wavelengths_.column().value_or(header.columns.size())].at = 6;
     return layout;
   }
 
-  void choose_wavelengths(const RaySetHeader& header) {
-    if (!header.spectra.empty() && !header.spectra.front().wavelength_nm.empty()) {
-      spectrum_.emplace(header.spectra.front());
-      warnings_.push_back("the spectral table is written as one wavelength per ray, drawn evenly from it");
-    } else if (!header.wavelength_nm) {
-      warnings_.push_back(fmt::format("no wavelengths are known: {} nm is written for all rays", kGreen_nm));
-    }
-    one_ = header.wavelength_nm.value_or(kGreen_nm);
-  }
-
-  std::optional<std::size_t> wavelength_;
-  std::optional<SpectrumSampler> spectrum_;
-  float one_ = kGreen_nm;
+  RayWavelengths wavelengths_;
   RecordWriter writer_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/rayset/formats/speos/spectrum_sampler.h"
+#include "lucerna/rayset/formats/common/spectrum_sampler.h"
 
 #include <gtest/gtest.h>
 
