@@ -71,7 +71,7 @@ class Reflectance {
   std::vector<Entry> table_;
 };
 
-/// Of a smooth metal in air at one wavelength: a table over the angle by Fresnel's formulas, within 0.0005.
+/// Of a smooth metal in air at one wavelength: a table over the angle by Fresnel's formulas, within 0.001.
 /// `material` is one of the metals of `materials()`. Throws InputError as `refractive_index`, and for a clear
 /// medium.
 [[nodiscard]] Reflectance metal_reflectance(std::string_view material, double wavelength_nm = 555.0);

@@ -7,6 +7,7 @@
 namespace lucerna {
 
 double fresnel_reflectance(double cos_incidence, const RefractiveIndex& medium) {
+  if (medium.n == 1.0 && medium.k == 0.0) return 0.0;  // no boundary; 0 / 0 at grazing incidence
   const double c = std::clamp(cos_incidence, 0.0, 1.0);
   const std::complex<double> index(medium.n, medium.k), squared = index * index;
   // Normal component of the wave vector inside, over that in vacuum.

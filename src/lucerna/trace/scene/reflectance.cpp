@@ -43,9 +43,9 @@ Reflectance metal_reflectance(std::string_view material, double wavelength_nm) {
   if (index.k == 0.0) throw InputError(fmt::format("material '{}' is clear, expected a metal", material));
   std::vector<ReflectanceEntry> table;
   // The reflectance bends most towards grazing incidence.
-  for (int deg = 0; deg <= 90; deg += deg < 60 ? 5 : deg < 80 ? 2 : 1) {
-    const double cosine = deg == 90 ? 0.0 : std::cos(radians(deg));
-    table.push_back({static_cast<double>(deg), std::min(1.0, fresnel_reflectance(cosine, index))});
+  for (double deg = 0.0; deg <= 90.0; deg += deg < 50.0 ? 5.0 : deg < 70.0 ? 2.0 : deg < 80.0 ? 1.0 : 0.5) {
+    const double cosine = deg < 90.0 ? std::cos(radians(deg)) : 0.0;
+    table.push_back({deg, std::min(1.0, fresnel_reflectance(cosine, index))});
   }
   return Reflectance(std::move(table));
 }
