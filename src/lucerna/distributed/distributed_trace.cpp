@@ -99,7 +99,7 @@ class RankTrace {
 
   DistributedTrace run() {
     begin();
-    if (trace_chunks(whole_.last, std::nullopt) == ChunksEnd::interrupted) return {std::nullopt, true};
+    if (trace_chunks(whole_.last, kNever) == ChunksEnd::interrupted) return {std::nullopt, true};
     load_earlier();
     const Traced traced = count_all();
     std::optional<TraceResult> sum = sum_of_all(std::exchange(old_, {}), traced);
@@ -118,7 +118,7 @@ class RankTrace {
     // Rays within a round are looked at when it is whole: those of rounds before were not enough.
     std::uint64_t round = before == 0 ? kFirstRound : next_round(before - 1);
     for (;;) {
-      const auto by = before < kFirstRound ? std::nullopt : std::optional(end);
+      const Clock::time_point by = before < kFirstRound ? kNever : end;
       const ChunksEnd how = trace_chunks(whole_.first + std::min(round, most), by);
       if (how == ChunksEnd::interrupted) return {std::nullopt, true};
       const Traced traced = count_all();
@@ -138,6 +138,7 @@ class RankTrace {
 
  private:
   using Clock = std::chrono::steady_clock;
+  static constexpr Clock::time_point kNever = Clock::time_point::max();
   /// What a round that is followed by another ends with.
   static constexpr NoiseEnd kGoOn = NoiseEnd::no_goal;
 
@@ -288,9 +289,9 @@ class RankTrace {
     earlier.done.add(done);
   }
 
-  /// Traces what there is not yet of the rays up to `last`, with `by` until that time. What goes wrong on one
+  /// Traces what there is not yet of the rays up to `last`, until `by` at most. What goes wrong on one
   /// rank ends the run of all.
-  ChunksEnd trace_chunks(std::uint64_t last, std::optional<Clock::time_point> by) {
+  ChunksEnd trace_chunks(std::uint64_t last, Clock::time_point by) {
     RayIntervals there = earlier_.done;
     if (traced_to_ > whole_.first) there = RayIntervals();
     const RayInterval asked{std::max(whole_.first, traced_to_), std::max(last, traced_to_)};
@@ -325,7 +326,7 @@ class RankTrace {
   }
 
   /// Takes chunks until there are none, `by` is over or it is asked to stop.
-  ChunksEnd trace_dealt(const std::vector<RayInterval>& chunks, std::optional<Clock::time_point> by) {
+  ChunksEnd trace_dealt(const std::vector<RayInterval>& chunks, Clock::time_point by) {
     const std::uint64_t earlier_last = earlier_.done.empty() ? 0 : earlier_.done.all().back().last;
     auto written = Clock::now();
     // No ray before the last one of earlier runs may be left out: chunks are dealt in order.
@@ -333,7 +334,7 @@ class RankTrace {
     ChunksEnd end = ChunksEnd::done;
     for (;;) {
       if (progress_.stop_requested()) return ChunksEnd::interrupted;
-      if (by && may_end && Clock::now() >= *by) {
+      if (may_end && Clock::now() >= by) {
         ranks_.skip_numbers();
         return ChunksEnd::time;
       }

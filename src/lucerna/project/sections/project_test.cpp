@@ -9,6 +9,7 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
+#include "lucerna/material.h"
 #include "lucerna/optics/shapes/swept_curve.h"
 #include "lucerna/ray_file.h"
 #include "tests/support/random_rays.h"
