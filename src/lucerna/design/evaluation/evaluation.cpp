@@ -293,7 +293,9 @@ Evaluation evaluate_sparse(const DesignShape& design, const Reflectance& reflect
   const EvaluationSums all = total(sums, bins.size());
   Evaluation e = evaluation_of(all);
   e.rays = per_task * kDesignTasks * kBlockRays;
-  e.rows = sparse_jacobian(blocks, bins.size(), design, 1.0 / all.weight);
+  SparseDerivatives derivatives = sparse_derivatives(blocks, bins.size(), design, 1.0 / all.weight);
+  e.rows = std::move(derivatives.rows);
+  e.rows_noise = std::move(derivatives.noise);
   return e;
 }
 

@@ -45,6 +45,8 @@ struct Evaluation {
   BinJacobian jacobian;
   /// The same where it was asked for sparse.
   SparseJacobian rows;
+  /// SparseDerivatives::noise of `rows`.
+  Eigen::VectorXd rows_noise;
   /// Shares of the sources' flux: light that leaves after, and without, a reflection; that mirrors absorbed;
   /// that met the back; that was given up; that bodies absorbed (DesignRays::shade_by).
   double reflected = 0.0, direct = 0.0, absorbed = 0.0, back = 0.0, lost = 0.0, bodies = 0.0;

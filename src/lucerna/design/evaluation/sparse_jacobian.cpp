@@ -62,16 +62,67 @@ BlocksByBin by_bin(const std::vector<SparseSums>& parts, std::size_t bins) {
   return out;
 }
 
-/// Some rows of the Jacobian.
+/// Some rows of the Jacobian, and what noise adds to the square of each.
 struct SparseRows {
   std::vector<int> count, column;
-  std::vector<double> value;
+  std::vector<double> value, noise;
+};
+
+/// One row, parameter by parameter, of parts that are added one after the other.
+class RowSums {
+ public:
+  explicit RowSums(std::size_t parameters)
+      : total_(parameters, 0.0), part_(parameters, 0.0), seen_(parameters, 0) {}
+
+  void add(int parameter, double value) {
+    const auto p = static_cast<std::size_t>(parameter);
+    if (seen_[p] == 0) {
+      seen_[p] = 1;
+      touched_.push_back(parameter);
+    }
+    if (part_[p] == 0.0) of_part_.push_back(parameter);
+    part_[p] += value;
+  }
+
+  void end_part() {
+    for (const int parameter : of_part_) {
+      double& sum = part_[static_cast<std::size_t>(parameter)];
+      total_[static_cast<std::size_t>(parameter)] += sum;
+      squares_ += sum * sum;
+      sum = 0.0;
+    }
+    of_part_.clear();
+  }
+
+  /// The row times `scale`, with its noise if there were `parts` parts; then all is zero again.
+  void take(SparseRows& out, double scale, double parts) {
+    std::sort(touched_.begin(), touched_.end());
+    out.count.push_back(static_cast<int>(touched_.size()));
+    double squared = 0.0;
+    for (const int parameter : touched_) {
+      double& sum = total_[static_cast<std::size_t>(parameter)];
+      out.column.push_back(parameter);
+      out.value.push_back(scale * sum);
+      squared += sum * sum;
+      sum = 0.0;
+      seen_[static_cast<std::size_t>(parameter)] = 0;
+    }
+    out.noise.push_back(scale * scale * (parts * squares_ - squared) / (parts - 1.0));
+    touched_.clear();
+    squares_ = 0.0;
+  }
+
+ private:
+  std::vector<double> total_, part_;
+  std::vector<char> seen_;
+  std::vector<int> touched_, of_part_;
+  double squares_ = 0.0;
 };
 
 }  // namespace
 
-SparseJacobian sparse_jacobian(const std::vector<SparseSums>& parts, std::size_t bins,
-                               const DesignShape& shape, double scale) {
+SparseDerivatives sparse_derivatives(const std::vector<SparseSums>& parts, std::size_t bins,
+                                     const DesignShape& shape, double scale) {
   const auto& spline = std::get<BsplineShape>(shape.family());
   const auto across = static_cast<std::uint32_t>(spline.row_x().intervals);
   const int stride = spline.row_x().coefficients();
@@ -80,39 +131,29 @@ SparseJacobian sparse_jacobian(const std::vector<SparseSums>& parts, std::size_t
 
   const auto rows_of = [&](std::size_t first, std::size_t last) {
     SparseRows rows;
-    std::vector<double> sum(shape.parameter_count(), 0.0);
-    std::vector<char> seen(shape.parameter_count(), 0);
-    std::vector<int> touched;
+    RowSums sums(shape.parameter_count());
     for (std::size_t b = first; b < last; ++b) {
-      touched.clear();
       for (std::size_t k = blocks.begin[b]; k < blocks.begin[b + 1]; ++k) {
-        const SparseSums& part = parts[blocks.place[k].part];
-        const std::uint32_t cell = part.cell(blocks.place[k].number);
-        const SparseSums::Block& block = part.at(blocks.place[k].number);
+        const BlockPlace& place = blocks.place[k];
+        const std::uint32_t cell = parts[place.part].cell(place.number);
+        const SparseSums::Block& block = parts[place.part].at(place.number);
         const int corner = static_cast<int>(cell / across) * stride + static_cast<int>(cell % across);
         for (int i = 0; i < 16; ++i) {
-          const int p = parameter_of[static_cast<std::size_t>(corner + (i / 4) * stride + i % 4)];
-          if (seen[static_cast<std::size_t>(p)] == 0) {
-            seen[static_cast<std::size_t>(p)] = 1;
-            touched.push_back(p);
-          }
-          sum[static_cast<std::size_t>(p)] += block[static_cast<std::size_t>(i)];
+          const int c = corner + (i / 4) * stride + i % 4;
+          sums.add(parameter_of[static_cast<std::size_t>(c)], block[static_cast<std::size_t>(i)]);
         }
+        if (k + 1 == blocks.begin[b + 1] || blocks.place[k + 1].part != place.part) sums.end_part();
       }
-      std::sort(touched.begin(), touched.end());
-      rows.count.push_back(static_cast<int>(touched.size()));
-      for (const int p : touched) {
-        rows.column.push_back(p);
-        rows.value.push_back(scale * sum[static_cast<std::size_t>(p)]);
-        sum[static_cast<std::size_t>(p)] = 0.0;
-        seen[static_cast<std::size_t>(p)] = 0;
-      }
+      sums.take(rows, scale, static_cast<double>(parts.size()));
     }
     return rows;
   };
   const std::vector<SparseRows> all = parallel_map_blocks<SparseRows>(bins, 256, rows_of);
 
-  SparseJacobian j(static_cast<Eigen::Index>(bins), static_cast<Eigen::Index>(shape.parameter_count()));
+  SparseDerivatives out;
+  SparseJacobian& j = out.rows;
+  j.resize(static_cast<Eigen::Index>(bins), static_cast<Eigen::Index>(shape.parameter_count()));
+  out.noise.resize(static_cast<Eigen::Index>(bins));
   std::size_t total = 0;
   for (const SparseRows& r : all) total += r.column.size();
   j.resizeNonZeros(static_cast<Eigen::Index>(total));
@@ -120,13 +161,14 @@ SparseJacobian sparse_jacobian(const std::vector<SparseSums>& parts, std::size_t
   for (const SparseRows& r : all) {
     std::copy(r.column.begin(), r.column.end(), j.innerIndexPtr() + at);
     std::copy(r.value.begin(), r.value.end(), j.valuePtr() + at);
-    for (const int n : r.count) {
+    for (std::size_t k = 0; k < r.count.size(); ++k) {
+      out.noise[row] = r.noise[k];
       j.outerIndexPtr()[row++] = at;
-      at += n;
+      at += r.count[k];
     }
   }
   j.outerIndexPtr()[row] = at;
-  return j;
+  return out;
 }
 
 }  // namespace lucerna

@@ -53,9 +53,18 @@ class SparseSums {
   std::vector<Block> blocks_;
 };
 
+/// The derivatives that rays add up to, and how well these rays know them.
+struct SparseDerivatives {
+  SparseJacobian rows;
+  /// For each bin what the scatter of the rays adds, in the mean, to the squared length of its row: from the
+  /// scatter of the parts.
+  Eigen::VectorXd noise;
+};
+
 /// Adds sums in their order, times `scale`, and the coefficients of `shape` (a free form) that are one
-/// parameter. The same bits for any number of threads.
-SparseJacobian sparse_jacobian(const std::vector<SparseSums>& parts, std::size_t bins,
-                               const DesignShape& shape, double scale);
+/// parameter. At least two parts, of equally many independent rays each. The same bits for any number of
+/// threads.
+SparseDerivatives sparse_derivatives(const std::vector<SparseSums>& parts, std::size_t bins,
+                                     const DesignShape& shape, double scale);
 
 }  // namespace lucerna

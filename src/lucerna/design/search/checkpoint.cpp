@@ -13,7 +13,7 @@ namespace lucerna {
 namespace {
 
 constexpr const char* kMagic = "lucerna-design-checkpoint-9";
-constexpr const char* kSearchMagic = "lucerna-search-checkpoint-2";
+constexpr const char* kSearchMagic = "lucerna-search-checkpoint-3";
 /// More numbers than any design has; keeps a damaged count from asking for memory.
 constexpr std::size_t kMaxNumbers = 1 << 20;
 /// A square of so many intervals has about as many coefficients.
@@ -77,6 +77,8 @@ class Reader {
     m.error_to_noise = value<double>();
     m.intervals_x = whole(1, kMaxIntervals);
     m.intervals_y = whole(1, kMaxIntervals);
+    m.bins = whole(1, kMaxIntervals);
+    m.derivative_noise = value<double>();
     m.parameters = numbers("of");
     return m;
   }
@@ -124,8 +126,9 @@ void put(std::string& text, const char* name, const FitSnapshot& m) {
 }
 
 void put(std::string& text, const char* name, const FreeFormSnapshot& m) {
-  text += fmt::format("{} {} {} {} {} {} {} {} {} ", name, m.candidate, m.level, m.transport.sign,
-                      m.transport.vertex_distance_mm, m.cost, m.error_to_noise, m.intervals_x, m.intervals_y);
+  text += fmt::format("{} {} {} {} {} {} {} {} {} {} {} ", name, m.candidate, m.level, m.transport.sign,
+                      m.transport.vertex_distance_mm, m.cost, m.error_to_noise, m.intervals_x, m.intervals_y,
+                      m.bins, m.derivative_noise);
   put(text, "of", m.parameters);
 }
 

@@ -79,14 +79,20 @@ FreeFormSnapshot any_candidate(Rng& rng) {
           any_double(rng),
           1 + static_cast<int>(100 * rng.uniform()),
           1 + static_cast<int>(100 * rng.uniform()),
+          1 + static_cast<int>(100 * rng.uniform()),
+          any_double(rng),
           any_doubles(rng)};
 }
 
 void expect_same(const FreeFormSnapshot& a, const FreeFormSnapshot& b) {
   EXPECT_EQ(a.candidate, b.candidate);
   EXPECT_EQ(a.level, b.level);
-  EXPECT_EQ(bits_of({a.transport.sign, a.transport.vertex_distance_mm, a.cost, a.error_to_noise}),
-            bits_of({b.transport.sign, b.transport.vertex_distance_mm, b.cost, b.error_to_noise}));
+  const auto numbers = [](const FreeFormSnapshot& m) {
+    return bits_of(
+        {m.transport.sign, m.transport.vertex_distance_mm, m.cost, m.error_to_noise, m.derivative_noise});
+  };
+  EXPECT_EQ(numbers(a), numbers(b));
+  EXPECT_EQ(a.bins, b.bins);
   EXPECT_EQ(a.intervals_x, b.intervals_x);
   EXPECT_EQ(a.intervals_y, b.intervals_y);
   EXPECT_EQ(bits_of(a.parameters), bits_of(b.parameters));
@@ -190,7 +196,9 @@ TEST(Checkpoint, SearchStateOutOfRangeIsInputError) {
        std::vector<std::pair<std::string, std::string>>{{"now 7 3 ", "now 7 4 "},
                                                         {"now 7 3 ", "now 7 -1 "},
                                                         {"now 7 3 ", "now -2 3 "},
-                                                        {" 1 1 of", " 1 0 of"},
+                                                        {" 1 1 1 0 of", " 1 0 1 0 of"},
+                                                        {" 1 1 1 0 of", " 1 1 0 0 of"},
+                                                        {" 1 1 1 0 of", " 1 1 1 nan of"},
                                                         {"step 0", "step -1"},
                                                         {"begun 0", "begun 2147483647"}}) {
     EXPECT_THROW(parse_search_checkpoint(replaced(text, from, to), "key"), InputError) << to;

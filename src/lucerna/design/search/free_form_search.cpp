@@ -68,6 +68,12 @@ constexpr double kMinLambda = 1e-5;
 /// blurred by the source's size a rough surface costs no light. At a three-hundredth of it slopes jump by a
 /// degree from knot to knot, at the same error.
 constexpr double kSmoothing = 0.03;
+/// Of the derivatives' noise over the rest. A wide source lights many bins through each cell of knots, by few
+/// rays each: their noise then damps every step. Coarser bins hold more rays, and such a source blurs what is
+/// finer than they are.
+constexpr double kMaxDerivativeNoise = 0.3;
+/// Least share of a level's bins, along each side.
+constexpr double kMinBins = 0.6;
 /// Light that a start is made for, in rays.
 constexpr std::uint64_t kStartRays = std::uint64_t{1} << 19;
 constexpr int kStartBins = 36;
@@ -241,8 +247,24 @@ bool FreeFormSearch::knots_suffice(const FreeFormSnapshot& snapshot) const {
   return snapshot.error_to_noise < kEnoughKnots || snapshot.cost < share * kNear * kNear;
 }
 
+FreeFormLevel FreeFormSearch::level_after(const FreeFormSnapshot& before, int number,
+                                          const DesignShape& shape) const {
+  FreeFormLevel l = level(number);
+  if (number == 0) return l;
+  // Noise goes with the number of pairs of a bin and a cell of knots that the rays are dealt to.
+  const double bins = static_cast<double>(l.bins) / before.bins;
+  const double cells = static_cast<double>(shape.intervals_x() * shape.intervals_y()) /
+                       (before.intervals_x * before.intervals_y);
+  const double rays = static_cast<double>(l.rays) / static_cast<double>(level(number - 1).rays);
+  const double noise = before.derivative_noise * bins * bins * cells / rays;
+  if (noise > kMaxDerivativeNoise)
+    l.bins =
+        static_cast<int>(std::lround(l.bins * std::max(kMinBins, std::sqrt(kMaxDerivativeNoise / noise))));
+  return l;
+}
+
 void FreeFormSearch::begin(const DesignShape& shape, const FreeFormSnapshot& snapshot, Progress& progress) {
-  const FreeFormLevel l = level(snapshot.level);
+  FreeFormLevel l = level(snapshot.level);
   // Knots are refined, never coarsened, and only where something is left to gain.
   const bool own = snapshot.candidate == 0 || fixed_to_few_knots();
   const bool enough =
@@ -251,11 +273,13 @@ void FreeFormSearch::begin(const DesignShape& shape, const FreeFormSnapshot& sna
   const DesignShape fine = enough || has ? shape
                                          : shape.refined(std::max(shape.intervals_x(), l.intervals_x),
                                                          std::max(shape.intervals_y(), l.intervals_y));
+  l = level_after(snapshot, snapshot.level, fine);
   fit_.emplace(problem_, l, progress);
   point_.emplace(fit_->at(fine));
   ++state_.evaluations;
   state_.total_rays += l.rays;
   state_.now = snapshot;
+  state_.now.bins = l.bins;
   state_.now.intervals_x = fine.intervals_x();
   state_.now.intervals_y = fine.intervals_y();
   state_.step = 0;
@@ -319,7 +343,9 @@ std::optional<FitRecord> FreeFormSearch::step(Progress& progress) {
     if (!point_) return std::nullopt;
   } else {
     if (!point_) {  // taken up again in the middle of a level
-      fit_.emplace(problem_, level(state_.now.level), progress);
+      FreeFormLevel l = level(state_.now.level);
+      l.bins = state_.now.bins;
+      fit_.emplace(problem_, l, progress);
       point_.emplace(fit_->at(shape_of(state_.now)));
     }
     record.accepted = fit_->step(*point_, state_.lambda);
@@ -333,6 +359,8 @@ std::optional<FitRecord> FreeFormSearch::step(Progress& progress) {
   const BinError error = fit_->error(*point_);
   const Eigen::VectorXd& p = point_->shape.parameters();
   state_.now.parameters.assign(p.begin(), p.end());
+  const double of_noise = point_->equations.derivative_noise;
+  state_.now.derivative_noise = of_noise / std::max(1.0 - of_noise, 1e-3);
   const double cost = point_->equations.cost, weight = fit_->error_weight();
   const double noise = weight * error.floor * error.floor;
   const double squared = weight * error.relative_rms * error.relative_rms;

@@ -32,6 +32,10 @@ struct FreeFormSnapshot {
   /// Root of the whole cost, missing light included, over the noise.
   double error_to_noise = 0.0;
   int intervals_x = 1, intervals_y = 1;
+  /// Bins across the widened rectangle: the level's, or fewer. And what of the derivatives was noise in them,
+  /// over the rest.
+  int bins = 1;
+  double derivative_noise = 0.0;
   std::vector<double> parameters;
   bool exists() const { return candidate >= 0; }
 };
@@ -106,6 +110,9 @@ class FreeFormSearch {
   void choose(Progress& progress);
   /// `snapshot`: the candidate, its transport, and the level that begins.
   void begin(const DesignShape& shape, const FreeFormSnapshot& snapshot, Progress& progress);
+  /// A level for a shape of that many knots: with fewer bins where derivatives would be noise, as the
+  /// snapshot's were.
+  FreeFormLevel level_after(const FreeFormSnapshot& before, int number, const DesignShape& shape) const;
   void finish();
   bool level_ended() const;
   std::optional<DesignShape> start_of(const FreeFormSnapshot& snapshot);

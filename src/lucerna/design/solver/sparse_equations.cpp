@@ -126,6 +126,8 @@ SparseEquations sparse_equations(const Evaluation& e, const Eigen::VectorXd& tar
   out.cost = w.dot(residual.cwiseAbs2());
   out.gradient = j.transpose() * root.cwiseProduct(residual);
   out.hessian = squared_rows(j);
+  if (e.rows_noise.size() > 0)
+    out.derivative_noise = unit * unit * w.dot(e.rows_noise) / out.hessian.diagonal().sum();
   if (mode == TargetMode::shape) {  // what only scales the result is no improvement
     const Eigen::VectorXd flux = unit * root.cwiseProduct(e.flux);
     const double own = flux.squaredNorm();

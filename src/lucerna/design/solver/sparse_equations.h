@@ -25,6 +25,9 @@ struct SparseEquations {
   Eigen::VectorXd gradient;
   SparseSymmetric hessian;
   std::vector<Product> products;
+  /// Share of the trace of the light's J^T J that is noise of the rays (0 where it is not known). Where it is
+  /// large, noise damps what little light tells of, and no smaller lambda helps.
+  double derivative_noise = 0.0;
 
   SparseEquations& operator*=(double weight);
 };

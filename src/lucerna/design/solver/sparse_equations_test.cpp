@@ -31,14 +31,14 @@ SparseScene scene(ShapeSymmetry symmetry = ShapeSymmetry::none) {
   options.kind = EmitterKind::cylinder;
   PlacedSource source{make_emitter(options), Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 15}), {}};
   DesignRays rays({source}, Frame(), 7);
-  rays.grow(1 << 16);
+  rays.grow(1 << 20);
   return {std::move(rays), bumpy(symmetry),
           graded_bins({Frame(), false, -0.3, 0.4, -0.2, 0.2}, Frame(), 32, 1.25, 4)};
 }
 
-Evaluation evaluated(const SparseScene& s, bool sparse) {
+Evaluation evaluated(const SparseScene& s, bool sparse, std::uint64_t rays = 1 << 16) {
   EvaluationOptions options;
-  options.rays = 1 << 16;
+  options.rays = rays;
   options.sparse = sparse;
   options.rim_mm = 1.0;
   return evaluate(s.shape, Reflectance(0.9), s.rays, s.bins, options);
@@ -67,6 +67,29 @@ TEST(SparseJacobian, HasTheSameBitsForAnyNumberOfThreads) {
     ASSERT_EQ(one.rows.valuePtr()[i], many.rows.valuePtr()[i]);
     ASSERT_EQ(one.rows.innerIndexPtr()[i], many.rows.innerIndexPtr()[i]);
   }
+}
+
+// What the scatter of the rays adds to the squared rows: with it few rays have 1.4 times what sixteen times
+// the rays have. The scatter of the parts states up to half too much, for their rays are parts of one even
+// sequence.
+TEST(SparseJacobian, SaysWhatNoiseAddsToItsSquare) {
+  const SparseScene s = scene();
+  const auto square = [](const Evaluation& e) { return e.rows.squaredNorm(); };
+  const Evaluation few = evaluated(s, true), many = evaluated(s, true, 1 << 20);
+  const double truth = square(many) - many.rows_noise.sum();
+  const double added = square(few) - truth, stated = few.rows_noise.sum();
+  EXPECT_GT(added, 0.3 * truth);
+  EXPECT_GT(stated, 0.9 * added);
+  EXPECT_LT(stated, 1.6 * added);
+  EXPECT_NEAR(stated, 16.0 * many.rows_noise.sum(), 0.25 * stated);
+
+  const Eigen::VectorXd target =
+      Eigen::Map<const Eigen::VectorXd>(s.bins.measure().data(), static_cast<Eigen::Index>(s.bins.size()));
+  const auto share = [&](const Evaluation& e) {
+    return sparse_equations(e, target, s.bins, TargetMode::absolute).derivative_noise;
+  };
+  EXPECT_GT(share(few), 6.0 * share(many));
+  EXPECT_LT(share(few), 1.0);
 }
 
 TEST(SparseEquations, AreTheDenseOnesAndTakeTheSameStep) {
