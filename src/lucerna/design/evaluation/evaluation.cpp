@@ -294,7 +294,7 @@ Evaluation evaluate_sparse(const DesignShape& design, const Reflectance& reflect
   Evaluation e = evaluation_of(all);
   e.rays = per_task * kDesignTasks * kBlockRays;
   SparseDerivatives derivatives = sparse_derivatives(blocks, bins.size(), design, 1.0 / all.weight);
-  e.rows = std::move(derivatives.rows);
+  e.rows.swap(derivatives.rows);
   e.rows_noise = std::move(derivatives.noise);
   return e;
 }
