@@ -29,8 +29,9 @@ constexpr std::array<TransportChoice, 10> kFirst{{{-1.0, 0.33},
                                                   {1.0, 0.33},
                                                   {1.0, 0.27},
                                                   {1.0, 0.45}}};
-/// The approach is tried where the candidates before it stay this far from the target (relative error): a
-/// point source's mirror is no guide for a source that is long or wide.
+/// The approach is tried where the candidates before it stay this far from the target (relative error), for a
+/// point source's mirror is no guide for a source that is long or wide; and where the given mirror is the
+/// nearest of them.
 constexpr int kApproach = 3;
 static_assert(!kFirst[kApproach - 1].exists());
 constexpr double kFarError = 0.15;
@@ -136,7 +137,7 @@ bool FreeFormSearch::fixed_to_few_knots() const {
 bool FreeFormSearch::worth_an_approach() const {
   const FreeFormSnapshot* best = best_of(0);
   return has_few_knots(given_) && !fixed_to_few_knots() && best != nullptr &&
-         best->cost > kErrorShare[0] * kFarError * kFarError;
+         (best->candidate == 0 || best->cost > kErrorShare[0] * kFarError * kFarError);
 }
 
 bool FreeFormSearch::approach_is_alone() const {
@@ -243,8 +244,11 @@ DesignShape FreeFormSearch::shape_of(const FreeFormSnapshot& snapshot) const {
 }
 
 bool FreeFormSearch::knots_suffice(const FreeFormSnapshot& snapshot) const {
+  if (snapshot.transport.exists()) return false;
+  if (snapshot.level == 0) return true;
+  const bool own = snapshot.candidate == 0 || fixed_to_few_knots();
   const double share = kErrorShare[static_cast<std::size_t>(snapshot.level - 1)];
-  return snapshot.error_to_noise < kEnoughKnots || snapshot.cost < share * kNear * kNear;
+  return snapshot.cost < share * kNear * kNear || (own && snapshot.error_to_noise < kEnoughKnots);
 }
 
 FreeFormLevel FreeFormSearch::level_after(const FreeFormSnapshot& before, int number,
@@ -266,13 +270,11 @@ FreeFormLevel FreeFormSearch::level_after(const FreeFormSnapshot& before, int nu
 void FreeFormSearch::begin(const DesignShape& shape, const FreeFormSnapshot& snapshot, Progress& progress) {
   FreeFormLevel l = level(snapshot.level);
   // Knots are refined, never coarsened, and only where something is left to gain.
-  const bool own = snapshot.candidate == 0 || fixed_to_few_knots();
-  const bool enough =
-      !snapshot.transport.exists() && (snapshot.level == 0 || (own && knots_suffice(snapshot)));
   const bool has = shape.intervals_x() >= l.intervals_x && shape.intervals_y() >= l.intervals_y;
-  const DesignShape fine = enough || has ? shape
-                                         : shape.refined(std::max(shape.intervals_x(), l.intervals_x),
-                                                         std::max(shape.intervals_y(), l.intervals_y));
+  const DesignShape fine = knots_suffice(snapshot) || has
+                               ? shape
+                               : shape.refined(std::max(shape.intervals_x(), l.intervals_x),
+                                               std::max(shape.intervals_y(), l.intervals_y));
   l = level_after(snapshot, snapshot.level, fine);
   fit_.emplace(problem_, l, progress);
   point_.emplace(fit_->at(fine));

@@ -87,14 +87,14 @@ class FreeFormSearch {
  private:
   FreeFormLevel level(int number) const;
   TransportChoice first_choice(int number) const;
-  /// Whether an approach of the given mirror may help: it has few knots, and no candidate came near.
+  /// Whether an approach of the given mirror may help: it has few knots, and came nearer than the candidates
+  /// after it, or none came near.
   bool worth_an_approach() const;
   /// Whether what the approach led to is so much better that no mirror of a point source needs to be tried.
   bool approach_is_alone() const;
-  /// Whether the given mirror is a matter for `approach`: of few knots, and there are to be no more. Where
-  /// there may be more, mirrors of point sources are as near from the start.
+  /// Whether the given mirror has few knots and is to have no more.
   bool fixed_to_few_knots() const;
-  /// Whether a given mirror's knots are enough for the next level; `snapshot` has that level already.
+  /// Whether a candidate keeps its knots on the next level; `snapshot` has that level already.
   bool knots_suffice(const FreeFormSnapshot& snapshot) const;
   /// What a candidate that is not the given mirror begins with.
   TransportChoice choice(int number) const;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -139,6 +140,42 @@ TEST(FreeFormSearch, OfALongSourceTheGivenMirrorIsBroughtNear) {
     return least;
   };
   EXPECT_LT(cost(true), 0.8 * cost(false));  // 0.57
+}
+
+/// A search that has come to its third candidate; what the first three cost.
+FreeFormState three_candidates(const std::array<double, 3>& costs) {
+  FreeFormState state;
+  const DesignShape shape = plain();
+  for (const double cost : costs) {
+    FreeFormSnapshot m;
+    m.candidate = state.begun++;
+    m.level = 0;
+    m.cost = cost;
+    if (m.candidate > 0) m.transport = {-1.0, 10.0};
+    m.parameters.assign(shape.parameters().begin(), shape.parameters().end());
+    m.intervals_x = m.intervals_y = 8;
+    m.bins = 64;
+    state.done.push_back(m);
+  }
+  return state;
+}
+
+// Where the given mirror is nearer than mirrors of point sources, an approach of it comes next. What is
+// within a per cent then goes on alone, with its few knots.
+TEST(FreeFormSearch, AGivenMirrorThatLeadsIsBroughtNearer) {
+  DesignRays rays = disk_rays();
+  const FitProblem problem = oval_problem(rays);
+  EXPECT_NE(run(problem, plain(), 1, three_candidates({4e-3, 3e-3, 5e-3})).state().now.candidate, 3);
+  FreeFormState state = run(problem, plain(), 1, three_candidates({2e-3, 3e-3, 5e-3})).state();
+  ASSERT_EQ(state.now.candidate, 3);
+  EXPECT_FALSE(state.now.transport.exists());
+  state.done.push_back(state.now);
+  state.done.back().cost = 1e-5;
+  state.now = {};
+  const FreeFormSearch next = run(problem, plain(), 1, state);
+  EXPECT_EQ(next.state().now.candidate, 3);
+  EXPECT_EQ(next.state().now.level, 1);
+  EXPECT_EQ(next.state().now.intervals_x, 8);
 }
 
 // Neighbours are made about the best, which may be a neighbour itself: that once never ended.
