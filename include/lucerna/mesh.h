@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "lucerna/geometry.h"
@@ -36,6 +37,14 @@ struct Mesh {
 /// polygonal facets", J. Graphics Tools 3, 1998), of those that make less than `crease_deg` with the corner's
 /// own, so that edges stay sharp. Triangles without area keep +z. Vertices must be shared. O(triangles).
 [[nodiscard]] std::vector<Vec3> corner_normals(const Mesh& mesh, double crease_deg);
+
+/// The closed surface that an outline makes when it turns about the z axis. `outline_mm`: corners (r, z) of a
+/// closed polygon, at least three, r >= 0; a side along the axis makes no surface. `segments` >= 3 about the
+/// axis: a circle of radius r is drawn at most r (1 - cos(pi / segments)) too small. Triangles are
+/// counter-clockwise seen from outside whichever way the outline runs. Throws InputError for fewer corners or
+/// segments, a radius below 0, a number that is not finite, two equal corners in a row, an outline that
+/// crosses itself or has no area. Long flat sides are divided. O(corners^2 + corners segments).
+[[nodiscard]] Mesh solid_of_revolution(std::span<const std::array<double, 2>> outline_mm, int segments = 360);
 
 /// Edges that do not belong to exactly two triangles: 0 for a closed body.
 std::size_t open_edges(const Mesh& mesh);

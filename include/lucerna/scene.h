@@ -130,6 +130,37 @@ struct CoverGlass {
 /// Throws InputError naming the number that is out of its range.
 void check(const CoverGlass& glass);
 
+/// A closed body of a clear medium: a lens, a TIR collimator, a light guide. Light refracts and reflects at
+/// its surface by Snell's law and Fresnel's formulas for unpolarised light, totally where these say so, and
+/// is absorbed on its way within. Outside is air. Light may start inside. It is unpolarised where it enters
+/// and keeps its polarisation until it leaves; the phases of total reflection are left out.
+///
+/// A ray is not split: at every boundary one random number of its own stream says whether it is reflected or
+/// refracted, with weight 1. What the medium absorbs is taken off its flux under the cause `name`. A ray that
+/// has met the surface 1000 times without leaving is lost, as by TraceOptions::max_bounces. Reflections
+/// inside do not count towards that limit, and make no reflected light of direct light; those outside do.
+///
+/// Solids must be apart from each other, from bodies and from mirrors: `trace` checks it.
+struct Solid {
+  /// The cause in the ledger.
+  std::string name = "solid";
+  /// Its surface, in its own frame: closed, all triangles turned the same way; not null.
+  std::shared_ptr<const Mesh> mesh;
+  /// Where it is in the luminaire frame.
+  Frame world_from_solid;
+  /// 1 to 4. The default is PMMA in the visible.
+  double refractive_index = 1.49;
+  /// Natural absorption coefficient >= 0: a path of x mm leaves exp(-x * absorption_per_mm).
+  double absorption_per_mm = 0.0;
+  /// > 0: the normal changes steadily across triangles that meet at less than this angle
+  /// (`corner_normals`); 0: every triangle is flat. At most 180.
+  double smooth_below_deg = 20.0;
+};
+
+/// Throws InputError naming what is out of its range, and for a surface that is open or partly turned.
+/// O(triangles log triangles).
+void check(const Solid& solid);
+
 /// What a plate returns, lets through and keeps of unpolarised light; they sum to 1. `cos_incidence` in
 /// [0, 1], outside the glass.
 struct GlassShares {
@@ -186,6 +217,8 @@ struct Scene {
   std::vector<Body> bodies;
   /// Flat plates that light passes.
   std::vector<CoverGlass> glasses;
+  /// Closed bodies that light passes.
+  std::vector<Solid> solids;
 };
 
 /// Share of a source's rays (of its first 4096) that start behind a mirror: within its aperture, on the side

@@ -41,9 +41,10 @@ struct Tally {
   std::uint64_t reflections = 0;
   /// Flux of these rays.
   std::int64_t emitted = 0;
-  /// What left without and after being reflected (a cover glass that lets light through does not count).
+  /// What left without and after being reflected (a cover glass or a solid that lets light through does not
+  /// count).
   std::int64_t out_direct = 0, out_reflected = 0;
-  /// By cause: kMirrorLosses, then one per body, then one per cover glass.
+  /// By cause: kMirrorLosses, then one per body, one per cover glass, one per solid.
   std::vector<std::int64_t> absorbed;
   /// By cause: kLostCauses; and how many rays that were.
   std::vector<std::int64_t> lost;
@@ -91,7 +92,7 @@ struct TraceResult {
   std::vector<PlaneDetector> planes;
   std::vector<LuminanceDetector> luminances;
   std::vector<RayDetector> ray_detectors;
-  /// Causes of absorption after the mirrors': bodies, then cover glasses.
+  /// Causes of absorption after the mirrors': bodies, then cover glasses, then solids.
   std::vector<std::string> body_names;
   /// kReplicates tallies.
   std::vector<Tally> replicates;
@@ -112,7 +113,8 @@ struct Ledger {
   double emitted = 0.0;
   /// What left without and after being reflected.
   Estimate out_direct, out_reflected;
-  /// By cause: "mirror" (what its face kept), "mirror_back", then the bodies, then the cover glasses.
+  /// By cause: "mirror" (what its face kept), "mirror_back", then the bodies, the cover glasses and the
+  /// solids.
   std::vector<std::pair<std::string, Estimate>> absorbed;
   /// By cause: "bounce_limit", "not_finite"; rays beside it.
   std::vector<std::pair<std::string, Estimate>> lost;

@@ -380,6 +380,7 @@ Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const
                     TargetMode mode, const ValidationOptions& requested, Progress& progress) {
   check(scene);
   if (!scene.glasses.empty()) throw InputError("a design with cover glasses cannot be validated");
+  if (!scene.solids.empty()) throw InputError("a design with solids cannot be validated");
   const Clock::time_point start = Clock::now();
   // A seed of its own: neither the fit's rays nor those of the trace that follows a design.
   const RayNumbering numbering(scene.sources, requested.seed ^ 0x56414C4944415445ull);

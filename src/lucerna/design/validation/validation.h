@@ -60,7 +60,7 @@ struct Validation {
 /// nothing counts as direct. Slope errors of mirrors and bodies are drawn as `trace` draws them. `target` is
 /// flux per cell (box_target). The same bits for any number of threads where time does not stop it. Progress
 /// phase "validate", in rays; stops early with what there is when asked to. Throws InputError on a bad scene,
-/// one with cover glasses, or engine `embree` in a build without.
+/// one with cover glasses or solids, or engine `embree` in a build without.
 Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const double> target,
                     TargetMode mode, const ValidationOptions& options = {},
                     Progress& progress = no_progress());

@@ -3,12 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
+#include "tests/support/random_rays.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {
@@ -126,6 +131,45 @@ TEST(Mesh, CornerNormalsOfASphereAreRadialAndOfACubeSharp) {
   const auto sharp = corner_normals(tetrahedron, 30.0), round = corner_normals(tetrahedron, 180.0);
   EXPECT_EQ(sharp[0], (Vec3{0, 0, -1}));
   EXPECT_LT(length(round[0] - (-1.0 / std::sqrt(3.0)) * Vec3{1, 1, 1}), 1e-12);
+}
+
+using Outline = std::vector<std::array<double, 2>>;
+
+/// Of a closed mesh whose triangles are counter-clockwise seen from outside; else below 0.
+double volume(const Mesh& mesh) {
+  double sum = 0.0;
+  for (const auto& t : mesh.triangles)
+    sum += dot(mesh.vertices_mm[t[0]], cross(mesh.vertices_mm[t[1]], mesh.vertices_mm[t[2]])) / 6.0;
+  return sum;
+}
+
+TEST(SolidOfRevolution, IsClosedAndHasItsVolumeHoweverItsOutlineRuns) {
+  const double pi = std::numbers::pi;
+  // Within the circle by (sin x) / x of its area, x = 2 pi / 360.
+  const double round = std::sin(2.0 * pi / 360.0) / (2.0 * pi / 360.0);
+  Outline cylinder{{0, -1}, {5, -1}, {5, 3}, {0, 3}}, ring{{4, 0}, {6, 0}, {6, 2}, {4, 2}},
+      cone{{0, 0}, {3, 9}, {0, 9}};
+  for (int turned = 0; turned < 2; ++turned) {
+    for (const auto& [outline, expected] :
+         {std::pair{cylinder, pi * 100.0}, {ring, pi * 40.0}, {cone, pi * 27.0}}) {
+      const Mesh mesh = solid_of_revolution(outline);
+      EXPECT_EQ(open_edges(mesh), 0U);
+      EXPECT_NEAR(volume(mesh), round * expected, 1e-9 * expected);
+    }
+    for (Outline* o : {&cylinder, &ring, &cone}) std::reverse(o->begin(), o->end());
+  }
+}
+
+TEST(SolidOfRevolution, RefusesWhatIsNoOutline) {
+  const auto message = [](const Outline& outline) {
+    return test::message_of<InputError>([&] { (void)solid_of_revolution(outline); });
+  };
+  EXPECT_NE(message({{0, 0}, {1, 0}}).find("2 corners, expected at least 3"), std::string::npos);
+  EXPECT_NE(message({{0, 0}, {-1, 0}, {1, 2}}).find("corner 2 of the outline is [-1, 0]"), std::string::npos);
+  EXPECT_NE(message({{0, 0}, {1, 0}, {1, 0}, {0, 1}}).find("corners 2 and 3 of the outline are equal"),
+            std::string::npos);
+  EXPECT_NE(message({{0, 0}, {2, 2}, {2, 0}, {1, 3}}).find("crosses itself"), std::string::npos);
+  EXPECT_NE(message({{0, 0}, {1, 0}, {2, 0}}).find("no area"), std::string::npos);
 }
 
 }  // namespace

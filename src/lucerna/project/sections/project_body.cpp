@@ -55,6 +55,8 @@ std::string read_cause(TomlReader& reader, const Scene& scene, const std::string
     return name == "mirror" || name == "mirror_back" ||
            std::any_of(scene.glasses.begin(), scene.glasses.end(),
                        [&](const CoverGlass& g) { return g.name == name; }) ||
+           std::any_of(scene.solids.begin(), scene.solids.end(),
+                       [&](const Solid& s) { return s.name == name; }) ||
            std::any_of(scene.bodies.begin(), scene.bodies.end(),
                        [&](const Body& b) { return b.name == name; });
   };
@@ -91,14 +93,42 @@ CoverGlass read_glass(TomlReader& reader, const Scene& scene) {
   return glass;
 }
 
+Solid read_solid(TomlReader& reader, Project& project) {
+  Solid solid;
+  solid.name = read_cause(reader, project.scene, solid.name);
+  solid.world_from_solid = read_placement(reader);
+  if (const auto outline = reader.pairs("outline_mm")) {
+    if (reader.has("file")) reader.fail("file", "found `outline_mm` too, which says what it is");
+    at_key(reader, "outline_mm",
+           [&] { solid.mesh = std::make_shared<const Mesh>(solid_of_revolution(*outline)); });
+  } else {
+    solid.mesh = read_mesh_file(reader, project);
+  }
+  solid.refractive_index = read_index(reader, solid.refractive_index);
+  solid.absorption_per_mm = reader.number("absorption_per_mm", solid.absorption_per_mm);
+  solid.smooth_below_deg = reader.number("smooth_below_deg", solid.smooth_below_deg);
+  at_key(reader, "role", [&] { check(solid); });
+  return solid;
+}
+
+/// Adds what light passes; false where `role` is nothing of that kind.
+bool read_clear(TomlReader& reader, const std::string& role, Project& project) {
+  if (role == "glass") {
+    project.scene.glasses.push_back(read_glass(reader, project.scene));
+  } else if (role == "solid") {
+    project.scene.solids.push_back(read_solid(reader, project));
+  } else {
+    return false;
+  }
+  reader.finish();
+  return true;
+}
+
 }  // namespace
 
 void read_body(TomlReader reader, Project& project) {
   const std::string role = reader.word("role").value_or("absorber");
-  if (role == "glass") {
-    project.scene.glasses.push_back(read_glass(reader, project.scene));
-    return reader.finish();
-  }
+  if (read_clear(reader, role, project)) return;
   Body body;
   body.name = read_cause(reader, project.scene, "body");
   body.world_from_body = read_placement(reader);

@@ -49,7 +49,7 @@ std::string read_cause(TomlReader& reader, const Scene& scene, const std::string
 /// `aperture`, `diameter_mm` or `size_mm`, `hole_diameter_mm`.
 Aperture read_aperture(TomlReader& reader, std::optional<double> default_diameter_mm);
 
-/// One [[body]], added to the scene: a mesh, or a cover glass.
+/// One [[body]], added to the scene: a mesh, a cover glass, or a solid.
 void read_body(TomlReader reader, Project& project);
 
 /// One [[reflector]], added to the scene; a mesh becomes a body.

@@ -335,6 +335,34 @@ TEST(Project, MetalsAndGlassesHaveTheirMaterials) {
   expect(glass + "metal = 'silver'\n", "body[0].metal: unknown key");
 }
 
+TEST(Project, SolidsAreMeshesOrOutlinesOfAMedium) {
+  const std::string lens = std::string(kSource) + "[[body]]\nrole = 'solid'\n";
+  const std::string outline = "outline_mm = [[0, 0], [5, 0], [5, 2], [0, 4]]\n";
+  const Scene scene =
+      read(lens + outline + "material = 'pmma'\nabsorption_per_mm = 0.01\n" +
+           "smooth_below_deg = 5\nposition_mm = [0, 0, 7]\n[[body]]\nrole = 'solid'\n" + outline)
+          .scene;
+  ASSERT_EQ(scene.solids.size(), 2U);
+  EXPECT_EQ(scene.solids[0].name, "solid");
+  EXPECT_EQ(scene.solids[1].name, "solid-2");
+  EXPECT_EQ(scene.solids[0].refractive_index, refractive_index("pmma", 555.0).n);
+  EXPECT_EQ(scene.solids[0].absorption_per_mm, 0.01);
+  EXPECT_EQ(scene.solids[0].smooth_below_deg, 5.0);
+  EXPECT_EQ(scene.solids[0].world_from_solid.origin_mm(), (Vec3{0, 0, 7}));
+  EXPECT_EQ(scene.solids[1].refractive_index, Solid().refractive_index);
+  EXPECT_EQ(open_edges(*scene.solids[1].mesh), 0U);
+
+  const auto expect = [](const std::string& text, const std::string& part) {
+    EXPECT_THAT(message(text), testing::HasSubstr(part));
+  };
+  expect(lens, "body[0].file");
+  expect(lens + outline + "file = 'lens.stl'\n", "body[0].file: found `outline_mm` too");
+  expect(lens + "outline_mm = [[0, 0], [5, 0]]\n", "body[0].outline_mm: outline of 2 corners");
+  expect(lens + outline + "refractive_index = 5\n", "body[0].refractive_index");
+  expect(lens + outline + "thickness_mm = 5\n", "body[0].thickness_mm");
+  expect(std::string(kSource) + "[[body]]\nrole = 'absorber'\n" + outline, "body[0]");
+}
+
 TEST(Project, AMisspeltKeyIsNamedWhereItsMeaningIsMissing) {
   const test::TempDir dir;
   const auto message = [&](const std::string& reflector) {

@@ -157,6 +157,15 @@ slope_error_mrad = 0.0        # Gaussian tilt of the normal, standard deviation 
 #absorption_per_mm = 0.002
 #position_mm = [0, 0, -20]
 
+# A closed body of a clear medium: a lens, a TIR collimator. A mesh (file = "lens.stl"), or an outline
+# [radius, height] that turns about the z axis.
+#[[body]]
+#role = "solid"
+#outline_mm = [[0, 0], [20, 0], [20, 2], [0, 6]]
+#refractive_index = 1.49       # or material = "pmma", wavelength_nm = 555
+#absorption_per_mm = 0.0005
+#position_mm = [0, 0, 5]
+
 # ---- detectors: any number at once; the name names the files ----
 [[detector]]
 name = "far"

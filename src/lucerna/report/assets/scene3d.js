@@ -93,7 +93,7 @@ lucerna.afterLoad(() => {
   const glasses = new THREE.Group();
   if (panes.length) {
     glasses.add(...panes);
-    layer('glass', panes.length > 1 ? 'Cover glasses' : 'Cover glass', glasses, '#56b4e9');
+    layer('glass', panes.length > 1 ? 'Glasses and lenses' : 'Glass or lens', glasses, '#56b4e9');
   }
 
   const points = new THREE.BufferGeometry();
@@ -182,7 +182,7 @@ lucerna.afterLoad(() => {
   output.textContent = hint;
   canvas.tabIndex = 0;
   canvas.setAttribute('role', 'application');
-  canvas.setAttribute('aria-label', `3D view of ${meshes.length} mirror(s)${panes.length ? ', ' + panes.length + ' cover glass(es)' : ''}, the source and ${scene.rays.count} rays. ${hint}`);
+  canvas.setAttribute('aria-label', `3D view of ${meshes.length} mirror(s)${panes.length ? ', ' + panes.length + ' glass(es) or lens(es)' : ''}, the source and ${scene.rays.count} rays. ${hint}`);
   const stage = element('div', {}, canvas, output);
   const side = element('aside', {}, show);
   side.setAttribute('aria-label', '3D view settings');

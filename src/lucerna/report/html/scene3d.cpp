@@ -199,6 +199,14 @@ Json body_json(const Body& body, Extent& extent) {
           {"thinned", mesh == &coarse}};
 }
 
+Json solid_json(const Solid& solid, Extent& extent) {
+  Body body;
+  body.name = solid.name;
+  body.mesh = solid.mesh;
+  body.world_from_body = solid.world_from_solid;
+  return body_json(body, extent);
+}
+
 /// The plate as a solid: its outline on both faces and what joins them.
 Json glass_json(const CoverGlass& glass, Extent& extent) {
   const Aperture& aperture = glass.aperture;
@@ -273,6 +281,7 @@ Json scene3d_json(const Scene& scene, const Scene3dOptions& options) {
   for (const Body& body : scene.bodies) bodies.push_back(body_json(body, extent));
   Json glasses = Json::array();
   for (const CoverGlass& glass : scene.glasses) glasses.push_back(glass_json(glass, extent));
+  for (const Solid& solid : scene.solids) glasses.push_back(solid_json(solid, extent));
   const std::vector<double> starts = source_points(scene, options, extent);
   const Vec3 centre = extent.centre();
   const double radius = extent.radius();

@@ -52,6 +52,7 @@ std::string no_backward_reason(const Scene& scene) {
   for (const Body& b : scene.bodies) {
     if (b.reflectance.max() > 0.0) return "a body reflects";
   }
+  if (!scene.solids.empty()) return "there is a solid";
   return scene.glasses.empty() ? "" : "there is a cover glass";
 }
 

@@ -23,8 +23,8 @@ namespace {
 
 /// Whoever adds something to a scene meets a compiler error here, and teaches it to the kernels.
 [[maybe_unused]] void name_all_parts(const Scene& scene) {
-  [[maybe_unused]] const auto& [sources, mirrors, far_fields, planes, luminances, rays, bodies, glasses] =
-      scene;
+  [[maybe_unused]] const auto& [sources, mirrors, far_fields, planes, luminances, rays, bodies, glasses,
+                                solids] = scene;
   for (const PlacedReflector& placed : mirrors) {
     [[maybe_unused]] const auto& [reflector, frame, reflectance, slope_error_mrad] = placed;
     [[maybe_unused]] const auto& [surface, aperture, curve] = reflector;
@@ -65,6 +65,11 @@ const T* DeviceScene::put(const T* data, std::size_t n) {
 DeviceScene::DeviceScene(Accelerator& accelerator, const Scene& scene, const RayNumbering& numbering,
                          const TraceOptions& options)
     : accelerator_(accelerator) {
+  if (!scene.solids.empty()) {
+    throw InputError(fmt::format("solid '{}': solids are traced on the CPU only, expected no device",
+                                 scene.solids.front().name),
+                     ErrorCause::unsupported, "device");
+  }
   for (std::size_t s = 0; s < scene.sources.size(); ++s) {
     sources_.push_back(source_view(scene.sources[s], numbering.ray_flux(s)));
     has_sent_ = has_sent_ || is_sent(s);

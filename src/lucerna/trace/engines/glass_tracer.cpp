@@ -41,11 +41,20 @@ GlassShares glass_shares(const CoverGlass& glass, double cos_incidence) {
   return {r, t, 1.0 - r - t};
 }
 
-GlassTracer::GlassTracer(const std::vector<CoverGlass>& glasses) {
+GlassTracer::GlassTracer(const std::vector<CoverGlass>& glasses, const std::vector<Solid>& solids)
+    : solids_(solids) {
   for (const CoverGlass& g : glasses) {
     check(g);
     cover_glasses_.push_back({view_of(g), g.world_from_glass, g.world_from_glass.inverse()});
   }
+}
+
+std::optional<GlassHit> GlassTracer::first_hit(const Ray& ray, double t_max_mm, bool started) const {
+  const auto plate = first_cover_glass(cover_glasses_.data(), cover_glasses_.size(), ray, t_max_mm);
+  auto solid = solids_.first_hit(ray, plate ? plate->t_mm : t_max_mm, started);
+  if (!solid) return plate;
+  solid->glass += cover_glasses_.size();
+  return solid;
 }
 
 }  // namespace lucerna

@@ -1,36 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "lucerna/scene.h"
+#include "lucerna/trace/engines/solid_tracer.h"
 #include "lucerna/trace/kernels/cover_glass_kernel.h"
 
 namespace lucerna {
 
-/// Rays through a set of cover glasses. Immutable and thread safe.
+/// Rays through cover glasses and clear bodies; the bodies' numbers follow the glasses'. Immutable and thread
+/// safe.
 class GlassTracer {
  public:
   /// Throws InputError as `check` does.
-  explicit GlassTracer(const std::vector<CoverGlass>& glasses);
+  explicit GlassTracer(const std::vector<CoverGlass>& glasses, const std::vector<Solid>& solids = {});
 
-  bool empty() const { return cover_glasses_.empty(); }
+  bool empty() const { return cover_glasses_.empty() && solids_.empty(); }
   /// As kernels read them.
   const std::vector<PlacedCoverGlass>& cover_glasses() const { return cover_glasses_; }
 
-  /// The first plate within [0, t_max_mm) of a ray in the luminaire frame. O(plates).
-  std::optional<GlassHit> first_hit(const Ray& ray, double t_max_mm) const {
-    return first_cover_glass(cover_glasses_.data(), cover_glasses_.size(), ray, t_max_mm);
-  }
+  /// The first plate or body within [0, t_max_mm) of a ray in the luminaire frame; `started`: the ray met
+  /// something before. O(plates) and some hundred ns for bodies.
+  std::optional<GlassHit> first_hit(const Ray& ray, double t_max_mm, bool started) const;
 
-  /// What becomes of the ray there. `key.bounce` counts all that the ray hit before, plates included.
-  GlassPassage pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key) const {
+  /// What becomes of the ray there. `key.bounce` counts all that the ray met before, plates and bodies
+  /// included. `visit` sees every point of a body's surface on the way.
+  GlassPassage pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key,
+                    const std::function<void(const Vec3&)>& visit = {}) const {
+    if (is_solid(hit)) return solids_.pass(ray, hit, key, visit);
     return through_cover_glass(cover_glasses_[hit.glass], ray, hit, key);
   }
 
+  bool is_solid(const GlassHit& hit) const { return hit.glass >= cover_glasses_.size(); }
+
  private:
   std::vector<PlacedCoverGlass> cover_glasses_;
+  SolidTracer solids_;
 };
 
 }  // namespace lucerna

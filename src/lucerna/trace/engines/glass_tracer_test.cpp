@@ -112,17 +112,18 @@ TEST(CoverGlassStatistical, WaysThroughTheGlassFollowTheSeries) {
 
 TEST(CoverGlass, RimIsBlackAndStartsInsideAreFree) {
   const GlassTracer glass({clear()});
-  const auto side = glass.first_hit({{60.0, 0.0, 2.0}, Direction::from({-1.0, 0.0, 0.0})}, 1e9);
+  const auto side = glass.first_hit({{60.0, 0.0, 2.0}, Direction::from({-1.0, 0.0, 0.0})}, 1e9, false);
   ASSERT_TRUE(side);
   EXPECT_NEAR(side->t_mm, 10.0, 1e-12);
   EXPECT_TRUE(side->edge);
   EXPECT_EQ(glass.pass({{60.0, 0.0, 2.0}, Direction::from({-1.0, 0.0, 0.0})}, *side, {}).throughput, 0.0);
-  EXPECT_FALSE(glass.first_hit({{0.0, 0.0, 2.0}, Direction::from({0.1, 0.0, 1.0})}, 1e9));
-  EXPECT_FALSE(glass.first_hit({{0.0, 0.0, 4.0}, Direction::from({0.1, 0.0, 1.0})}, 1e9)) << "leaves a face";
-  EXPECT_FALSE(glass.first_hit({{51.0, 0.0, 9.0}, Direction::from({0.0, 0.0, -1.0})}, 1e9));
+  EXPECT_FALSE(glass.first_hit({{0.0, 0.0, 2.0}, Direction::from({0.1, 0.0, 1.0})}, 1e9, false));
+  EXPECT_FALSE(glass.first_hit({{0.0, 0.0, 4.0}, Direction::from({0.1, 0.0, 1.0})}, 1e9, false))
+      << "leaves a face";
+  EXPECT_FALSE(glass.first_hit({{51.0, 0.0, 9.0}, Direction::from({0.0, 0.0, -1.0})}, 1e9, false));
   // In through the face near the rim, out through the rim.
   const Ray steep = ray_down(80.0, {49.5, 0.0, 4.0});
-  const auto hit = glass.first_hit({steep.at(-1.0), steep.direction}, 1e9);
+  const auto hit = glass.first_hit({steep.at(-1.0), steep.direction}, 1e9, false);
   ASSERT_TRUE(hit);
   int throughput = 0;
   for (std::uint64_t i = 0; i < 200; ++i) {
@@ -138,9 +139,9 @@ TEST(CoverGlass, RectanglesHaveCorners) {
   box.aperture = Aperture::rectangle(20.0, 10.0);
   const GlassTracer glass({box});
   const Direction down = Direction::from({0.0, 0.0, -1.0});
-  EXPECT_TRUE(glass.first_hit({{9.9, -4.9, 9.0}, down}, 1e9));
-  EXPECT_FALSE(glass.first_hit({{9.9, -5.1, 9.0}, down}, 1e9));
-  EXPECT_FALSE(glass.first_hit({{9.9, -4.9, 9.0}, down}, 4.9)) << "beyond the distance asked for";
+  EXPECT_TRUE(glass.first_hit({{9.9, -4.9, 9.0}, down}, 1e9, false));
+  EXPECT_FALSE(glass.first_hit({{9.9, -5.1, 9.0}, down}, 1e9, false));
+  EXPECT_FALSE(glass.first_hit({{9.9, -4.9, 9.0}, down}, 4.9, false)) << "beyond the distance asked for";
 }
 
 TEST(CoverGlass, RefusesBadNumbers) {

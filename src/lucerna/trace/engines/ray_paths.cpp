@@ -72,7 +72,8 @@ class PathWalk {
     double reach = hit ? hit->t_mm : std::numeric_limits<double>::infinity();
     const auto body = obstacles_.body_tracer.first_hit(ray_, reach, reflections_ > 0);
     if (body) reach = body->t_mm;
-    if (const auto glass = obstacles_.glass_tracer.first_hit(ray_, reach)) return pass(*glass);
+    if (const auto glass = obstacles_.glass_tracer.first_hit(ray_, reach, key_.bounce > 0))
+      return pass(*glass);
     if (body) {
       const Vec3 at = ray_.at(body->t_mm);
       if (!(obstacles_.bodies[body->body].reflectance.at(-dot(ray_.direction, body->normal)) > 0.0))
@@ -89,10 +90,14 @@ class PathWalk {
     path_.reflections.push_back(reflections_);
   }
 
-  bool end_at(const Vec3& at, RayEnd end) {
-    note(at);
+  bool end_here(RayEnd end) {
     path_.end = end;
     return false;
+  }
+
+  bool end_at(const Vec3& at, RayEnd end) {
+    note(at);
+    return end_here(end);
   }
 
   bool reflect_at(const Vec3& at, const Direction& normal) {
@@ -103,8 +108,21 @@ class PathWalk {
     return true;
   }
 
+  /// Every point of a solid's surface on the way.
+  bool pass_solid(const GlassHit& hit) {
+    const GlassPassage passage =
+        obstacles_.glass_tracer.pass(ray_, hit, key_, [this](const Vec3& at) { note(at); });
+    if (!(passage.throughput > 0.0)) return end_here(RayEnd::glass);
+    if (passage.lost || (!passage.transmitted && reflections_ == max_bounces_))
+      return end_here(RayEnd::bounce_limit);
+    if (!passage.transmitted) path_.reflections.back() = ++reflections_;
+    ray_ = passage.ray;
+    return true;
+  }
+
   /// In at one face, as often to the other and back as the trace has it, and out.
   bool pass(const GlassHit& hit) {
+    if (obstacles_.glass_tracer.is_solid(hit)) return pass_solid(hit);
     const Vec3 in = ray_.at(hit.t_mm);
     const GlassPassage passage = obstacles_.glass_tracer.pass(ray_, hit, key_);
     if (!(passage.throughput > 0.0)) return end_at(in, RayEnd::glass);
@@ -136,7 +154,8 @@ std::vector<RayPath> ray_paths(const Scene& scene, std::uint64_t count, const Pa
   check(scene);
   if (options.max_bounces < 1)
     throw UsageError(fmt::format("{} bounces: expected at least 1", options.max_bounces));
-  Obstacles obstacles{{}, scene.bodies, BodyTracer(scene.bodies), scene.glasses, GlassTracer(scene.glasses)};
+  Obstacles obstacles{
+      {}, scene.bodies, BodyTracer(scene.bodies), scene.glasses, GlassTracer(scene.glasses, scene.solids)};
   for (const PlacedReflector& r : scene.reflectors) {
     // A coarse hierarchy finds the same hits; it is cheaper than a fine one for so few rays.
     obstacles.mirrors.push_back(

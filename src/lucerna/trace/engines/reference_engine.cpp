@@ -86,7 +86,7 @@ class ReferenceEngine final : public TraceEngine {
         return lose(LostCause::not_finite, energy, tally);
       const Nearest n = nearest(ray);
       const auto body = bodies().first_hit(ray, n.hit.t_mm, bounce > 0);
-      if (const auto cover_glass = glasses().first_hit(ray, body ? body->t_mm : n.hit.t_mm)) {
+      if (const auto cover_glass = glasses().first_hit(ray, body ? body->t_mm : n.hit.t_mm, key.bounce > 0)) {
         const GlassPassage passage = glasses().pass(ray, *cover_glass, key);
         if (!passage.transmitted && passage.throughput > 0.0) {
           if (bounce == max_bounces_) return lose(LostCause::bounce_limit, energy, tally);
@@ -95,6 +95,7 @@ class ReferenceEngine final : public TraceEngine {
         }
         energy -= absorb(energy, passage.throughput, glass_cause(cover_glass->glass), tally);
         if (energy == 0) return;
+        if (passage.lost) return lose(LostCause::bounce_limit, energy, tally);
         ray = passage.ray;
         continue;
       }

@@ -29,9 +29,12 @@ struct TraceScratch {
 class TraceEngine {
  public:
   explicit TraceEngine(const Scene& scene)
-      : bodies_(scene.bodies), glasses_(scene.glasses), keep_rays_(!scene.ray_detectors.empty()) {
+      : bodies_(scene.bodies),
+        glasses_(scene.glasses, scene.solids),
+        keep_rays_(!scene.ray_detectors.empty()) {
     body_count_ = scene.bodies.size();
-    glass_count_ = scene.glasses.size();
+    glass_count_ = scene.glasses.size() + scene.solids.size();
+    check_apart(scene);
     for (const FarFieldDetector& d : scene.far_fields) far_fields_.push_back(FarFieldGrid::counted(d));
     for (const PlaneDetector& d : scene.planes) planes_.emplace_back(d);
     for (const LuminanceDetector& d : scene.luminances) planes_.emplace_back(d);
@@ -79,7 +82,7 @@ class TraceEngine {
 
   const BodyTracer& bodies() const { return bodies_; }
   const GlassTracer& glasses() const { return glasses_; }
-  /// Where Tally::absorbed counts what glass `i` keeps.
+  /// Where Tally::absorbed counts what glass `i` keeps; solids follow the cover glasses.
   std::size_t glass_cause(std::size_t i) const { return kMirrorLosses + body_count_ + i; }
   /// As they count (FarFieldGrid::counted).
   const std::vector<FarFieldGrid>& far_fields() const { return far_fields_; }

@@ -89,9 +89,9 @@ class WavefrontEngine final : public TraceEngine {
     alignas(64) float cosine[kBatch];
     /// First hits with bodies, where those come before all mirrors; of no length without bodies.
     std::vector<std::optional<BodyHit>> body;
-    /// The same of cover glasses, where those come before all else.
+    /// The same of cover glasses and solids, where those come before all else.
     std::vector<std::optional<GlassHit>> glass;
-    /// By number, how often each ray was reflected; kept only if there are cover glasses: else it is the same
+    /// By number, how often each ray was reflected; kept only if there are any of these: else it is the same
     /// for all rays still on their way.
     std::array<int, kBatch> reflections;
   };
@@ -137,7 +137,7 @@ class WavefrontEngine final : public TraceEngine {
       const std::size_t left_before = batch.out_count;
       intersect_mirrors(batch.rays, n, mirror_hits);
       if (!bodies().empty()) intersect_bodies(batch, n, bounce, mirror_hits);
-      if (!glasses().empty()) intersect_cover_glasses(batch, n, mirror_hits);
+      if (!glasses().empty()) intersect_glasses(batch, n, bounce, mirror_hits);
       for (std::size_t m = 0; m < mirrors_.size(); ++m) {
         if (mirrors_[m].slope_error_rad > 0.0)
           tilt(mirrors_[m].slope_error_rad, batch.rays, n, run, bounce, mirror_hits[m].hits);
@@ -239,15 +239,15 @@ class WavefrontEngine final : public TraceEngine {
     }
   }
 
-  /// First hits with cover glasses; mirrors and bodies behind them become misses.
-  void intersect_cover_glasses(Batch& batch, std::size_t n, std::span<MirrorHits> mirror_hits) const {
+  /// First hits with cover glasses and solids; mirrors and bodies behind them become misses.
+  void intersect_glasses(Batch& batch, std::size_t n, int bounce, std::span<MirrorHits> mirror_hits) const {
     for (std::size_t i = 0; i < n; ++i) {
       double nearest = std::numeric_limits<float>::max();
       for (const MirrorHits& m : mirror_hits) {
         if (m.hits.state[i] != kMiss) nearest = std::min(nearest, static_cast<double>(m.hits.t[i]));
       }
       if (!bodies().empty() && batch.body[i]) nearest = std::min(nearest, batch.body[i]->t_mm);
-      batch.glass[i] = glasses().first_hit(ray_of(batch.rays, i), nearest);
+      batch.glass[i] = glasses().first_hit(ray_of(batch.rays, i), nearest, bounce > 0);
       if (!batch.glass[i]) continue;
       if (!bodies().empty()) batch.body[i].reset();
       for (MirrorHits& m : mirror_hits) m.hits.state[i] = kMiss;
@@ -285,7 +285,7 @@ class WavefrontEngine final : public TraceEngine {
     rays.dz[i] = static_cast<float>(ray.direction.z());
   }
 
-  /// Sends ray `i` through the cover glass it hit; returns what resolve_interactions notes of it.
+  /// Sends ray `i` through the cover glass or solid it hit; returns what resolve_interactions notes of it.
   std::int32_t transmit(Batch& batch, std::size_t i, ReflectionKey key, Tally& tally) const {
     WorldRays& rays = batch.rays;
     const GlassHit& hit = *batch.glass[i];
@@ -296,6 +296,10 @@ class WavefrontEngine final : public TraceEngine {
     if (reflected && !may_reflect(batch, i, bounce, tally)) return kTerminated;
     absorb(rays.flux[i], passage.throughput, glass_cause(hit.glass), tally);
     if (passage.throughput == 0.0) return kTerminated;
+    if (passage.lost) {
+      lose(LostCause::bounce_limit, rays.flux[i], tally);
+      return kTerminated;
+    }
     if (reflected) ++tally.reflections;
     put(rays, i, passage.ray);
     return kHitObstacle;

@@ -9,6 +9,7 @@
 #include "lucerna/host_device.h"
 #include "lucerna/random.h"
 #include "lucerna/trace/kernels/slope_error.h"
+#include "lucerna/trace/kernels/triangle_kernel.h"
 
 namespace lucerna {
 
@@ -165,6 +166,8 @@ struct GlassHit {
   double t_mm = 0.0;
   std::size_t glass = 0;
   bool edge = false;
+  /// Of a clear body of triangles; a plate has none.
+  TriangleHit triangle;
 };
 
 /// The first of n plates within [0, t_max_mm) of a ray in the luminaire frame.
@@ -177,19 +180,21 @@ LUCERNA_HD inline std::optional<GlassHit> first_cover_glass(const PlacedCoverGla
         cover_glass_entry(cover_glasses[i].cover_glass, local.origin_mm, local.direction.vec());
     if (!entry.is_hit || !(entry.t_mm < t_max_mm)) continue;
     t_max_mm = entry.t_mm;
-    first = GlassHit{entry.t_mm, i, entry.edge};
+    first = GlassHit{entry.t_mm, i, entry.edge, {}};
   }
   return first;
 }
 
-/// A ray after a plate, in the luminaire frame.
+/// A ray after a plate or a clear body, in the luminaire frame.
 struct GlassPassage {
   /// Share of the flux that goes on; 0: the ray ends here, and `ray` is nothing.
   double throughput = 0.0;
   bool transmitted = false;
-  /// How often it went through the glass, face to face.
+  /// How often it went through a plate, face to face.
   int ways = 0;
   Ray ray;
+  /// Given up in a body: what goes on is lost.
+  bool lost = false;
 };
 
 /// What becomes of a ray that met a plate. `key.bounce` counts all that the ray hit before, plates included.
@@ -209,7 +214,8 @@ LUCERNA_HD inline GlassPassage through_cover_glass(const PlacedCoverGlass& cover
   return {out.throughput,
           out.transmitted,
           static_cast<int>(out.ways),
-          {cover_glass.world_from_glass.point(out.origin_mm), direction}};
+          {cover_glass.world_from_glass.point(out.origin_mm), direction},
+          false};
 }
 
 }  // namespace lucerna

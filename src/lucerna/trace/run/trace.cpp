@@ -87,6 +87,7 @@ TraceResult empty_result(const Scene& scene, const RayNumbering& numbering, cons
   result.far_fields = scene.far_fields;
   for (const Body& b : scene.bodies) result.body_names.push_back(b.name);
   for (const CoverGlass& g : scene.glasses) result.body_names.push_back(g.name);
+  for (const Solid& s : scene.solids) result.body_names.push_back(s.name);
   result.planes = scene.planes;
   result.luminances = scene.luminances;
   result.ray_detectors = scene.ray_detectors;
@@ -95,7 +96,7 @@ TraceResult empty_result(const Scene& scene, const RayNumbering& numbering, cons
 
 Tally empty_tally(const Scene& scene) {
   Tally empty;
-  empty.absorbed.resize(kMirrorLosses + scene.bodies.size() + scene.glasses.size());
+  empty.absorbed.resize(kMirrorLosses + scene.bodies.size() + scene.glasses.size() + scene.solids.size());
   empty.lost.resize(kLostCauses);
   empty.lost_rays.resize(kLostCauses);
   for (const FarFieldDetector& d : scene.far_fields) empty.bins.emplace_back(FarFieldGrid::counted(d).size());

@@ -67,15 +67,20 @@ void check(const Scene& scene) {
     }
   }
   std::set<std::string> causes{"mirror", "mirror_back"};
+  const auto add_cause = [&](const std::string& name) {
+    if (!causes.insert(name).second) throw InputError(fmt::format("two causes of loss are named '{}'", name));
+  };
   for (const Body& b : scene.bodies) {
     check(b);
-    if (!causes.insert(b.name).second)
-      throw InputError(fmt::format("two causes of loss are named '{}'", b.name));
+    add_cause(b.name);
   }
   for (const CoverGlass& g : scene.glasses) {
     check(g);
-    if (!causes.insert(g.name).second)
-      throw InputError(fmt::format("two causes of loss are named '{}'", g.name));
+    add_cause(g.name);
+  }
+  for (const Solid& s : scene.solids) {
+    check(s);
+    add_cause(s.name);
   }
   std::set<std::string> names;
   const auto add_name = [&](const std::string& name) {

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/engines/solid_tracer.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/trace/engines/body_tracer.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Six times the volume; below 0 where triangles are clockwise seen from outside.
+double signed_volume(const Mesh& mesh) {
+  double sum = 0.0;
+  for (const auto& t : mesh.triangles)
+    sum += dot(mesh.vertices_mm[t[0]], cross(mesh.vertices_mm[t[1]], mesh.vertices_mm[t[2]]));
+  return sum;
+}
+
+/// Edges that two triangles run along in the same direction: one of them is turned.
+std::size_t turned_edges(const Mesh& mesh) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
+  std::size_t turned = 0;
+  for (const auto& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) turned += seen.insert({t[k], t[(k + 1) % 3]}).second ? 0 : 1;
+  }
+  return turned;
+}
+
+/// A mesh as the tree takes it.
+Body as_body(const Solid& solid) {
+  Body body;
+  body.name = solid.name;
+  body.mesh = solid.mesh;
+  body.world_from_body = solid.world_from_solid;
+  body.smooth_below_deg = solid.smooth_below_deg;
+  return body;
+}
+
+std::vector<Body> as_bodies(const std::vector<Solid>& solids) {
+  std::vector<Body> out;
+  for (const Solid& s : solids) out.push_back(as_body(s));
+  return out;
+}
+
+}  // namespace
+
+void check(const Solid& solid) {
+  const auto need = [&](bool good, const char* what, double value, const char* expected) {
+    if (!good)
+      throw InputError(fmt::format("solid '{}': {} is {}, expected {}", solid.name, what, value, expected));
+  };
+  if (!solid.mesh || solid.mesh->triangles.empty())
+    throw InputError(fmt::format("solid '{}' has no triangles", solid.name));
+  need(solid.refractive_index >= 1.0 && solid.refractive_index <= 4.0, "refractive_index",
+       solid.refractive_index, "1 to 4");
+  need(solid.absorption_per_mm >= 0.0 && std::isfinite(solid.absorption_per_mm), "absorption_per_mm",
+       solid.absorption_per_mm, "a finite number >= 0");
+  need(solid.smooth_below_deg >= 0.0 && solid.smooth_below_deg <= 180.0, "smooth_below_deg",
+       solid.smooth_below_deg, "0 to 180");
+  if (const std::size_t open = open_edges(*solid.mesh); open > 0) {
+    throw InputError(
+        fmt::format("solid '{}' is open: {} edges do not belong to exactly two triangles; "
+                    "expected a closed surface",
+                    solid.name, open));
+  }
+  if (const std::size_t turned = turned_edges(*solid.mesh); turned > 0) {
+    throw InputError(
+        fmt::format("solid '{}': at {} edges one of two triangles is turned; expected all of "
+                    "them counter-clockwise seen from outside, or all clockwise",
+                    solid.name, turned));
+  }
+}
+
+SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
+  if (solids.empty()) return;
+  const std::vector<Body> bodies = as_bodies(solids);
+  tree_ = std::make_unique<const TriangleBvh>(bodies, true);
+  for (const Body& body : bodies) corner_normals_.push_back(smooth_normals(body));
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    const Solid& s = solids[i];
+    check(s);
+    views_.push_back({s.refractive_index, s.absorption_per_mm, signed_volume(*s.mesh) < 0.0 ? -1.0 : 1.0,
+                      corner_normals_[i].empty() ? nullptr : corner_normals_[i].data()});
+  }
+}
+
+std::optional<GlassHit> SolidTracer::first_hit(const Ray& ray, double t_max_mm, bool started) const {
+  if (empty()) return std::nullopt;
+  const TriangleHit hit =
+      first_triangle(tree_->view(), ray.origin_mm, ray.direction.vec(), started ? kBodyStart : 0.0, t_max_mm);
+  if (hit.triangle < 0) return std::nullopt;
+  GlassHit out;
+  out.t_mm = hit.t;
+  out.glass = tree_->triangles()[static_cast<std::size_t>(hit.triangle)].body;
+  out.triangle = hit;
+  return out;
+}
+
+GlassPassage SolidTracer::pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key,
+                               const std::function<void(const Vec3&)>& visit) const {
+  return through_solid(view(), ray, hit.triangle, key, [&](const Vec3& point) {
+    if (visit) visit(point);
+  });
+}
+
+namespace {
+
+/// Solids that are nearer to each other than this touch, mm.
+constexpr double kTouch = 5e-3;
+
+/// A closed or open mesh in the luminaire frame, and a tree over it.
+struct Placed {
+  std::string name;
+  std::vector<Vec3> vertices_mm;
+  const Mesh& mesh;
+  TriangleBvh tree;
+};
+
+Placed placed(const Body& body) {
+  std::vector<Vec3> at;
+  for (const Vec3& v : body.mesh->vertices_mm) at.push_back(body.world_from_body.point(v));
+  return {body.name, std::move(at), *body.mesh, TriangleBvh({body}, true)};
+}
+
+/// Does anything of `p` lie on the way from a to b, its ends left out?
+bool crosses(const Placed& p, const Vec3& a, const Vec3& b) {
+  const double reach = length(b - a);
+  if (!(reach > 0.0)) return false;
+  return first_triangle(p.tree.view(), a, (b - a) / reach, 1e-9 * reach, (1.0 - 1e-9) * reach).triangle >= 0;
+}
+
+/// Is a point within a closed mesh? By how many surfaces a ray that is parallel to no axis meets.
+bool contains(const Placed& p, Vec3 point) {
+  const Direction d = Direction::from({0.8017, 0.3141, 0.5087});
+  bool inside = false;
+  for (int i = 0; i < 10000; ++i) {
+    const TriangleHit hit = first_triangle(p.tree.view(), point, d.vec(), i == 0 ? 0.0 : 1e-9,
+                                           std::numeric_limits<double>::infinity());
+    if (hit.triangle < 0) return inside;
+    inside = !inside;
+    point = point + hit.t * d.vec();
+  }
+  return inside;
+}
+
+/// A corner of it.
+const Vec3& corner_of(const Placed& p) { return p.vertices_mm[p.mesh.triangles.front()[0]]; }
+
+/// Does an edge of `a` run through the surface of `b`?
+bool edges_cut(const Placed& a, const Placed& b) {
+  for (const auto& t : a.mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = t[k], to = t[(k + 1) % 3];
+      if (from < to && crosses(b, a.vertices_mm[from], a.vertices_mm[to])) return true;
+    }
+  }
+  return false;
+}
+
+/// Does the surface of one run through that of the other?
+bool cut(const Placed& a, const Placed& b) { return edges_cut(a, b) || edges_cut(b, a); }
+
+/// Does the middle of a triangle of `a` lie on `b`?
+bool touches(const Placed& a, const Placed& b) {
+  for (const auto& t : a.mesh.triangles) {
+    const Vec3 &p = a.vertices_mm[t[0]], &q = a.vertices_mm[t[1]], &r = a.vertices_mm[t[2]];
+    const Vec3 across = cross(q - p, r - p), middle = (1.0 / 3.0) * (p + q + r);
+    if (!(length(across) > 0.0)) continue;
+    const Vec3 step = (kTouch / length(across)) * across;
+    if (crosses(b, middle - step, middle + step)) return true;
+  }
+  return false;
+}
+
+/// Points of a mirror, dense enough for what is as large as a lens.
+std::vector<Vec3> points_of(const PlacedReflector& mirror) {
+  constexpr int kSide = 24;
+  std::vector<Vec3> out;
+  const Aperture& a = mirror.reflector.aperture;
+  if (!mirror.reflector.surface) return out;  // a swept curve
+  for (int i = 0; i <= kSide; ++i) {
+    for (int k = 0; k <= kSide; ++k) {
+      const double x = a.half_x_mm() * (2.0 * i / kSide - 1.0), y = a.half_y_mm() * (2.0 * k / kSide - 1.0);
+      if (!a.contains(x, y)) continue;
+      out.push_back(mirror.world_from_reflector.point({x, y, mirror.reflector.surface->at(x, y).z_mm}));
+    }
+  }
+  return out;
+}
+
+[[noreturn]] void fail_apart(const std::string& solid, const std::string& other) {
+  throw InputError(fmt::format("solid '{}' and {}: one holds, cuts or touches the other; expected them apart",
+                               solid, other));
+}
+
+}  // namespace
+
+void check_apart(const Scene& scene) {
+  std::vector<Placed> solids;
+  for (const Solid& s : scene.solids) {
+    check(s);
+    solids.push_back(placed(as_body(s)));
+  }
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    const Placed& s = solids[i];
+    for (std::size_t k = 0; k < i; ++k) {
+      const Placed& other = solids[k];
+      if (cut(s, other) || contains(s, corner_of(other)) || contains(other, corner_of(s)) ||
+          touches(s, other) || touches(other, s)) {
+        fail_apart(s.name, fmt::format("solid '{}'", other.name));
+      }
+    }
+    for (const Body& body : scene.bodies) {
+      const Placed b = placed(body);
+      if (cut(b, s) || contains(s, corner_of(b))) fail_apart(s.name, fmt::format("body '{}'", body.name));
+    }
+    for (std::size_t m = 0; m < scene.reflectors.size(); ++m) {
+      for (const Vec3& point : points_of(scene.reflectors[m])) {
+        if (contains(s, point)) fail_apart(s.name, fmt::format("reflector {}", m + 1));
+      }
+    }
+  }
+}
+
+}  // namespace lucerna

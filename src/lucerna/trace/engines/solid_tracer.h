@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "lucerna/scene.h"
+#include "lucerna/trace/kernels/solid_kernel.h"
+#include "lucerna/trace/kernels/triangle_bvh.h"
+
+namespace lucerna {
+
+/// Rays through the clear bodies of a scene. Immutable and thread safe.
+class SolidTracer {
+ public:
+  /// Throws InputError as `check(Solid)` does.
+  explicit SolidTracer(const std::vector<Solid>& solids);
+
+  bool empty() const { return views_.empty(); }
+
+  /// The first surface within (0, t_max_mm) of a ray in the luminaire frame. `started`: it comes from
+  /// something that it met before; what is nearer than a thousandth of a millimetre is that.
+  std::optional<GlassHit> first_hit(const Ray& ray, double t_max_mm, bool started) const;
+
+  /// What becomes of the ray there; `key.bounce` counts all that it met before, a body once. `visit` sees
+  /// every point of the surface on its way.
+  GlassPassage pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key,
+                    const std::function<void(const Vec3&)>& visit = {}) const;
+
+ private:
+  SolidsView view() const { return {tree_->view(), views_.data()}; }
+
+  std::unique_ptr<const TriangleBvh> tree_;
+  std::vector<std::vector<Vec3>> corner_normals_;
+  std::vector<SolidView> views_;
+};
+
+/// Throws InputError, naming both, where a clear body holds, cuts or touches (within 5 um) another one, or
+/// holds or cuts a body or a mirror: light inside would not meet it.
+void check_apart(const Scene& scene);
+
+}  // namespace lucerna

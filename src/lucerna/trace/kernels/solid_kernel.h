@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "lucerna/geometry.h"
+#include "lucerna/host_device.h"
+#include "lucerna/random.h"
+#include "lucerna/trace/kernels/body_kernel.h"
+#include "lucerna/trace/kernels/cover_glass_kernel.h"
+#include "lucerna/trace/kernels/triangle_kernel.h"
+
+namespace lucerna {
+
+// What light does at and in closed bodies of a clear medium; small functions that CPU and GPU share.
+
+/// Amplitudes that a smooth boundary between two clear media reflects, of light whose field is perpendicular
+/// (s) and parallel (p) to the plane of incidence.
+struct Boundary {
+  double s = 1.0, p = 1.0;
+  /// Of the refracted ray with the normal; 0 where reflection is total.
+  double cos_refracted = 0.0;
+
+  /// Share of unpolarised light.
+  LUCERNA_HD double reflectance() const { return 0.5 * (s * s + p * p); }
+};
+
+/// `ratio`: the index beyond the boundary over that before it, > 0. Fresnel's formulas (M. Born, E. Wolf,
+/// "Principles of Optics", 7th ed., 1.5.2) and total reflection, whose phases are left out.
+LUCERNA_HD inline Boundary boundary(double ratio, double cos_incidence) {
+  const double c = cos_incidence < 1.0 ? cos_incidence : 1.0;
+  if (ratio == 1.0) return {0.0, 0.0, c};
+  const double squared = 1.0 - (1.0 - c * c) / (ratio * ratio);
+  if (!(squared > 0.0) || !(c > 0.0)) return {};
+  const double t = std::sqrt(squared);
+  return {(c - ratio * t) / (c + ratio * t), (ratio * c - t) / (ratio * c + t), t};
+}
+
+/// Snell's law for what `boundary` found; `normal` is unit and towards where the light comes from.
+LUCERNA_HD inline Vec3 refracted(const Direction& d, const Direction& normal, double ratio,
+                                 const Boundary& found) {
+  const double c = -dot(d, normal);
+  return (1.0 / ratio) * d.vec() + (c / ratio - found.cos_refracted) * normal.vec();
+}
+
+/// A clear body as a kernel reads it.
+struct SolidView {
+  double index = 1.0, absorption_per_mm = 0.0;
+  /// 1 where triangles are counter-clockwise seen from outside, else -1.
+  double outward = 1.0;
+  /// Three a triangle, in the luminaire frame; null for flat triangles.
+  const Vec3* corner_normals = nullptr;
+};
+
+/// All clear bodies of a scene, in one tree. None touches another.
+struct SolidsView {
+  TriangleBvhView tree;
+  const SolidView* solids = nullptr;
+};
+
+/// A ray inside a body that starts on its surface is not stopped by what is nearer than this, mm.
+inline constexpr double kSolidStart = 1e-6;
+/// How often a ray meets the surface of one body before it is given up.
+inline constexpr int kMaxInsideHits = 1000;
+
+/// Would a ray leave its body at this hit?
+LUCERNA_HD inline bool leaves_solid(const SolidsView& v, const Direction& d, const TriangleHit& hit) {
+  const TreeTriangle& k = v.tree.triangles[hit.triangle];
+  return v.solids[k.body].outward * dot(normal_of(k), d.vec()) > 0.0;
+}
+
+/// Light on its way through a body: a ray, and the direction of its electric field. Unpolarised light is one
+/// of two directions across each other, by chance.
+struct PolarisedRay {
+  Ray ray;
+  Vec3 field;
+};
+
+/// Unit and across `d`, one of two by `u`, which is uniform in [0, 1).
+LUCERNA_HD inline Vec3 any_field(const Direction& d, const Direction& normal, double u) {
+  const Vec3 s = cross(d.vec(), normal.vec());
+  // Along the normal every direction across is as good.
+  const Vec3 across =
+      dot(s, s) > 1e-24 ? s : cross(d.vec(), std::abs(d.x()) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
+  const Direction first = Direction::from(across);
+  return u < 0.5 ? first.vec() : cross(d.vec(), first.vec());
+}
+
+/// Where a ray meets a body: the normal that counts, and what the boundary does.
+struct BoundaryHit {
+  Direction normal;
+  double ratio = 1.0;
+  Boundary found;
+};
+
+LUCERNA_HD inline BoundaryHit boundary_hit(const SolidsView& v, const Ray& ray, const TriangleHit& hit,
+                                           bool inside) {
+  const TreeTriangle& k = v.tree.triangles[hit.triangle];
+  const SolidView& solid = v.solids[k.body];
+  const Vec3* const corners =
+      solid.corner_normals == nullptr ? nullptr : solid.corner_normals + std::size_t{3} * k.number;
+  const BodyHit at = body_hit(ray.direction, hit.t, k.body, normal_of(k), corners, hit.u, hit.v);
+  const double ratio = inside ? 1.0 / solid.index : solid.index;
+  const BoundaryHit smooth{at.normal, ratio, boundary(ratio, -dot(ray.direction, at.normal))};
+  if (smooth.found.cos_refracted == 0.0) return smooth;
+  // A smooth normal may send the refracted ray back to the side that it came from: the triangle's own does
+  // not.
+  if (dot(refracted(ray.direction, at.normal, ratio, smooth.found), at.face.vec()) < 0.0) return smooth;
+  return {at.face, ratio, boundary(ratio, -dot(ray.direction, at.face))};
+}
+
+/// Sends light on from a boundary at distance `t_mm`; true if it is reflected, which `u`, uniform in [0, 1),
+/// decides.
+LUCERNA_HD inline bool cross_boundary(PolarisedRay& light, const BoundaryHit& at, double t_mm, double u) {
+  const Direction d = light.ray.direction;
+  const Boundary& b = at.found;
+  const Vec3 across = cross(d.vec(), at.normal.vec());
+  const Vec3 s = dot(across, across) > 1e-24 ? Direction::from(across).vec() : light.field;
+  const double of_s = dot(light.field, s), of_p = dot(light.field, cross(d.vec(), s));
+  const double all = of_s * of_s + of_p * of_p;
+  const double reflected_s = of_s * b.s, reflected_p = of_p * b.p;
+  const bool reflected = u * all < reflected_s * reflected_s + reflected_p * reflected_p;
+  const Direction out =
+      Direction::from(reflected ? reflect(d, at.normal).vec() : refracted(d, at.normal, at.ratio, b));
+  // What passes: 2 c / (c + n t) = 1 + s, and 2 c / (n c + t) = (1 + p) / n.
+  const Vec3 field = reflected
+                         ? reflected_s * s + reflected_p * cross(out.vec(), s)
+                         : (of_s * (1.0 + b.s)) * s + (of_p * (1.0 + b.p) / at.ratio) * cross(out.vec(), s);
+  light = {{light.ray.at(t_mm), out}, length(field) > 0.0 ? field / length(field) : s};
+  return reflected;
+}
+
+/// Follows a ray that met a clear body until it is outside again: reflected there, or after all its way
+/// within. One branch is taken by chance at each boundary, with weight 1. Polarisation is kept within the
+/// body. `visit` is called with every point of the surface on the way. What is given up has `lost` set.
+template <class Visit>
+LUCERNA_HD inline GlassPassage through_solid(const SolidsView& v, const Ray& ray, TriangleHit hit,
+                                             const ReflectionKey& key, const Visit& visit) {
+  // The streams of cover glasses: a ray meets one thing at a time.
+  Rng rng(key.sequence_seed, key.ray, 0x20000u + static_cast<std::uint32_t>(key.bounce));
+  const SolidView& solid = v.solids[v.tree.triangles[hit.triangle].body];
+  GlassPassage out;
+  out.throughput = 1.0;
+  bool inside = leaves_solid(v, ray.direction, hit);
+  out.transmitted = inside;
+  PolarisedRay light{ray, any_field(ray.direction, boundary_hit(v, ray, hit, inside).normal, rng.uniform())};
+  for (int i = 0; i < kMaxInsideHits && hit.triangle >= 0; ++i) {
+    if (inside) out.throughput *= std::exp(-solid.absorption_per_mm * hit.t);
+    const double u = rng.uniform();
+    if (leaves_solid(v, light.ray.direction, hit) != inside) {  // rounding: a surface that is behind the ray
+      light.ray.origin_mm = light.ray.at(hit.t);
+    } else {
+      const bool reflected = cross_boundary(light, boundary_hit(v, light.ray, hit, inside), hit.t, u);
+      visit(light.ray.origin_mm);
+      if (!reflected) {
+        inside = !inside;
+        out.transmitted = true;
+      }
+      if (!inside) {
+        out.ray = light.ray;
+        return out;
+      }
+    }
+    hit = first_triangle(v.tree, light.ray.origin_mm, light.ray.direction.vec(), kSolidStart, 1e300);
+  }
+  out.ray = light.ray;
+  out.lost = true;
+  return out;
+}
+
+}  // namespace lucerna
