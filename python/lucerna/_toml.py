@@ -44,12 +44,12 @@ class Source(Table):
 
 
 class Body(Table):
-    """A [[body]]: a housing, a lamp's body, a mirror of triangles, a cover glass.
+    """A [[body]]: a housing, a lamp's body, a mirror of triangles, a cover glass, a lens.
 
     Parameters
     ----------
     role : str
-        'absorber', 'mirror', 'lamp' or 'glass'.
+        'absorber', 'mirror', 'lamp', 'glass' or 'solid'.
     **keys
         The keys of a [[body]] table of a project file: file, reflectance, diameter_mm, thickness_mm, ...
     """
