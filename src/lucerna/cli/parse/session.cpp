@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -19,11 +20,13 @@ namespace lucerna::cli {
 
 namespace {
 
-volatile std::sig_atomic_t stop_signal = 0;
+// Handlers run on any thread and are read on all: atomic, and without locks, which a handler may not take.
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<long>::is_always_lock_free);
+std::atomic<bool> stop_signal = false;
 /// Whether the first Ctrl-C says what a second one does, and on a line that holds something already.
-volatile std::sig_atomic_t tell_of_signals = 0, on_terminal = 0;
+std::atomic<bool> tell_of_signals = false, on_terminal = false;
 /// When the first SIGINT came, in ms; 0 before.
-volatile std::sig_atomic_t first_interrupt_ms = 0;
+std::atomic<long> first_interrupt_ms = 0;
 
 /// `timeout` and launchers send one Ctrl-C twice, to the program and to its group; nobody types so fast.
 constexpr long kOneCtrlC_ms = 250;
@@ -31,26 +34,25 @@ constexpr long kOneCtrlC_ms = 250;
 long monotonic_ms() {
   timespec now{};
   ::clock_gettime(CLOCK_MONOTONIC, &now);
-  // The low bits are enough for differences, and fit any sig_atomic_t.
-  return ((now.tv_sec & 0xfffff) * 1000 + now.tv_nsec / 1'000'000) | 1;
+  return (now.tv_sec * 1000L + now.tv_nsec / 1'000'000) | 1;  // never 0
 }
 
-extern "C" void on_stop_signal(int) { stop_signal = 1; }
+extern "C" void on_stop_signal(int) { stop_signal = true; }
 
 /// Asks the work to stop; a second one ends the program as if there were no handler. Calls only what a
 /// handler may call (POSIX: async-signal-safe).
 extern "C" void on_interrupt(int signal) {
   const int saved_errno = errno;
-  stop_signal = 1;
+  stop_signal = true;
   const long now = monotonic_ms();
   if (first_interrupt_ms != 0 && now - first_interrupt_ms > kOneCtrlC_ms) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   } else if (first_interrupt_ms == 0) {
-    first_interrupt_ms = static_cast<std::sig_atomic_t>(now);
+    first_interrupt_ms = now;
     constexpr std::string_view kNote = "\nlucerna: stopping; Ctrl-C again ends the program at once\n";
-    const std::string_view note = kNote.substr(on_terminal != 0 ? 0 : 1);
-    if (tell_of_signals != 0 && ::write(STDERR_FILENO, note.data(), note.size()) < 0) stop_signal = 1;
+    const std::string_view note = kNote.substr(on_terminal ? 0 : 1);
+    if (tell_of_signals && ::write(STDERR_FILENO, note.data(), note.size()) < 0) stop_signal = true;
   }
   errno = saved_errno;
 }
@@ -94,7 +96,7 @@ void TerminalProgress::show(const std::string& line) {
   drawn_ = true;
 }
 
-bool TerminalProgress::stop_requested() const { return stop_signal != 0; }
+bool TerminalProgress::stop_requested() const { return stop_signal; }
 
 void TerminalProgress::clear() {
   if (!drawn_) return;
@@ -120,8 +122,8 @@ void Session::start() {
   if (threads > 0) limit_ = std::make_unique<ThreadLimit>(threads);
   const bool terminal = ::isatty(STDERR_FILENO) == 1;
   progress_ = std::make_unique<TerminalProgress>(!quiet && terminal);
-  tell_of_signals = quiet ? 0 : 1;
-  on_terminal = terminal ? 1 : 0;
+  tell_of_signals = !quiet;
+  on_terminal = terminal;
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_stop_signal);
 }

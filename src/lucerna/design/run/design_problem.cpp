@@ -200,6 +200,18 @@ void check_zones_family(const TomlReader& root, const DesignProblem& problem) {
                                   found));
 }
 
+/// The search and its validation know no refraction: said before the time is spent.
+void check_clear(const TomlReader& root, const Scene& scene) {
+  if (scene.glasses.empty() && scene.solids.empty()) return;
+  const std::string& name = scene.glasses.empty() ? scene.solids.front().name : scene.glasses.front().name;
+  root.fail(
+      "body",
+      fmt::format("found '{}', which light passes: expected none in a design; `lucerna trace` takes the "
+                  "result with it",
+                  name),
+      ErrorCause::unsupported);
+}
+
 /// A mirror sends no light out of its back: refuses a target that lies there, where nothing else could turn
 /// the light around.
 void check_opening(const TomlReader& root, const DesignProblem& problem) {
@@ -280,6 +292,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
                         tolerances};
   check_zones_family(root, problem);
   check_opening(root, problem);
+  check_clear(root, problem.project.scene);
   return problem;
 }
 

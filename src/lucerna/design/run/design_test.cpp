@@ -312,6 +312,25 @@ TEST(DesignSlow, NeverEndsWorseThanARandomStart) {
   }
 }
 
+TEST(DesignProblem, RefusesWhatLightPassesBeforeItsTimeIsSpent) {
+  const TempDir folder;
+  write_target(folder.path());
+  const auto file = folder.path() / "project.toml";
+  for (const char* body : {"role = \"glass\"\nname = \"pane\"\ndiameter_mm = 9\n",
+                           "role = \"solid\"\nname = \"pane\"\noutline_mm = [[0, 0], [5, 0], [0, 4]]\n"}) {
+    write_file(file, kSource + mirror("family = \"revolution\"\npreset = \"parabola\"\nfocal_mm = 8\n") +
+                         "[[body]]\nposition_mm = [0, 0, 200]\n" + body +
+                         "[target]\nfile = \"target.ies\"\n");
+    try {
+      design_problem(read_project(file), file);
+      FAIL() << "taken";
+    } catch (const InputError& e) {
+      EXPECT_EQ(e.cause(), ErrorCause::unsupported);
+      EXPECT_THAT(std::string(e.what()), testing::HasSubstr("body: found 'pane', which light passes"));
+    }
+  }
+}
+
 TEST(DesignProblem, RefusesATargetBehindTheMirror) {
   const TempDir folder;
   write_target(folder.path());

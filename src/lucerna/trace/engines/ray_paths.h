@@ -15,8 +15,8 @@ enum class RayEnd { out, mirror_back, body, glass, bounce_limit };
 /// The way of one ray in the luminaire frame.
 struct RayPath {
   std::size_t source = 0;
-  /// Where it starts, then every point where it hits a mirror, a body or a face of a cover glass: inside a
-  /// glass it goes from face to face, as often as the tracer says.
+  /// Where it starts, then every point where it hits a mirror, a body, a face of a cover glass or the surface
+  /// of a solid: inside these it goes to and fro as often as the tracer says.
   std::vector<Vec3> points_mm;
   /// How often it was reflected before it leaves each of these points, as TraceOptions::max_bounces counts: a
   /// glass that returns it counts once, on leaving the glass; one that lets it through does not.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/trace/engines/solid_tracer.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -79,12 +80,12 @@ void check(const Solid& solid) {
 
 SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
   if (solids.empty()) return;
+  for (const Solid& s : solids) check(s);
   const std::vector<Body> bodies = as_bodies(solids);
   tree_ = std::make_unique<const TriangleBvh>(bodies, true);
   for (const Body& body : bodies) corner_normals_.push_back(smooth_normals(body));
   for (std::size_t i = 0; i < solids.size(); ++i) {
     const Solid& s = solids[i];
-    check(s);
     views_.push_back({s.refractive_index, s.absorption_per_mm, signed_volume(*s.mesh) < 0.0 ? -1.0 : 1.0,
                       corner_normals_[i].empty() ? nullptr : corner_normals_[i].data()});
   }
@@ -114,9 +115,32 @@ namespace {
 /// Solids that are nearer to each other than this touch, mm.
 constexpr double kTouch = 5e-3;
 
+struct Box {
+  Vec3 low_mm, high_mm;
+};
+
+Box box_of(const Body& body) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  Box box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+  for (const Vec3& v : body.mesh->vertices_mm) {
+    const Vec3 p = body.world_from_body.point(v);
+    box.low_mm = {std::min(box.low_mm.x, p.x), std::min(box.low_mm.y, p.y), std::min(box.low_mm.z, p.z)};
+    box.high_mm = {std::max(box.high_mm.x, p.x), std::max(box.high_mm.y, p.y), std::max(box.high_mm.z, p.z)};
+  }
+  return box;
+}
+
+/// Are bodies in these boxes so far apart that they cannot touch?
+bool are_far(const Box& a, const Box& b) {
+  return a.low_mm.x > b.high_mm.x + kTouch || b.low_mm.x > a.high_mm.x + kTouch ||
+         a.low_mm.y > b.high_mm.y + kTouch || b.low_mm.y > a.high_mm.y + kTouch ||
+         a.low_mm.z > b.high_mm.z + kTouch || b.low_mm.z > a.high_mm.z + kTouch;
+}
+
 /// A closed or open mesh in the luminaire frame, and a tree over it.
 struct Placed {
   std::string name;
+  Box box;
   std::vector<Vec3> vertices_mm;
   const Mesh& mesh;
   TriangleBvh tree;
@@ -125,7 +149,7 @@ struct Placed {
 Placed placed(const Body& body) {
   std::vector<Vec3> at;
   for (const Vec3& v : body.mesh->vertices_mm) at.push_back(body.world_from_body.point(v));
-  return {body.name, std::move(at), *body.mesh, TriangleBvh({body}, true)};
+  return {body.name, box_of(body), std::move(at), *body.mesh, TriangleBvh({body}, true)};
 }
 
 /// Does anything of `p` lie on the way from a to b, its ends left out?
@@ -211,12 +235,14 @@ void check_apart(const Scene& scene) {
     const Placed& s = solids[i];
     for (std::size_t k = 0; k < i; ++k) {
       const Placed& other = solids[k];
+      if (are_far(s.box, other.box)) continue;
       if (cut(s, other) || contains(s, corner_of(other)) || contains(other, corner_of(s)) ||
           touches(s, other) || touches(other, s)) {
         fail_apart(s.name, fmt::format("solid '{}'", other.name));
       }
     }
     for (const Body& body : scene.bodies) {
+      if (are_far(s.box, box_of(body))) continue;
       const Placed b = placed(body);
       if (cut(b, s) || contains(s, corner_of(b))) fail_apart(s.name, fmt::format("body '{}'", body.name));
     }
