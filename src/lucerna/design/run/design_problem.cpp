@@ -204,12 +204,11 @@ void check_zones_family(const TomlReader& root, const DesignProblem& problem) {
 void check_clear(const TomlReader& root, const Scene& scene) {
   if (scene.glasses.empty() && scene.solids.empty()) return;
   const std::string& name = scene.glasses.empty() ? scene.solids.front().name : scene.glasses.front().name;
-  root.fail(
-      "body",
-      fmt::format("found '{}', which light passes: expected none in a design; `lucerna trace` takes the "
-                  "result with it",
-                  name),
-      ErrorCause::unsupported);
+  root.fail("body",
+            fmt::format("found '{}', which light passes: expected none in a design; a trace of the result "
+                        "takes it",
+                        name),
+            ErrorCause::unsupported);
 }
 
 /// A mirror sends no light out of its back: refuses a target that lies there, where nothing else could turn

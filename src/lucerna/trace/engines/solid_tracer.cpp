@@ -115,13 +115,13 @@ namespace {
 /// Solids that are nearer to each other than this touch, mm.
 constexpr double kTouch = 5e-3;
 
-struct Box {
+struct Extents {
   Vec3 low_mm, high_mm;
 };
 
-Box box_of(const Body& body) {
+Extents extents_of(const Body& body) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
-  Box box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+  Extents box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
   for (const Vec3& v : body.mesh->vertices_mm) {
     const Vec3 p = body.world_from_body.point(v);
     box.low_mm = {std::min(box.low_mm.x, p.x), std::min(box.low_mm.y, p.y), std::min(box.low_mm.z, p.z)};
@@ -131,7 +131,7 @@ Box box_of(const Body& body) {
 }
 
 /// Are bodies in these boxes so far apart that they cannot touch?
-bool are_far(const Box& a, const Box& b) {
+bool are_far(const Extents& a, const Extents& b) {
   return a.low_mm.x > b.high_mm.x + kTouch || b.low_mm.x > a.high_mm.x + kTouch ||
          a.low_mm.y > b.high_mm.y + kTouch || b.low_mm.y > a.high_mm.y + kTouch ||
          a.low_mm.z > b.high_mm.z + kTouch || b.low_mm.z > a.high_mm.z + kTouch;
@@ -140,7 +140,7 @@ bool are_far(const Box& a, const Box& b) {
 /// A closed or open mesh in the luminaire frame, and a tree over it.
 struct Placed {
   std::string name;
-  Box box;
+  Extents extents;
   std::vector<Vec3> vertices_mm;
   const Mesh& mesh;
   TriangleBvh tree;
@@ -149,7 +149,7 @@ struct Placed {
 Placed placed(const Body& body) {
   std::vector<Vec3> at;
   for (const Vec3& v : body.mesh->vertices_mm) at.push_back(body.world_from_body.point(v));
-  return {body.name, box_of(body), std::move(at), *body.mesh, TriangleBvh({body}, true)};
+  return {body.name, extents_of(body), std::move(at), *body.mesh, TriangleBvh({body}, true)};
 }
 
 /// Does anything of `p` lie on the way from a to b, its ends left out?
@@ -235,14 +235,14 @@ void check_apart(const Scene& scene) {
     const Placed& s = solids[i];
     for (std::size_t k = 0; k < i; ++k) {
       const Placed& other = solids[k];
-      if (are_far(s.box, other.box)) continue;
+      if (are_far(s.extents, other.extents)) continue;
       if (cut(s, other) || contains(s, corner_of(other)) || contains(other, corner_of(s)) ||
           touches(s, other) || touches(other, s)) {
         fail_apart(s.name, fmt::format("solid '{}'", other.name));
       }
     }
     for (const Body& body : scene.bodies) {
-      if (are_far(s.box, box_of(body))) continue;
+      if (are_far(s.extents, extents_of(body))) continue;
       const Placed b = placed(body);
       if (cut(b, s) || contains(s, corner_of(b))) fail_apart(s.name, fmt::format("body '{}'", body.name));
     }
