@@ -131,7 +131,7 @@ TEST(ExamplesCli, AllAreListedAndShort) {
     }
   }
   EXPECT_EQ(programs, 5u);
-  EXPECT_EQ(projects, 5u);
+  EXPECT_EQ(projects, 6u);
 }
 
 }  // namespace

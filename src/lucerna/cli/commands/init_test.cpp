@@ -82,7 +82,9 @@ TEST_F(InitCli, EveryBlockReadsOnceItIsUncommented) {
     const Scene& s = project.scene;
     sources += s.sources.size() - 1;
     reflectors += s.reflectors.size() - 1 + (block.find("mesh") != std::string::npos ? 1 : 0);
-    bodies += block.find("[[body]]") != std::string::npos ? s.bodies.size() + s.glasses.size() : 0;
+    bodies += block.find("[[body]]") != std::string::npos
+                  ? s.bodies.size() + s.glasses.size() + s.solids.size()
+                  : 0;
     detectors += s.far_fields.size() + s.planes.size() + s.luminances.size() + s.ray_detectors.size() - 1;
     if (block.find("[target]") == std::string::npos) continue;
     ++designs;
@@ -90,7 +92,7 @@ TEST_F(InitCli, EveryBlockReadsOnceItIsUncommented) {
   }
   EXPECT_EQ(sources, 2u);
   EXPECT_EQ(reflectors, 8u) << "one of every family, one profile, two that are no function of r";
-  EXPECT_EQ(bodies, 4u) << "every role";
+  EXPECT_EQ(bodies, 5u) << "every role";
   EXPECT_EQ(detectors, 4u) << "every kind";
   EXPECT_EQ(designs, 2u);
   EXPECT_EQ(sources + reflectors + bodies + detectors + designs, all.size());

@@ -164,7 +164,7 @@ slope_error_mrad = 0.0        # Gaussian tilt of the normal, standard deviation 
 #outline_mm = [[0, 0], [20, 0], [20, 2], [0, 6]]
 #refractive_index = 1.49       # or material = "pmma", wavelength_nm = 555
 #absorption_per_mm = 0.0005
-#position_mm = [0, 0, 5]
+#position_mm = [0, 0, -40]
 
 # ---- detectors: any number at once; the name names the files ----
 [[detector]]
