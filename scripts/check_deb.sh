@@ -90,8 +90,15 @@ python3 -c 'import lucerna as lu; lu.Scene(["led.nfl"]).trace(rays=1e5)["far-fie
 lucerna check beam3.ldt
 test "$(python3 -m lucerna --version)" = "$(lucerna --version)"
 
+if ls lucerna-mpi_*.deb >found.log 2>&1; then
+  echo "== many machines"
+  $install ./lucerna-mpi_*.deb openmpi-bin >install.log 2>&1 || { cat install.log; exit 1; }
+  mpirun --allow-run-as-root --oversubscribe --quiet -n 2 lucerna-mpi trace lamp.toml -o by_ranks --rays 1e5
+  cmp light/far.csv by_ranks/far.csv
+fi
+
 echo "== gone again"
-own=$(ls *.deb | sed 's/_.*//')
+own=$(ls *.deb | sed 's/_.*//') # all that lie here were installed above
 apt-get purge -y -qq $own >remove.log 2>&1 || { cat remove.log; exit 1; }
 test ! -e /usr/bin/lucerna
 left=$(find / -xdev -path /proc -prune -o -path /lucerna -prune -o -iname '*lucerna*' -print)

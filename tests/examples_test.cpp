@@ -92,7 +92,7 @@ TEST(ExamplesCli, LedInAParaboloid) {
 TEST(ExamplesCli, TirCollimator) {
   const TempDir dir;
   const auto result = traced(dir, "tir-collimator", "100000");
-  const auto ledger = result.at("ledger");
+  const auto& ledger = result.at("ledger");
   EXPECT_GT(lumen(ledger.at("out_direct")), 0.8 * 300.0) << "Fresnel's losses at two faces, and the medium's";
   EXPECT_LT(lumen(ledger.at("out_reflected")), 0.1 * 300.0);
 }
