@@ -87,7 +87,7 @@ const std::map<std::string, Layers> kSubRooms{
          {"cad", {"shapes"}},
          {"height_field", {}},
          {"materials", {}},
-         {"mesh", {}},
+         {"mesh", {"shapes"}},
      }},
     {"source",
      {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <memory>
@@ -144,22 +145,33 @@ void check(const CoverGlass& glass);
 struct Solid {
   /// The cause in the ledger.
   std::string name = "solid";
-  /// Its surface, in its own frame: closed, all triangles turned the same way; not null.
+  /// Its surface as triangles, in its own frame: closed, all triangles turned the same way. Null for an
+  /// outline.
   std::shared_ptr<const Mesh> mesh;
+  /// Its surface as an outline that turns about the z axis of its own frame: corners (r, z) of a closed
+  /// polygon, at least three, r >= 0, whichever way it runs; a side along the axis makes no surface. Empty
+  /// for a mesh.
+  std::vector<std::array<double, 2>> outline_mm;
   /// Where it is in the luminaire frame.
   Frame world_from_solid;
   /// 1 to 4. The default is PMMA in the visible.
   double refractive_index = 1.49;
   /// Natural absorption coefficient >= 0: a path of x mm leaves exp(-x * absorption_per_mm).
   double absorption_per_mm = 0.0;
-  /// > 0: the normal changes steadily across triangles that meet at less than this angle
-  /// (`corner_normals`); 0: every triangle is flat. At most 180.
+  /// Of a mesh, > 0: the normal changes steadily across triangles that meet at less than this angle
+  /// (`corner_normals`); 0: every triangle is flat. Of an outline: between corners that turn by more than
+  /// this it is a curve without kinks through its corners (a C2 cubic spline); 0: all sides are straight. At
+  /// most 180.
   double smooth_below_deg = 20.0;
 };
 
-/// Throws InputError naming what is out of its range, and for a surface that is open or partly turned.
-/// O(triangles log triangles).
+/// Throws InputError naming what is out of its range, and for a surface that is open or partly turned, or an
+/// outline as solid_of_revolution refuses it, or whose curve crosses itself. O(triangles log triangles +
+/// corners^2).
 void check(const Solid& solid);
+/// Its surface as triangles, in its own frame: `mesh`, or what stands for its outline within 1e-4 of its
+/// size. Throws InputError as `check` does for the outline. O(corners^2 + triangles).
+[[nodiscard]] std::shared_ptr<const Mesh> surface_mesh(const Solid& solid);
 
 /// What a plate returns, lets through and keeps of unpolarised light; they sum to 1. `cos_incidence` in
 /// [0, 1], outside the glass.

@@ -5,54 +5,13 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/mesh.h"
+#include "lucerna/optics/shapes/outline.h"
 
 namespace lucerna {
 
 namespace {
 
-using Corner = std::array<double, 2>;  // r, z
-
-/// Twice the area of a polygon; above 0 where it runs counter-clockwise with z up and r to the right.
-double signed_area(const std::vector<Corner>& p) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    const Corner &a = p[i], &b = p[(i + 1) % p.size()];
-    sum += a[0] * b[1] - b[0] * a[1];
-  }
-  return sum;
-}
-
-/// On which side of the line from a to b c lies.
-double side(const Corner& a, const Corner& b, const Corner& c) {
-  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
-bool cross_each_other(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
-  return side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0;
-}
-
-void check_outline(const std::vector<Corner>& p, int segments) {
-  if (p.size() < 3) throw InputError(fmt::format("outline of {} corners, expected at least 3", p.size()));
-  if (segments < 3)
-    throw InputError(fmt::format("{} segments about the axis, expected at least 3", segments));
-  const std::size_t n = p.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!std::isfinite(p[i][0]) || !std::isfinite(p[i][1]) || p[i][0] < 0.0) {
-      throw InputError(
-          fmt::format("corner {} of the outline is [{}, {}], expected a radius >= 0 and a height", i + 1,
-                      p[i][0], p[i][1]));
-    }
-    if (p[i] == p[(i + 1) % n])
-      throw InputError(fmt::format("corners {} and {} of the outline are equal", i + 1, (i + 1) % n + 1));
-    for (std::size_t k = i + 2; k < n; ++k) {
-      if (cross_each_other(p[i], p[i + 1], p[k], p[(k + 1) % n])) {
-        throw InputError(fmt::format(
-            "the outline crosses itself between corners {} and {} and after corner {}", i + 1, i + 2, k + 1));
-      }
-    }
-  }
-  if (signed_area(p) == 0.0) throw InputError("the outline has no area");
-}
+using Corner = OutlinePoint;
 
 /// Longest piece of a side over the width of its triangles, and most pieces: trees of boxes are slow on
 /// slivers.
@@ -61,18 +20,6 @@ constexpr int kMaxPieces = 64;
 /// Where sides turn by more than this the outline has an edge. `corner_normals` may smooth what turns less:
 /// the middle of such a side has no normal of its own and gets no corner.
 constexpr double kEdgeDeg = 60.0;
-
-/// How far the outline turns at a corner; on the axis it goes on as its mirror image.
-double turn_deg(const std::vector<Corner>& p, std::size_t i) {
-  const Corner &before = p[(i + p.size() - 1) % p.size()], &at = p[i], &after = p[(i + 1) % p.size()];
-  if (at[0] == 0.0) {
-    const Corner& side = before[0] > 0.0 ? before : after;
-    return 2.0 * degrees(std::atan2(std::abs(side[1] - at[1]), side[0]));
-  }
-  const double in = std::atan2(at[1] - before[1], at[0] - before[0]);
-  const double out = std::atan2(after[1] - at[1], after[0] - at[0]);
-  return std::abs(degrees(std::remainder(out - in, 2.0 * std::numbers::pi)));
-}
 
 /// True for a side that stays flat however its neighbours are smoothed.
 bool is_flat(const std::vector<Corner>& p, std::size_t i) {
@@ -139,9 +86,10 @@ class Turned {
 }  // namespace
 
 Mesh solid_of_revolution(std::span<const Corner> outline_mm, int segments) {
-  std::vector<Corner> outline(outline_mm.begin(), outline_mm.end());
-  check_outline(outline, segments);
-  if (signed_area(outline) < 0.0) std::reverse(outline.begin(), outline.end());
+  check_outline(outline_mm);
+  if (segments < 3)
+    throw InputError(fmt::format("{} segments about the axis, expected at least 3", segments));
+  const std::vector<Corner> outline = counter_clockwise(outline_mm);
   return std::move(Turned(divided(outline, segments), segments).mesh);
 }
 

@@ -81,8 +81,8 @@ constexpr std::array kKeys{
 
     ProjectKey{"body", "role", Type::word, kAny, "absorber mirror lamp glass solid", "\"absorber\"", "What light hits there. A lamp's body stops only light that comes back: rays of its file have left it already. A glass is a flat plate; a solid is any closed body of a clear medium."},
     ProjectKey{"body", "file", Type::file, kAny, "", "required but for glass and `outline_mm`", "A mesh (.stl .obj)."},
-    ProjectKey{"body", "outline_mm", Type::pairs, kAny, "", "none", "Of a solid of revolution, instead of `file`: corners [radius, height] of a closed polygon that turns about the z axis."},
-    ProjectKey{"body", "smooth_below_deg", Type::number, within(0, 180), "", "20", "Of a solid: the normal changes steadily across triangles that meet at less than this angle; 0 for facets."},
+    ProjectKey{"body", "outline_mm", Type::pairs, kAny, "", "none", "Of a solid of revolution, instead of `file`: corners [radius, height] of a closed outline that turns about the z axis."},
+    ProjectKey{"body", "smooth_below_deg", Type::number, within(0, 180), "", "20", "Of a solid: across triangles that meet at less than this angle the normal changes steadily, and an outline is a curve through corners that turn by less; 0 for facets and straight sides."},
     ProjectKey{"body", "scale", Type::number, kAboveZero, "", "1", "Millimetres of one unit of the mesh."},
     ProjectKey{"body", "open", Type::flag, kAny, "", "false", "Takes a mesh with open edges, as a sheet."},
     ProjectKey{"body", "name", Type::text, kAny, "", "the file's name", "Its name in the energy balance."},

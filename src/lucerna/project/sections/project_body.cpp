@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "lucerna/material.h"
+#include "lucerna/optics/shapes/outline.h"
 #include "lucerna/project/sections/project_parts.h"
 
 namespace lucerna::project_parts {
@@ -99,8 +100,8 @@ Solid read_solid(TomlReader& reader, Project& project) {
   solid.world_from_solid = read_placement(reader);
   if (const auto outline = reader.pairs("outline_mm")) {
     if (reader.has("file")) reader.fail("file", "found `outline_mm` too, which says what it is");
-    at_key(reader, "outline_mm",
-           [&] { solid.mesh = std::make_shared<const Mesh>(solid_of_revolution(*outline)); });
+    at_key(reader, "outline_mm", [&] { check_outline(*outline); });
+    solid.outline_mm = *outline;
   } else {
     solid.mesh = read_mesh_file(reader, project);
   }

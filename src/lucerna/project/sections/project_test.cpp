@@ -350,7 +350,8 @@ TEST(Project, SolidsAreMeshesOrOutlinesOfAMedium) {
   EXPECT_EQ(scene.solids[0].smooth_below_deg, 5.0);
   EXPECT_EQ(scene.solids[0].world_from_solid.origin_mm(), (Vec3{0, 0, 7}));
   EXPECT_EQ(scene.solids[1].refractive_index, Solid().refractive_index);
-  EXPECT_EQ(open_edges(*scene.solids[1].mesh), 0U);
+  EXPECT_EQ(scene.solids[1].outline_mm.size(), 4U);
+  EXPECT_EQ(open_edges(*surface_mesh(scene.solids[1])), 0U);
 
   const auto expect = [](const std::string& text, const std::string& part) {
     EXPECT_THAT(message(text), testing::HasSubstr(part));

@@ -158,7 +158,8 @@ slope_error_mrad = 0.0        # Gaussian tilt of the normal, standard deviation 
 #position_mm = [0, 0, -20]
 
 # A closed body of a clear medium: a lens, a TIR collimator. A mesh (file = "lens.stl"), or an outline
-# [radius, height] that turns about the z axis.
+# [radius, height] that turns about the z axis: a smooth curve through corners that turn by less than
+# smooth_below_deg (20).
 #[[body]]
 #role = "solid"
 #outline_mm = [[0, 0], [20, 0], [20, 2], [0, 6]]

@@ -202,7 +202,7 @@ Json body_json(const Body& body, Extent& extent) {
 Json solid_json(const Solid& solid, Extent& extent) {
   Body body;
   body.name = solid.name;
-  body.mesh = solid.mesh;
+  body.mesh = surface_mesh(solid);
   body.world_from_body = solid.world_from_solid;
   return body_json(body, extent);
 }

@@ -30,7 +30,11 @@ class GlassTracer {
   /// included. `visit` sees every point of a body's surface on the way.
   GlassPassage pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key,
                     const std::function<void(const Vec3&)>& visit = {}) const {
-    if (is_solid(hit)) return solids_.pass(ray, hit, key, visit);
+    if (is_solid(hit)) {
+      GlassHit of_solid = hit;
+      of_solid.glass -= cover_glasses_.size();
+      return solids_.pass(ray, of_solid, key, visit);
+    }
     return through_cover_glass(cover_glasses_[hit.glass], ray, hit, key);
   }
 

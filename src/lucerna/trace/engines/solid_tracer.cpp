@@ -33,37 +33,18 @@ std::size_t turned_edges(const Mesh& mesh) {
   return turned;
 }
 
-/// A mesh as the tree takes it.
+/// As the tree takes it.
 Body as_body(const Solid& solid) {
   Body body;
   body.name = solid.name;
-  body.mesh = solid.mesh;
+  body.mesh = surface_mesh(solid);
   body.world_from_body = solid.world_from_solid;
   body.smooth_below_deg = solid.smooth_below_deg;
   return body;
 }
 
-std::vector<Body> as_bodies(const std::vector<Solid>& solids) {
-  std::vector<Body> out;
-  for (const Solid& s : solids) out.push_back(as_body(s));
-  return out;
-}
-
-}  // namespace
-
-void check(const Solid& solid) {
-  const auto need = [&](bool good, const char* what, double value, const char* expected) {
-    if (!good)
-      throw InputError(fmt::format("solid '{}': {} is {}, expected {}", solid.name, what, value, expected));
-  };
-  if (!solid.mesh || solid.mesh->triangles.empty())
-    throw InputError(fmt::format("solid '{}' has no triangles", solid.name));
-  need(solid.refractive_index >= 1.0 && solid.refractive_index <= 4.0, "refractive_index",
-       solid.refractive_index, "1 to 4");
-  need(solid.absorption_per_mm >= 0.0 && std::isfinite(solid.absorption_per_mm), "absorption_per_mm",
-       solid.absorption_per_mm, "a finite number >= 0");
-  need(solid.smooth_below_deg >= 0.0 && solid.smooth_below_deg <= 180.0, "smooth_below_deg",
-       solid.smooth_below_deg, "0 to 180");
+void check_mesh(const Solid& solid) {
+  if (solid.mesh->triangles.empty()) throw InputError(fmt::format("solid '{}' has no triangles", solid.name));
   if (const std::size_t open = open_edges(*solid.mesh); open > 0) {
     throw InputError(
         fmt::format("solid '{}' is open: {} edges do not belong to exactly two triangles; "
@@ -78,36 +59,111 @@ void check(const Solid& solid) {
   }
 }
 
-SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
-  if (solids.empty()) return;
-  for (const Solid& s : solids) check(s);
-  const std::vector<Body> bodies = as_bodies(solids);
-  tree_ = std::make_unique<const TriangleBvh>(bodies, true);
-  for (const Body& body : bodies) corner_normals_.push_back(smooth_normals(body));
-  for (std::size_t i = 0; i < solids.size(); ++i) {
-    const Solid& s = solids[i];
-    views_.push_back({s.refractive_index, s.absorption_per_mm, signed_volume(*s.mesh) < 0.0 ? -1.0 : 1.0,
-                      corner_normals_[i].empty() ? nullptr : corner_normals_[i].data()});
+/// Straight pieces leave the curve of an outline by at most this share of its size.
+constexpr double kCurveTolerance = 1e-7;
+/// So do those of its mesh, by which what touches what is seen and which is shown.
+constexpr double kMeshTolerance = 1e-4;
+
+std::vector<OutlineSide> sides_of(const Solid& solid, double tolerance) {
+  return outline_sides(solid.outline_mm, solid.smooth_below_deg,
+                       tolerance * outline_reach_mm(solid.outline_mm));
+}
+
+}  // namespace
+
+void check(const Solid& solid) {
+  const auto need = [&](bool good, const char* what, double value, const char* expected) {
+    if (!good)
+      throw InputError(fmt::format("solid '{}': {} is {}, expected {}", solid.name, what, value, expected));
+  };
+  if ((solid.mesh == nullptr) == solid.outline_mm.empty()) {
+    throw InputError(fmt::format("solid '{}' has {}, expected either a mesh or an outline", solid.name,
+                                 solid.mesh == nullptr ? "no surface" : "both"));
+  }
+  need(solid.refractive_index >= 1.0 && solid.refractive_index <= 4.0, "refractive_index",
+       solid.refractive_index, "1 to 4");
+  need(solid.absorption_per_mm >= 0.0 && std::isfinite(solid.absorption_per_mm), "absorption_per_mm",
+       solid.absorption_per_mm, "a finite number >= 0");
+  need(solid.smooth_below_deg >= 0.0 && solid.smooth_below_deg <= 180.0, "smooth_below_deg",
+       solid.smooth_below_deg, "0 to 180");
+  if (solid.mesh != nullptr) {
+    check_mesh(solid);
+  } else {
+    (void)sides_of(solid, kMeshTolerance);
   }
 }
 
+std::shared_ptr<const Mesh> surface_mesh(const Solid& solid) {
+  if (solid.mesh != nullptr) return solid.mesh;
+  std::vector<OutlinePoint> corners;
+  for (const OutlineSide& side : sides_of(solid, kMeshTolerance)) {
+    if (corners.empty() || corners.back() != side.from) corners.push_back(side.from);
+    corners.push_back(side.to);
+  }
+  if (corners.back() == corners.front()) corners.pop_back();
+  return std::make_shared<const Mesh>(solid_of_revolution(corners));
+}
+
+SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
+  std::vector<Body> meshes;
+  for (const Solid& s : solids) {
+    check(s);
+    Traced traced;
+    traced.medium = {s.refractive_index, s.absorption_per_mm};
+    traced.world_from_solid = s.world_from_solid;
+    traced.solid_from_world = s.world_from_solid.inverse();
+    if (s.mesh != nullptr) {
+      of_triangles_.push_back(solids_.size());
+      meshes.push_back(as_body(s));
+      traced.sense = signed_volume(*s.mesh) < 0.0 ? -1.0 : 1.0;
+      traced.corner_normals = smooth_normals(meshes.back());
+    } else {
+      traced.revolved = std::make_unique<const RevolvedTree>(sides_of(s, kCurveTolerance));
+    }
+    solids_.push_back(std::move(traced));
+  }
+  if (!meshes.empty()) tree_ = std::make_unique<const TriangleBvh>(meshes, true);
+}
+
 std::optional<GlassHit> SolidTracer::first_hit(const Ray& ray, double t_max_mm, bool started) const {
-  if (empty()) return std::nullopt;
-  const TriangleHit hit =
-      first_triangle(tree_->view(), ray.origin_mm, ray.direction.vec(), started ? kBodyStart : 0.0, t_max_mm);
-  if (hit.triangle < 0) return std::nullopt;
-  GlassHit out;
-  out.t_mm = hit.t;
-  out.glass = tree_->triangles()[static_cast<std::size_t>(hit.triangle)].body;
-  out.triangle = hit;
+  std::optional<GlassHit> out;
+  if (tree_ != nullptr) {
+    const TriangleHit hit = first_triangle(tree_->view(), ray.origin_mm, ray.direction.vec(),
+                                           started ? kBodyStart : 0.0, t_max_mm);
+    if (hit.triangle >= 0) {
+      const std::uint32_t body = tree_->triangles()[static_cast<std::size_t>(hit.triangle)].body;
+      out = GlassHit{hit.t, of_triangles_[body], false, hit.triangle, hit.u, hit.v};
+      t_max_mm = hit.t;
+    }
+  }
+  for (std::size_t i = 0; i < solids_.size(); ++i) {
+    if (solids_[i].revolved == nullptr) continue;
+    const SurfaceHit hit = RevolvedSurface{solids_[i].revolved->view()}.first(
+        solids_[i].solid_from_world.ray(ray), started ? kSolidStart : 0.0, t_max_mm);
+    if (hit.part < 0) continue;
+    out = GlassHit{hit.t_mm, i, false, hit.part, hit.u, hit.v};
+    t_max_mm = hit.t_mm;
+  }
   return out;
 }
 
 GlassPassage SolidTracer::pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key,
                                const std::function<void(const Vec3&)>& visit) const {
-  return through_solid(view(), ray, hit.triangle, key, [&](const Vec3& point) {
-    if (visit) visit(point);
-  });
+  const Traced& solid = solids_[hit.glass];
+  const SurfaceHit at{hit.part, hit.t_mm, hit.u, hit.v};
+  if (solid.revolved == nullptr) {
+    const Vec3* const normals = solid.corner_normals.empty() ? nullptr : solid.corner_normals.data();
+    return through_solid(TriangleSurface{tree_->view(), solid.sense, normals}, solid.medium, ray, at, key,
+                         [&](const Vec3& point) {
+                           if (visit) visit(point);
+                         });
+  }
+  GlassPassage out = through_solid(RevolvedSurface{solid.revolved->view()}, solid.medium,
+                                   solid.solid_from_world.ray(ray), at, key, [&](const Vec3& point) {
+                                     if (visit) visit(solid.world_from_solid.point(point));
+                                   });
+  out.ray = solid.world_from_solid.ray(out.ray);
+  return out;
 }
 
 namespace {
@@ -137,34 +193,48 @@ bool are_far(const Extents& a, const Extents& b) {
          a.low_mm.z > b.high_mm.z + kTouch || b.low_mm.z > a.high_mm.z + kTouch;
 }
 
-/// A closed or open mesh in the luminaire frame, and a tree over it.
-struct Placed {
+bool is_within(const Extents& box, const Vec3& p) {
+  return p.x >= box.low_mm.x && p.x <= box.high_mm.x && p.y >= box.low_mm.y && p.y <= box.high_mm.y &&
+         p.z >= box.low_mm.z && p.z <= box.high_mm.z;
+}
+
+/// A closed or open mesh in the luminaire frame, and a tree over it, which is made when it is asked for: most
+/// bodies are far from each other.
+class Placed {
+ public:
+  explicit Placed(Body body)
+      : name(body.name), extents(extents_of(body)), mesh(*body.mesh), body_(std::move(body)) {
+    for (const Vec3& v : mesh.vertices_mm) vertices_mm.push_back(body_.world_from_body.point(v));
+  }
+
+  TriangleBvhView tree() {
+    if (!tree_) tree_.emplace(std::vector<Body>{body_}, true);
+    return tree_->view();
+  }
+
   std::string name;
   Extents extents;
   std::vector<Vec3> vertices_mm;
   const Mesh& mesh;
-  TriangleBvh tree;
+
+ private:
+  Body body_;
+  std::optional<TriangleBvh> tree_;
 };
 
-Placed placed(const Body& body) {
-  std::vector<Vec3> at;
-  for (const Vec3& v : body.mesh->vertices_mm) at.push_back(body.world_from_body.point(v));
-  return {body.name, extents_of(body), std::move(at), *body.mesh, TriangleBvh({body}, true)};
-}
-
 /// Does anything of `p` lie on the way from a to b, its ends left out?
-bool crosses(const Placed& p, const Vec3& a, const Vec3& b) {
+bool crosses(Placed& p, const Vec3& a, const Vec3& b) {
   const double reach = length(b - a);
   if (!(reach > 0.0)) return false;
-  return first_triangle(p.tree.view(), a, (b - a) / reach, 1e-9 * reach, (1.0 - 1e-9) * reach).triangle >= 0;
+  return first_triangle(p.tree(), a, (b - a) / reach, 1e-9 * reach, (1.0 - 1e-9) * reach).triangle >= 0;
 }
 
 /// Is a point within a closed mesh? By how many surfaces a ray that is parallel to no axis meets.
-bool contains(const Placed& p, Vec3 point) {
+bool contains(Placed& p, Vec3 point) {
   const Direction d = Direction::from({0.8017, 0.3141, 0.5087});
   bool inside = false;
   for (int i = 0; i < 10000; ++i) {
-    const TriangleHit hit = first_triangle(p.tree.view(), point, d.vec(), i == 0 ? 0.0 : 1e-9,
+    const TriangleHit hit = first_triangle(p.tree(), point, d.vec(), i == 0 ? 0.0 : 1e-9,
                                            std::numeric_limits<double>::infinity());
     if (hit.triangle < 0) return inside;
     inside = !inside;
@@ -177,7 +247,7 @@ bool contains(const Placed& p, Vec3 point) {
 const Vec3& corner_of(const Placed& p) { return p.vertices_mm[p.mesh.triangles.front()[0]]; }
 
 /// Does an edge of `a` run through the surface of `b`?
-bool edges_cut(const Placed& a, const Placed& b) {
+bool edges_cut(const Placed& a, Placed& b) {
   for (const auto& t : a.mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t from = t[k], to = t[(k + 1) % 3];
@@ -188,10 +258,10 @@ bool edges_cut(const Placed& a, const Placed& b) {
 }
 
 /// Does the surface of one run through that of the other?
-bool cut(const Placed& a, const Placed& b) { return edges_cut(a, b) || edges_cut(b, a); }
+bool cut(Placed& a, Placed& b) { return edges_cut(a, b) || edges_cut(b, a); }
 
 /// Does the middle of a triangle of `a` lie on `b`?
-bool touches(const Placed& a, const Placed& b) {
+bool touches(const Placed& a, Placed& b) {
   for (const auto& t : a.mesh.triangles) {
     const Vec3 &p = a.vertices_mm[t[0]], &q = a.vertices_mm[t[1]], &r = a.vertices_mm[t[2]];
     const Vec3 across = cross(q - p, r - p), middle = (1.0 / 3.0) * (p + q + r);
@@ -226,15 +296,12 @@ std::vector<Vec3> points_of(const PlacedReflector& mirror) {
 }  // namespace
 
 void check_apart(const Scene& scene) {
-  std::vector<Placed> solids;
-  for (const Solid& s : scene.solids) {
-    check(s);
-    solids.push_back(placed(as_body(s)));
-  }
-  for (std::size_t i = 0; i < solids.size(); ++i) {
-    const Placed& s = solids[i];
-    for (std::size_t k = 0; k < i; ++k) {
-      const Placed& other = solids[k];
+  std::vector<std::unique_ptr<Placed>> solids;
+  for (const Solid& solid : scene.solids) {
+    check(solid);
+    Placed& s = *solids.emplace_back(std::make_unique<Placed>(as_body(solid)));
+    for (std::size_t k = 0; k + 1 < solids.size(); ++k) {
+      Placed& other = *solids[k];
       if (are_far(s.extents, other.extents)) continue;
       if (cut(s, other) || contains(s, corner_of(other)) || contains(other, corner_of(s)) ||
           touches(s, other) || touches(other, s)) {
@@ -243,12 +310,13 @@ void check_apart(const Scene& scene) {
     }
     for (const Body& body : scene.bodies) {
       if (are_far(s.extents, extents_of(body))) continue;
-      const Placed b = placed(body);
+      Placed b(body);
       if (cut(b, s) || contains(s, corner_of(b))) fail_apart(s.name, fmt::format("body '{}'", body.name));
     }
     for (std::size_t m = 0; m < scene.reflectors.size(); ++m) {
       for (const Vec3& point : points_of(scene.reflectors[m])) {
-        if (contains(s, point)) fail_apart(s.name, fmt::format("reflector {}", m + 1));
+        if (is_within(s.extents, point) && contains(s, point))
+          fail_apart(s.name, fmt::format("reflector {}", m + 1));
       }
     }
   }

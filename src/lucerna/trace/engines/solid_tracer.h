@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lucerna/scene.h"
+#include "lucerna/trace/kernels/revolved_tree.h"
 #include "lucerna/trace/kernels/solid_kernel.h"
 #include "lucerna/trace/kernels/triangle_bvh.h"
 
@@ -18,10 +19,10 @@ class SolidTracer {
   /// Throws InputError as `check(Solid)` does.
   explicit SolidTracer(const std::vector<Solid>& solids);
 
-  bool empty() const { return views_.empty(); }
+  bool empty() const { return solids_.empty(); }
 
   /// The first surface within (0, t_max_mm) of a ray in the luminaire frame. `started`: it comes from
-  /// something that it met before; what is nearer than a thousandth of a millimetre is that.
+  /// something that it met before; what is nearer than a thousandth of a millimetre to triangles is that.
   std::optional<GlassHit> first_hit(const Ray& ray, double t_max_mm, bool started) const;
 
   /// What becomes of the ray there; `key.bounce` counts all that it met before, a body once. `visit` sees
@@ -30,11 +31,19 @@ class SolidTracer {
                     const std::function<void(const Vec3&)>& visit = {}) const;
 
  private:
-  SolidsView view() const { return {tree_->view(), views_.data()}; }
+  /// A body by its outline, or of triangles.
+  struct Traced {
+    MediumView medium;
+    std::unique_ptr<const RevolvedTree> revolved;  ///< null for triangles
+    Frame world_from_solid, solid_from_world;
+    double sense = 1.0;
+    std::vector<Vec3> corner_normals;
+  };
 
+  std::vector<Traced> solids_;
+  /// Over the triangles of all bodies that have them, and the numbers of these.
   std::unique_ptr<const TriangleBvh> tree_;
-  std::vector<std::vector<Vec3>> corner_normals_;
-  std::vector<SolidView> views_;
+  std::vector<std::size_t> of_triangles_;
 };
 
 /// Throws InputError, naming both, where a clear body holds, cuts or touches (within 5 um) another one, or

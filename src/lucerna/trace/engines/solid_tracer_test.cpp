@@ -15,6 +15,7 @@
 #include "lucerna/source.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace/engines/ray_paths.h"
+#include "tests/support/random_rays.h"
 
 namespace lucerna {
 namespace {
@@ -23,7 +24,7 @@ using Outline = std::vector<std::array<double, 2>>;
 
 Solid turned(const Outline& outline, double index = 1.5) {
   Solid s;
-  s.mesh = std::make_shared<const Mesh>(solid_of_revolution(outline));
+  s.outline_mm = outline;
   s.refractive_index = index;
   return s;
 }
@@ -185,6 +186,39 @@ TEST(SolidTracer, ABallLensHasItsFocus) {
   EXPECT_GT(seen, 80);
 }
 
+// An ellipsoid of eccentricity 1 / n gathers parallel light at its far focus (R. Descartes, 1637), and a
+// sphere about that focus lets it out as it comes.
+TEST(SolidTracer, ACartesianOvalIsStigmatic) {
+  const double n = 1.5, half_axis = 20.0, e = 1.0 / n, b = half_axis * std::sqrt(1.0 - e * e);
+  const double focus = half_axis * e, back = 12.0;
+  Outline outline;
+  const int steps = 600;
+  for (int i = 0; i <= steps; ++i) {
+    const double a = radians(60.0) * i / steps;
+    outline.push_back({b * std::sin(a), -half_axis * std::cos(a)});
+  }
+  const double side = std::asin(outline.back()[0] / 1.3 / back);
+  for (int i = steps; i >= 0; --i) {
+    const double a = side * i / steps;
+    outline.push_back({back * std::sin(a), focus - back * std::cos(a)});
+  }
+  const SolidTracer tracer({turned(outline, n)});
+  int through = 0, astray = 0;
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    Rng rng(4, i);
+    const double r = 8.0 * std::sqrt(rng.uniform()), phi = radians(360.0 * rng.uniform());
+    const Ray ray = ray_up(0.0, {r * std::cos(phi), r * std::sin(phi), -40.0});
+    const auto hit = tracer.first_hit(ray, 1e9, false);
+    ASSERT_TRUE(hit);
+    const GlassPassage p = tracer.pass(ray, *hit, {6, i, 0});
+    if (!(p.ray.direction.z() > 0.5)) continue;
+    const Vec3 to = Vec3{0.0, 0.0, focus} - p.ray.origin_mm;
+    (length(cross(to, p.ray.direction.vec())) < 1e-6 ? through : astray) += 1;
+  }
+  EXPECT_GT(through, 850);
+  EXPECT_LT(astray, 15) << "what was reflected to and fro within";
+}
+
 /// What makes light from the origin parallel: within `inner_mm` of the axis a surface of equal optical path
 /// (a hyperbola), around it a wall that refracts and a side that reflects to +z, of equal optical path too.
 Outline collimator(double n, double focus_mm, double inner_mm) {
@@ -314,13 +348,44 @@ TEST(SolidTracer, WhatIsNotApartIsRefusedByName) {
       "solid 'ball' and solid 'solid': one holds, cuts or touches the other; expected them apart";
   EXPECT_EQ(at(2.5), refusal) << "within";
   EXPECT_EQ(at(5.0), refusal) << "cuts";
-  scene.solids[1].mesh = plate(3.0).mesh;
+  scene.solids[1].outline_mm = plate(3.0).outline_mm;
   EXPECT_EQ(at(5.0), refusal) << "touches";
   EXPECT_EQ(at(5.1), "");
 }
 
+/// The same body as triangles.
+Solid as_triangles(Solid solid) {
+  solid.mesh = surface_mesh(solid);
+  solid.outline_mm.clear();
+  return solid;
+}
+
+// One body as cones and as triangles, of which circles are 0.004 % smaller. 1e-6 false alarms at 4.9 sigma of
+// 40000 rays, 0.3 % of what is emitted: a mesh without smooth normals sends 2 % elsewhere.
+TEST(SolidTracerStatistical, AnOutlineAndItsMeshSendTheSameLight) {
+  Solid lens = turned(collimator(1.49, 6.0, 5.0), 1.49);
+  lens.absorption_per_mm = 0.02;
+  const auto ledger_of = [](const Solid& s) {
+    return ledger(traced(scene_with(s, 0.1), EngineKind::fast, 40000));
+  };
+  const Ledger a = ledger_of(lens), b = ledger_of(as_triangles(lens));
+  EXPECT_NEAR(a.absorbed[2].second.mean, b.absorbed[2].second.mean, 0.003 * b.emitted);
+  EXPECT_NEAR(a.out_direct.mean, b.out_direct.mean, 0.012 * b.emitted);
+  EXPECT_EQ(a.all_lost.mean, 0.0);
+}
+
+TEST(SolidTracer, HasEitherAMeshOrAnOutline) {
+  Solid both = plate(5.0), none = plate(5.0);
+  both.mesh = surface_mesh(both);
+  none.outline_mm.clear();
+  for (const auto& [solid, found] : {std::pair{both, "both"}, {none, "no surface"}}) {
+    EXPECT_EQ(test::message_of<InputError>([&] { check(solid); }),
+              std::string("solid 'solid' has ") + found + ", expected either a mesh or an outline");
+  }
+}
+
 TEST(SolidTracer, OpenAndTurnedSurfacesAreRefused) {
-  Solid s = plate(5.0);
+  Solid s = as_triangles(plate(5.0));
   Mesh open = *s.mesh, turned_one = *s.mesh;
   open.triangles.pop_back();
   std::swap(turned_one.triangles[5][0], turned_one.triangles[5][1]);
@@ -329,7 +394,7 @@ TEST(SolidTracer, OpenAndTurnedSurfacesAreRefused) {
   s.mesh = std::make_shared<const Mesh>(turned_one);
   EXPECT_THROW(check(s), InputError);
   // All turned alike is a matter of taste.
-  Mesh inside_out = *plate(5.0).mesh;
+  Mesh inside_out = *surface_mesh(plate(5.0));
   for (auto& t : inside_out.triangles) std::swap(t[0], t[1]);
   s.mesh = std::make_shared<const Mesh>(inside_out);
   const Ledger a = ledger(traced(scene_with(s, -3.0), EngineKind::fast, 5000));

@@ -27,21 +27,33 @@ struct BodyHit {
 /// A start that lies on a triangle is stepped over by this much, mm, once the ray was reflected.
 inline constexpr double kBodyStart = 1e-3;
 
-/// A hit with a triangle of `normal` (any length, either side). `corners`: its three smooth normals, or null;
-/// u and v are the weights of the second and third.
-LUCERNA_HD inline BodyHit body_hit(const Direction& direction, double t_mm, std::size_t body,
-                                   const Vec3& normal, const Vec3* corners, double u, double v) {
+/// A hit with a surface of `normal` (any length, either side) whose smooth normal is `blend` (likewise); 0
+/// for none.
+LUCERNA_HD inline BodyHit smoothed_hit(const Direction& direction, double t_mm, std::size_t body,
+                                       const Vec3& normal, const Vec3& blend) {
   Direction n = Direction::from(normal);
   if (dot(n, direction) > 0.0) n = -n;
   BodyHit hit{t_mm, body, n, n};
-  if (corners == nullptr) return hit;
-  const Vec3 blend = (1.0 - u - v) * corners[0] + u * corners[1] + v * corners[2];
   if (!(length(blend) > 0.0)) return hit;
   Direction smooth = Direction::from(blend);
   if (dot(smooth, n) < 0.0) smooth = -smooth;
   const bool same_side = dot(smooth, direction) < 0.0 && dot(reflect(direction, smooth), n) > 0.0;
   if (same_side) hit.normal = smooth;
   return hit;
+}
+
+/// The smooth normal within a triangle, of any length. `corners`: its three, or null; u and v are the weights
+/// of the second and third.
+LUCERNA_HD inline Vec3 blended_normal(const Vec3* corners, double u, double v) {
+  if (corners == nullptr) return {};
+  return (1.0 - u - v) * corners[0] + u * corners[1] + v * corners[2];
+}
+
+/// A hit with a triangle of `normal` (any length, either side); `corners`, u and v as blended_normal takes
+/// them.
+LUCERNA_HD inline BodyHit body_hit(const Direction& direction, double t_mm, std::size_t body,
+                                   const Vec3& normal, const Vec3* corners, double u, double v) {
+  return smoothed_hit(direction, t_mm, body, normal, blended_normal(corners, u, v));
 }
 
 /// Where a mirror reflects a ray that met it: about the normal, tilted by the body's slope error of this

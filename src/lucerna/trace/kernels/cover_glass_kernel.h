@@ -3,13 +3,13 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "lucerna/geometry.h"
 #include "lucerna/host_device.h"
 #include "lucerna/random.h"
 #include "lucerna/trace/kernels/slope_error.h"
-#include "lucerna/trace/kernels/triangle_kernel.h"
 
 namespace lucerna {
 
@@ -166,8 +166,9 @@ struct GlassHit {
   double t_mm = 0.0;
   std::size_t glass = 0;
   bool edge = false;
-  /// Of a clear body of triangles; a plate has none.
-  TriangleHit triangle;
+  /// Of a clear body: the triangle or the side of its outline, and where on it; a plate has none.
+  std::int32_t part = -1;
+  double u = 0.0, v = 0.0;
 };
 
 /// The first of n plates within [0, t_max_mm) of a ray in the luminaire frame.
@@ -180,7 +181,7 @@ LUCERNA_HD inline std::optional<GlassHit> first_cover_glass(const PlacedCoverGla
         cover_glass_entry(cover_glasses[i].cover_glass, local.origin_mm, local.direction.vec());
     if (!entry.is_hit || !(entry.t_mm < t_max_mm)) continue;
     t_max_mm = entry.t_mm;
-    first = GlassHit{entry.t_mm, i, entry.edge, {}};
+    first = GlassHit{entry.t_mm, i, entry.edge};
   }
   return first;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "lucerna/geometry.h"
@@ -9,6 +10,7 @@
 #include "lucerna/random.h"
 #include "lucerna/trace/kernels/body_kernel.h"
 #include "lucerna/trace/kernels/cover_glass_kernel.h"
+#include "lucerna/trace/kernels/revolved_kernel.h"
 #include "lucerna/trace/kernels/triangle_kernel.h"
 
 namespace lucerna {
@@ -44,19 +46,15 @@ LUCERNA_HD inline Vec3 refracted(const Direction& d, const Direction& normal, do
   return (1.0 / ratio) * d.vec() + (c / ratio - found.cos_refracted) * normal.vec();
 }
 
-/// A clear body as a kernel reads it.
-struct SolidView {
+/// A clear medium as a kernel reads it.
+struct MediumView {
   double index = 1.0, absorption_per_mm = 0.0;
-  /// 1 where triangles are counter-clockwise seen from outside, else -1.
-  double outward = 1.0;
-  /// Three a triangle, in the luminaire frame; null for flat triangles.
-  const Vec3* corner_normals = nullptr;
 };
 
-/// All clear bodies of a scene, in one tree. None touches another.
-struct SolidsView {
-  TriangleBvhView tree;
-  const SolidView* solids = nullptr;
+/// Where a ray meets a clear body: the part of its surface, and where on it.
+struct SurfaceHit {
+  std::int32_t part = -1;  ///< none
+  double t_mm = 0.0, u = 0.0, v = 0.0;
 };
 
 /// A ray inside a body that starts on its surface is not stopped by what is nearer than this, mm.
@@ -64,11 +62,45 @@ inline constexpr double kSolidStart = 1e-6;
 /// How often a ray meets the surface of one body before it is given up.
 inline constexpr int kMaxInsideHits = 1000;
 
-/// Would a ray leave its body at this hit?
-LUCERNA_HD inline bool leaves_solid(const SolidsView& v, const Direction& d, const TriangleHit& hit) {
-  const TreeTriangle& k = v.tree.triangles[hit.triangle];
-  return v.solids[k.body].outward * dot(normal_of(k), d.vec()) > 0.0;
-}
+// A surface as through_solid takes it: `first` hit, the `outward` normal there (any length), and the `smooth`
+// one (any length and side, 0 for none).
+
+/// Triangles, in the luminaire frame, in one tree with those of other bodies, which none touches.
+struct TriangleSurface {
+  TriangleBvhView tree;
+  /// 1 where triangles are counter-clockwise seen from outside, else -1.
+  double sense = 1.0;
+  /// Three a triangle; null for flat triangles.
+  const Vec3* corner_normals = nullptr;
+
+  LUCERNA_HD SurfaceHit first(const Ray& ray, double t_min_mm, double t_max_mm) const {
+    const TriangleHit hit = first_triangle(tree, ray.origin_mm, ray.direction.vec(), t_min_mm, t_max_mm);
+    return {hit.triangle, hit.t, hit.u, hit.v};
+  }
+  LUCERNA_HD Vec3 outward(const Vec3&, const SurfaceHit& hit) const {
+    return sense * normal_of(tree.triangles[hit.part]);
+  }
+  LUCERNA_HD Vec3 smooth(const Vec3&, const SurfaceHit& hit) const {
+    if (corner_normals == nullptr) return {};
+    return blended_normal(corner_normals + std::size_t{3} * tree.triangles[hit.part].number, hit.u, hit.v);
+  }
+};
+
+/// An outline that turns about z, in the body's frame.
+struct RevolvedSurface {
+  RevolvedView view;
+
+  LUCERNA_HD SurfaceHit first(const Ray& ray, double t_min_mm, double t_max_mm) const {
+    const SideHit hit = first_side(view, ray.origin_mm, ray.direction.vec(), t_min_mm, t_max_mm);
+    return {hit.side, hit.t, hit.share, 0.0};
+  }
+  LUCERNA_HD Vec3 outward(const Vec3& point_mm, const SurfaceHit& hit) const {
+    return cone_normal(view.sides[hit.part], point_mm);
+  }
+  LUCERNA_HD Vec3 smooth(const Vec3& point_mm, const SurfaceHit& hit) const {
+    return curve_normal(view.sides[hit.part], hit.u, point_mm);
+  }
+};
 
 /// Light on its way through a body: a ray, and the direction of its electric field. Unpolarised light is one
 /// of two directions across each other, by chance.
@@ -94,20 +126,16 @@ struct BoundaryHit {
   Boundary found;
 };
 
-LUCERNA_HD inline BoundaryHit boundary_hit(const SolidsView& v, const Ray& ray, const TriangleHit& hit,
-                                           bool inside) {
-  const TreeTriangle& k = v.tree.triangles[hit.triangle];
-  const SolidView& solid = v.solids[k.body];
-  const Vec3* const corners =
-      solid.corner_normals == nullptr ? nullptr : solid.corner_normals + std::size_t{3} * k.number;
-  const BodyHit at = body_hit(ray.direction, hit.t, k.body, normal_of(k), corners, hit.u, hit.v);
-  const double ratio = inside ? 1.0 / solid.index : solid.index;
-  const BoundaryHit smooth{at.normal, ratio, boundary(ratio, -dot(ray.direction, at.normal))};
-  if (smooth.found.cos_refracted == 0.0) return smooth;
-  // A smooth normal may send the refracted ray back to the side that it came from: the triangle's own does
+/// `outward` and `smooth`: as a surface has them.
+LUCERNA_HD inline BoundaryHit boundary_hit(const Direction& d, const Vec3& outward, const Vec3& smooth,
+                                           double ratio) {
+  const BodyHit at = smoothed_hit(d, 0.0, 0, outward, smooth);
+  const BoundaryHit found{at.normal, ratio, boundary(ratio, -dot(d, at.normal))};
+  if (found.found.cos_refracted == 0.0) return found;
+  // A smooth normal may send the refracted ray back to the side that it came from: the surface's own does
   // not.
-  if (dot(refracted(ray.direction, at.normal, ratio, smooth.found), at.face.vec()) < 0.0) return smooth;
-  return {at.face, ratio, boundary(ratio, -dot(ray.direction, at.face))};
+  if (dot(refracted(d, at.normal, ratio, found.found), at.face.vec()) < 0.0) return found;
+  return {at.face, ratio, boundary(ratio, -dot(d, at.face))};
 }
 
 /// Sends light on from a boundary at distance `t_mm`; true if it is reflected, which `u`, uniform in [0, 1),
@@ -134,25 +162,29 @@ LUCERNA_HD inline bool cross_boundary(PolarisedRay& light, const BoundaryHit& at
 /// Follows a ray that met a clear body until it is outside again: reflected there, or after all its way
 /// within. One branch is taken by chance at each boundary, with weight 1. Polarisation is kept within the
 /// body. `visit` is called with every point of the surface on the way. What is given up has `lost` set.
-template <class Visit>
-LUCERNA_HD inline GlassPassage through_solid(const SolidsView& v, const Ray& ray, TriangleHit hit,
-                                             const ReflectionKey& key, const Visit& visit) {
+template <class Surface, class Visit>
+LUCERNA_HD inline GlassPassage through_solid(const Surface& surface, const MediumView& medium, const Ray& ray,
+                                             SurfaceHit hit, const ReflectionKey& key, const Visit& visit) {
   // The streams of cover glasses: a ray meets one thing at a time.
   Rng rng(key.sequence_seed, key.ray, 0x20000u + static_cast<std::uint32_t>(key.bounce));
-  const SolidView& solid = v.solids[v.tree.triangles[hit.triangle].body];
   GlassPassage out;
   out.throughput = 1.0;
-  bool inside = leaves_solid(v, ray.direction, hit);
+  Vec3 outward = surface.outward(ray.at(hit.t_mm), hit);
+  bool inside = dot(outward, ray.direction.vec()) > 0.0;
   out.transmitted = inside;
-  PolarisedRay light{ray, any_field(ray.direction, boundary_hit(v, ray, hit, inside).normal, rng.uniform())};
-  for (int i = 0; i < kMaxInsideHits && hit.triangle >= 0; ++i) {
-    if (inside) out.throughput *= std::exp(-solid.absorption_per_mm * hit.t);
+  PolarisedRay light{ray, any_field(ray.direction, Direction::from(outward), rng.uniform())};
+  for (int i = 0; i < kMaxInsideHits; ++i) {
+    if (inside) out.throughput *= std::exp(-medium.absorption_per_mm * hit.t_mm);
+    const Direction d = light.ray.direction;
+    const Vec3 point_mm = light.ray.at(hit.t_mm);
     const double u = rng.uniform();
-    if (leaves_solid(v, light.ray.direction, hit) != inside) {  // rounding: a surface that is behind the ray
-      light.ray.origin_mm = light.ray.at(hit.t);
+    if ((dot(outward, d.vec()) > 0.0) != inside) {  // rounding: a surface that is behind the ray
+      light.ray.origin_mm = point_mm;
     } else {
-      const bool reflected = cross_boundary(light, boundary_hit(v, light.ray, hit, inside), hit.t, u);
-      visit(light.ray.origin_mm);
+      const double ratio = inside ? 1.0 / medium.index : medium.index;
+      const BoundaryHit at = boundary_hit(d, outward, surface.smooth(point_mm, hit), ratio);
+      const bool reflected = cross_boundary(light, at, hit.t_mm, u);
+      visit(point_mm);
       if (!reflected) {
         inside = !inside;
         out.transmitted = true;
@@ -162,7 +194,9 @@ LUCERNA_HD inline GlassPassage through_solid(const SolidsView& v, const Ray& ray
         return out;
       }
     }
-    hit = first_triangle(v.tree, light.ray.origin_mm, light.ray.direction.vec(), kSolidStart, 1e300);
+    hit = surface.first(light.ray, kSolidStart, 1e300);
+    if (hit.part < 0) break;
+    outward = surface.outward(light.ray.at(hit.t_mm), hit);
   }
   out.ray = light.ray;
   out.lost = true;

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/trace/kernels/revolved_tree.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lucerna/core/io/error.h"
+
+namespace lucerna {
+
+namespace {
+
+RevolvedSide side_of(const OutlineSide& s) {
+  const double dr = s.to[0] - s.from[0], dz = s.to[1] - s.from[1], length = std::hypot(dr, dz);
+  const double nr = dz / length, nz = -dr / length, square = length * length;
+  return {s.from[0],
+          s.from[1],
+          dr / square,
+          dz / square,
+          nr,
+          nz,
+          nr * s.from[0] + nz * s.from[1],
+          s.from_normal[0],
+          s.from_normal[1],
+          s.to_normal[0],
+          s.to_normal[1]};
+}
+
+/// About one side, wider than it by what rounding may move a hit.
+RevolvedNode ring_about(const OutlineSide& s) {
+  const double slack = 1e-9 * (std::hypot(s.from[0], s.from[1]) + std::hypot(s.to[0], s.to[1]));
+  const double low = std::max(std::min(s.from[0], s.to[0]) - slack, 0.0);
+  const double high = std::max(s.from[0], s.to[0]) + slack;
+  return {low * low, high * high, std::min(s.from[1], s.to[1]) - slack, std::max(s.from[1], s.to[1]) + slack,
+          0,         -1};
+}
+
+/// Appends the tree over the leaves [first, end); returns the ring about them.
+RevolvedNode add_nodes(const std::vector<RevolvedNode>& leaves, std::size_t first, std::size_t end,
+                       std::vector<RevolvedNode>& nodes) {
+  const std::size_t at = nodes.size();
+  nodes.push_back(leaves[first]);
+  if (end - first == 1) {
+    nodes[at].side = static_cast<std::int32_t>(first);
+  } else {
+    const std::size_t middle = first + (end - first) / 2;
+    const RevolvedNode a = add_nodes(leaves, first, middle, nodes), b = add_nodes(leaves, middle, end, nodes);
+    nodes[at] = {std::min(a.r2_low, b.r2_low),
+                 std::max(a.r2_high, b.r2_high),
+                 std::min(a.z_low, b.z_low),
+                 std::max(a.z_high, b.z_high),
+                 0,
+                 -1};
+  }
+  nodes[at].skip = static_cast<std::int32_t>(nodes.size());
+  return nodes[at];
+}
+
+}  // namespace
+
+RevolvedTree::RevolvedTree(const std::vector<OutlineSide>& sides) {
+  LUCERNA_CHECK(!sides.empty(), "an outline of {} sides", sides.size());
+  std::vector<RevolvedNode> leaves;
+  for (const OutlineSide& s : sides) {
+    sides_.push_back(side_of(s));
+    leaves.push_back(ring_about(s));
+  }
+  nodes_.reserve(2 * leaves.size());
+  add_nodes(leaves, 0, leaves.size(), nodes_);
+}
+
+}  // namespace lucerna
