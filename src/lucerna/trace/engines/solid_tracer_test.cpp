@@ -378,10 +378,9 @@ TEST(SolidTracer, HasEitherAMeshOrAnOutline) {
   Solid both = plate(5.0), none = plate(5.0);
   both.mesh = surface_mesh(both);
   none.outline_mm.clear();
-  for (const auto& [solid, found] : {std::pair{both, "both"}, {none, "no surface"}}) {
-    EXPECT_EQ(test::message_of<InputError>([&] { check(solid); }),
-              std::string("solid 'solid' has ") + found + ", expected either a mesh or an outline");
-  }
+  const auto refusal_of = [](const Solid& s) { return test::message_of<InputError>([&] { check(s); }); };
+  EXPECT_EQ(refusal_of(both), "solid 'solid' has both, expected either a mesh or an outline");
+  EXPECT_EQ(refusal_of(none), "solid 'solid' has no surface, expected either a mesh or an outline");
 }
 
 TEST(SolidTracer, OpenAndTurnedSurfacesAreRefused) {
