@@ -63,7 +63,7 @@ class RayReader {
 
   /// Replaces `block` by the next at most `max_rays` > 0 rays; returns how many (0 at the end and only
   /// there). Every start, direction and weight is finite, every direction is unit to 1e-3 and then normalised
-  /// (directions that are unit to 1e-6, which is what float32 can hold, keep their bits), every weight >= 0;
+  /// (directions whose square is 1 to 1e-6, which float32 can hold, keep their bits), every weight >= 0;
   /// else InputError with the ray's number (from 0) and its byte or line. Extra columns are finite but for
   /// Stokes and additional ones.
   [[nodiscard]] virtual std::size_t read(RayBlock& block, std::size_t max_rays) = 0;
