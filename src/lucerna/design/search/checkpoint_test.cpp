@@ -77,6 +77,7 @@ FreeFormSnapshot any_candidate(Rng& rng) {
           {any_double(rng), any_double(rng)},
           any_double(rng),
           any_double(rng),
+          any_double(rng),
           1 + static_cast<int>(100 * rng.uniform()),
           1 + static_cast<int>(100 * rng.uniform()),
           1 + static_cast<int>(100 * rng.uniform()),
@@ -88,8 +89,8 @@ void expect_same(const FreeFormSnapshot& a, const FreeFormSnapshot& b) {
   EXPECT_EQ(a.candidate, b.candidate);
   EXPECT_EQ(a.level, b.level);
   const auto numbers = [](const FreeFormSnapshot& m) {
-    return bits_of(
-        {m.transport.sign, m.transport.vertex_distance_mm, m.cost, m.error_to_noise, m.derivative_noise});
+    return bits_of({m.transport.sign, m.transport.vertex_distance_mm, m.cost, m.early_cost, m.error_to_noise,
+                    m.derivative_noise});
   };
   EXPECT_EQ(numbers(a), numbers(b));
   EXPECT_EQ(a.bins, b.bins);

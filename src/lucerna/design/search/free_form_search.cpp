@@ -19,24 +19,18 @@ constexpr int kLevels = kFreeFormLevels, kEnd = 2, kMoreRays = 3;
 constexpr int kRoughIntervals = 32;
 /// The first candidates, over the aperture's radius: mirrors that spread light near the source, and mirrors
 /// whose rays cross farther from it. Others catch too little light or become walls.
-constexpr std::array<TransportChoice, 10> kFirst{{{-1.0, 0.33},
-                                                  {-1.0, 0.27},
-                                                  {},  // no transport: an approach of the given mirror
-                                                  {-1.0, 0.21},
-                                                  {-1.0, 0.45},
-                                                  {1.0, 0.75},
-                                                  {1.0, 0.92},
-                                                  {1.0, 0.33},
-                                                  {1.0, 0.27},
-                                                  {1.0, 0.45}}};
+constexpr std::array<TransportChoice, 2> kBeforeApproaches{{{-1.0, 0.33}, {-1.0, 0.27}}};
+constexpr std::array<TransportChoice, 7> kAfterApproaches{
+    {{-1.0, 0.21}, {-1.0, 0.45}, {1.0, 0.75}, {1.0, 0.92}, {1.0, 0.33}, {1.0, 0.27}, {1.0, 0.45}}};
 /// The approach is tried where the candidates before it stay this far from the target (relative error), for a
 /// point source's mirror is no guide for a source that is long or wide; and where the given mirror is the
-/// nearest of them.
-constexpr int kApproach = 3;
-static_assert(!kFirst[kApproach - 1].exists());
+/// nearest of them. Further approaches, from perturbed copies, follow where none is near: they end in basins
+/// of their own, and how near they are once refined spreads by a factor of four in error.
+constexpr int kApproach = 1 + static_cast<int>(kBeforeApproaches.size()), kApproaches = 8;
 constexpr double kFarError = 0.15;
-/// The given mirror, its approach and these.
-constexpr int kFirstCandidates = static_cast<int>(kFirst.size()) + 1;
+/// The first candidate after the approaches; after the given mirror, the approaches and all transports.
+constexpr int kNoApproach = kApproach + kApproaches;
+constexpr int kFirstCandidates = kNoApproach + static_cast<int>(kAfterApproaches.size());
 /// How many of them are fitted finely.
 constexpr int kFine = 3;
 /// A neighbour of the best goes on where its cost is at most so many times the best's at that level.
@@ -48,6 +42,10 @@ constexpr int kNeighboursBefore = 4;
 constexpr double kFarthest = 1.3;
 /// A candidate that after two rough steps costs so many times the best of the rough level goes no further.
 constexpr double kHopeless = 4.0;
+/// An approach that after so many fine steps costs so many times what the best had cost by then goes no
+/// further: it would need many more steps than there are.
+constexpr int kEarlySteps = 5;
+constexpr double kSlow = 2.0;
 /// Candidates in a row that have no start, after which there are no others.
 constexpr int kMaxFailed = 8;
 /// Steps in a row, each five times as damped as the one before, after which a level is at its end.
@@ -126,7 +124,10 @@ FreeFormLevel FreeFormSearch::level(int number) const {
 }
 
 TransportChoice FreeFormSearch::first_choice(int number) const {
-  const TransportChoice& c = kFirst[static_cast<std::size_t>(number) - 1];
+  if (number >= kApproach && number < kNoApproach) return {};
+  const TransportChoice& c = number < kApproach
+                                 ? kBeforeApproaches[static_cast<std::size_t>(number - 1)]
+                                 : kAfterApproaches[static_cast<std::size_t>(number - kNoApproach)];
   return {c.sign, c.vertex_distance_mm * given_.aperture().outer_radius_mm()};
 }
 
@@ -134,17 +135,23 @@ bool FreeFormSearch::fixed_to_few_knots() const {
   return has_few_knots(given_) && max_intervals_ == std::max(given_.intervals_x(), given_.intervals_y());
 }
 
+bool FreeFormSearch::is_approach(const FreeFormSnapshot& snapshot) {
+  return !snapshot.transport.exists() && snapshot.candidate >= kApproach;
+}
+
 bool FreeFormSearch::worth_an_approach() const {
   const FreeFormSnapshot* best = best_of(0);
-  return has_few_knots(given_) && !fixed_to_few_knots() && best != nullptr &&
-         (best->candidate == 0 || best->cost > kErrorShare[0] * kFarError * kFarError);
+  if (!has_few_knots(given_) || fixed_to_few_knots() || best == nullptr) return false;
+  const double near = is_approach(*best) ? kNear : kFarError;
+  return best->candidate == 0 || best->cost > kErrorShare[0] * near * near;
 }
 
 bool FreeFormSearch::approach_is_alone() const {
+  if (worth_an_approach() && state_.begun < kNoApproach) return false;
   const FreeFormSnapshot *approach = nullptr, *other = nullptr;
   for (const FreeFormSnapshot& m : state_.done) {
     if (m.level != 0) continue;
-    const FreeFormSnapshot*& best = m.candidate == kApproach ? approach : other;
+    const FreeFormSnapshot*& best = is_approach(m) ? approach : other;
     if (best == nullptr || m.cost < best->cost) best = &m;
   }
   return approach != nullptr && other != nullptr && other->cost > kHopeless * approach->cost;
@@ -156,7 +163,7 @@ TransportChoice FreeFormSearch::choice(int number) const {
   Rng rng(problem_.seed, static_cast<std::uint64_t>(number), 77);
   const FreeFormSnapshot* best = best_of(kEnd);
   const bool of_given = best != nullptr && !best->transport.exists();
-  if (of_given && (fixed_to_few_knots() || best->candidate >= kApproach)) return {};
+  if (of_given && (fixed_to_few_knots() || is_approach(*best))) return {};
   const TransportChoice about = best != nullptr && !of_given ? best->transport : first_choice(1);
   const double factor = std::pow(kFarthest, 2.0 * rng.uniform() - 1.0);
   return {about.sign, factor * about.vertex_distance_mm};
@@ -164,7 +171,8 @@ TransportChoice FreeFormSearch::choice(int number) const {
 
 std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormSnapshot& snapshot) {
   if (snapshot.candidate == 0) return nearer_of_given();
-  if (snapshot.candidate == kApproach && !worth_an_approach()) return std::nullopt;
+  if (snapshot.candidate >= kApproach && snapshot.candidate < kNoApproach && !worth_an_approach())
+    return std::nullopt;
   // The first approach begins with the given mirror itself, later ones with perturbed copies.
   if (!snapshot.transport.exists()) return approached(snapshot.candidate - kApproach);
   const FreeFormLevel rough = level(0);
@@ -228,8 +236,8 @@ const FreeFormSnapshot* FreeFormSearch::next_promotion() const {
   // The best goes on with more rays where noise is a good part of its error, else after some neighbours; then
   // the others, while they may win, and neighbours.
   const int neighbours_before = std::min(kNeighboursBefore, problem_.max_failed_restarts);
-  const bool ready =
-      end->error_to_noise < kNoisy || alone || state_.begun >= kFirstCandidates + neighbours_before;
+  const bool ready = end->error_to_noise < kNoisy || is_approach(*end) ||
+                     state_.begun >= kFirstCandidates + neighbours_before;
   if (ready && !was_at(end->candidate, kMoreRays)) return end;
   if (state_.begun < kFirstCandidates) return nullptr;
   if (fine != nullptr && fine->cost < kWorthOn * best_of(1)->cost) return fine;
@@ -281,6 +289,7 @@ void FreeFormSearch::begin(const DesignShape& shape, const FreeFormSnapshot& sna
   ++state_.evaluations;
   state_.total_rays += l.rays;
   state_.now = snapshot;
+  state_.now.early_cost = 0.0;
   state_.now.bins = l.bins;
   state_.now.intervals_x = fine.intervals_x();
   state_.now.intervals_y = fine.intervals_y();
@@ -298,6 +307,8 @@ void FreeFormSearch::choose(Progress& progress) {
     return;
   }
   FreeFormSnapshot next;
+  if (state_.begun > kApproach && state_.begun < kNoApproach && !worth_an_approach())
+    state_.begun = kNoApproach;
   next.candidate = state_.begun++;
   next.level = 0;
   if (next.candidate > 0) next.transport = choice(next.candidate);
@@ -306,6 +317,12 @@ void FreeFormSearch::choose(Progress& progress) {
   if (!start) return;
   state_.lambda = FreeFormState{}.lambda;
   begin(*start, next, progress);
+}
+
+bool FreeFormSearch::is_slow_approach() const {
+  const FreeFormSnapshot* best = best_of(1);
+  return state_.now.level == 1 && state_.step >= kEarlySteps && is_approach(state_.now) && best != nullptr &&
+         best->early_cost > 0.0 && state_.now.early_cost > kSlow * best->early_cost;
 }
 
 bool FreeFormSearch::level_ended() const {
@@ -317,6 +334,7 @@ bool FreeFormSearch::level_ended() const {
       state_.now.cost > kHopeless * best->cost) {
     return true;
   }
+  if (is_slow_approach()) return true;
   return c.size() >= 3 && std::sqrt(c.back()) > (1.0 - l.min_gain) * std::sqrt(c[c.size() - 3]);
 }
 
@@ -369,6 +387,7 @@ std::optional<FitRecord> FreeFormSearch::step(Progress& progress) {
   const double excess = std::max(squared - noise, kMinCostShare * squared);
   state_.now.cost = kErrorShare[static_cast<std::size_t>(state_.now.level)] * excess + (cost - squared);
   state_.now.error_to_noise = std::sqrt(cost / std::max(noise, 1e-24));
+  if (state_.step == kEarlySteps) state_.now.early_cost = state_.now.cost;
   record.stage = state_.now.level;
   record.step = state_.step;
   record.candidate = state_.now.candidate;

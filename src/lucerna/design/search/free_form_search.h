@@ -29,6 +29,8 @@ struct FreeFormSnapshot {
   /// What candidates are compared by: the squared error less its noise (a share of it while the fit is
   /// rough), and what lost light, limits and roughness cost.
   double cost = 0.0;
+  /// What it was after the first few steps of the level; 0 before.
+  double early_cost = 0.0;
   /// Root of the whole cost, missing light included, over the noise.
   double error_to_noise = 0.0;
   int intervals_x = 1, intervals_y = 1;
@@ -88,9 +90,13 @@ class FreeFormSearch {
   FreeFormLevel level(int number) const;
   TransportChoice first_choice(int number) const;
   /// Whether an approach of the given mirror may help: it has few knots, and came nearer than the candidates
-  /// after it, or none came near.
+  /// after it, or none came near; a further one, where none is at the target.
   bool worth_an_approach() const;
-  /// Whether what the approach led to is so much better that no mirror of a point source needs to be tried.
+  /// A given mirror that was brought near.
+  static bool is_approach(const FreeFormSnapshot& snapshot);
+  /// Whether the approach at work lags so far behind the best at its level that it may end.
+  bool is_slow_approach() const;
+  /// Whether what the approaches led to is so much better that no mirror of a point source needs to be tried.
   bool approach_is_alone() const;
   /// Whether the given mirror has few knots and is to have no more.
   bool fixed_to_few_knots() const;

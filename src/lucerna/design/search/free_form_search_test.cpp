@@ -135,7 +135,8 @@ TEST(FreeFormSearch, OfALongSourceTheGivenMirrorIsBroughtNear) {
   const auto cost = [&](bool approach) {
     double least = 1e9;
     for (const FreeFormSnapshot& m : state.done) {
-      if (m.level == 0 && (m.candidate == 3) == approach) least = std::min(least, m.cost);
+      if (m.level == 0 && (m.candidate >= 3 && !m.transport.exists()) == approach)
+        least = std::min(least, m.cost);
     }
     return least;
   };
@@ -178,6 +179,48 @@ TEST(FreeFormSearch, AGivenMirrorThatLeadsIsBroughtNearer) {
   EXPECT_EQ(next.state().now.intervals_x, 8);
 }
 
+// Approaches from perturbed copies end in basins of their own, so that several are compared, as long as none
+// is at the target.
+TEST(FreeFormSearch, FurtherApproachesFollowUntilOneIsNear) {
+  DesignRays rays = disk_rays();
+  const FitProblem problem = oval_problem(rays);
+  FreeFormState state = three_candidates({3e-3, 4e-3, 5e-3});
+  FreeFormSnapshot approach = state.done.front();
+  approach.candidate = state.begun++;
+  approach.cost = 2e-3;
+  state.done.push_back(approach);
+  state = run(problem, plain(), 1, state).state();
+  ASSERT_EQ(state.now.candidate, 4);
+  EXPECT_FALSE(state.now.transport.exists());
+  state.done.push_back(state.now);
+  state.now = {};
+  state.done.back().cost = 1e-5;
+  for (FreeFormSnapshot& m : state.done) m.cost = std::min(m.cost, 2e-5);
+  state = run(problem, plain(), 1, state).state();
+  EXPECT_TRUE(state.now.transport.exists() || state.begun > 11) << "no more approaches";
+}
+
+// What five fine steps of the best had left says whether another is worth its time.
+TEST(FreeFormSearch, AnApproachThatLagsBehindEndsEarly) {
+  DesignRays rays = disk_rays();
+  const FitProblem problem = oval_problem(rays);
+  for (const double early : {1e-9, 1e9}) {
+    FreeFormState state = three_candidates({3e-3, 4e-3, 5e-3});
+    FreeFormSnapshot best = state.done.front();
+    best.candidate = 3;
+    best.level = 1;
+    best.early_cost = early;
+    state.done.push_back(best);
+    state.now = best;
+    state.now.candidate = 4;
+    state.begun = 5;
+    state.step = 4;
+    state.costs = {1e9};
+    state = run(problem, plain(), 1, state).state();
+    EXPECT_EQ(state.now.exists(), early > 1.0) << early;
+  }
+}
+
 // Neighbours are made about the best, which may be a neighbour itself: that once never ended.
 TEST(FreeFormSearch, ANeighbourThatIsTheBestHasNeighbours) {
   DesignRays rays = disk_rays();
@@ -187,7 +230,7 @@ TEST(FreeFormSearch, ANeighbourThatIsTheBestHasNeighbours) {
   state.now = {};
   state.step = 0;
   FreeFormSnapshot best = state.done.back();
-  best.candidate = 12;
+  best.candidate = 20;
   best.transport = {1.0, 22.0};
   best.cost = 1e-9;
   best.error_to_noise = 10.0;
@@ -196,9 +239,9 @@ TEST(FreeFormSearch, ANeighbourThatIsTheBestHasNeighbours) {
     best.level = level;
     state.done.push_back(best);
   }
-  state.begun = 13;
+  state.begun = 21;
   const FreeFormSearch search = run(problem, plain(), 1, state);
-  EXPECT_GE(search.state().now.candidate, 13);
+  EXPECT_GE(search.state().now.candidate, 21);
   EXPECT_EQ(search.state().now.transport.sign, 1.0);
   EXPECT_NEAR(search.state().now.transport.vertex_distance_mm, 22.0, 0.31 * 22.0);
 }
