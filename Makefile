@@ -2,7 +2,7 @@
 # The two commands of the README, and the longer suites. Each installs what is missing first (scripts/packages.sh),
 # but for check-quick and format.
 # CUDA=1 compiles the CUDA back end too (needs nvcc).
-.PHONY: reference demo test check check-quick fuzz bench benchmarks test-report test-slow gallery docs program packages \
+.PHONY: reference demo test check check-quick fuzz bench benchmarks test-report test-site test-slow gallery docs program packages \
         install deb api format clean python test-python test-mpi
 
 BUILD := build/release
@@ -71,6 +71,11 @@ test-slow: program
 test-report: program
 	scripts/packages.sh scripts/packages-report.txt
 	cd tests/report && npm ci --no-audit --no-fund && LUCERNA=$(abspath $(BUILD)/lucerna) npm test
+
+# The site in the same browser: every page at two widths, its links, the search.
+test-site: docs
+	scripts/packages.sh scripts/packages-report.txt
+	cd tests/report && npm ci --no-audit --no-fund && SITE=$(abspath build/docs) node --test --test-concurrency=1 site.mjs
 
 # The pictures of the README, from reports in the same browser.
 gallery: program

@@ -9,5 +9,9 @@ sphinx-build -q -W --keep-going -b html -c docs -d build/docs-cache . build/docs
 # Debian's Furo imports a file from a web server that is not there.
 cp /usr/share/javascript/normalize.css/normalize.css build/docs/_static/
 sed -i 's|/javascript/normalize.css/normalize.css|../normalize.css|' build/docs/_static/styles/furo.css
+# And its script is a module that the pages load as a plain one: the menu of a page's headings and the themes would not work.
+scripts=build/docs/_static/scripts
+{ cat $scripts/gumshoe-patched.js; sed '/^import Gumshoe from/d' $scripts/furo.js; } >$scripts/joined.js
+mv $scripts/joined.js $scripts/furo.js
 scripts/api.sh
 echo "build/docs/index.html"
