@@ -15,9 +15,9 @@ constexpr std::array kFields{
     ResultField{"program_version", "both", "text", "", "Version of the program."},
     ResultField{"schema_version", "both", "count", "", "Rises when a field changes its name or meaning."},
     ResultField{"command", "both", "text", "", "The command line."},
-    ResultField{"seed", "both", "count", "", "Seed of the random numbers."},
+    ResultField{"seed", "both", "count", "", "Seed of the random numbers; null where none were drawn."},
     ResultField{"threads", "both", "count", "", "Worker threads."},
-    ResultField{"isa", "both", "text", "", "Instruction set of the kernels that traced."},
+    ResultField{"isa", "both", "text", "", "Instruction set of the kernels that traced; `scalar` where none did."},
     ResultField{"device", "design", "text", "", "What evaluated the design."},
     ResultField{"inputs[].path", "both", "text", "", "A file that the result depends on."},
     ResultField{"inputs[].sha256", "both", "text", "", "Hash of its bytes."},
@@ -178,9 +178,10 @@ constexpr std::array kFields{
 };
 // clang-format on
 
-constexpr std::string_view kHead = R"(# result.json
+constexpr std::string_view kHead = R"(# Results as JSON
 
-`trace`, `merge` and `design` write `result.json` into their folder. `--json` prints it.
+`trace`, `merge`, `design` and `compare` write `result.json` into their folder. `--json` prints it
+instead of text. `info`, `check`, `compress` and `bench` only print theirs.
 
 - An *estimate* is an object with `value` and `standard_error`.
 - A *box error* has `value`, `floor` (the noise of counting), `excess` (the value without the floor)
@@ -192,7 +193,7 @@ constexpr std::string_view kHead = R"(# result.json
 - A design's file has the fields of a trace as well, except `sequence` and `rays`: they are of the
   final trace of its mirror.
 
-This page is written by `make reference` from the table that a test compares with real files.
+This page is written by `make reference` from the tables that tests compare with real output.
 )";
 
 std::string_view first_part(std::string_view path) { return path.substr(0, path.find('.')); }
@@ -203,8 +204,10 @@ std::string_view rest(std::string_view path) {
 
 std::string section(std::string_view of, std::string_view title) {
   std::string text = fmt::format("\n## {}\n\n| field | type | unit | meaning |\n|---|---|---|---|\n", title);
-  for (const ResultField& f : kFields) {
-    if (f.of == of) text += fmt::format("| `{}` | {} | {} | {} |\n", f.path, f.type, f.unit, f.meaning);
+  for (const auto& fields : {result_fields(), command_fields()}) {
+    for (const ResultField& f : fields) {
+      if (f.of == of) text += fmt::format("| `{}` | {} | {} | {} |\n", f.path, f.type, f.unit, f.meaning);
+    }
   }
   return text;
 }
@@ -221,8 +224,10 @@ bool stands_for(std::string_view pattern, std::string_view path) {
 }
 
 std::string result_reference() {
-  return std::string(kHead) + section("both", "Every run") + section("trace", "trace, merge") +
-         section("design", "design");
+  std::string text = std::string(kHead) + section("both", "Every run") + section("trace", "trace, merge");
+  for (const char* command : {"design", "compare", "info", "check", "compress", "bench"})
+    text += section(command, command);
+  return text;
 }
 
 }  // namespace lucerna

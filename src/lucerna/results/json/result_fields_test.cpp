@@ -11,12 +11,14 @@
 #include "lucerna/results/json/design_json.h"
 #include "lucerna/results/json/run_json.h"
 #include "lucerna/results/json/trace_json.h"
+#include "tests/support/result_paths.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using test::unknown_paths;
 
 TEST(ResultFields, PatternsStandForPaths) {
   EXPECT_TRUE(stands_for("a.b[].c", "a.b[].c"));
@@ -27,42 +29,6 @@ TEST(ResultFields, PatternsStandForPaths) {
   EXPECT_TRUE(stands_for("start.**", "start.error.c48"));
   EXPECT_FALSE(stands_for("start.**", "start"));
   EXPECT_TRUE(stands_for("s.*.min", "s.peak.min"));
-}
-
-bool is_estimate(const Json& json) { return json.size() == 2 && json.contains("value"); }
-bool is_box_error(const Json& json) { return json.size() == 4 && json.contains("floor"); }
-
-/// The paths of all fields below `json`: estimates and arrays of numbers are one field each.
-void collect(const Json& json, const std::string& path, std::set<std::string>& out) {
-  if (json.is_object() && !is_estimate(json) && !is_box_error(json)) {
-    for (const auto& [key, value] : json.items()) collect(value, path.empty() ? key : path + "." + key, out);
-  } else if (json.is_array() && !(json.size() > 0 && json.front().is_number())) {
-    for (const Json& item : json) collect(item, path + "[]", out);
-  } else {
-    out.insert(path);
-  }
-}
-
-std::set<std::string> paths_of(const Json& json) {
-  std::set<std::string> paths;
-  collect(json, "", paths);
-  return paths;
-}
-
-/// Paths that no field represents; and takes what represents one out of `unseen`.
-std::set<std::string> unknown_paths(const Json& json, const std::set<std::string_view>& of,
-                                    std::set<std::string_view>& unseen) {
-  std::set<std::string> unknown;
-  for (const std::string& path : paths_of(json)) {
-    bool known = false;
-    for (const ResultField& f : result_fields()) {
-      if (!of.contains(f.of) || !stands_for(f.path, path)) continue;
-      known = true;
-      unseen.erase(f.path);
-    }
-    if (!known) unknown.insert(path);
-  }
-  return unknown;
 }
 
 constexpr const char* kEveryDetector = R"(
