@@ -72,9 +72,10 @@ void run_compress(const CompressArguments& a, Session& session) {
   session.print_json(json);
   const double ratio = 28.0 * static_cast<double>(rays) / static_cast<double>(bytes);
   session.print_line(fmt::format(
-      "{}: {} rays to {} bytes ({:.3g} times smaller), method {}, {} layer(s), {} leaves, {:g} {}; {:.3g} s",
-      a.output, rays, bytes, ratio, model->method(), model->layers(), model->leaves(), model->flux(),
-      symbol(model->flux_unit()), session.seconds("compress")));
+      "{}: {} rays to {} bytes ({}), method {}, {} layer(s), {} leaves, {:g} {}; {:.3g} s", a.output, rays,
+      bytes, ratio >= 1.0 ? fmt::format("{:.3g} times smaller", ratio) : "larger than the rays themselves",
+      model->method(), model->layers(), model->leaves(), model->flux(), symbol(model->flux_unit()),
+      session.seconds("compress")));
   if (a.report.empty()) return;
   write_model_report(*model, a.output, {a.inputs.begin(), a.inputs.end()}, std::move(json), a.report,
                      session.progress());

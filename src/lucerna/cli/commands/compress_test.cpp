@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "lucerna/core/io/file.h"
 #include "lucerna/source_model.h"
 #include "tests/support/run_program.h"
 #include "tests/support/text_scan.h"
@@ -60,6 +61,23 @@ TEST_F(CompressCli, FluxesOfSeveralFilesAdd) {
   EXPECT_NEAR(both["flux_lm"].get<double>(), 400.0, 1e-3);
   EXPECT_EQ(both["inputs"].size(), 2u);
   EXPECT_NEAR(json_of("s.tm25ray -o m.nfl --flux 7")["flux_lm"].get<double>(), 7.0, 1e-6);
+}
+
+TEST_F(CompressCli, WarningsNameTheirFile) {
+  for (const char* name : {"a.tm25ray", "b.tm25ray"})
+    write_file(dir / name, test::slurp(dir / "s.tm25ray") + std::string(40, '\0'));
+  for (const char* inputs : {"a.tm25ray", "a.tm25ray b.tm25ray"}) {
+    const auto result = run(std::string(inputs) + " -o m.nfl");
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(has(result.err, "lucerna: a.tm25ray: byte ")) << result.err;
+    EXPECT_EQ(has(result.err, "lucerna: b.tm25ray: byte "), has(inputs, "b.tm25ray")) << result.err;
+  }
+  const auto compared = run_lucerna(dir.path(), "compare a.tm25ray b.tm25ray --cells-um 300");
+  EXPECT_TRUE(has(compared.err, "lucerna: a.tm25ray: ")) << compared.err;
+  EXPECT_TRUE(has(compared.err, "lucerna: b.tm25ray: ")) << compared.err;
+  write_file(dir / "p.toml", "[[source]]\nfile = \"a.tm25ray\"\n");
+  const auto traced = run_lucerna(dir.path(), "trace p.toml -o out --rays 100");
+  EXPECT_TRUE(has(traced.err, "a.tm25ray: byte ")) << traced.err;
 }
 
 TEST_F(CompressCli, ALargestSizeHolds) {

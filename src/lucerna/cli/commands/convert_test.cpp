@@ -73,6 +73,7 @@ TEST_F(ConvertCli, SalvageTakesTheWholeRaysOfATruncatedFile) {
   refuse(1, "cut.tm25ray out.tm25ray", "cut.tm25ray");
   const auto salvaged = run("cut.tm25ray out.tm25ray --salvage");
   ASSERT_EQ(salvaged.exit_code, 0) << salvaged.err;
+  EXPECT_TRUE(has(salvaged.err, "lucerna: cut.tm25ray: byte ")) << salvaged.err;
   EXPECT_TRUE(has(salvaged.err, "100 rays announced, 98 are whole")) << salvaged.err;
   EXPECT_EQ(read_ray_set(dir / "out.tm25ray").rays.size(), 98u) << "40 bytes are of two rays";
 }

@@ -73,7 +73,10 @@ TEST(MakeSourceCli, PrintsWhatItWroteAndWhatTheFormatCouldNotHold) {
   const auto run = run_lucerna(dir.path(), "make-source disk -n 10 -o s.dat --to zemax-binary");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(has(run.out, "s.dat: 10 rays of 1000 lm as zemax-binary")) << run.out;
-  EXPECT_TRUE(has(run.err, "zemax-binary has no place for the texts")) << run.err;
+  EXPECT_TRUE(has(run.err, "zemax-binary has no place for the texts but for the light source's name"))
+      << run.err;
+  const auto nameless = run_lucerna(dir.path(), "make-source disk -n 10 -o s.txt --to zemax-text");
+  EXPECT_TRUE(has(nameless.err, "zemax-text has no place for the texts\n")) << nameless.err;
 }
 
 TEST(MakeSourceCli, RefusesWhatContradictsAndWritesNothing) {

@@ -23,14 +23,16 @@ int report_error(const char* text, ExitCode code) {
   return code;
 }
 
-/// The command's option that the error says would help, as a hint; empty if the command has none. Formats are
-/// chosen where a file is written (a bad call) and where one is read (bad input).
+/// The command's option that the error says would help, as a hint; empty if the command has none, but for
+/// damaged files, which `convert` makes whole. Formats are chosen where a file is written (a bad call) and
+/// where one is read (bad input).
 std::string hint(const Error& error, const CLI::App& app, ExitCode code) {
   if (error.option().empty() || app.get_subcommands().empty()) return "";
   const std::string format = code == kUsage ? "to" : "from";
   const std::string name = "--" + (error.option() == "format" ? format : std::string(error.option()));
   const bool known = app.get_subcommands().front()->get_option_no_throw(name) != nullptr;
-  return known ? "; see " + name : "";
+  if (known) return "; see " + name;
+  return error.option() == "salvage" ? "; see lucerna convert --salvage" : "";
 }
 
 }  // namespace

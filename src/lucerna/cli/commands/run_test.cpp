@@ -257,6 +257,12 @@ TEST(ProgramCli, ErrorsNameTheOptionThatHelpsWhereTheCommandHasIt) {
   const auto traced = run_lucerna(dir.path(), "trace p.toml -o out");
   EXPECT_EQ(traced.exit_code, 1);
   EXPECT_FALSE(has(traced.err, "--flux")) << traced.err;
+  // But a damaged file can be made whole by another command.
+  make_source(dir, "disk -n 100");
+  const std::string whole = slurp(dir / "s.tm25ray");
+  write_file(dir / "cut.tm25ray", whole.substr(0, whole.size() - 40));
+  const auto cut = run_lucerna(dir.path(), "info cut.tm25ray");
+  EXPECT_TRUE(has(cut.err, "98 whole rays; see lucerna convert --salvage\n")) << cut.err;
   const auto written = run_lucerna(dir.path(), "make-source disk -n 10 -o s.ray");
   EXPECT_EQ(written.exit_code, 2);
   EXPECT_TRUE(has(written.err, "; see --to\n")) << written.err;

@@ -2,6 +2,7 @@
 #include "lucerna/project/sections/project_memory.h"
 #include "lucerna/project/sections/project_parts.h"
 #include "lucerna/ray_file.h"
+#include "lucerna/rayset/files/named_warnings.h"
 #include "lucerna/source.h"
 #include "lucerna/source_model.h"
 
@@ -65,7 +66,7 @@ std::shared_ptr<const RaySource> read_ray_source(const TomlReader& reader, const
   if (rays == nullptr) {
     std::vector<std::string> warnings;
     rays = std::make_shared<RaySet>(read_ray_set(file, {}, progress, &warnings));
-    project.warnings.insert(project.warnings.end(), warnings.begin(), warnings.end());
+    add_named_warnings(file, warnings, project.warnings);
     project.inputs.push_back(file);
   }
   check_unit(reader, flux, rays->header.flux_unit, fmt::format("the rays of {} carry", file.string()));

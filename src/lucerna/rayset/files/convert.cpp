@@ -5,6 +5,7 @@
 #include "lucerna/ray_file.h"
 #include "lucerna/ray_statistics.h"
 #include "lucerna/rayset/data/subset.h"
+#include "lucerna/rayset/files/named_warnings.h"
 
 namespace lucerna {
 
@@ -63,9 +64,9 @@ RayConversionResult convert_ray_file(const std::filesystem::path& in, const std:
     writer->write(retained);
     result.rays += retained.size();
   });
-  if (conversion.strict && !reader->warnings().empty()) throw InputError(reader->warnings().front());
+  add_named_warnings(in, reader->warnings(), result.warnings);
+  if (conversion.strict && !result.warnings.empty()) throw InputError(result.warnings.front());
   writer->finish();
-  result.warnings = reader->warnings();
   result.warnings.insert(result.warnings.end(), writer->warnings().begin(), writer->warnings().end());
   return result;
 }

@@ -12,6 +12,7 @@
 #include "lucerna/ray_file.h"
 #include "lucerna/rayset/comparison/field_comparison.h"
 #include "lucerna/rayset/comparison/view_picture.h"
+#include "lucerna/rayset/files/named_warnings.h"
 #include "lucerna/results/folders/trace_folder.h"
 #include "lucerna/results/svg/svg_polar.h"
 #include "lucerna/source/emitters/draw_rays.h"
@@ -37,7 +38,9 @@ Side read_side(const fs::path& path, std::uint64_t stream, const FileComparisonO
                std::vector<std::string>& warnings, Progress& progress) {
   Side side;
   if (!is_source_model(path)) {
-    side.rays = std::move(read_ray_set(path, {}, progress, &warnings).rays);
+    std::vector<std::string> found;
+    side.rays = std::move(read_ray_set(path, {}, progress, &found).rays);
+    add_named_warnings(path, found, warnings);
     return side;
   }
   side.model = load_source_model(path);

@@ -4,6 +4,7 @@
 #include "lucerna/core/io/error.h"
 #include "lucerna/ray_file.h"
 #include "lucerna/rayset/data/merge_ray_sets.h"
+#include "lucerna/rayset/files/named_warnings.h"
 #include "lucerna/source/adaptive/compression/adaptive_compress.h"
 #include "lucerna/source/clusters/cluster_compress.h"
 #include "lucerna/source_model.h"
@@ -25,7 +26,7 @@ CompressedFiles compress_stream(const std::filesystem::path& file, const Compres
                                      file.string(), made.rays, adaptive.max_rays));
   }
   made.model = compress_adaptive(*reader, adaptive, progress);
-  made.warnings = reader->warnings();
+  add_named_warnings(file, reader->warnings(), made.warnings);
   return made;
 }
 
@@ -60,7 +61,9 @@ CompressedFiles compress(const std::vector<std::filesystem::path>& files, const 
   CompressedFiles made;
   RaySet all;
   for (const std::filesystem::path& file : files) {
-    RaySet rays = read_ray_set(file, {}, progress, &made.warnings);
+    std::vector<std::string> warnings;
+    RaySet rays = read_ray_set(file, {}, progress, &warnings);
+    add_named_warnings(file, warnings, made.warnings);
     if (files.size() == 1) {
       all = std::move(rays);
     } else {

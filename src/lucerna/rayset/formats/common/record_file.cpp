@@ -210,8 +210,9 @@ std::vector<std::string> losses(const RaySetHeader& header, std::string_view for
   if (!header.spectra.empty() && !holds.table) lose("the spectral table");
   if (header.wavelength_nm && !holds.one_wavelength) lose("the wavelength of all rays");
   RaySetTexts rest = header.texts;
-  rest.light_source.clear();
-  if (!holds.texts && rest != RaySetTexts{}) lose("the texts but for the light source's name");
+  if (holds.source_name) rest.light_source.clear();
+  if (!holds.texts && rest != RaySetTexts{})
+    lose(holds.source_name ? "the texts but for the light source's name" : "the texts");
   return lost;
 }
 

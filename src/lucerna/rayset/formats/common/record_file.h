@@ -108,7 +108,8 @@ struct FormatHolds {
   bool wavelengths = false;
   /// One wavelength for all rays, or a table turned into one wavelength per ray.
   bool one_wavelength = false, table = false;
-  bool texts = false;
+  /// The light source's name; all texts.
+  bool source_name = false, texts = false;
 };
 
 /// One sentence for each thing of `header` that a format of these abilities loses.

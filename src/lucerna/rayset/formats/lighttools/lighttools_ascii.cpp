@@ -195,8 +195,9 @@ class LightToolsAsciiWriter final : public RayWriter {
   LightToolsAsciiWriter(const std::filesystem::path& path, const RaySetHeader& header,
                         const WriteOptions& options)
       : writer_(path, layout_for(header, options)) {
-    warnings_ = losses(header, "lighttools-ascii",
-                       {.wavelengths = true, .one_wavelength = false, .table = false, .texts = false});
+    warnings_ = losses(
+        header, "lighttools-ascii",
+        {.wavelengths = true, .one_wavelength = false, .table = false, .source_name = true, .texts = false});
     const bool lumen = header.flux_unit == FluxUnit::lumen;
     const bool wavelengths = find_column(header.columns, ColumnKind::wavelength_nm).has_value();
     std::string name = header.texts.light_source.empty() ? "rays" : header.texts.light_source;

@@ -75,8 +75,12 @@ class McplWriter final : public RayWriter {
              (record_.polarisation &&
               std::ranges::find(kMcplPolarisation, column.label) != kMcplPolarisation.end());
     });
-    for (std::string& lost :
-         losses(rest, "mcpl", {.wavelengths = true, .one_wavelength = true, .table = true, .texts = false}))
+    for (std::string& lost : losses(rest, "mcpl",
+                                    {.wavelengths = true,
+                                    .one_wavelength = true,
+                                    .table = true,
+                                    .source_name = true,
+                                    .texts = false}))
       warnings_.push_back(std::move(lost));
     if (header.flux_unit == FluxUnit::lumen)
       warnings_.push_back(

@@ -48,9 +48,12 @@ class ZemaxBinaryWriter final : public RayWriter {
   ZemaxBinaryWriter(const std::filesystem::path& path, const RaySetHeader& header,
                     const WriteOptions& options)
       : writer_(path, layout_for(header, options)) {
-    warnings_ =
-        losses(header, "zemax-binary",
-               {.wavelengths = spectral_, .one_wavelength = !spectral_, .table = false, .texts = false});
+    warnings_ = losses(header, "zemax-binary",
+                       {.wavelengths = spectral_,
+                        .one_wavelength = !spectral_,
+                        .table = false,
+                        .source_name = true,
+                        .texts = false});
     std::vector<std::byte> head(kZemaxHeaderSize);
     store(head, 0, kZemax);
     store_text(head, kDescriptionAt, kDescriptionSize, header.texts.light_source);
