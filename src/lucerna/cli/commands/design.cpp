@@ -113,7 +113,7 @@ void design_mirror(const DesignArguments& a, Session& session, int& exit_code) {
   json["device"] = accelerator ? accelerator->name() : "cpu";
   json.update(design_json(problem, result, figures));
   json.update(trace_json(figures.trace));
-  const std::vector<std::string> warnings = trace_warnings(figures.trace);
+  const std::vector<std::string> warnings = trace_warnings(figures.trace, problem.project.scene);
   for (const std::string& warning : warnings) session.note(warning);
   json["warnings"] = warnings;
   const auto names = session.timed("files", [&] {

@@ -72,9 +72,9 @@ Description describe_photometry(const std::string& path, const PhotometricReadOp
                                 beam.peak.c_deg, beam.peak.gamma_deg));
   for (const auto& plane : beam.planes) {
     if (plane.c_deg != 0.0 && plane.c_deg != 90.0) continue;
-    d.lines.push_back(fmt::format(
-        "  C{:g}-C{:<12g}    beam angle {} deg, field angle {} deg (of its grid's maximum)", plane.c_deg,
-        plane.c_deg + 180.0, angle(plane.beam_of_maximum), angle(plane.field_of_maximum)));
+    d.lines.push_back(fmt::format("  {:<20}beam angle {} deg, field angle {} deg (of its grid's maximum)",
+                                  fmt::format("C{:g}-C{:g}", plane.c_deg, plane.c_deg + 180.0),
+                                  angle(plane.beam_of_maximum), angle(plane.field_of_maximum)));
   }
   const auto& code = figures.cie_flux_code;
   d.lines.push_back(fmt::format(

@@ -60,7 +60,7 @@ std::vector<std::string> write_design(const std::filesystem::path& folder, const
   json["device"] = record.device;
   json.update(design_json(problem, record.result, record.figures));
   json.update(trace_json(record.figures.trace));
-  json["warnings"] = trace_warnings(record.figures.trace);
+  json["warnings"] = trace_warnings(record.figures.trace, problem.project.scene);
   return write_design_files(folder, problem, record.result, record.figures, mirror.traced,
                             history_csv(record.result.history), json);
 }

@@ -15,6 +15,7 @@
 #include "lucerna/report/html/report_planes.h"
 #include "lucerna/report/html/report_sections.h"
 #include "lucerna/report/html/report_target.h"
+#include "lucerna/report/html/report_variants.h"
 #include "lucerna/report/html/zones_html.h"
 #include "lucerna/results/svg/html_escaped.h"
 #include "lucerna/results/svg/svg_curves.h"
@@ -186,7 +187,7 @@ std::string design_report_html(const TraceFolder& folder, const std::vector<Hist
                                const DesignReportOptions& options) {
   const ResultFigures result(folder.result, (folder.path / "result.json").string());
   HtmlPage page("Reflector design", folder_title(folder.path));
-  page.section("summary", "Summary", summary(result));
+  page.section("summary", "Summary", warnings_html(result) + summary(result));
   page.section("limits", "What limits it", limits_html(result));
   const bool zones_only = options.problem != nullptr && options.problem->target.zones_only;
   if (zones_only) {
@@ -198,6 +199,8 @@ std::string design_report_html(const TraceFolder& folder, const std::vector<Hist
     page.section("target", "Target and result",
                  fmt::format("<p>There is no comparison: {}.</p>\n", html_escaped(options.no_problem)));
   }
+  if (const std::string variants = variants_html(result); !variants.empty())
+    page.section("variants", "Variants", variants);
   page.section("convergence", "Convergence", convergence(page, history));
   page.section("energy", "Efficiency and losses", energy_balance_html(result));
   ViewSource view{.no_scene = options.no_problem, .options = {.seed = result.count("/seed") + 1}};

@@ -11,6 +11,7 @@
 #include "lucerna/report/html/report_far_field.h"
 #include "lucerna/report/html/report_planes.h"
 #include "lucerna/report/html/report_sections.h"
+#include "lucerna/report/html/report_variants.h"
 
 namespace lucerna {
 
@@ -37,7 +38,7 @@ std::string run_facts(const ResultFigures& result) {
 std::string trace_report_html(const TraceFolder& folder, const TraceReportOptions& options) {
   const ResultFigures result(folder.result, (folder.path / "result.json").string());
   HtmlPage page("Light tracing", folder_title(folder.path));
-  page.section("summary", "Summary", summary(result, folder));
+  page.section("summary", "Summary", warnings_html(result) + summary(result, folder));
   page.section("energy", "Energy balance", energy_balance_html(result));
   add_view_section(page, {options.scene,
                           options.no_scene,

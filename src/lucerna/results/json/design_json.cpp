@@ -73,7 +73,8 @@ std::string angle(const std::optional<double>& a) {
 struct Table {
   std::vector<std::string> lines;
   void row(const std::string& what, const std::string& target, const std::string& result) {
-    lines.push_back(fmt::format("  {:<26}{:>18}{:>30}", what, target, result));
+    lines.push_back(
+        fmt::format("  {:<26}{:>18}{:>30}", what, target, result.size() < 30 ? result : "  " + result));
   }
 };
 
@@ -121,9 +122,13 @@ void tolerance_rows(const ToleranceSweep& sweep, std::vector<std::string>& lines
                   "{} combined cases",
                   r.source_shift_mm, r.source_tilt_deg, r.slope_error_mrad, r.reflectance, r.samples));
   lines.push_back(fmt::format("  {:<16}{:>24}{:>24}{:>24}{:>12}", "", "nominal", "min", "max", "std. dev."));
+  const auto text = [](const Estimate& e) {
+    return std::isfinite(e.mean) ? estimate_text(e) : std::string("not determined");
+  };
   for (const ToleranceSpread& s : sweep.spread) {
-    lines.push_back(fmt::format("  {:<16}{:>24}{:>24}{:>24}{:>12.3g}", s.figure, estimate_text(s.nominal),
-                                estimate_text(s.min), estimate_text(s.max), s.standard_deviation));
+    const bool any = std::isfinite(s.min.mean) && std::isfinite(s.max.mean);
+    lines.push_back(fmt::format("  {:<16}{:>24}{:>24}{:>24}{:>12}", s.figure, text(s.nominal), text(s.min),
+                                text(s.max), any ? fmt::format("{:.3g}", s.standard_deviation) : "-"));
   }
 }
 
