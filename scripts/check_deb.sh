@@ -18,6 +18,7 @@ clear_tree() {
   if mountpoint -q "$tree/proc"; then umount "$tree/proc"; fi
   rm -rf --one-file-system "$tree"
 }
+mkdir -p build/check
 clear_tree
 trap clear_tree EXIT
 if [ -n "${LUCERNA_BARE:-}" ]; then
@@ -27,7 +28,8 @@ else
 fi
 mkdir "$tree/lucerna"
 cp "$packages"/*.deb scripts/demo_data/oval-beam.ldt tests/consumers/ray_file_to_ldt.cpp tests/consumers/find_package/CMakeLists.txt \
-  "$tree/lucerna"
+  scripts/run_tutorial.py "$tree/lucerna"
+cp -r docs/tutorials "$tree/lucerna"
 mount -t proc proc "$tree/proc"
 
 # A compiler launcher or flags of ours mean nothing in there.
@@ -89,6 +91,11 @@ $install ./python3-lucerna_*.deb >install.log 2>&1 || { cat install.log; exit 1;
 python3 -c 'import lucerna as lu; lu.Scene(["led.nfl"]).trace(rays=1e5)["far-field"].save("beam3.ldt")'
 lucerna check beam3.ldt
 test "$(python3 -m lucerna --version)" = "$(lucerna --version)"
+
+echo "== the tutorials, block by block"
+$install python3-scipy >install.log 2>&1 || { cat install.log; exit 1; }
+python3 run_tutorial.py tutorials/led-to-model.md tutorials/paraboloid-to-ldt.md tutorials/design-a-floodlight.md \
+  tutorials/as-a-library.md tutorials/python.md
 
 if ls lucerna-mpi_*.deb >found.log 2>&1; then
   echo "== many machines"

@@ -36,6 +36,18 @@ def test_a_design_is_better_than_its_start(found):
     assert lu.compare(spot(), light.scaled(1)).overlap.value > 0.8
 
 
+def test_its_convergence_is_drawn(found):
+    import matplotlib.pyplot as plt
+
+    ax = found.plot()
+    ax.figure.canvas.draw()
+    error, floor = ax.lines
+    assert np.array_equal(error.get_ydata(), 100 * found.history.relative_rms)
+    assert np.array_equal(floor.get_ydata(), 100 * found.history.floor)
+    assert ax.get_yscale() == "log" and (ax.get_xlabel(), ax.get_ylabel()) == ("rays", "%")
+    plt.close("all")
+
+
 def test_its_mirror_is_that_of_its_scene(found, tmp_path):
     again = found.scene.trace(rays=found.traced.rays, seed=found.traced.seed)
     assert again == found.traced

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plots: each kind draws what it should, with its units."""
+import re
+
 import lucerna as lu
 import matplotlib.pyplot as plt
 import numpy as np
@@ -40,6 +42,22 @@ def test_planes_models_and_mirrors(traced, model):
     draw(model.plot("luminance"))
     for kind in ("sag", "curvature", "profile"):
         assert "mm" in draw(parabola().plot(kind)).get_xlabel()
+
+
+def test_every_kind_that_is_documented_is_drawn(traced, model):
+    for thing, count in (traced["far"], 4), (model, 2), (parabola(), 3):
+        kinds = re.findall(r"'([\w-]+)'", re.search(r"kind : str(.*)ax :", thing.plot.__doc__, re.S)[1])
+        assert len(set(kinds)) == count
+        for kind in kinds:
+            draw(thing.plot(kind))
+
+
+def test_a_luminance_image_is_drawn(model):
+    lamp = lu.Scene([model], reflectors=[parabola()], detectors=[
+        lu.Detector("luminance", name="seen", **{"from": [0, 0, -1]}, size_mm=[90, 90], cells=[20, 20])])
+    ax = draw(lamp.trace(rays=50_000)["seen"].plot())
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("x, mm", "y, mm")
+    assert "cd/m" in "".join(a.get_ylabel() + a.get_title() for a in ax.figure.axes)
 
 
 def test_curvature_of_a_sphere():
