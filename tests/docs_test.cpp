@@ -10,6 +10,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/prose.h"
 #include "tests/support/run_program.h"
+#include "tests/support/text_scan.h"
 
 namespace lucerna::test {
 namespace {
@@ -37,6 +38,53 @@ TEST(Docs, LinesAndSentencesAreShort) {
     for (const std::string& sentence : long_sentences(text, kMaxWords))
       ADD_FAILURE() << page << ": more than " << kMaxWords << " words: " << sentence;
   }
+}
+
+/// The sources and scripts that print messages, as one text, with strings that are cut into lines joined.
+std::string messages_of_sources() {
+  std::string all;
+  for (const char* folder : {"src/lucerna", "python/src"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(source_dir() / folder)) {
+      const std::string name = entry.path().filename();
+      if (name.ends_with(".cpp") && !name.ends_with("_test.cpp")) all += slurp(entry.path());
+    }
+  }
+  std::string joined;
+  for (std::size_t at = 0; at < all.size();) {
+    // "one " and "two" on the next line are one string.
+    const std::size_t next = all[at] == '"' ? all.find_first_not_of(" \n", at + 1) : std::string::npos;
+    if (next != std::string::npos && next > at + 1 && all[next] == '"') {
+      at = next + 1;
+    } else {
+      joined += all[at++];
+    }
+  }
+  return joined;
+}
+
+/// The messages that a page explains: what stands in backquotes in the first column of its tables.
+std::vector<std::string> explained_messages(const std::string& page) {
+  std::vector<std::string> messages;
+  for (const std::string& cell : between(page, "\n| `", " | ")) {
+    for (const std::string& message : between("`" + cell, "`", "`"))
+      if (message.size() > 3 && message.front() != ',' && message.front() != ' ') messages.push_back(message);
+  }
+  return messages;
+}
+
+TEST(Docs, ExplainedMessagesAreOnesThatAreThere) {
+  const std::string sources = messages_of_sources();
+  const auto messages = explained_messages(slurp(source_dir() / "docs/troubleshooting.md"));
+  EXPECT_GT(messages.size(), 20u);
+  for (const std::string& message : messages) {
+    if (message == "No module named 'lucerna'") continue;  // Python's own
+    EXPECT_NE(sources.find(message), std::string::npos) << message;
+  }
+}
+
+TEST(Docs, CheckSeesMessages) {
+  EXPECT_EQ(explained_messages("\n| message | b |\n| `one two` with `three` | `four` |\n"),
+            (std::vector<std::string>{"one two", "three"}));
 }
 
 TEST(Docs, CheckSeesLongLines) {

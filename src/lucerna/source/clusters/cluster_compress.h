@@ -12,7 +12,7 @@
 
 namespace lucerna {
 
-/// Defaults are those of the sweeps in docs/development/notebook/clusters.md.
+/// The defaults and what they rest on are in docs/theory/clusters.md, "Thresholds".
 struct ClusterOptions {
   /// Largest file in bytes, at least 2000: where the penalty below gives more, it is raised. Absent =
   /// whatever the other thresholds give.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/source/clusters/cluster_compress.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -14,6 +16,8 @@
 #include "lucerna/source/emitters/draw_rays.h"
 #include "lucerna/source/emitters/warp.h"
 #include "tests/support/random_direction.h"
+#include "tests/support/run_program.h"
+#include "tests/support/text_scan.h"
 
 namespace lucerna {
 namespace {
@@ -264,6 +268,26 @@ TEST(CompressClusters, NothingToCompressIsAnError) {
   ClusterOptions options;
   options.max_bytes = 10;
   EXPECT_THROW(compress_clusters(rays_from(100, [](Rng&) { return Vec3{}; }), options), UsageError);
+}
+
+// docs/theory/clusters.md has the numbers of the code.
+TEST(CompressClusters, TheDefaultsAreThoseOfTheirPage) {
+  const ClusterOptions o;
+  std::string page = test::slurp(test::source_dir() / "docs/theory/clusters.md");
+  std::replace(page.begin(), page.end(), '\n', ' ');
+  const auto blanks = [](char a, char b) { return a == ' ' && b == ' '; };
+  page.erase(std::unique(page.begin(), page.end(), blanks), page.end());
+  const auto expect = [&](const std::string& words) { EXPECT_TRUE(test::has(page, words)) << words; };
+  expect(fmt::format("| price of a cluster, splits | {:g} |", o.cluster_price));
+  expect(fmt::format("below {:g} splits of {:g} nats", o.cluster_price, o.penalty_nats));
+  expect(fmt::format("a split must gain {:g} nats", o.penalty_nats));
+  expect(
+      fmt::format("| leaves of the octree, at most | {},{:03} |", o.max_leaves / 1000, o.max_leaves % 1000));
+  expect(fmt::format("leaves of at most {} rays", o.min_rays_per_leaf));
+  expect(fmt::format("on {} M (2^{}) of the rays", o.removal_rays >> 20, std::countr_zero(o.removal_rays)));
+  expect(fmt::format("| rays of the removal | {} M |", o.removal_rays >> 20));
+  expect(fmt::format("| clusters that always stay | {} |", o.min_clusters));
+  expect(fmt::format("| step of stored weights | 2^(1/{}) |", 16 / o.level_step));
 }
 
 struct Stopper final : Progress {
