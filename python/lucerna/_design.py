@@ -11,6 +11,8 @@ from . import _core, _toml
 
 def _changed(scene: _core.Scene, target: Any, keys: Mapping[str, Any]) -> _core.Scene:
     """The scene with another target, and with `keys` of [design] besides those that it has."""
+    if not isinstance(scene, _core.Scene):
+        raise TypeError(f"scene: found a {type(scene).__name__}, expected a Scene; Scene.load reads a project file")
     keys = {key: value for key, value in keys.items() if value is not None}
     changes: dict[str, Any] = {}
     if target is not None:

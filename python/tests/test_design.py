@@ -94,6 +94,13 @@ def test_ctrl_c_returns_the_best_so_far():
     assert found.relative_rms.value <= found.start_error.c48.excess.value + 0.01
 
 
+@pytest.mark.parametrize("scene", ["lamp.toml", None, {"kind": "disk"}])
+def test_what_is_no_scene_is_named(scene):
+    for use in (lu.design, lu.Objective):
+        with pytest.raises(TypeError, match=f"found a {type(scene).__name__}, expected a Scene"):
+            use(scene)
+
+
 @pytest.mark.parametrize("keys", [dict(time_s=-1), dict(max_rays=5), dict(device="x"), dict(optimizer="x"),
                                   dict(target="none.ldt"), dict(seed=-1)])
 def test_bad_calls_are_refused(keys):
