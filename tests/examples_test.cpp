@@ -83,6 +83,17 @@ TEST(ExamplesCli, MirrorForATarget) {
   EXPECT_EQ(run_lucerna(dir.path(), "trace a.toml -o again --rays 10000").exit_code, 0);
 }
 
+TEST(ExamplesCli, LensForATarget) {
+  const TempDir dir;
+  const ProgramResult run = run_lucerna(dir.path(), "design '" + project("lens").string() +
+                                                        "' -o lens --time 6 --rays 65536 --report lens.html");
+  EXPECT_EQ(run.exit_code, 0) << run.err << run.out;
+  const auto result = nlohmann::json::parse(slurp(dir / "lens/result.json"));
+  EXPECT_LT(result.at("error").at("c48").at("excess").get<double>(),
+            0.5 * result.at("start").at("error").at("c48").at("excess").get<double>());
+  EXPECT_EQ(run_lucerna(dir.path(), "trace lens/lens.toml -o again --rays 10000").exit_code, 0);
+}
+
 TEST(ExamplesCli, LedInAParaboloid) {
   const TempDir dir;
   const auto ledger = traced(dir, "led-paraboloid", "100000").at("ledger");
@@ -131,7 +142,7 @@ TEST(ExamplesCli, AllAreListedAndShort) {
     }
   }
   EXPECT_EQ(programs, 5u);
-  EXPECT_EQ(projects, 6u);
+  EXPECT_EQ(projects, 7u);
 }
 
 }  // namespace

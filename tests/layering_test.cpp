@@ -135,7 +135,8 @@ const std::map<std::string, Layers> kSubRooms{
          {"optimizers", {}},
          {"search", {"constraints", "fit", "initial", "optimizers", "shape"}},
          {"validation", {"evaluation", "problem", "shape", "solver"}},
-         {"run", {"constraints", "evaluation", "fit", "problem", "search", "solver", "validation"}},
+         {"lens", {"constraints", "evaluation", "fit", "problem", "solver", "validation"}},
+         {"run", {"constraints", "evaluation", "fit", "lens", "problem", "search", "solver", "validation"}},
      }},
     {"results",
      {

@@ -11,8 +11,10 @@
 #include <GProp_GProps.hxx>
 #include <STEPControl_Reader.hxx>
 #include <TopExp_Explorer.hxx>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "lucerna/cad.h"
 #include "lucerna/core/io/file.h"
@@ -90,6 +92,36 @@ TEST(StepOpenCascade, ReadsTheSameSurfaceAreaAndEnvelope) {
         EXPECT_LT(BRepExtrema_DistShapeShape(vertex, shape).Value(), 1e-5);
       }
     }
+  }
+}
+
+/// Of the body that a closed profile turns, by Green's theorem.
+double turned_volume(const std::vector<std::array<double, 2>>& profile) {
+  double volume = 0.0;
+  for (std::size_t i = 0; i + 1 < profile.size(); ++i) {
+    const auto &a = profile[i], &b = profile[i + 1];
+    volume += std::numbers::pi / 3.0 * (a[0] * a[0] + a[0] * b[0] + b[0] * b[0]) * (b[1] - a[1]);
+  }
+  return volume;
+}
+
+TEST(StepOpenCascade, ReadsASolidOfTheSameVolume) {
+  using Outline = std::vector<std::array<double, 2>>;
+  const test::TempDir folder;
+  for (const Outline& outline :
+       {Outline{{0, 3}, {9, 3}, {9, 5}, {6, 7.6}, {3, 9.1}, {0, 9.6}},
+        Outline{{0, 4}, {2, 4}, {2.2, 0.1}, {3, 0.1}, {6, 4}, {9, 9}, {11, 14}, {0, 14}},
+        Outline{{5, 0}, {8, 0}, {8, 4}, {5, 4}}}) {
+    write_file(folder / "lens.step", solid_step_text(outline, 30.0));
+    STEPControl_Reader reader;
+    ASSERT_EQ(reader.ReadFile((folder / "lens.step").c_str()), IFSelect_RetDone);
+    ASSERT_GT(reader.TransferRoots(), 0);
+    const TopoDS_Shape shape = reader.OneShape();
+    EXPECT_EQ(shape.ShapeType(), TopAbs_SOLID);
+    EXPECT_TRUE(BRepCheck_Analyzer(shape).IsValid());
+    GProp_GProps properties;
+    BRepGProp::VolumeProperties(shape, properties);
+    EXPECT_NEAR(properties.Mass() / turned_volume(solid_profile(outline, 30.0, 1e-4)), 1.0, 1e-4);
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,16 @@ inline constexpr CadTolerance kOpticalTolerance{.chord_mm = 0.01, .slope_deg = 0
 [[nodiscard]] std::string dxf_profile(const std::vector<std::array<double, 2>>& profile);
 /// The profile as CSV: r_mm,z_mm.
 [[nodiscard]] std::string csv_profile(const std::vector<std::array<double, 2>>& profile);
+
+/// A body of revolution as a STEP file (as `step_text`), a closed solid: its outline as `Solid::outline_mm`,
+/// each curve without edges as the very spline that is traced, turned about the z axis. Throws InputError as
+/// `check(Solid)` does for the outline, and for one that is smooth all about.
+[[nodiscard]] std::string solid_step_text(std::span<const std::array<double, 2>> outline_mm,
+                                          double smooth_below_deg, const std::string& name = "lens");
+/// Its outline in straight pieces within `chord_mm` of the curve, closed: the first point comes last again.
+/// Errors as above.
+[[nodiscard]] std::vector<std::array<double, 2>> solid_profile(
+    std::span<const std::array<double, 2>> outline_mm, double smooth_below_deg, double chord_mm = 1e-3);
 
 /// A reflector as a STEP file (ISO 10303-21, application protocol 214), mm, in the mirror's own frame, as an
 /// open shell whose normal looks towards the light. Free forms are one bicubic B-spline surface, the very

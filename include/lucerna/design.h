@@ -14,6 +14,7 @@
 #include "lucerna/progress.h"
 #include "lucerna/project.h"
 #include "lucerna/reflector.h"
+#include "lucerna/scene.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace_metrics.h"
 
@@ -272,12 +273,14 @@ struct DesignFindings {
 
 /// What a design's files are made of; opaque to users of the library.
 struct DesignRecord;
+/// The same of a lens.
+struct LensRecord;
 
-/// What a design came to.
+/// What a design came to: a mirror, or a lens.
 struct DesignedMirror : DesignFindings {
-  /// In its own frame: what cad.h writes.
+  /// In its own frame: what cad.h writes. Without a surface where a lens was designed.
   Reflector reflector;
-  /// Where it is in the luminaire frame.
+  /// Where it, or the lens, is in the luminaire frame.
   Frame world_from_reflector;
   /// The project with this mirror, as a file that `trace` takes.
   std::string project_text;
@@ -291,17 +294,23 @@ struct DesignedMirror : DesignFindings {
   std::vector<DesignStep> history;
   /// The state to resume from.
   std::string checkpoint;
-  /// For `write_design`.
+  /// For `write_design`; null for a lens.
   std::shared_ptr<const DesignRecord> record;
+  /// The lens that was shaped, if the project asked for one.
+  std::optional<Solid> lens;
+  /// For `write_design`; null for a mirror.
+  std::shared_ptr<const LensRecord> lens_record;
 };
 
 /// Shapes a project's mirror until its light is the project's [target], as well as it can be: a free form, a
 /// profile of revolution or of a trough, within [design.limits] (docs/theory/design.md and
-/// free-form-search.md). The result is validated by code that shares nothing with the fit, never worse than
-/// the given mirror by that, and traced. When progress asks to stop, the result is the best so far, whole,
-/// with `end` saying so. Progress phases "rays", "design", "validate", "trace", "tolerances". Uses all
-/// threads; other calls may run at the same time. Throws InputError with file, line, key, found and expected
-/// on a project that cannot be designed.
+/// free-form-search.md). With `free_sides` in [design] it shapes faces of the project's solid of revolution
+/// instead: lenses have neither checkpoints, `pareto`, `advise` nor tolerances, and are refused with them;
+/// `bodies` is then what the medium absorbs. The result is validated by code that shares nothing with the
+/// fit, never worse than the given mirror by that, and traced. When progress asks to stop, the result is the
+/// best so far, whole, with `end` saying so. Progress phases "rays", "design", "validate", "trace",
+/// "tolerances". Uses all threads; other calls may run at the same time. Throws InputError with file, line,
+/// key, found and expected on a project that cannot be designed.
 [[nodiscard]] DesignedMirror design(const std::filesystem::path& project, const DesignSettings& settings = {},
                                     Progress& progress = no_progress());
 

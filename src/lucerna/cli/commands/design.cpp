@@ -4,10 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "lucerna/cli/commands/commands.h"
+#include "lucerna/cli/commands/design_lens.h"
 #include "lucerna/cli/output/trace_output.h"
 #include "lucerna/cli/parse/arguments.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
+#include "lucerna/design/lens/lens_problem.h"
 #include "lucerna/design/run/design_run.h"
 #include "lucerna/report/html/report_design.h"
 #include "lucerna/results/folders/design_files.h"
@@ -86,12 +88,25 @@ DesignRun run(const DesignProblem& problem, const DesignOptions& options, Design
   return made;
 }
 
-void design_mirror(const DesignArguments& a, Session& session, int& exit_code) {
-  session.start();
-  DesignOptions options = design_options(a);
+/// What a lens takes of the options; it refuses those that it does not have.
+DesignSettings lens_settings(const DesignArguments& a, const DesignOptions& options) {
+  DesignSettings settings;
+  settings.seed = options.seed;
+  settings.time_s = options.time_s;
+  settings.max_rays = options.max_rays;
+  settings.device = trace_device(a.device);
+  settings.tolerances = a.tolerances;
+  settings.pareto = a.pareto;
+  settings.advise = a.advise;
+  if (a.resume) settings.checkpoint = "resume";
+  return settings;
+}
+
+void design_mirror(const DesignArguments& a, Project project, DesignOptions options, Session& session,
+                   int& exit_code) {
   const auto accelerator = design_accelerator(trace_device(a.device));
-  DesignProblem problem = session.timed(
-      "read", [&] { return design_problem(read_project(a.project, session.progress()), a.project); });
+  DesignProblem problem =
+      session.timed("read", [&] { return design_problem(std::move(project), a.project); });
   if (a.tolerances && !problem.tolerances) problem.tolerances = ToleranceRanges{};
   options.accelerator = accelerator;
   prepare_folder(a.output, session.force || a.resume);
@@ -111,7 +126,7 @@ void design_mirror(const DesignArguments& a, Session& session, int& exit_code) {
   const DesignMetrics& figures = made.figures;
   Json json = session.json_head(options.seed, traced.isa);
   json["device"] = accelerator ? accelerator->name() : "cpu";
-  json.update(design_json(problem, result, figures));
+  json.update(design_json(problem.target, result, design_form(result), figures));
   json.update(trace_json(figures.trace));
   const std::vector<std::string> warnings = trace_warnings(figures.trace, problem.project.scene);
   for (const std::string& warning : warnings) session.note(warning);
@@ -124,7 +139,8 @@ void design_mirror(const DesignArguments& a, Session& session, int& exit_code) {
                                  a.output, result.shape.parameter_count(), result.evaluations,
                                  1e-6 * static_cast<double>(result.rays), session.seconds("design"),
                                  to_string(result.end)));
-  for (const std::string& line : design_summary(problem, result, figures)) session.print_line(line);
+  for (const std::string& line : design_summary(problem.target, result, design_form(result), figures))
+    session.print_line(line);
   session.print_line(fmt::format("  written: {}", fmt::join(names, " ")));
   if (!a.report.empty()) {
     write_design_report(a.output, a.report);
@@ -139,10 +155,22 @@ void design_mirror(const DesignArguments& a, Session& session, int& exit_code) {
   if (result.end == DesignTermination::interrupted) exit_code = 3;
 }
 
+void run_design_command(const DesignArguments& a, Session& session, int& exit_code) {
+  session.start();
+  const DesignOptions options = design_options(a);
+  Project project = session.timed("read", [&] { return read_project(a.project, session.progress()); });
+  if (is_lens_design(project)) {
+    design_lens_command(std::move(project), a.project, lens_settings(a, options), a.output, a.report, session,
+                        exit_code);
+  } else {
+    design_mirror(a, std::move(project), options, session, exit_code);
+  }
+}
+
 }  // namespace
 
 void add_design(CLI::App& app, Session& session, int& exit_code) {
-  Command command(app, "design", "Find the mirror that makes the project's target");
+  Command command(app, "design", "Find the mirror or lens that makes the project's target");
   auto arguments = std::make_shared<DesignArguments>();
   DesignArguments& a = *arguments;
   command.required("PROJECT", a.project, "Project file with [target] and [design]");
@@ -161,7 +189,7 @@ void add_design(CLI::App& app, Session& session, int& exit_code) {
   command.flag("--force", session.force, "Write into a folder that is not empty");
   session.add_json(command);
   session.add_common(command);
-  command.on_run([arguments, &session, &exit_code] { design_mirror(*arguments, session, exit_code); });
+  command.on_run([arguments, &session, &exit_code] { run_design_command(*arguments, session, exit_code); });
 }
 
 }  // namespace lucerna::cli

@@ -24,14 +24,13 @@ PlaneSummary summary_of(const std::vector<double>& values, double factor) {
 
 }  // namespace
 
-DesignMetrics design_metrics(const DesignProblem& problem, const DesignResult& result,
-                             const TraceResult& traced, const Scene& scene, const Progress& progress) {
+DesignMetrics design_metrics(const DesignTarget& target, double error_scale, const TraceResult& traced,
+                             const Scene& scene, const Progress& progress) {
   DesignMetrics f;
   f.trace = trace_metrics(traced, scene, {}, progress);
-  const DesignTarget& target = problem.target;
   if (target.zones_only) return f;  // a guide is nothing to compare with
-  if (target.mode == TargetMode::shape && result.error.scale > 0.0) {
-    f.target_factor = total_flux(problem.project.scene.sources) / result.error.scale;
+  if (target.mode == TargetMode::shape && error_scale > 0.0) {
+    f.target_factor = total_flux(scene.sources) / error_scale;
   }
   if (target.plane) {
     f.target_plane = summary_of(target.plane->map.value, f.target_factor);

@@ -32,10 +32,9 @@ struct DesignMetrics {
   std::optional<ToleranceSweep> tolerances;
 };
 
-/// `traced` is a trace of `scene`, that of `with_shape(problem, result.shape)`. About two seconds for a
-/// far-field target, less once `progress` asks to stop (trace_metrics).
-DesignMetrics design_metrics(const DesignProblem& problem, const DesignResult& result,
-                             const TraceResult& traced, const Scene& scene,
-                             const Progress& progress = no_progress());
+/// `traced` is a trace of `scene`, the finished project's; `scale` is DesignError::scale of the result. About
+/// two seconds for a far-field target, less once `progress` asks to stop (trace_metrics).
+DesignMetrics design_metrics(const DesignTarget& target, double scale, const TraceResult& traced,
+                             const Scene& scene, const Progress& progress = no_progress());
 
 }  // namespace lucerna

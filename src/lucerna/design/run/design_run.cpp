@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/design/run/lens_run.h"
 #include "lucerna/trace/device/accelerator.h"
 
 namespace lucerna {
@@ -76,8 +77,9 @@ DesignRun run_design(const DesignProblem& problem, DesignOptions options, Progre
   goal.max_seconds = std::clamp(kFinalTraceShare * options.time_s.value_or(problem.time_s), 1.0, 10.0);
   run.noise_goal = goal.noise;
   run.trace = timed(run.trace_s, [&] { return trace_until(scene, {.seed = options.seed + 1}, goal); });
-  run.figures = timed(run.figures_s,
-                      [&] { return design_metrics(problem, run.result, run.trace.result, scene, progress); });
+  run.figures = timed(run.figures_s, [&] {
+    return design_metrics(problem.target, run.result.error.scale, run.trace.result, scene, progress);
+  });
   if (problem.tolerances && run.result.end != DesignTermination::interrupted) {
     run.figures.tolerances = timed(run.tolerances_s, [&] {
       return tolerance_sweep(scene, *problem.tolerances, options.seed + 2, progress);
@@ -88,6 +90,7 @@ DesignRun run_design(const DesignProblem& problem, DesignOptions options, Progre
 
 DesignedMirror design(Project project, const std::string& name, const DesignSettings& settings,
                       Progress& progress, const DesignWatcher& watcher) {
+  if (is_lens_design(project)) return designed_lens(std::move(project), name, settings, progress, watcher);
   DesignProblem problem = design_problem(std::move(project), name);
   if (settings.tolerances && !problem.tolerances) problem.tolerances = ToleranceRanges{};
   DesignOptions options;

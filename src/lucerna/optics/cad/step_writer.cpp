@@ -116,10 +116,11 @@ int StepWriter::face(int surface, bool same_sense, int outer, const std::vector<
   return faces_.back();
 }
 
-std::string StepWriter::text(const std::string& name) {
+std::string StepWriter::text(const std::string& name, bool closed) {
   const std::string title = quoted(name);
-  const int shell = add("OPEN_SHELL(''," + list(faces_, reference) + ")");
-  const int model = add(fmt::format("SHELL_BASED_SURFACE_MODEL('',(#{}))", shell));
+  const int shell = add((closed ? "CLOSED_SHELL(''," : "OPEN_SHELL('',") + list(faces_, reference) + ")");
+  const int model = add(closed ? fmt::format("MANIFOLD_SOLID_BREP('',#{})", shell)
+                               : fmt::format("SHELL_BASED_SURFACE_MODEL('',(#{}))", shell));
   const int origin = placement({0, 0, 0});
   const int millimetre = add("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))");
   const int radian = add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))");
@@ -130,8 +131,10 @@ std::string StepWriter::text(const std::string& name) {
       add(fmt::format("(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#{}))"
                       "GLOBAL_UNIT_ASSIGNED_CONTEXT((#{},#{},#{}))REPRESENTATION_CONTEXT('',''))",
                       accuracy, millimetre, radian, steradian));
-  const int shape = add(
-      fmt::format("MANIFOLD_SURFACE_SHAPE_REPRESENTATION({},(#{},#{}),#{})", title, origin, model, context));
+  const int shape =
+      add(fmt::format("{}({},(#{},#{}),#{})",
+                      closed ? "ADVANCED_BREP_SHAPE_REPRESENTATION" : "MANIFOLD_SURFACE_SHAPE_REPRESENTATION",
+                      title, origin, model, context));
   const int application = add("APPLICATION_CONTEXT('core data for automotive mechanical design processes')");
   add(fmt::format("APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,#{})",
                   application));
@@ -144,7 +147,8 @@ std::string StepWriter::text(const std::string& name) {
   const int definition = add(fmt::format("PRODUCT_DEFINITION('design','',#{},#{})", formation, part));
   const int defined = add(fmt::format("PRODUCT_DEFINITION_SHAPE('','',#{})", definition));
   add(fmt::format("SHAPE_DEFINITION_REPRESENTATION(#{},#{})", defined, shape));
-  return "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('mirror surface, mm'),'2;1');\nFILE_NAME(" + title +
+  return std::string("ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('") + (closed ? "solid" : "mirror surface") +
+         ", mm'),'2;1');\nFILE_NAME(" + title +
          ",'1970-01-01T00:00:00',(''),(''),'Lucerna','Lucerna','');\n"
          "FILE_SCHEMA(('AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }'));\nENDSEC;\nDATA;\n" +
          data_ + "ENDSEC;\nEND-ISO-10303-21;\n";

@@ -28,7 +28,7 @@ struct StepSurface {
 /// An edge and whether a loop runs along it.
 using StepEdge = std::pair<int, bool>;
 
-/// Collects entities of one open shell and writes them as a STEP file: the clear text encoding of ISO
+/// Collects entities of one shell and writes them as a STEP file: the clear text encoding of ISO
 /// 10303-21 with the schema AUTOMOTIVE_DESIGN (ISO 10303-214) and the geometry and topology of ISO 10303-42.
 /// Every call returns the entity's number. Loops run counter-clockwise seen from where their face looks to;
 /// holes too (they are written the other way).
@@ -46,8 +46,8 @@ class StepWriter {
   /// `same_sense`: the face looks to where the surface's normal does.
   int face(int surface, bool same_sense, int outer, const std::vector<int>& holes);
 
-  /// The whole file; to be called once, last.
-  std::string text(const std::string& name);
+  /// The whole file; to be called once, last. `closed`: the faces bound a solid, all looking out of it.
+  std::string text(const std::string& name, bool closed = false);
 
  private:
   int add(const std::string& entity);

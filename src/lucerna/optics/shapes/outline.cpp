@@ -9,7 +9,7 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/geometry.h"
-#include "lucerna/optics/shapes/cubic_spline.h"
+#include "lucerna/optics/shapes/outline_curve.h"
 
 namespace lucerna {
 
@@ -52,162 +52,55 @@ std::optional<std::pair<std::size_t, std::size_t>> first_crossing(std::span<cons
   return std::nullopt;
 }
 
-/// A piece of a curve: cubic, by its ends and the derivatives there over 0 to 1.
-struct CubicPiece {
-  OutlinePoint from, to, from_slope, to_slope;
+/// Where the runs of an outline end, and how.
+class RunEnds {
+ public:
+  RunEnds(std::span<const OutlinePoint> corners, double smooth_below_deg)
+      : corners_(corners), smooth_below_deg_(smooth_below_deg) {}
 
-  OutlinePoint at(double u) const {
-    const double v = 1.0 - u;
-    OutlinePoint out;
-    for (std::size_t i = 0; i < 2; ++i) {
-      out[i] = v * v * (1.0 + 2.0 * u) * from[i] + u * u * (3.0 - 2.0 * u) * to[i] +
-               u * v * (v * from_slope[i] - u * to_slope[i]);
-    }
-    return {std::max(out[0], 0.0), out[1]};
-  }
+  /// A run ends at edges and on the axis.
+  bool ends_at(std::size_t i) const { return on_axis(i) || !is_smooth(i); }
+  CurveEnd end_at(std::size_t i) const { return on_axis(i) && is_smooth(i) ? kOnAxis : CurveEnd{}; }
+  bool on_axis(std::size_t i) const { return corners_[i % corners_.size()][0] == 0.0; }
 
-  OutlinePoint slope(double u) const {
-    const double v = 1.0 - u;
-    OutlinePoint out;
-    for (std::size_t i = 0; i < 2; ++i) {
-      out[i] = 6.0 * u * v * (to[i] - from[i]) + v * (1.0 - 3.0 * u) * from_slope[i] +
-               u * (3.0 * u - 2.0) * to_slope[i];
-    }
-    return out;
-  }
+ private:
+  bool is_smooth(std::size_t i) const { return turn_deg(corners_, i % corners_.size()) <= smooth_below_deg_; }
 
-  /// Unit, to the right of the way.
-  OutlinePoint normal(double u) const {
-    const OutlinePoint s = slope(u);
-    const double all = norm(s);
-    if (!(all > 0.0)) return {0.0, 0.0};
-    return {s[1] / all, -s[0] / all};
-  }
-
-  /// Straight pieces that keep within `tolerance_mm`: the second derivative, linear along a cubic, is largest
-  /// at an end.
-  int pieces(double tolerance_mm) const {
-    double bend = 0.0;
-    for (const bool at_end : {false, true}) {
-      OutlinePoint second;
-      for (std::size_t i = 0; i < 2; ++i) {
-        const double all = 6.0 * (to[i] - from[i]);
-        second[i] = at_end ? -all + 2.0 * from_slope[i] + 4.0 * to_slope[i]
-                           : all - 4.0 * from_slope[i] - 2.0 * to_slope[i];
-      }
-      bend = std::max(bend, norm(second));
-    }
-    constexpr double kMost = 1024.0;
-    return static_cast<int>(std::clamp(std::ceil(std::sqrt(bend / (8.0 * tolerance_mm))), 1.0, kMost));
-  }
+  std::span<const OutlinePoint> corners_;
+  double smooth_below_deg_;
 };
 
-/// How the coordinates of a curve end there: like r and like z.
-struct CurveEnd {
-  SplineEnd r = SplineEnd::not_a_knot, z = SplineEnd::not_a_knot;
-};
+using OutlineCurve = std::vector<OutlinePiece<double>>;
 
-/// On the axis what is smooth has an odd r and an even z.
-constexpr CurveEnd kOnAxis{SplineEnd::natural, SplineEnd::flat};
+/// Smooth all about: what a spline's end does to it falls by four a knot, so that after 32 nothing is left.
+OutlineCurve ring_through(const Points& corners) {
+  constexpr std::size_t kOverlap = 32;
+  const std::size_t n = corners.size();
+  Points run;
+  for (std::size_t i = 0; i <= n + 2 * kOverlap; ++i)
+    run.push_back(corners[(i + n * kOverlap - kOverlap) % n]);
+  const OutlineCurve curve = spline_through(run, {}, {});
+  const auto first = curve.begin() + kOverlap;
+  return {first, first + static_cast<std::ptrdiff_t>(n)};
+}
 
-/// The spline through points over the length of the chords.
-std::vector<CubicPiece> spline_through(const Points& p, CurveEnd start, CurveEnd end) {
-  std::vector<double> h, delta[2], slope[2];
-  for (std::size_t i = 1; i < p.size(); ++i) {
-    const OutlinePoint way = p[i] - p[i - 1];
-    h.push_back(norm(way));
-    for (std::size_t k = 0; k < 2; ++k) delta[k].push_back(way[k] / h.back());
-  }
-  if (h.size() == 1) {
-    return {{p[0], p[1], p[1] - p[0], p[1] - p[0]}};
-  }
-  slope[0] = spline_slopes(h, delta[0], start.r, end.r);
-  slope[1] = spline_slopes(h, delta[1], start.z, end.z);
-  std::vector<CubicPiece> out;
-  for (std::size_t i = 0; i < h.size(); ++i) {
-    out.push_back({p[i],
-                   p[i + 1],
-                   {h[i] * slope[0][i], h[i] * slope[1][i]},
-                   {h[i] * slope[0][i + 1], h[i] * slope[1][i + 1]}});
+/// All of a closed outline: a piece a side, without those along the axis.
+OutlineCurve curve_through(const Points& corners, double smooth_below_deg) {
+  const std::vector<OutlineRun> runs = outline_runs(corners, smooth_below_deg);
+  if (runs.empty()) return ring_through(corners);
+  OutlineCurve out;
+  for (const OutlineRun& run : runs) {
+    Points points;
+    for (std::size_t i = run.from; i <= run.to; ++i) points.push_back(corners[i % corners.size()]);
+    const OutlineCurve curve = spline_through(points, run.start, run.end);
+    out.insert(out.end(), curve.begin(), curve.end());
   }
   return out;
 }
 
-/// All of a closed outline: a piece a side, without those along the axis.
-class Curves {
- public:
-  Curves(Points corners, double smooth_below_deg)
-      : corners_(std::move(corners)), smooth_below_deg_(smooth_below_deg) {
-    std::size_t first = 0;
-    while (first < corners_.size() && !ends_at(first)) ++first;
-    if (first == corners_.size()) {
-      add_ring();
-    } else {
-      std::rotate(corners_.begin(), corners_.begin() + static_cast<std::ptrdiff_t>(first), corners_.end());
-      add_runs();
-    }
-  }
-
-  std::vector<CubicPiece> pieces;
-
- private:
-  const OutlinePoint& corner(std::size_t i) const { return corners_[i % corners_.size()]; }
-
-  /// A run ends at edges and on the axis.
-  bool ends_at(std::size_t i) const {
-    return corner(i)[0] == 0.0 || turn_deg(corners_, i % corners_.size()) > smooth_below_deg_;
-  }
-
-  CurveEnd end_at(std::size_t i) const {
-    const bool smooth = corner(i)[0] == 0.0 && turn_deg(corners_, i % corners_.size()) <= smooth_below_deg_;
-    return smooth ? kOnAxis : CurveEnd{};
-  }
-
-  void add_runs() {
-    for (std::size_t from = 0; from < corners_.size();) {
-      std::size_t to = from + 1;
-      while (!ends_at(to)) ++to;
-      if (to > from + 1 || corner(from)[0] > 0.0 || corner(to)[0] > 0.0) add_run(from, to);
-      from = to;
-    }
-  }
-
-  void add_run(std::size_t from, std::size_t to) {
-    Points run;
-    for (std::size_t i = from; i <= to; ++i) run.push_back(corner(i));
-    // A side of one piece is straight unless the axis bends it; two conditions at one piece would.
-    const std::vector<CubicPiece> curve =
-        run.size() == 2 ? spline_through(run, {}, {}) : spline_through(run, end_at(from), end_at(to));
-    pieces.insert(pieces.end(), curve.begin(), curve.end());
-  }
-
-  /// Smooth all about: what a spline's end does to it falls by four a knot, so that after 32 nothing is left.
-  void add_ring() {
-    constexpr std::size_t kOverlap = 32;
-    const std::size_t n = corners_.size();
-    Points run;
-    for (std::size_t i = 0; i <= n + 2 * kOverlap; ++i) run.push_back(corner(i + n * kOverlap - kOverlap));
-    const std::vector<CubicPiece> curve = spline_through(run, {}, {});
-    const auto first = curve.begin() + kOverlap;
-    pieces.assign(first, first + static_cast<std::ptrdiff_t>(n));
-  }
-
-  Points corners_;
-  double smooth_below_deg_;
-};
-
-std::vector<OutlineSide> straight_pieces(const std::vector<CubicPiece>& curve, double tolerance_mm) {
+std::vector<OutlineSide> straight_pieces(const OutlineCurve& curve, double tolerance_mm) {
   std::vector<OutlineSide> out;
-  for (const CubicPiece& c : curve) {
-    const int n = c.pieces(tolerance_mm);
-    OutlinePoint from = c.from;
-    for (int k = 1; k <= n; ++k) {
-      const double u = static_cast<double>(k - 1) / n, v = static_cast<double>(k) / n;
-      const OutlinePoint to = k == n ? c.to : c.at(v);
-      if (norm(to - from) > 0.0) out.push_back({from, to, c.normal(u), c.normal(v)});
-      from = to;
-    }
-  }
+  for (const OutlinePiece<double>& c : curve) add_sides(c, straight_pieces_of(c, tolerance_mm), out);
   return out;
 }
 
@@ -267,11 +160,59 @@ double turn_deg(std::span<const OutlinePoint> p, std::size_t i) {
 std::vector<OutlineSide> outline_sides(std::span<const OutlinePoint> corners_mm, double smooth_below_deg,
                                        double tolerance_mm) {
   check_outline(corners_mm);
-  const Curves curves(counter_clockwise(corners_mm), smooth_below_deg);
+  const OutlineCurve curve = curve_through(counter_clockwise(corners_mm), smooth_below_deg);
   // Whether it crosses itself is seen at a thousandth of its size: that takes the square of the pieces.
   const double coarse_mm = std::max(tolerance_mm, 1e-3 * outline_reach_mm(corners_mm));
-  check_no_crossing(straight_pieces(curves.pieces, coarse_mm));
-  return straight_pieces(curves.pieces, tolerance_mm);
+  check_no_crossing(straight_pieces(curve, coarse_mm));
+  return straight_pieces(curve, tolerance_mm);
+}
+
+std::vector<OutlineRun> outline_runs(std::span<const OutlinePoint> corners_mm, double smooth_below_deg) {
+  const RunEnds ends(corners_mm, smooth_below_deg);
+  const std::size_t n = corners_mm.size();
+  std::size_t first = 0;
+  while (first < n && !ends.ends_at(first)) ++first;
+  if (first == n) return {};
+  std::vector<OutlineRun> out;
+  for (std::size_t from = first; from < first + n;) {
+    std::size_t to = from + 1;
+    while (!ends.ends_at(to)) ++to;
+    const bool along_axis = to == from + 1 && ends.on_axis(from) && ends.on_axis(to);
+    // A side of one piece is straight unless the axis bends it; two conditions at one piece would.
+    const bool straight = to == from + 1;
+    if (!along_axis)
+      out.push_back(
+          {from, to, straight ? CurveEnd{} : ends.end_at(from), straight ? CurveEnd{} : ends.end_at(to)});
+    from = to;
+  }
+  return out;
+}
+
+int straight_pieces_of(const OutlinePiece<double>& piece, double tolerance_mm) {
+  // The second derivative, linear along a cubic, is largest at an end.
+  double bend = 0.0;
+  for (const double u : {0.0, 1.0}) bend = std::max(bend, norm(curve_point(piece, u).second));
+  constexpr double kMost = 1024.0;
+  return static_cast<int>(std::clamp(std::ceil(std::sqrt(bend / (8.0 * tolerance_mm))), 1.0, kMost));
+}
+
+void add_sides(const OutlinePiece<double>& piece, int n, std::vector<OutlineSide>& sides) {
+  const auto point = [&](double u) {
+    const OutlinePoint p = curve_point(piece, u).at;
+    return OutlinePoint{std::max(p[0], 0.0), p[1]};
+  };
+  const auto normal = [&](double u) {  // unit, to the right of the way
+    const OutlinePoint s = curve_point(piece, u).first;
+    const double all = norm(s);
+    return all > 0.0 ? OutlinePoint{s[1] / all, -s[0] / all} : OutlinePoint{0.0, 0.0};
+  };
+  OutlinePoint from = piece.from;
+  for (int k = 1; k <= n; ++k) {
+    const double u = static_cast<double>(k - 1) / n, v = static_cast<double>(k) / n;
+    const OutlinePoint to = k == n ? piece.to : point(v);
+    if (norm(to - from) > 0.0) sides.push_back({from, to, normal(u), normal(v)});
+    from = to;
+  }
 }
 
 double outline_reach_mm(std::span<const OutlinePoint> corners_mm) {

@@ -152,6 +152,7 @@ constexpr std::array kKeys{
     ProjectKey{"target.zone", "mean_of", Type::text, kAny, "", "the zone itself", "Name of the zone that the mean is of."},
 
     ProjectKey{"design", "reflector", Type::number, kAny, "", "0 where there is one", "Number, from 0, of the reflector that is shaped."},
+    ProjectKey{"design", "free_sides", Type::number_or_numbers, whole(0, 10000), "", "none", "Of a lens, instead of a reflector: numbers, from 0, of the sides of its `outline_mm` that are shaped, each with all of its face; side 0 leads from the first corner to the second."},
     ProjectKey{"design", "optimizer", Type::word, kAny, "auto least-squares tree annealing cma-es direct", "\"auto\"", "How the shape is searched for."},
     ProjectKey{"design", "time_s", Type::number, kAboveZero, "", "60", "Time for the search. Rays per step follow from it."},
     ProjectKey{"design", "intervals", Type::number_or_numbers, whole(1, 60), "", "chosen by the search", "Fixes the intervals between knots: one number, or two along x and y."},
@@ -160,10 +161,12 @@ constexpr std::array kKeys{
     ProjectKey{"design", "limits", Type::table, kAny, "", "none", "What the mirror must not be."},
     ProjectKey{"design", "tolerances", Type::table, kAny, "", "none", "What a manufactured luminaire may differ by."},
 
-    ProjectKey{"design.limits", "max_diameter_mm", Type::number, kAboveZero, "", "none", "Diameter of the aperture."},
+    ProjectKey{"design.limits", "max_diameter_mm", Type::number, kAboveZero, "", "none", "Diameter of the aperture, or of a lens."},
+    ProjectKey{"design.limits", "min_thickness_mm", Type::number, kAboveZero, "", "none", "Of a lens: distance through it between faces that do not meet, and along the axis."},
+    ProjectKey{"design.limits", "min_draft_deg", Type::number, up_to(90, true), "", "none", "Of a lens: angle between its free faces and the axis, along which the mould opens."},
     ProjectKey{"design.limits", "min_opening_mm", Type::number, kAboveZero, "", "none", "Shorter side of the aperture."},
     ProjectKey{"design.limits", "min_hole_diameter_mm", Type::number, kAboveZero, "", "none", "Diameter of the hole."},
-    ProjectKey{"design.limits", "max_height_mm", Type::number, kAboveZero, "", "none", "Largest minus smallest height of the mirror along its axis."},
+    ProjectKey{"design.limits", "max_height_mm", Type::number, kAboveZero, "", "none", "Largest minus smallest height of the mirror or lens along its axis."},
     ProjectKey{"design.limits", "max_slope_deg", Type::number, up_to(90, true), "", "none", "Angle between the normal and the axis of the mirror: draft for the tool."},
     ProjectKey{"design.limits", "min_radius_mm", Type::number, kAboveZero, "", "none", "Radius of curvature anywhere, concave or convex: the radius of the tool."},
     ProjectKey{"design.limits", "min_efficiency", Type::number, up_to(1), "", "none", "Share of the sources' flux that leaves the luminaire."},

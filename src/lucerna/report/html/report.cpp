@@ -7,10 +7,12 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/design/run/design_run.h"
+#include "lucerna/design/run/lens_run.h"
 #include "lucerna/report/html/report_design.h"
 #include "lucerna/report/html/report_trace.h"
 #include "lucerna/report/html/write_model_report.h"
 #include "lucerna/results/folders/design_files.h"
+#include "lucerna/results/folders/lens_files.h"
 #include "lucerna/results/folders/trace_results.h"
 #include "lucerna/results/json/design_json.h"
 #include "lucerna/results/json/model_json.h"
@@ -51,14 +53,32 @@ std::vector<std::string> write_trace(const std::filesystem::path& folder, const 
   return names;
 }
 
+namespace {
+
+std::vector<std::string> write_lens(const std::filesystem::path& folder, const DesignedMirror& lens) {
+  const LensRecord& record = *lens.lens_record;
+  LensProblem problem = record.problem;
+  problem.project = save_memory(problem.project, folder);
+  nlohmann::ordered_json json = run_json({.inputs = problem.project.inputs}, record.seed, lens.traced.isa);
+  json["device"] = "cpu";
+  json.update(design_json(problem.target, record.result, design_form(record.result), record.figures));
+  json.update(trace_json(record.figures.trace));
+  json["warnings"] = trace_warnings(record.figures.trace);
+  return write_lens_files(folder, problem, record.result, record.figures, lens.traced,
+                          history_csv(record.result.history), json);
+}
+
+}  // namespace
+
 std::vector<std::string> write_design(const std::filesystem::path& folder, const DesignedMirror& mirror) {
   make_folder(folder);
+  if (mirror.lens_record != nullptr) return write_lens(folder, mirror);
   const DesignRecord& record = *mirror.record;
   DesignProblem problem = record.problem;
   problem.project = save_memory(problem.project, folder);
   nlohmann::ordered_json json = run_json({.inputs = problem.project.inputs}, record.seed, mirror.traced.isa);
   json["device"] = record.device;
-  json.update(design_json(problem, record.result, record.figures));
+  json.update(design_json(problem.target, record.result, design_form(record.result), record.figures));
   json.update(trace_json(record.figures.trace));
   json["warnings"] = trace_warnings(record.figures.trace, problem.project.scene);
   return write_design_files(folder, problem, record.result, record.figures, mirror.traced,

@@ -11,6 +11,8 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
+#include "lucerna/design/lens/lens_problem.h"
+#include "lucerna/design/run/design_problem.h"
 #include "lucerna/report/html/report_far_field.h"
 #include "lucerna/report/html/report_planes.h"
 #include "lucerna/report/html/report_sections.h"
@@ -51,8 +53,8 @@ std::string error_cards(const ResultFigures& result) {
                        "24 × 24, {} % in 12 × 12",
                        result.percent("/error/c48/floor"), result.percent("/error/c24/excess"),
                        result.percent("/error/c12/excess")));
-  out += card("It began at", result.percent("/start/error/c48/excess"), "%",
-              "error of the mirror in the project");
+  out +=
+      card("It began at", result.percent("/start/error/c48/excess"), "%", "error of what the project gives");
   out += card("Error outside", result.percent("/outside/error/excess"), "%",
               "l2 over the rest of the sphere, relative to the target in its rectangle");
   return out + card("Worst box",
@@ -76,8 +78,9 @@ std::string summary(const ResultFigures& result) {
            fmt::format("of the sources' flux; {} % leaves the luminaire, {} % goes elsewhere, {} % directly",
                        result.percent("/efficiency/value"), result.percent("/outside/share/value"),
                        result.percent("/outside/direct/value")));
-  out += card("Parameters", result.figure("/parameters"), "",
-              fmt::format("mirror {} mm high", result.figure("/height_mm")));
+  out += card(
+      "Parameters", result.figure("/parameters"), "",
+      fmt::format("{} {} mm high", result.has("/lens") ? "lens" : "mirror", result.figure("/height_mm")));
   out += card("Evaluations", result.figure("/evaluations"), "",
               fmt::format("{} rays; ended: {}", result.figure("/rays"), result.text("/end")));
   if (const std::string key = first_far_field_key(result); !key.empty()) {
@@ -186,15 +189,15 @@ std::vector<HistoryLine> read_history(std::string_view csv, const std::string& f
 std::string design_report_html(const TraceFolder& folder, const std::vector<HistoryLine>& history,
                                const DesignReportOptions& options) {
   const ResultFigures result(folder.result, (folder.path / "result.json").string());
-  HtmlPage page("Reflector design", folder_title(folder.path));
+  HtmlPage page(result.has("/lens") ? "Lens design" : "Reflector design", folder_title(folder.path));
   page.section("summary", "Summary", warnings_html(result) + summary(result));
   page.section("limits", "What limits it", limits_html(result));
-  const bool zones_only = options.problem != nullptr && options.problem->target.zones_only;
+  const bool zones_only = options.target != nullptr && options.target->zones_only;
   if (zones_only) {
     page.section("target", "Target and result",
                  "<p>The target is its zones: see the table above. There is no light to compare with.</p>\n");
-  } else if (options.problem != nullptr) {
-    add_target_section(page, *options.problem, folder);
+  } else if (options.target != nullptr) {
+    add_target_section(page, *options.target, *options.scene, folder);
   } else {
     page.section("target", "Target and result",
                  fmt::format("<p>There is no comparison: {}.</p>\n", html_escaped(options.no_problem)));
@@ -204,7 +207,7 @@ std::string design_report_html(const TraceFolder& folder, const std::vector<Hist
   page.section("convergence", "Convergence", convergence(page, history));
   page.section("energy", "Efficiency and losses", energy_balance_html(result));
   ViewSource view{.no_scene = options.no_problem, .options = {.seed = result.count("/seed") + 1}};
-  if (options.problem != nullptr) view.scene = &options.problem->project.scene;
+  view.scene = options.scene;
   add_view_section(page, view);
   add_far_field_sections(page, result, folder.far_fields);
   add_plane_sections(page, result, folder.planes);
@@ -222,11 +225,18 @@ void write_design_report(const std::filesystem::path& folder, const std::filesys
   const TraceFolder read = read_trace_folder(folder);
   const std::filesystem::path csv = folder / "history.csv", project = folder / "project.toml";
   const auto history = read_history(read_file(csv, kMaxHistoryBytes), csv.string());
-  std::optional<DesignProblem> problem;
+  std::optional<DesignProblem> mirror;
+  std::optional<LensProblem> lens;
   DesignReportOptions options;
   try {
-    problem = design_problem(read_project(project), project);
-    options.problem = &*problem;
+    Project given = read_project(project);
+    if (is_lens_design(given)) {
+      lens.emplace(lens_problem(std::move(given), project));
+    } else {
+      mirror.emplace(design_problem(std::move(given), project));
+    }
+    options.target = lens ? &lens->target : &mirror->target;
+    options.scene = lens ? &lens->project.scene : &mirror->project.scene;
   } catch (const InputError& e) {
     options.no_problem = e.what();
   }

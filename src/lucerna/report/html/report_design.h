@@ -4,8 +4,9 @@
 #include <filesystem>
 #include <string>
 
-#include "lucerna/design/run/design_problem.h"
+#include "lucerna/design/problem/target.h"
 #include "lucerna/results/folders/trace_folder.h"
+#include "lucerna/scene.h"
 
 namespace lucerna {
 
@@ -21,9 +22,10 @@ std::vector<HistoryLine> read_history(std::string_view csv, const std::string& f
 
 /// What a design report shows beside the folder's files.
 struct DesignReportOptions {
-  /// The folder's project, for the target and the 3D view; not owned. Without it the report says why there is
-  /// neither: `no_problem`, plain text.
-  const DesignProblem* problem = nullptr;
+  /// Of the folder's project, for the target and the 3D view; not owned, both or none. Without them the
+  /// report says why there is neither: `no_problem`, plain text.
+  const DesignTarget* target = nullptr;
+  const Scene* scene = nullptr;
   std::string no_problem = "the project was not read";
 };
 

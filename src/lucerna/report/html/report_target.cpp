@@ -105,13 +105,13 @@ std::string comparison_table(const FarFieldTable& result, const FarFieldTable& t
   return html_table(table);
 }
 
-void directions_section(HtmlPage& page, const DesignProblem& problem, const FarFieldTable& result) {
-  const FarFieldTable target = target_on(result, problem.target);
+void directions_section(HtmlPage& page, const DesignTarget& wanted, const FarFieldTable& result) {
+  const FarFieldTable target = target_on(result, wanted);
   FarFieldFigure figure = add_far_field(page, result);
   figure.target = add_far_field(page, target).index;
   const std::string attributes =
       fmt::format("data-detector=\"{}\" data-target=\"{}\"", figure.index, *figure.target);
-  std::string out = problem.target.mode == TargetMode::shape
+  std::string out = wanted.mode == TargetMode::shape
                         ? "<p>The target's shape counts: it is scaled to fit best.</p>\n"
                         : "<p>The target counts as it is, in absolute figures.</p>\n";
   out += "<div class=\"plots\">\n";
@@ -125,9 +125,8 @@ void directions_section(HtmlPage& page, const DesignProblem& problem, const FarF
   page.section("target", "Target and result", out);
 }
 
-void plane_section(HtmlPage& page, const DesignProblem& problem) {
-  const PlaneTarget& wanted = *problem.target.plane;
-  Scene scene = problem.project.scene;
+void plane_section(HtmlPage& page, const DesignTarget& prescribed, Scene scene) {
+  const PlaneTarget& wanted = *prescribed.plane;
   PlaneDetector detector{"target", {wanted.world_from_plane, wanted.size_x_mm, wanted.size_y_mm}};
   detector.grid.nx = std::min(kMaxPlaneCells, std::max<std::size_t>(wanted.map.nx, 16));
   detector.grid.ny = std::min(kMaxPlaneCells, std::max<std::size_t>(wanted.map.ny, 16));
@@ -141,7 +140,7 @@ void plane_section(HtmlPage& page, const DesignProblem& problem) {
   std::vector<double> target;
   for (std::size_t i = 0; i < detector.grid.size(); ++i)
     target.push_back(wanted.at(detector.grid.cell_x_mm(i), detector.grid.cell_y_mm(i)));
-  const bool shape = problem.target.mode == TargetMode::shape;
+  const bool shape = prescribed.mode == TargetMode::shape;
   const double scale = shape ? best_scale(target, found.value, std::vector<double>(target.size(), 1.0)) : 1.0;
   for (double& lx : target) lx *= scale;
 
@@ -176,14 +175,15 @@ void plane_section(HtmlPage& page, const DesignProblem& problem) {
 
 }  // namespace
 
-void add_target_section(HtmlPage& page, const DesignProblem& problem, const TraceFolder& folder) {
-  if (problem.target.plane) {
-    plane_section(page, problem);
+void add_target_section(HtmlPage& page, const DesignTarget& target, const Scene& scene,
+                        const TraceFolder& folder) {
+  if (target.plane) {
+    plane_section(page, target, scene);
   } else if (folder.far_fields.empty()) {
     page.section("target", "Target and result",
                  "<p>There is no comparison: the project has no far-field detector.</p>\n");
   } else {
-    directions_section(page, problem, folder.far_fields.front());
+    directions_section(page, target, folder.far_fields.front());
   }
 }
 

@@ -143,22 +143,23 @@ std::string bound_text(const DesignBound& bound) {
 }
 
 /// The error, headline first, and where the light is.
-void error_lines(const DesignResult& result, std::vector<std::string>& lines) {
+void error_lines(const DesignFindings& result, bool with_bound, std::vector<std::string>& lines) {
   const DesignError& e = result.error;
   lines.push_back(
       fmt::format("  error {:.2f} +- {:.2f} % in 48 x 48 boxes (24: {:.2f}, 12: {:.2f}); the start had "
                   "{:.1f} %",
                   100.0 * e.c48.excess, 100.0 * e.c48.standard_error, 100.0 * e.c24.excess,
                   100.0 * e.c12.excess, 100.0 * result.start_error.c48.excess));
-  lines.push_back(fmt::format("    bound {:.2f} %, reached {:.2f} %: {}", 100.0 * result.bound.error,
-                              100.0 * e.c48.excess, bound_text(result.bound)));
+  if (with_bound)
+    lines.push_back(fmt::format("    bound {:.2f} %, reached {:.2f} %: {}", 100.0 * result.bound.error,
+                                100.0 * e.c48.excess, bound_text(result.bound)));
   lines.push_back(fmt::format(
       "    noise of {:.3g} M rays, taken out: {:.2f} %; worst box {:.1f} +- {:.1f} % of the target's peak",
       1e-6 * static_cast<double>(e.rays), 100.0 * e.c48.floor, 100.0 * e.worst_cell.mean,
       100.0 * e.worst_cell.standard_error));
 }
 
-void light_line(const DesignResult& result, bool with_error, std::vector<std::string>& lines) {
+void light_line(const DesignFindings& result, bool with_error, std::vector<std::string>& lines) {
   const DesignError& e = result.error;
   std::string line = fmt::format(
       "  light: {:.1f} % leaves; {:.1f} % in the target's rectangle, {:.1f} % outside "
@@ -173,7 +174,7 @@ void light_line(const DesignResult& result, bool with_error, std::vector<std::st
 }
 
 /// The trade between error and light, one line a weight.
-void pareto_lines(const DesignResult& result, std::vector<std::string>& lines) {
+void pareto_lines(const DesignFindings& result, std::vector<std::string>& lines) {
   if (result.pareto.empty()) return;
   lines.push_back("  trade: vertex moved   light_weight   error in 48 x 48 boxes   light in the rectangle");
   for (const ParetoPoint& p : result.pareto) {
@@ -185,7 +186,7 @@ void pareto_lines(const DesignResult& result, std::vector<std::string>& lines) {
 }
 
 /// What was tried, beside what it has to beat.
-void advice_lines(const DesignResult& result, std::vector<std::string>& lines) {
+void advice_lines(const DesignFindings& result, std::vector<std::string>& lines) {
   if (result.advice.empty()) return;
   const auto line = [](const std::string& what, const DesignError& e, const char* verdict) {
     return fmt::format("         {:<34} {:5.2f} +- {:.2f} %          {:.1f} +- {:.1f} %  {}", what,
@@ -222,10 +223,10 @@ nlohmann::ordered_json pareto_json(const std::vector<ParetoPoint>& points) {
 }
 
 /// Errors against the target; of zones alone there is no other target, so only where the light is.
-Json error_metrics(const DesignProblem& problem, const DesignResult& result) {
+Json error_metrics(const DesignTarget& target, const DesignFindings& result, bool with_bound) {
   Json start{{"in_rectangle", estimate_json(result.start_error.in_rectangle)}};
-  if (problem.target.zones != nullptr) start["zones"] = zones_json(result.start_zones);
-  if (problem.target.zones_only) {
+  if (target.zones != nullptr) start["zones"] = zones_json(result.start_zones);
+  if (target.zones_only) {
     return {{"outside",
              {{"share", estimate_json(result.error.outside_share)},
               {"direct", estimate_json(result.error.outside_direct)}}},
@@ -233,34 +234,46 @@ Json error_metrics(const DesignProblem& problem, const DesignResult& result) {
   }
   start["error"] = error_json(result.start_error);
   start["outside"] = outside_json(result.start_error);
-  return {{"error", error_json(result.error)},
-          {"outside", outside_json(result.error)},
-          {"worst_cell", estimate_json(result.error.worst_cell)},
-          {"bound",
-           {{"error", result.bound.error},
-            {"etendue_error", result.bound.etendue_error},
-            {"direct_error", result.bound.direct_error},
-            {"target_share", result.bound.target_share},
-            {"max_share", result.bound.max_share},
-            {"etendue_mm2sr", result.bound.etendue_mm2sr}}},
-          {"start", start}};
+  Json out{{"error", error_json(result.error)},
+           {"outside", outside_json(result.error)},
+           {"worst_cell", estimate_json(result.error.worst_cell)}};
+  if (with_bound) {
+    out["bound"] = {{"error", result.bound.error},
+                    {"etendue_error", result.bound.etendue_error},
+                    {"direct_error", result.bound.direct_error},
+                    {"target_share", result.bound.target_share},
+                    {"max_share", result.bound.max_share},
+                    {"etendue_mm2sr", result.bound.etendue_mm2sr}};
+  }
+  out["start"] = start;
+  return out;
 }
 
 }  // namespace
 
-Json design_json(const DesignProblem& problem, const DesignResult& result, const DesignMetrics& f) {
-  Json json = error_metrics(problem, result);
-  if (problem.target.zones != nullptr) json["zones"] = zones_json(result.zones);
+DesignForm design_form(const DesignResult& result) {
+  return {result.shape.parameter_count(), result.shape.height_mm(), result.validation_s, false};
+}
+
+DesignForm design_form(const LensResult& result) {
+  return {result.shape.parameter_count(), result.shape.height_mm(), result.validation_s, true};
+}
+
+Json design_json(const DesignTarget& target, const DesignFindings& result, const DesignForm& form,
+                 const DesignMetrics& f) {
+  Json json = error_metrics(target, result, !form.is_lens);
+  if (form.is_lens) json["lens"] = true;
+  if (target.zones != nullptr) json["zones"] = zones_json(result.zones);
   if (!result.pareto.empty()) json["pareto"] = pareto_json(result.pareto);
   if (!result.advice.empty()) json["advice"] = advice_json(result.advice);
   json["in_rectangle"] = estimate_json(result.error.in_rectangle);
-  json["validation"] = {{"rays", result.error.rays}, {"seconds", result.validation_s}};
+  json["validation"] = {{"rays", result.error.rays}, {"seconds", form.validation_s}};
   json["bergen_fit"] = f.comparison ? estimate_json(f.comparison->bergen()) : Json();
   json["wasserstein_deg"] = f.comparison ? estimate_json(f.comparison->wasserstein()) : Json();
-  json["target"] = {{"file", problem.target.file},
-                    {"mode", problem.target.zones_only                  ? "zones"
-                             : problem.target.mode == TargetMode::shape ? "shape"
-                                                                        : "absolute"},
+  json["target"] = {{"file", target.file},
+                    {"mode", target.zones_only                  ? "zones"
+                             : target.mode == TargetMode::shape ? "shape"
+                                                                : "absolute"},
                     {"factor", f.target_factor}};
   if (f.target_beam) json["target"].update(beam_json(*f.target_beam));
   if (f.target_plane) json["target"]["plane"] = plane_json(*f.target_plane);
@@ -268,14 +281,17 @@ Json design_json(const DesignProblem& problem, const DesignResult& result, const
   if (f.result_plane) json["plane"] = plane_json(*f.result_plane);
   json["scale"] = result.error.scale;
   json["efficiency"] = estimate_json(result.efficiency);
-  json["losses"] = {{"mirror", estimate_json(result.absorbed)},
-                    {"mirror_back", estimate_json(result.back)},
-                    {"bodies", estimate_json(result.bodies)},
-                    {"lost", estimate_json(result.lost)}};
+  json["losses"] = Json::object();
+  if (!form.is_lens) {
+    json["losses"] = {{"mirror", estimate_json(result.absorbed)},
+                      {"mirror_back", estimate_json(result.back)}};
+  }
+  json["losses"]["bodies"] = estimate_json(result.bodies);
+  json["losses"]["lost"] = estimate_json(result.lost);
   json["evaluations"] = result.evaluations;
   json["rays"] = result.rays;
-  json["parameters"] = result.shape.parameter_count();
-  json["height_mm"] = result.shape.height_mm();
+  json["parameters"] = form.parameters;
+  json["height_mm"] = form.height_mm;
   json["limits"] = Json::array();
   for (const LimitCheck& c : result.limits) {
     json["limits"].push_back(
@@ -287,18 +303,18 @@ Json design_json(const DesignProblem& problem, const DesignResult& result, const
   return json;
 }
 
-std::vector<std::string> design_summary(const DesignProblem& problem, const DesignResult& result,
-                                        const DesignMetrics& f) {
+std::vector<std::string> design_summary(const DesignTarget& target, const DesignFindings& result,
+                                        const DesignForm& form, const DesignMetrics& f) {
   Table table;
-  const bool zones_only = problem.target.zones_only;
-  const bool absolute = problem.target.mode == TargetMode::absolute;
+  const bool zones_only = target.zones_only;
+  const bool absolute = target.mode == TargetMode::absolute;
   if (!zones_only) {
     table.row("", absolute ? "target" : fmt::format("target x {:.4g}", f.target_factor), "result");
   }
   far_field_rows(f, table);
   plane_rows(f, table);
   std::vector<std::string>& lines = table.lines;
-  if (!zones_only) error_lines(result, lines);
+  if (!zones_only) error_lines(result, !form.is_lens, lines);
   light_line(result, !zones_only, lines);
   for (std::string& line : zones_summary(result.zones, f.trace.ledger.unit)) lines.push_back(std::move(line));
   pareto_lines(result, lines);
@@ -309,9 +325,12 @@ std::vector<std::string> design_summary(const DesignProblem& problem, const Desi
                                 estimate_text(f.comparison->wasserstein(), "deg")));
   }
   lines.push_back(
-      fmt::format("  losses: mirror {:.1f} %, its back {:.1f} %, bodies {:.1f} %, lost rays {:.2g} %",
-                  100.0 * result.absorbed.mean, 100.0 * result.back.mean, 100.0 * result.bodies.mean,
-                  100.0 * result.lost.mean));
+      form.is_lens
+          ? fmt::format("  losses: medium {:.1f} %, lost rays {:.2g} %", 100.0 * result.bodies.mean,
+                        100.0 * result.lost.mean)
+          : fmt::format("  losses: mirror {:.1f} %, its back {:.1f} %, bodies {:.1f} %, lost rays {:.2g} %",
+                        100.0 * result.absorbed.mean, 100.0 * result.back.mean, 100.0 * result.bodies.mean,
+                        100.0 * result.lost.mean));
   for (const LimitCheck& c : result.limits) {
     lines.push_back(fmt::format("  limit {}: {:.6g} found, {:.6g} allowed: {}", c.limit, c.found, c.allowed,
                                 c.held ? "held" : "NOT HELD"));

@@ -5,16 +5,27 @@
 #include <string>
 #include <vector>
 
+#include "lucerna/design/lens/lens_design.h"
 #include "lucerna/design/run/design_metrics.h"
 
 namespace lucerna {
 
+/// What a design says of its result beside DesignFindings.
+struct DesignForm {
+  std::size_t parameters = 0;
+  double height_mm = 0.0, validation_s = 0.0;
+  /// A lens: there are no bound and no mirror's losses.
+  bool is_lens = false;
+};
+DesignForm design_form(const DesignResult& result);
+DesignForm design_form(const LensResult& result);
+
 /// What design adds to result.json. What is not known is null.
-nlohmann::ordered_json design_json(const DesignProblem& problem, const DesignResult& result,
-                                   const DesignMetrics& figures);
+nlohmann::ordered_json design_json(const DesignTarget& target, const DesignFindings& result,
+                                   const DesignForm& form, const DesignMetrics& figures);
 
 /// The table of target against result, losses, limits and tolerances for people, one line an entry.
-std::vector<std::string> design_summary(const DesignProblem& problem, const DesignResult& result,
-                                        const DesignMetrics& figures);
+std::vector<std::string> design_summary(const DesignTarget& target, const DesignFindings& result,
+                                        const DesignForm& form, const DesignMetrics& figures);
 
 }  // namespace lucerna

@@ -104,10 +104,10 @@ Json design_file_json(const std::filesystem::path& folder, const std::string& ta
   ToleranceRanges ranges;
   ranges.samples = 2;
   ranges.rays = 1 << 14;
-  DesignMetrics figures =
-      design_metrics(problem, result, trace(problem.project.scene, options), problem.project.scene);
+  DesignMetrics figures = design_metrics(problem.target, result.error.scale,
+                                         trace(problem.project.scene, options), problem.project.scene);
   figures.tolerances = tolerance_sweep(problem.project.scene, ranges, 1);
-  return design_json(problem, result, figures);
+  return design_json(problem.target, result, design_form(result), figures);
 }
 
 // Both ways: what is written is in the table, and what is in the table is written by one of these.

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// Designs of lenses by design() itself.
+//   bench_lenses hidden [N [SECONDS [RAYS]]]  light of random lenses of 20 parameters, tables of RAYS (2^25)
+//   bench_lenses collimator [SECONDS]         a TIR collimator for the dies of `make-source led`, 10 degrees
+// Lines of `hidden`: error in 48 x 48 boxes (noise taken out) of the result and of the start, that of the
+// exact lens against its own table, efficiency, and how it ended.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lucerna/design.h"
+#include "lucerna/design/lens/lens_problem.h"
+#include "lucerna/design/lens/lens_validation.h"
+#include "lucerna/design/validation/error_boxes.h"
+#include "lucerna/random.h"
+#include "lucerna/trace.h"
+#include "lucerna/trace_metrics.h"
+
+namespace {
+
+using namespace lucerna;
+
+using Corners = std::vector<OutlinePoint>;
+
+constexpr int kPieces = 19;
+
+std::string outline_text(const Corners& corners) {
+  std::string out = "outline_mm = [";
+  for (const OutlinePoint& c : corners) out += fmt::format("[{}, {}], ", c[0] + 0.0, c[1] + 0.0);
+  return out + "]\n";
+}
+
+/// A disk of 1 mm under a lens with a flat face below and a dome above.
+LensShape dome() {
+  Corners corners{{0.0, 3.0}, {14.0, 3.0}};
+  for (int i = 0; i <= kPieces; ++i) {
+    const double r = 14.0 * (1.0 - static_cast<double>(i) / kPieces);
+    corners.push_back({i == kPieces ? 0.0 : r, 6.0 + 5.0 * (1.0 - r * r / 196.0)});
+  }
+  const std::vector<std::size_t> free{2};
+  return {corners, 20.0, free, 0};
+}
+
+/// The dome with six waves of up to `size_mm` each on it.
+LensShape random_lens(std::uint64_t seed, double size_mm) {
+  const LensShape plain = dome();
+  const auto n = static_cast<Eigen::Index>(plain.parameter_count());
+  for (std::uint64_t attempt = 0;; ++attempt) {
+    Rng rng(seed, attempt);
+    Eigen::VectorXd p = Eigen::VectorXd::Zero(n);
+    for (int wave = 0; wave < 6; ++wave) {
+      const double high = size_mm * (2.0 * rng.uniform() - 1.0) / (1.0 + 0.3 * wave * wave);
+      for (Eigen::Index i = 0; i < n; ++i)
+        p[i] +=
+            high * std::cos(std::numbers::pi * wave * static_cast<double>(i) / static_cast<double>(n - 1));
+    }
+    LensShape shape = plain.with(p);
+    if (shape.is_valid()) return shape;
+  }
+}
+
+std::string project_of(const LensShape& lens, double seconds) {
+  std::size_t side = 0;
+  for (const LensFace& face : lens.form().faces) {
+    if (face.is_free) side = face.run.from;
+  }
+  return "[[source]]\nkind = \"disk\"\nradius_mm = 0.5\n[[body]]\nrole = \"solid\"\nrefractive_index = "
+         "1.49\n" +
+         outline_text(lens.corners()) +
+         "[[detector]]\nname = \"far\"\nkind = \"far-field\"\nc_step_deg = 360\ngamma_step_deg = 0.5\n"
+         "[target]\nfile = \"hidden.ldt\"\n[design]\n" +
+         fmt::format("free_sides = {}\ntime_s = {}\n", side, seconds);
+}
+
+std::shared_ptr<const IntensityDistribution> light_of(const Project& project, std::uint64_t rays) {
+  TraceOptions options;
+  options.seed = 4711;
+  options.last_ray = rays;
+  const TraceResult traced = trace(project.scene, options);
+  return std::make_shared<const IntensityDistribution>(
+      trace_metrics(traced, project.scene).far_fields.front().intensity.distribution);
+}
+
+void hidden(int count, double seconds, std::uint64_t table_rays) {
+  std::vector<double> errors;
+  for (int k = 0; k < count; ++k) {
+    const LensShape truth = random_lens(100 + static_cast<std::uint64_t>(k), 0.4);
+    ProjectMemory memory;
+    memory.targets["hidden.ldt"] =
+        std::make_shared<const IntensityDistribution>(uniform_distribution(1.0, 1.0));
+    const Project exact = parse_project(project_of(truth, seconds), "hidden.toml", memory);
+    memory.targets["hidden.ldt"] = light_of(exact, table_rays);
+    const LensProblem problem =
+        lens_problem(parse_project(project_of(dome(), seconds), "hidden.toml", memory), "hidden.toml");
+    const ErrorBoxes boxes(target_rectangle(problem.target));
+    const LensValidation own =
+        validate_lens(exact.scene, boxes, box_target(boxes, problem.target, total_flux(exact.scene.sources)),
+                      TargetMode::shape, 9, std::uint64_t{1} << 20);
+    const auto begin = std::chrono::steady_clock::now();
+    const DesignedMirror found =
+        design(parse_project(project_of(dome(), seconds), "hidden.toml", memory), "hidden");
+    const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const BoxErrorEstimate &e = found.error.c48, &start = found.start_error.c48;
+    errors.push_back(e.excess);
+    fmt::print(
+        "{:3} error {:.3f} +- {:.3f} % (start {:.2f} %, exact lens {:.3f} +- {:.3f} %), efficiency {:.4f}, "
+        "{} evaluations, {:.0f} M rays, {:.1f} s, {}\n",
+        k, 100.0 * e.excess, 100.0 * e.standard_error, 100.0 * start.excess, 100.0 * own.error.c48.excess,
+        100.0 * own.error.c48.standard_error, found.efficiency.mean, found.evaluations,
+        1e-6 * static_cast<double>(found.rays), took, to_string(found.end));
+    std::fflush(stdout);
+  }
+  std::sort(errors.begin(), errors.end());
+  fmt::print("median {:.3f} %, worst {:.3f} %\n", 100.0 * errors[errors.size() / 2], 100.0 * errors.back());
+}
+
+/// Gaussian beam whose full width at half the maximum is `width_deg`.
+IntensityDistribution beam(double width_deg) {
+  IntensityDistribution out = uniform_distribution(0.25, 1.0);
+  out.c_deg = {0.0};
+  out.cd.assign(out.gamma_deg.size(), 0.0);
+  for (std::size_t g = 0; g < out.gamma_deg.size(); ++g) {
+    const double x = (180.0 - out.gamma_deg[g]) / (0.5 * width_deg);
+    out.cd[g] = std::exp(-std::numbers::ln2 * x * x);
+  }
+  return out;
+}
+
+void collimator(double seconds) {
+  // The outline of examples/tir-collimator.toml, 1.4 times as large: the dome over the dies has 2.8 mm.
+  const std::string text = fmt::format(R"([[source]]
+kind = "led"
+position_mm = [0, 0, 0]
+[[body]]
+role = "solid"
+refractive_index = 1.49
+outline_mm = [[0, 6.5], [4, 5.2], [4.4, 0.2], [5.4, 0.2], [9, 5], [13, 11.5], [16, 18], [16.2, 19.5],
+  [0, 19.5]]
+smooth_below_deg = 30
+[[detector]]
+name = "far"
+kind = "far-field"
+gamma_step_deg = 0.5
+[target]
+file = "beam.ldt"
+[design]
+free_sides = [0, 1, 3, 7]
+intervals = 6
+time_s = {}
+[design.limits]
+max_height_mm = 22
+max_diameter_mm = 34
+min_thickness_mm = 1.0
+min_draft_deg = 1.0
+)",
+                                       seconds);
+  ProjectMemory memory;
+  memory.targets["beam.ldt"] = std::make_shared<const IntensityDistribution>(beam(10.0));
+  const DesignedMirror found = design(parse_project(text, "collimator.toml", memory), "collimator");
+  const BoxErrorEstimate &e = found.error.c48, &start = found.start_error.c48;
+  fmt::print(
+      "collimator: error {:.2f} +- {:.2f} % (start {:.2f} %), {:.1f} % of the light in the rectangle, "
+      "efficiency {:.4f} with Fresnel, {} evaluations, {}\n",
+      100.0 * e.excess, 100.0 * e.standard_error, 100.0 * start.excess, 100.0 * found.error.in_rectangle.mean,
+      found.efficiency.mean, found.evaluations, to_string(found.end));
+  const auto& peak = found.light.far_fields.front().metrics.peak;
+  if (peak) fmt::print("peak {:.0f} +- {:.0f} cd of 1000 lm\n", peak->cd.mean, peak->cd.standard_error);
+  for (const LimitCheck& c : found.limits)
+    fmt::print("limit {}: {:.4g} found, {:.4g} allowed, {}\n", c.limit, c.found, c.allowed,
+               c.held ? "held" : "NOT HELD");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string what = argc > 1 ? argv[1] : "";
+  const auto number = [&](int i, double otherwise) { return argc > i ? std::atof(argv[i]) : otherwise; };
+  if (what == "hidden") {
+    hidden(static_cast<int>(number(2, 10)), number(3, 20.0),
+           static_cast<std::uint64_t>(number(4, 33554432.0)));
+  } else if (what == "collimator") {
+    collimator(number(2, 60.0));
+  } else {
+    fmt::print("usage: bench_lenses hidden [N [SECONDS [RAYS]]] | collimator [SECONDS]\n");
+    return 2;
+  }
+  return 0;
+}

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/lens/lens_design.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "lucerna/design/lens/lens_validation.h"
+#include "lucerna/design/validation/error_boxes.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Rays that the given lens is validated with, at most, and the share of the time that validation may take.
+constexpr std::uint64_t kGivenRays = std::uint64_t{1} << 20;
+constexpr double kValidationShare = 0.25;
+
+/// Against the target, as often as it is asked for.
+class LensCheck {
+ public:
+  LensCheck(const LensProblem& problem, const LensOptions& options, Progress& progress)
+      : problem_(problem),
+        options_(options),
+        progress_(progress),
+        boxes_(target_rectangle(problem.target)),
+        target_(box_target(boxes_, problem.target, total_flux(problem.project.scene.sources))) {}
+
+  LensValidation operator()(const LensShape& shape, std::uint64_t rays, double max_s) const {
+    return validate_lens(with_lens(problem_, shape).scene, boxes_, target_, problem_.target.mode,
+                         options_.seed, rays, max_s, progress_);
+  }
+
+ private:
+  const LensProblem& problem_;
+  const LensOptions& options_;
+  Progress& progress_;
+  ErrorBoxes boxes_;
+  std::vector<double> target_;
+};
+
+void set_findings(const LensValidation& v, LensResult& result) {
+  result.error = v.error;
+  result.efficiency = v.efficiency;
+  result.bodies = v.absorbed;
+  result.lost = v.lost;
+  result.validation_s += v.seconds;
+}
+
+bool is_better(const BoxErrorEstimate& given, const BoxErrorEstimate& found) {
+  return given.excess + 2.0 * std::hypot(given.standard_error, found.standard_error) < found.excess;
+}
+
+void add_lens_remarks(LensResult& result) {
+  const BoxErrorEstimate& e = result.error.c48;
+  if (e.excess <= 2.0 * e.standard_error) {
+    result.remarks.push_back(fmt::format(
+        "no error is left that {:.3g} M rays can distinguish from noise: {:.2f} +- {:.2f} %",
+        1e-6 * static_cast<double>(result.error.rays), 100.0 * e.excess, 100.0 * e.standard_error));
+  }
+  for (const LimitCheck& c : result.limits) {
+    if (c.held) continue;
+    result.remarks.push_back(
+        fmt::format("limit {} is not held: {:.4g} found, {:.4g} allowed", c.limit, c.found, c.allowed));
+  }
+}
+
+}  // namespace
+
+LensResult design_lens(const LensProblem& problem, const LensOptions& options, Progress& progress,
+                       const LensObserver& observer) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  const double time_s = options.time_s.value_or(problem.time_s);
+  const LensCheck check(problem, options, progress);
+  const LensValidation given =
+      check(problem.start, std::min(kGivenRays, options.validation_rays), 0.05 * time_s);
+  const double per_ray_s = given.seconds / static_cast<double>(given.rays);
+  const double after_s =
+      std::min(kValidationShare * time_s, per_ray_s * static_cast<double>(options.validation_rays));
+  DesignRays rays(problem.project.scene.sources, problem.world_from_lens.inverse(), options.seed);
+  double last_s = -1.0;
+  LensFitResult fit = fit_lens(problem, {options.seed, options.max_rays}, rays,
+                               [&](const FitRecord& step, const LensShape& best) {
+                                 if (observer) observer(step, best);
+                                 // What comes before the first step comes once.
+                                 const double now = seconds(), step_s = last_s < 0.0 ? 0.0 : now - last_s;
+                                 last_s = now;
+                                 return !progress.stop_requested() && now + step_s + after_s < time_s;
+                               });
+  LensResult result(fit.shape);
+  result.end = progress.stop_requested() ? DesignTermination::interrupted : fit.end;
+  result.evaluations = fit.evaluations;
+  result.rays = fit.rays;
+  result.history = std::move(fit.history);
+  const double left_s = std::max(0.05 * time_s, time_s - seconds());
+  set_findings(check(result.shape, options.validation_rays, left_s), result);
+  result.start_error = given.error;
+  const auto signs = draft_signs(problem.start);
+  result.limits = check_lens_limits(problem.limits, result.shape, signs);
+  const auto given_limits = check_lens_limits(problem.limits, problem.start, signs);
+  const bool given_holds =
+      std::all_of(given_limits.begin(), given_limits.end(), [](const LimitCheck& c) { return c.held; });
+  if (given_holds && is_better(given.error.c48, result.error.c48)) {
+    result.shape = problem.start;
+    result.limits = given_limits;
+    set_findings(check(result.shape, options.validation_rays, left_s), result);
+    result.remarks.emplace_back("the given lens is the result: nothing that was found is better");
+  }
+  add_lens_remarks(result);
+  return result;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/lens/lens_design.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/core/parallel/parallel.h"
+#include "lucerna/design/lens/lens_evaluation.h"
+#include "lucerna/design/lens/lens_start.h"
+#include "lucerna/design/lens/lens_validation.h"
+#include "lucerna/design/validation/error_boxes.h"
+#include "lucerna/trace.h"
+#include "lucerna/trace_metrics.h"
+
+namespace lucerna {
+namespace {
+
+constexpr const char* kLens = R"([[source]]
+kind = "disk"
+radius_mm = 0.5
+[[body]]
+role = "solid"
+refractive_index = 1.49
+outline_mm = [[0, 3], [9, 3], [9, 5], [6, 7.6], [3, 9.1], [0, 9.6]]
+[[detector]]
+kind = "far-field"
+c_step_deg = 360
+[target]
+file = "beam.ldt"
+[design]
+free_sides = 2
+intervals = 7
+restarts = 1
+)";
+
+/// Light towards +z, where the lens sends it.
+std::shared_ptr<const IntensityDistribution> beam_up(double half_width_deg) {
+  IntensityDistribution beam = uniform_distribution(0.5, 1.0);
+  beam.c_deg = {0.0};
+  beam.cd.assign(beam.gamma_deg.size(), 0.0);
+  for (std::size_t g = 0; g < beam.gamma_deg.size(); ++g) {
+    const double x = (180.0 - beam.gamma_deg[g]) / half_width_deg;
+    beam.cd[g] = std::exp(-x * x * x * x);
+  }
+  return std::make_shared<const IntensityDistribution>(beam);
+}
+
+ProjectMemory memory_of(std::shared_ptr<const IntensityDistribution> target) {
+  ProjectMemory memory;
+  memory.targets["beam.ldt"] = std::move(target);
+  return memory;
+}
+
+LensProblem problem_of(const std::string& more = "", const ProjectMemory& memory = memory_of(beam_up(25.0))) {
+  return lens_problem(parse_project(kLens + more, "lens.toml", memory), "lens.toml");
+}
+
+LensOptions quick() {
+  LensOptions options;
+  options.time_s = 1e6;
+  options.max_rays = 1 << 13;
+  options.validation_rays = 1 << 16;
+  return options;
+}
+
+TEST(LensDesign, ComesNearerToTheTarget) {
+  const LensProblem problem = problem_of();
+  const LensResult found = design_lens(problem, quick());
+  EXPECT_LT(found.error.c12.excess, 0.5 * found.start_error.c12.excess);
+  EXPECT_LT(found.error.c48.excess, found.start_error.c48.excess);
+  EXPECT_NEAR(found.efficiency.mean + found.bodies.mean + found.lost.mean, 1.0, 1e-9);
+  EXPECT_TRUE(found.shape.is_valid());
+}
+
+TEST(LensDesignSlow, IsTheSameForAnyNumberOfThreads) {
+  const LensProblem problem = problem_of();
+  const LensResult many = design_lens(problem, quick());
+  const ThreadLimit limit(1);
+  const LensResult one = design_lens(problem, quick());
+  EXPECT_EQ(many.shape.corners(), one.shape.corners());
+  EXPECT_EQ(many.error.c48.value, one.error.c48.value);
+}
+
+TEST(LensDesign, KeepsItsLimits) {
+  const LensProblem problem = problem_of("[design.limits]\nmax_height_mm = 6.65\nmin_thickness_mm = 1.8\n");
+  const LensResult found = design_lens(problem, quick());
+  ASSERT_EQ(found.limits.size(), 2u);
+  for (const LimitCheck& c : found.limits) EXPECT_TRUE(c.held) << c.limit << ' ' << c.found;
+}
+
+// The light of the exact lens as its target: what the evaluation sees there is what the tracer saw.
+TEST(LensDesignStatistical, EvaluationAndTraceAgree) {
+  LensProblem problem = problem_of();
+  TraceOptions options;
+  options.last_ray = 1 << 21;
+  const TraceResult traced = trace(problem.project.scene, options);
+  const auto light = std::make_shared<const IntensityDistribution>(
+      trace_metrics(traced, problem.project.scene).far_fields.front().intensity.distribution);
+  problem = problem_of("", memory_of(light));
+  DesignRays rays(problem.project.scene.sources, problem.world_from_lens.inverse(), 3);
+  rays.grow(1 << 18);
+  LensEvaluationOptions plain;
+  plain.rays = 1 << 18;
+  plain.derivatives = false;
+  const TentBins bins = lens_window(problem);
+  const Evaluation e = evaluate_lens(problem.start, problem.medium, rays, bins, plain);
+  const Eigen::VectorXd target = target_flux(problem.target, problem.world_from_lens, rays.flux())(bins);
+  EXPECT_LT(bin_error(e, target, bins, TargetMode::shape).relative_rms, 0.01);
+  // Without ghosts the rest would be 8 % of the light.
+  EXPECT_LT(e.lost, 0.005);
+  EXPECT_NEAR(e.reflected + e.direct + e.absorbed + e.lost, 1.0, 0.005);
+}
+
+// A point source's light needs no fit: the solution of the differential equation is within the table's grain.
+TEST(LensStart, PointSourceMakesItsTarget) {
+  std::string text = kLens;
+  text.replace(text.find("radius_mm = 0.5"), 15, "radius_mm = 0.001");
+  text.replace(text.find("intervals = 7"), 13, "intervals = 24");
+  const LensProblem problem =
+      lens_problem(parse_project(text, "lens.toml", memory_of(beam_up(30.0))), "lens.toml");
+  DesignRays rays(problem.project.scene.sources, problem.world_from_lens.inverse(), 3);
+  rays.grow(1 << 16);
+  const auto flux = target_flux(problem.target, problem.world_from_lens, rays.flux());
+  const auto found = zero_etendue_lenses(problem.start, problem.medium, rays, flux);
+  ASSERT_FALSE(found.empty());
+  const TentBins bins = lens_window(problem);
+  LensEvaluationOptions plain;
+  plain.derivatives = false;
+  const auto error = [&](const LensShape& shape) {
+    return bin_error(evaluate_lens(shape, problem.medium, rays, bins, plain), flux(bins), bins,
+                     TargetMode::shape)
+        .relative_rms;
+  };
+  double best = 1e9;
+  for (const LensShape& shape : found) best = std::min(best, error(shape));
+  EXPECT_LT(best, 0.2 * error(problem.start));
+  EXPECT_LT(best, 0.15);
+}
+
+TEST(LensProblem, SaysWhatItDoesNotTake) {
+  const auto refused = [](const std::string& more) {
+    try {
+      static_cast<void>(problem_of(more));
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(refused("[design.limits]\nmax_slope_deg = 3\n").find("max_slope_deg"), std::string::npos);
+  EXPECT_NE(refused("light_weight = 0.1\n").find("light_weight"), std::string::npos);
+  EXPECT_NE(refused("[design.tolerances]\nsamples = 4\n").find("tolerances"), std::string::npos);
+  EXPECT_NE(
+      refused("[[reflector]]\npreset = \"parabola\"\nfocal_mm = 9\ndiameter_mm = 40\n").find("reflector"),
+      std::string::npos);
+  EXPECT_EQ(refused(""), "");
+}
+
+TEST(LensProblem, TheFinishedProjectIsDesignedOn) {
+  const LensProblem problem = problem_of();
+  Eigen::VectorXd p = problem.start.parameters();
+  p[1] = 0.2;
+  const std::string text = project_text(with_lens(problem, problem.start.with(p)));
+  const LensProblem again =
+      lens_problem(parse_project(text, "lens.toml", memory_of(beam_up(25.0))), "lens.toml");
+  EXPECT_EQ(again.start.parameter_count(), problem.start.parameter_count());
+  EXPECT_EQ(again.start.corners(), problem.start.with(p).corners());
+}
+
+}  // namespace
+}  // namespace lucerna

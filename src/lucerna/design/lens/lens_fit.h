@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lucerna/design.h"
+#include "lucerna/design/evaluation/design_rays.h"
+#include "lucerna/design/fit/fit_record.h"
+#include "lucerna/design/lens/lens_problem.h"
+#include "lucerna/progress.h"
+
+namespace lucerna {
+
+/// How a lens is fitted.
+struct LensFitOptions {
+  std::uint64_t seed = 1;
+  /// Rays of the finest evaluations, at most.
+  std::uint64_t max_rays = std::uint64_t{1} << 22;
+};
+
+/// What a fit came to.
+struct LensFitResult {
+  explicit LensFitResult(LensShape found) : shape(std::move(found)) {}
+  LensShape shape;
+  std::vector<FitRecord> history;
+  DesignTermination end = DesignTermination::converged;
+  bool at_noise = false;
+  int evaluations = 0;
+  std::uint64_t rays = 0;
+};
+
+/// Called after each step, with the best so far; false ends the fit.
+using LensFitWatcher = std::function<bool(const FitRecord& step, const LensShape& best)>;
+
+/// Shapes the lens by Levenberg-Marquardt on stages from coarse bins and few rays to fine ones and many
+/// (docs/theory/design.md). It begins with the given lens and the zero-étendue ones, takes the best of them
+/// on, and then perturbs the best, until only noise is left or `max_failed_restarts` of these in a row gained
+/// nothing. Decisions depend on counts alone. `rays`: in the lens's frame; grows.
+LensFitResult fit_lens(const LensProblem& problem, const LensFitOptions& options, DesignRays& rays,
+                       const LensFitWatcher& watch);
+
+}  // namespace lucerna

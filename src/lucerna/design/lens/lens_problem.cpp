@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/lens/lens_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "lucerna/core/io/error.h"
+#include "lucerna/project/schema/project_tables.h"
+#include "lucerna/project/schema/toml_reader.h"
+
+namespace lucerna {
+
+namespace {
+
+/// A lens alone: what else light could meet is refused before the time is spent.
+void check_alone(const TomlReader& root, const Scene& scene) {
+  if (!scene.reflectors.empty())
+    root.fail("reflector", "found one beside a lens that is to be shaped, expected none",
+              ErrorCause::unsupported);
+  if (!scene.bodies.empty() || !scene.glasses.empty())
+    root.fail("body", "found another body beside the lens that is to be shaped, expected none",
+              ErrorCause::unsupported);
+  if (scene.solids.size() != 1 || scene.solids.front().outline_mm.empty()) {
+    root.fail("body",
+              fmt::format("found {} solids{}, expected one with `outline_mm`, whose `free_sides` are "
+                          "shaped",
+                          scene.solids.size(), scene.solids.empty() ? "" : ", of triangles or several"),
+              ErrorCause::unsupported);
+  }
+}
+
+std::vector<std::size_t> read_sides(TomlReader& design) {
+  std::vector<std::size_t> out;
+  for (const double side : design.number_or_numbers("free_sides").value_or(std::vector<double>()))
+    out.push_back(static_cast<std::size_t>(side));
+  return out;
+}
+
+int read_pieces(TomlReader& design) {
+  const auto given = design.number_or_numbers("intervals");
+  if (!given) return 0;
+  if (given->size() != 1) design.fail("intervals", "expected one number for the faces of a lens");
+  if (given->front() < 3.0) design.fail("intervals", "expected at least 3 for the faces of a lens");
+  return static_cast<int>(given->front());
+}
+
+LensLimits read_lens_limits(TomlReader reader) {
+  LensLimits limits;
+  limits.max_diameter_mm = reader.number("max_diameter_mm");
+  limits.max_height_mm = reader.number("max_height_mm");
+  limits.min_thickness_mm = reader.number("min_thickness_mm");
+  limits.min_draft_deg = reader.number("min_draft_deg");
+  for (const char* key : {"min_opening_mm", "min_hole_diameter_mm", "max_slope_deg", "min_radius_mm",
+                          "min_efficiency", "symmetry", "body_clearance_mm", "keep_out", "glare"}) {
+    if (reader.has(key))
+      reader.fail(key,
+                  "is a limit on mirrors; a lens has max_diameter_mm, max_height_mm, min_thickness_mm "
+                  "and min_draft_deg");
+  }
+  reader.finish();
+  return limits;
+}
+
+/// What light is to be seen in.
+void add_far_field(Project& project) {
+  if (!project.scene.far_fields.empty()) return;
+  project.scene.far_fields.emplace_back();
+  FarFieldDetector& far = project.scene.far_fields.back();
+  far.name = "far";
+  toml::table& tables = toml_tables(project);
+  if (tables["detector"].as_array() == nullptr) tables.insert_or_assign("detector", toml::array{});
+  tables["detector"].as_array()->push_back(toml::table{{"name", far.name},
+                                                       {"kind", "far-field"},
+                                                       {"c_step_deg", far.c_step_deg},
+                                                       {"gamma_step_deg", far.gamma_step_deg}});
+}
+
+/// The [[body]] of the lens: the project's only one.
+toml::table& lens_table(Project& project) {
+  return *toml_tables(project)["body"].as_array()->get(0)->as_table();
+}
+
+}  // namespace
+
+bool is_lens_design(const Project& project) {
+  const toml::table* const design = toml_tables(project)["design"].as_table();
+  return design != nullptr && design->contains("free_sides");
+}
+
+LensProblem lens_problem(Project project, const std::filesystem::path& path) {
+  const toml::table& tables = toml_tables(project);
+  TomlReader root(tables, path.string(), "");
+  for (const char* known : {"source", "reflector", "detector", "body"}) root.has(known);
+  auto target_reader = root.table("target");
+  auto design = root.table("design");
+  root.finish();
+  if (!target_reader) root.missing("target", "a design needs a [target]");
+  if (!design) root.missing("design", "a lens needs `free_sides` there");
+  check_alone(root, project.scene);
+  const Solid& solid = project.scene.solids.front();
+  const auto sides = read_sides(*design);
+  const int intervals = read_pieces(*design);
+  const double time_s = design->number("time_s", 60.0);
+  const double restarts = design->number("restarts", 1e6);
+  const std::string optimizer = design->word("optimizer").value_or("auto");
+  if (optimizer != "auto" && optimizer != "least-squares")
+    design->fail("optimizer", fmt::format("found \"{}\": a lens is designed by \"auto\"", optimizer));
+  for (const char* key : {"reflector", "light_weight", "tolerances"}) {
+    if (design->has(key)) design->fail(key, "belongs to the design of a mirror; this is a lens");
+  }
+  LensLimits limits;
+  if (auto table = design->table("limits")) limits = read_lens_limits(std::move(*table));
+  design->finish();
+  const LensShape start = [&] {
+    try {
+      return LensShape(solid.outline_mm, solid.smooth_below_deg, sides, intervals);
+    } catch (const InputError& e) {
+      design->fail("free_sides", e.what());
+    }
+  }();
+  DesignTarget target =
+      read_target(*target_reader, project.scene.sources.front().rays->flux_unit(),
+                  total_flux(project.scene.sources), solid.world_from_solid.origin_mm(), project);
+  if (target.zones != nullptr)
+    root.fail("target", "found zones, which only free-form mirrors are designed for");
+  const MediumView medium{solid.refractive_index, solid.absorption_per_mm};
+  const Frame placed = solid.world_from_solid;
+  add_far_field(project);
+  return {std::move(project),        std::move(target), limits, start, medium, placed, time_s,
+          static_cast<int>(restarts)};
+}
+
+TentBins lens_window(const LensProblem& problem) {
+  constexpr double kAligned = 1.0 - 1e-12;
+  const bool rotational = !problem.target.plane && problem.target.distribution.c_deg.size() == 1 &&
+                          std::abs(problem.world_from_lens.ez().z) > kAligned;
+  return target_bins(problem.target, problem.world_from_lens, rotational);
+}
+
+Solid with_outline(const LensProblem& problem, const LensShape& shape) {
+  Solid solid = problem.project.scene.solids.front();
+  solid.outline_mm = shape.corners();
+  return solid;
+}
+
+Project with_lens(const LensProblem& problem, const LensShape& shape) {
+  Project project = problem.project;
+  project.scene.solids.front() = with_outline(problem, shape);
+  toml::array outline;
+  for (const OutlinePoint& p : shape.corners()) outline.push_back(toml::array{p[0] + 0.0, p[1] + 0.0});
+  lens_table(project).insert_or_assign("outline_mm", std::move(outline));
+  if (auto* design = toml_tables(project)["design"].as_table()) {
+    // Sides have other numbers now: those of the shaped faces.
+    toml::array sides;
+    for (const LensFace& face : shape.form().faces) {
+      if (face.is_free)
+        sides.push_back(static_cast<std::int64_t>(corner_number(shape.form(), face.run.from)));
+    }
+    design->insert_or_assign("free_sides", std::move(sides));
+    design->erase("intervals");
+  }
+  return project;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/lens/lens_start.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "lucerna/design/evaluation/point_source.h"
+#include "lucerna/design/lens/lens_path.h"
+
+namespace lucerna {
+
+namespace {
+
+constexpr int kRings = 360, kMeridianSteps = 2000;
+constexpr std::uint64_t kPointRays = std::uint64_t{1} << 15;
+
+/// A ray of the half plane where it meets the free face from within: r and z of its last point and of its
+/// direction, and of the face.
+struct MeridianRay {
+  double theta = 0.0, flux = 0.0;  ///< flux within theta
+  OutlinePoint from{}, along{}, face{};
+};
+
+/// The rays from the point on the axis that meet the free face first of all free ones, from the axis on.
+std::vector<MeridianRay> meridian_rays(const LensShape& start, const MediumView& medium,
+                                       const PointSource& source) {
+  const LensCurves curves(start);
+  const LensTracer tracer(curves, medium);
+  std::vector<double> light(kMeridianSteps + 1, 0.0);
+  for (const DirectedFlux& l : source.light) {
+    const double theta = std::acos(std::clamp(l.direction.z(), -1.0, 1.0));
+    light[static_cast<std::size_t>(
+        std::min<double>(kMeridianSteps, kMeridianSteps * theta / std::numbers::pi))] += l.flux;
+  }
+  std::vector<MeridianRay> out;
+  LensPath path;
+  double flux = 0.0;
+  for (int i = 0; i < kMeridianSteps; ++i) {
+    const double theta = (i + 0.5) * std::numbers::pi / kMeridianSteps;
+    tracer.follow({0.0, 0.0, source.at_mm.z}, {std::sin(theta), 0.0, std::cos(theta)}, kNoGhost, path);
+    double passed = 1.0;
+    int k = 0;
+    const auto is_free = [&](const LensHit& h) {
+      return curves.pieces()[static_cast<std::size_t>(h.piece)].first_number >= 0;
+    };
+    // Light that a wall has reflected comes from elsewhere.
+    while (k < path.hits && !is_free(path.hit[static_cast<std::size_t>(k)]) &&
+           !path.hit[static_cast<std::size_t>(k)].reflected) {
+      const LensHit& h = path.hit[static_cast<std::size_t>(k++)];
+      passed *= 0.5 * (h.s + h.p);
+    }
+    if (k == path.hits || !path.hit[static_cast<std::size_t>(k)].inside ||
+        !is_free(path.hit[static_cast<std::size_t>(k)]))
+      break;
+    const LensHit& hit = path.hit[static_cast<std::size_t>(k)];
+    const Vec3 from = hit.point - hit.t * hit.d;
+    flux += passed * light[static_cast<std::size_t>(i)];
+    out.push_back({theta, flux, {from.x, from.z}, {hit.d.x, hit.d.z}, {hit.point.x, hit.point.z}});
+  }
+  return out;
+}
+
+/// The angle within which a share of the prescribed flux is.
+class PrescribedAngle {
+ public:
+  explicit PrescribedAngle(const std::function<Eigen::VectorXd(const TentBins&)>& flux)
+      : within_(kRings + 1, 0.0) {
+    const Eigen::VectorXd rings = flux(TentBins::rings(Frame(), std::numbers::pi, kRings));
+    for (std::size_t i = 0; i < kRings; ++i)
+      within_[i + 1] = within_[i] + std::max(0.0, rings[static_cast<Eigen::Index>(i)]);
+  }
+
+  double of(double share) const {
+    const double want = share * within_.back();
+    const auto at = std::upper_bound(within_.begin() + 1, within_.end() - 1, want);
+    const double step = std::max(*at - *(at - 1), 1e-300);
+    const double i =
+        static_cast<double>(at - within_.begin()) - 1.0 + std::clamp((want - *(at - 1)) / step, 0.0, 1.0);
+    return i * std::numbers::pi / kRings;
+  }
+
+ private:
+  std::vector<double> within_;
+};
+
+/// Points of the free face, from the axis outwards; empty where there is none.
+std::vector<OutlinePoint> face_points(const std::vector<MeridianRay>& rays, const PrescribedAngle& angle,
+                                      double index, double side, bool from_axis) {
+  const std::size_t n = rays.size();
+  std::vector<OutlinePoint> out(n);
+  const auto normal = [&](std::size_t i) {
+    const double gamma = side * angle.of(rays[i].flux / rays.back().flux);
+    return OutlinePoint{index * rays[i].along[0] - std::sin(gamma),
+                        index * rays[i].along[1] - std::cos(gamma)};
+  };
+  const std::size_t first = from_axis ? 0 : n - 1;
+  out[first] = rays[first].face;
+  for (std::size_t step = 1; step < n; ++step) {
+    const std::size_t i = from_axis ? step : n - 1 - step, before = from_axis ? i - 1 : i + 1;
+    // The next ray meets the plane across the mean normal of the two through the point before.
+    const OutlinePoint a = normal(before), b = normal(i);
+    const OutlinePoint m{a[0] + b[0], a[1] + b[1]};
+    const MeridianRay& ray = rays[i];
+    const double fall = m[0] * ray.along[0] + m[1] * ray.along[1];
+    if (!(fall > 0.0)) return {};
+    const double t = (m[0] * (out[before][0] - ray.from[0]) + m[1] * (out[before][1] - ray.from[1])) / fall;
+    if (!(t > 0.0)) return {};
+    out[i] = {ray.from[0] + t * ray.along[0], ray.from[1] + t * ray.along[1]};
+  }
+  return out;
+}
+
+/// How far along `direction` from `base` a curve is met, going on straight beyond its ends.
+std::optional<double> way_to_curve(const std::vector<OutlinePoint>& curve, const OutlinePoint& base,
+                                   const OutlinePoint& direction) {
+  std::optional<double> best;
+  for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
+    const double wr = curve[i + 1][0] - curve[i][0], wz = curve[i + 1][1] - curve[i][1];
+    const double det = direction[0] * wz - direction[1] * wr;
+    if (det == 0.0) continue;
+    const double dr = curve[i][0] - base[0], dz = curve[i][1] - base[1];
+    const double x = (dr * wz - dz * wr) / det, s = (dr * direction[1] - dz * direction[0]) / det;
+    const double low = i == 0 ? -1e9 : -1e-9, high = i + 2 == curve.size() ? 1e9 : 1.0 + 1e-9;
+    if (s < low || s > high) continue;
+    if (!best || std::abs(x) < std::abs(*best)) best = x;
+  }
+  return best;
+}
+
+/// The start with its free corners on the curve.
+std::optional<LensShape> through_points(const LensShape& start, const std::vector<OutlinePoint>& curve) {
+  Eigen::VectorXd p = start.parameters();
+  for (const CornerMove& m : start.form().moves) {
+    const auto x = way_to_curve(curve, start.form().corners[m.corner], m.direction);
+    if (!x || std::abs(*x) > start.radius_mm()) return std::nullopt;
+    p[static_cast<Eigen::Index>(m.parameter)] = *x;
+  }
+  LensShape shape = start.with(p);
+  if (!shape.is_valid()) return std::nullopt;
+  return shape;
+}
+
+}  // namespace
+
+std::vector<LensShape> zero_etendue_lenses(const LensShape& start, const MediumView& medium,
+                                           const DesignRays& rays,
+                                           const std::function<Eigen::VectorXd(const TentBins&)>& flux) {
+  std::vector<LensShape> out;
+  const auto& faces = start.form().faces;
+  if (std::count_if(faces.begin(), faces.end(), [](const LensFace& f) { return f.is_free; }) != 1) return out;
+  const auto meridian = meridian_rays(start, medium, point_source(rays, kPointRays));
+  if (meridian.size() < 16 || !(meridian.back().flux > 0.0)) return out;
+  const PrescribedAngle angle(flux);
+  for (const bool from_axis : {true, false}) {
+    for (const double side : {1.0, -1.0}) {
+      const auto points = face_points(meridian, angle, medium.index, side, from_axis);
+      if (points.empty()) continue;
+      if (auto shape = through_points(start, points)) out.push_back(std::move(*shape));
+    }
+  }
+  return out;
+}
+
+}  // namespace lucerna

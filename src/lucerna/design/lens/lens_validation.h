@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "lucerna/design/validation/box_error.h"
+#include "lucerna/progress.h"
+#include "lucerna/scene.h"
+
+namespace lucerna {
+
+/// What a lens does with light, found by code that shares nothing with its fit but Fresnel's formulas.
+struct LensValidation {
+  DesignError error;
+  /// Shares of the sources' flux: what leaves, what the medium keeps, rays that were given up.
+  Estimate efficiency, absorbed, lost;
+  std::uint64_t rays = 0;
+  double seconds = 0.0;
+};
+
+/// Traces the scene's sources through its solids as triangles with smooth normals (`surface_mesh`), with all
+/// reflections at all boundaries by chance, into the cells of the boxes: 16 replicates of independent
+/// Owen-scrambled Sobol sequences. Rays are doubled from 2^18 to `max_rays`, or until the floor is half of
+/// the excess; `max_s` stops them earlier. `target`: flux per cell (box_target). The same bits for any number
+/// of threads where time does not stop it. Progress phase "validate".
+LensValidation validate_lens(const Scene& scene, const ErrorBoxes& boxes, std::span<const double> target,
+                             TargetMode mode, std::uint64_t seed, std::uint64_t max_rays,
+                             double max_s = std::numeric_limits<double>::infinity(),
+                             Progress& progress = no_progress());
+
+}  // namespace lucerna
