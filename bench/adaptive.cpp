@@ -3,6 +3,8 @@
 // seconds, rays a second.
 //   bench_adaptive SOURCE RAYS [test rays] [trees] [penalty] [max-bytes ...]
 //   bench_adaptive table [RAYS] [test rays]
+// Of the twin and of a file also how far the illuminance on the focus plane is from the truth in cells of 12
+// to 240 um, of the model and of the rays that it was made from.
 //   ONE_SUPPORT=1 bench_adaptive ...     without a second support for light that overlaps
 // SOURCE is an emitter, one of own_sources.h (dome, tilted, strip, arc ...), or a ray file: then one half of
 // its rays trains and the other is the truth. 0 = default; one line per ceiling. `table` prints the table of
@@ -19,14 +21,18 @@
 
 #include "lucerna/ray_comparison.h"
 #include "lucerna/ray_file.h"
+#include "lucerna/rayset/comparison/scale_counts.h"
 #include "lucerna/source.h"
 #include "lucerna/source/adaptive/compression/adaptive_compress.h"
 #include "lucerna/source/emitters/draw_rays.h"
 #include "own_sources.h"
+#include "scales.h"
 
 using namespace lucerna;
 
 namespace {
+
+constexpr std::uint64_t kScaleRays = 48'000'000;
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -55,6 +61,7 @@ struct Case {
   RaySet rays;
   std::unique_ptr<Views> views;  // the counts refer to it
   ViewCounts truth, training;
+  RayBlock half;  // of a file: the rays that are the truth
 };
 
 Case make_case(const std::string& name, std::size_t train, std::uint64_t tests) {
@@ -75,13 +82,50 @@ Case make_case(const std::string& name, std::size_t train, std::uint64_t tests) 
   }
   auto views = std::make_unique<Views>(reference);
   ViewCounts none(*views);
-  Case c{std::filesystem::path(name).filename().string(), std::move(rays), std::move(views), none, none};
-  if (source)
+  Case c{std::filesystem::path(name).filename().string(), std::move(rays), std::move(views), none, none, {}};
+  if (source) {
     bench::add_drawn(c.truth, *source, Sequence(SequenceKind::random, 13), tests);
-  else
+  } else {
     c.truth.add(reference);
+    c.half = std::move(reference);
+  }
   c.training.add(c.rays.rays);
   return c;
+}
+
+void print_scales(const char* what, const std::array<double, 5>& l1) {
+  fmt::print("  {}:", what);
+  for (std::size_t k = 0; k < l1.size(); ++k)
+    fmt::print("{} {:.4f} at {:.0f} um", k == 0 ? "" : ",", l1[k], bench::kScalesUm[k]);
+  fmt::print("\n");
+}
+
+/// L1 distance of illuminance on the focus plane from the truth, of the model and of its rays: exact for the
+/// twin; of a file from the half that did not train, whose own noise is in both.
+void report_scales(const Case& c, const AdaptiveModel& model) {
+  if (c.name == "twin") {
+    bench::PlaneCells of_model, of_rays;
+    RayBlock some;
+    some.resize(1 << 20, 0);
+    for (std::uint64_t first = 0; first < kScaleRays; first += some.size()) {
+      model.emit(Sequence(SequenceKind::random, 15), first, some);
+      of_model.add(some);
+    }
+    of_rays.add(c.rays.rays);
+    print_scales("L1 of the model", bench::l1_of_scales(of_model, bench::twin::share_below));
+    print_scales("L1 of its rays", bench::l1_of_scales(of_rays, bench::twin::share_below));
+  } else if (!c.half.empty()) {
+    ScaleCounts truth(*c.views), test(*c.views), training(*c.views);
+    truth.add(c.half);
+    training.add(c.rays.rays);
+    test.add(draw_rays(model, Sequence(SequenceKind::random, 15), kScaleRays / 8));
+    fmt::print("  excess +- its error (raw) in cells of");
+    for (const ScaleDifference& s : compare_scales(truth, test, training)) {
+      fmt::print(" {:.0f} um: {:.4f} +- {:.4f} ({:.4f})", 1e3 * s.cell_mm, s.difference.excess,
+                 s.difference.standard_error, s.difference.raw);
+    }
+    fmt::print("\n");
+  }
 }
 
 /// One line; returns the bytes of the file.
@@ -106,6 +150,7 @@ std::uint64_t report(const Case& c, const AdaptiveOptions& options, std::uint64_
   }
   fmt::print(" {:.1f} s, {:.1f} s CPU | {:.2f} GB | {:.1f} M/s |\n", waited, used, peak,
              sampling_rate(*model));
+  if (why) report_scales(c, *model);
   std::fflush(stdout);
   return bytes;
 }
@@ -116,7 +161,7 @@ void print_table(std::size_t train, std::uint64_t tests) {
       "sample, one core |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const char* name :
        {"point", "disk", "rectangle", "cylinder", "sphere", "filament", "led", "phong500", "phong25",
-        "radial", "cosine", "dome", "egg", "tilted", "strip", "arc", "ghost", "remote"}) {
+        "radial", "cosine", "dome", "egg", "tilted", "strip", "arc", "ghost", "remote", "twin"}) {
     const Case c = make_case(name, train, tests);
     std::uint64_t bytes = ~std::uint64_t{0};
     for (const std::uint64_t max : {256'000u, 64'000u, 16'000u}) {

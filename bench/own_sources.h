@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sources that no method was tuned on, for bench_adaptive: dome, tilted, strip, arc, egg, ghost, remote.
+// Sources that no method was tuned on, for bench_adaptive: dome, tilted, strip, arc, egg, ghost, remote; and
+// the twin of the measured LED (led_twin.h).
 #pragma once
 
 #include <cmath>
@@ -8,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "led_twin.h"
 #include "lucerna/geometry.h"
 #include "lucerna/ray_comparison.h"
 #include "lucerna/source.h"
@@ -122,6 +124,13 @@ inline WeightedRay remote_ray(const OwnNumbers& u) {
   return {{ray.at(*BoundingSurface::sphere(4.0).exit_distance_mm(ray)), ray.direction}};
 }
 
+/// The twin of the measured LED, caught on a sphere.
+inline WeightedRay twin_ray(const OwnNumbers& u) {
+  const Ray ray = twin::ray(u);
+  const double far = *BoundingSurface::sphere(twin::kCaughtRadius).exit_distance_mm(ray);
+  return {{ray.at(far), ray.direction}};
+}
+
 class OwnSource final : public RaySource {
  public:
   using Sampler = WeightedRay (*)(const OwnNumbers&);
@@ -148,6 +157,7 @@ inline std::unique_ptr<RaySource> own_source(std::string_view name) {
   if (name == "egg") return std::make_unique<OwnSource>(ellipsoidal_dome_ray);
   if (name == "tilted") return std::make_unique<OwnSource>(tilted_ray);
   if (name == "strip") return std::make_unique<OwnSource>(strip_ray);
+  if (name == "twin") return std::make_unique<OwnSource>(twin_ray);
   if (name == "arc") return std::make_unique<OwnSource>(arc_ray);
   return nullptr;
 }

@@ -5,6 +5,7 @@
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/parallel/parallel.h"
 #include "lucerna/ray_comparison.h"
+#include "lucerna/rayset/comparison/cell_difference.h"
 
 namespace lucerna {
 
@@ -39,22 +40,27 @@ Part count(const Views& views, const RayBlock& rays, std::size_t first, std::siz
   return part;
 }
 
-ViewDifference difference(ViewKind kind, const ViewCounts& reference, const ViewCounts& test,
-                          const ViewCounts& training) {
-  const double total_p = reference.total_weight(), total_q = test.total_weight(),
-               total_t = training.total_weight();
+CellWeights cells_of(ViewKind kind, const ViewCounts& counts) {
+  return {counts.weights(kind), counts.squares(kind), counts.total_weight()};
+}
+
+}  // namespace
+
+ViewDifference cell_difference(const CellWeights& reference, const CellWeights& test,
+                               const CellWeights& training) {
+  const double total_p = reference.total_weight, total_q = test.total_weight, total_t = training.total_weight;
   double norm = 0.0, error = 0.0, noise = 0.0, noise_squared = 0.0, cross = 0.0, raw = 0.0;
-  for (std::size_t i = 0; i < reference.weights(kind).size(); ++i) {
-    const double p = reference.weights(kind)[i] / total_p, q = test.weights(kind)[i] / total_q;
+  for (std::size_t i = 0; i < reference.weights.size(); ++i) {
+    const double p = reference.weights[i] / total_p, q = test.weights[i] / total_q;
     const double variance =
-        reference.squares(kind)[i] / (total_p * total_p) + test.squares(kind)[i] / (total_q * total_q);
+        reference.squares[i] / (total_p * total_p) + test.squares[i] / (total_q * total_q);
     const double squared = (p - q) * (p - q);
     norm += p * p;
     error += squared;
     noise += variance;
     noise_squared += variance * variance;
     cross += std::max(0.0, squared - variance) * variance;
-    raw += training.squares(kind)[i] / (total_t * total_t);
+    raw += training.squares[i] / (total_t * total_t);
   }
   ViewDifference result;
   if (norm <= 0.0) return result;  // the view sees nothing of the reference
@@ -69,8 +75,6 @@ ViewDifference difference(ViewKind kind, const ViewCounts& reference, const View
   if (seen) result.standard_error = std::min(result.standard_error, spread / (2.0 * result.excess));
   return result;
 }
-
-}  // namespace
 
 ViewCounts::ViewCounts(const Views& views) : views_(&views) {
   for (const ViewKind kind : kViewKinds) {
@@ -122,7 +126,8 @@ RaySetComparison compare_view_counts(const ViewCounts& reference, const ViewCoun
   if (!(test.total_weight() > 0.0)) throw InputError("the set to compare has no rays with flux");
   RaySetComparison result;
   for (const ViewKind kind : kViewKinds) {
-    result[kind] = difference(kind, reference, test, training ? *training : reference);
+    result[kind] = cell_difference(cells_of(kind, reference), cells_of(kind, test),
+                                   cells_of(kind, training ? *training : reference));
   }
   return result;
 }
