@@ -13,6 +13,7 @@
 #include "lucerna/source/adaptive/mixture/layer_split.h"
 #include "lucerna/source/adaptive/mixture/penalty_choice.h"
 #include "lucerna/source/adaptive/search/support_search.h"
+#include "lucerna/source/adaptive/tree/leaf_calibration.h"
 #include "lucerna/source/file/nfl.h"
 
 namespace lucerna {
@@ -37,6 +38,7 @@ constexpr double kFineNats = 1.3862943611198906;
 struct GrownLayer {
   AdaptiveLayer layer;  // charts without nodes
   std::vector<std::vector<GrownTree>> trees;
+  std::vector<TreeMarginals> marginals;
 };
 
 struct Setting {
@@ -44,12 +46,62 @@ struct Setting {
   double penalty_nats = 6.0;
 };
 
+/// Standard deviations by which rays must contradict calibrated trees.
+constexpr double kContradiction = 5.0;
+
 /// More trees smooth what few rays leave rough; many rays need less smoothing and cost time.
 int default_trees(std::size_t rays) {
   if (rays <= 250'000) return 16;
   if (rays <= 1'000'000) return 8;
   if (rays <= 4'500'000) return 4;
   return 2;
+}
+
+/// The trees of a chart without the rounding of its file: the first `trees` of `from` pruned by `penalty`,
+/// and calibrated where `calibration` is given; on all threads.
+struct ExactTrees {
+  std::vector<DensityTree> trees;
+  std::vector<std::vector<double>> leaf_shares;
+};
+
+ExactTrees exact_trees(const std::vector<GrownTree>& from, const TreeBox& box, double penalty, int trees,
+                       const TreeMarginals* calibration) {
+  const std::size_t n = std::min<std::size_t>(from.size(), static_cast<std::size_t>(trees));
+  ExactTrees to{std::vector<DensityTree>(n), std::vector<std::vector<double>>(n)};
+  parallel_blocks(n, 1, [&](std::size_t t, std::size_t) {
+    const bool fine = from.size() == 2 && t < kFineOfTwo;
+    PrunedTree pruned = prune_exactly(from[t], penalty + (fine ? kFineNats : 0.0));
+    to.trees[t] = std::move(pruned.tree), to.leaf_shares[t] = std::move(pruned.leaf_shares);
+  });
+  if (calibration) calibrate_leaves(to.trees, box, *calibration, to.leaf_shares);
+  return to;
+}
+
+std::vector<DensityTree> pruned_trees(const std::vector<GrownTree>& from, const TreeBox& box, double penalty,
+                                      int trees, const TreeMarginals* calibration) {
+  ExactTrees exact = exact_trees(from, box, penalty, trees, calibration);
+  parallel_blocks(exact.trees.size(), 1, [&](std::size_t t, std::size_t) {
+    exact.trees[t] = settled({std::move(exact.trees[t]), std::move(exact.leaf_shares[t])});
+  });
+  return std::move(exact.trees);
+}
+
+/// Where rays contradict what the calibrated trees sum to, no leaves follow the pattern that they show: the
+/// last tree but one is then grown anew with place cut first, or the last with direction.
+void add_marginal_trees(ChartItems& c, const TreeMarginals& rays, const GrowOptions& grow, double penalty,
+                        std::vector<GrownTree>& trees) {
+  constexpr std::size_t kMinTrees = 16;
+  if (trees.size() < kMinTrees) return;
+  const ExactTrees exact = exact_trees(trees, c.box, penalty, static_cast<int>(trees.size()), &rays);
+  const auto found = contradictions(exact.trees, c.box, rays, exact.leaf_shares);
+  constexpr std::array<std::uint32_t, 2> kFirst{kPlaceAxes, kDirectionAxes};
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (found[k] < kContradiction) continue;
+    const std::size_t t = trees.size() - 2 + k;
+    GrowOptions first = grow;
+    first.tree_number = t, first.first_axes = kFirst[k];
+    trees[t] = std::move(grow_trees(c.items, c.box, first, 1).front());
+  }
 }
 
 GrownLayer grown_layer(Projection& p, const Support& support, double total_weight, int trees, double penalty,
@@ -61,8 +113,10 @@ GrownLayer grown_layer(Projection& p, const Support& support, double total_weigh
     if (c.weight < kSmallestShare * total_weight) continue;
     progress.step("compress: trees", static_cast<std::uint64_t>(&c - p.charts.data()), p.charts.size());
     grown.layer.charts.push_back({c.chart, c.weight, c.box, {}});
+    grown.marginals.emplace_back(c.items, c.box);
     const GrowOptions grow{.penalty_nats = penalty, .fine_trees = trees > 2 ? 0u : kFineOfTwo};
     grown.trees.push_back(grow_trees(c.items, c.box, grow, static_cast<std::size_t>(trees)));
+    add_marginal_trees(c, grown.marginals.back(), grow, penalty / kGrowShare, grown.trees.back());
     c.items = {};
   }
   double sum = 0.0;
@@ -71,29 +125,24 @@ GrownLayer grown_layer(Projection& p, const Support& support, double total_weigh
   return grown;
 }
 
-/// The layers themselves, the first `trees` of every chart pruned by `penalty`; on all threads.
-std::vector<AdaptiveLayer> pruned(const std::vector<GrownLayer>& grown, double penalty, int trees) {
-  struct Pruning {
-    const GrownTree* from;
-    DensityTree* to;
-    double penalty;
-  };
+/// The layers themselves; calibrated or, for a first look at their size, not.
+std::vector<AdaptiveLayer> pruned(const std::vector<GrownLayer>& grown, double penalty, int trees,
+                                  bool calibrated) {
   std::vector<AdaptiveLayer> layers;
   for (const GrownLayer& g : grown) layers.push_back(g.layer);
-  std::vector<Pruning> all;
+  struct Chart {
+    std::size_t layer, chart;
+  };
+  std::vector<Chart> all;
   for (std::size_t k = 0; k < grown.size(); ++k) {
-    for (std::size_t i = 0; i < grown[k].trees.size(); ++i) {
-      const auto& from = grown[k].trees[i];
-      auto& to = layers[k].charts[i].trees;
-      to.resize(std::min<std::size_t>(from.size(), static_cast<std::size_t>(trees)));
-      for (std::size_t t = 0; t < to.size(); ++t) {
-        const bool fine = from.size() == 2 && t < kFineOfTwo;
-        all.push_back({&from[t], &to[t], penalty + (fine ? kFineNats : 0.0)});
-      }
-    }
+    for (std::size_t i = 0; i < grown[k].trees.size(); ++i) all.push_back({k, i});
   }
-  parallel_blocks(all.size(), 1,
-                  [&](std::size_t i, std::size_t) { *all[i].to = prune_tree(*all[i].from, all[i].penalty); });
+  parallel_blocks(all.size(), 1, [&](std::size_t i, std::size_t) {
+    const GrownLayer& from = grown[all[i].layer];
+    AdaptiveChart& to = layers[all[i].layer].charts[all[i].chart];
+    to.trees = pruned_trees(from.trees[all[i].chart], to.box, penalty, trees,
+                            calibrated ? &from.marginals[all[i].chart] : nullptr);
+  });
   return layers;
 }
 
@@ -112,33 +161,43 @@ bool fits(const AdaptiveData& data, std::uint64_t max_bytes) {
   return kMinBits * data.leaves() <= 8 * max_bytes && file_bytes(data) <= max_bytes;
 }
 
+/// The model of `penalty`, its leaves calibrated; false if it does not fit.
+bool made(AdaptiveData& data, const std::vector<GrownLayer>& grown, double penalty, int trees,
+          std::uint64_t max_bytes) {
+  data.layers = pruned(grown, penalty, trees, true);
+  return fits(data, max_bytes);
+}
+
 /// Prunes until the file fits: first by penalty, then with fewer trees.
 void fit_to_size(AdaptiveData& data, const std::vector<GrownLayer>& grown, const Setting& setting,
                  std::uint64_t max_bytes) {
+  const auto sized = [&](double penalty, int trees) {
+    data.layers = pruned(grown, penalty, trees, false);
+    return fits(data, max_bytes);
+  };
   for (int trees = setting.trees;; trees /= 2) {
     double low = setting.penalty_nats, high = low;
-    data.layers = pruned(grown, low, trees);
-    if (fits(data, max_bytes)) return;
+    if (sized(low, trees) && made(data, grown, low, trees, max_bytes)) return;
     // So many rays that two trees were enough need no smoothing: leaves are better spent on one, which has
     // all cuts.
     if (trees > 1 && setting.trees == 2) continue;
     // Rougher trees than this are worse than fewer of them.
     const double max = trees > 1 ? 3.0 * setting.penalty_nats : 1e9;
+    bool fit = false;
     do {
       low = high;
       high = std::min(max, 2.0 * high);
-      data.layers = pruned(grown, high, trees);
-    } while (!fits(data, max_bytes) && high < max);
-    if (!fits(data, max_bytes)) {
-      if (trees > 1) continue;
-      throw InputError(fmt::format("a model of these rays does not fit in {} bytes", max_bytes));
-    }
+      fit = sized(high, trees);
+    } while (!fit && high < max);
+    if (!fit && trees > 1) continue;
+    if (!fit) throw InputError(fmt::format("a model of these rays does not fit in {} bytes", max_bytes));
     for (int i = 0; i < 6; ++i) {
       const double middle = std::sqrt(low * high);
-      data.layers = pruned(grown, middle, trees);
-      (fits(data, max_bytes) ? high : low) = middle;
+      (sized(middle, trees) ? high : low) = middle;
     }
-    data.layers = pruned(grown, high, trees);
+    // Calibrated steps are a little longer.
+    constexpr double kALittle = 1.02;
+    while (!made(data, grown, high, trees, max_bytes)) high *= kALittle;
     return;
   }
 }

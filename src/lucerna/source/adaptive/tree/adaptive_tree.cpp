@@ -24,10 +24,6 @@ constexpr std::uint32_t kOfferStride = 4;
 constexpr int kBlindSplits = 6;
 /// Edges are not cut below this share of the first box, nor to where float32 runs out.
 constexpr double kFinest = 0x1p-17, kFloatSteps = 0x1p-19;
-/// A child is stored as empty when it should have had so many rays and has none.
-constexpr double kSurelyEmpty = 8.0;
-/// Weight of the volume beside the rays in a share, in rays: keeps every leaf's density > 0.
-constexpr double kPrior = 0.5;
 
 /// Counts of all items; parts of a large node are counted on all threads.
 TreeCounts count(std::span<const TreeItem> items, const TreeBinning& binning) {
@@ -109,13 +105,13 @@ struct TreeGrower {
   }
 
   Cut best_cut(const TreeSums& below, double scale, const TreeBox& box, std::uint64_t path,
-               std::uint64_t tree, bool all) const {
+               std::uint64_t tree, bool all, std::uint32_t axes) const {
     const double weight = below[kTreeCuts][0];
     const std::uint32_t stride = all ? 1 : kOfferStride;
     CutList cuts;
     std::array<Cut, CutList::kMax> which;
     for (std::uint32_t d = 0; d < 4; ++d) {
-      if (!may_cut(box, d)) continue;
+      if ((axes >> d & 1u) == 0 || !may_cut(box, d)) continue;
       const std::uint32_t offset = all ? 1 : 1 + cut_offset(tree, path, d);
       for (std::uint32_t cut = offset; cut < kTreeCuts; cut += stride) {
         which[cuts.size] = {0.0, d, cut};
@@ -249,7 +245,9 @@ TreeGrower::Choice TreeGrower::choose(std::span<const TreeItem> items, const Tre
   if (counts.squares <= 0.0 || choice.weight * choice.weight < kSmallestNode * counts.squares) return choice;
   const double scale = choice.weight / counts.squares;
   const bool all = tree < options.fine_trees || items.size() > kAllCuts;
-  choice.cut = best_cut(below, scale, box, at.path, tree, all);
+  choice.cut = best_cut(below, scale, box, at.path, tree, all, options.first_axes);
+  if (options.first_axes != kAllAxes && choice.cut.gain_nats < options.penalty_nats)
+    choice.cut = best_cut(below, scale, box, at.path, tree, all, kAllAxes);
   choice.splits = true;
   if (choice.cut.gain_nats >= options.penalty_nats) {
     choice.blind = kBlindSplits;
@@ -298,49 +296,6 @@ void TreeGrower::grow(std::span<TreeItem> items, const TreeBox& box, const Place
   if (right.empty()) grow_half(true, out);
 }
 
-/// Gain and splits of each node's subtree once what does not pay is gone; 0 splits = becomes a leaf.
-std::vector<std::uint32_t> splits_retained_below(const GrownTree& grown, double penalty_nats) {
-  const std::size_t n = grown.nodes.size();
-  std::vector<double> gain(n, 0.0);
-  std::vector<std::uint32_t> splits(n, 0);
-  for (std::size_t i = n; i-- > 0;) {
-    const auto& node = grown.nodes[i];
-    if (node.right == 0) continue;
-    gain[i] = static_cast<double>(node.gain_nats) + gain[i + 1] + gain[i + node.right];
-    splits[i] = 1 + splits[i + 1] + splits[i + node.right];
-    if (gain[i] < penalty_nats * splits[i]) gain[i] = 0.0, splits[i] = 0;
-  }
-  return splits;
-}
-
-/// e^x for |x| < 700 from additions and multiplications alone: the same bits everywhere.
-double exact_exp(double x) {
-  constexpr double kLn2 = 0.69314718055994530942;
-  const double k = std::floor(x / kLn2 + 0.5), r = (x - k * kLn2) * 0.125;
-  double e = 1.0;
-  for (int i = 12; i > 0; --i) e = 1.0 + e * r / i;
-  e *= e, e *= e, e *= e;
-  return std::ldexp(e, static_cast<int>(k));
-}
-
-double step_width(double f, double rays) {
-  constexpr double kFinestStep = 1.0 / 256.0;
-  return std::max(kFinestStep, 1.0 / std::sqrt(std::max(1.0, rays * f * (1.0 - f))));
-}
-
-std::int16_t coded_step(const GrownTree& grown, std::size_t i, double rays) {
-  const auto& node = grown.nodes[i];
-  const double f = node.cut * (1.0 / kTreeCuts), scale = grown.effective_rays / grown.total_weight;
-  const double left = scale * grown.nodes[i + 1].weight, right = scale * grown.nodes[i + node.right].weight;
-  const double all = left + right;
-  if (left <= 0.0 && all * f > kSurelyEmpty) return kLeftEmpty;
-  if (right <= 0.0 && all * (1.0 - f) > kSurelyEmpty) return kRightEmpty;
-  const double p = (left + kPrior * f) / (all + kPrior);
-  const double log_odds = std::log(p / (1.0 - p)) - std::log(f / (1.0 - f));
-  const double steps = std::round(log_odds / step_width(f, rays));
-  return static_cast<std::int16_t>(std::clamp<double>(steps, -kLargestStep, kLargestStep));
-}
-
 }  // namespace
 
 TreeBox TreeBox::half(std::uint32_t axis, std::uint32_t cut, bool upper) const {
@@ -358,14 +313,6 @@ double TreeBox::volume() const {
   return v;
 }
 
-double tree_share(const TreeNode& node, double rays) {
-  if (node.step == kLeftEmpty) return 0.0;
-  if (node.step == kRightEmpty) return 1.0;
-  const double f = node.cut * (1.0 / kTreeCuts);
-  const double e = exact_exp(std::clamp(node.step * step_width(f, rays), -60.0, 60.0));
-  return f * e / (f * e + 1.0 - f);
-}
-
 std::vector<GrownTree> grow_trees(std::span<TreeItem> items, const TreeBox& box, const GrowOptions& options,
                                   std::size_t trees) {
   std::vector<Nodes> nodes(trees);
@@ -379,37 +326,6 @@ std::vector<GrownTree> grow_trees(std::span<TreeItem> items, const TreeBox& box,
     grown[t] = {std::move(nodes[t]), weight, squares > 0.0 ? weight * weight / squares : 0.0};
   }
   return grown;
-}
-
-std::size_t retained_splits(const GrownTree& grown, double penalty_nats) {
-  return splits_retained_below(grown, penalty_nats)[0];
-}
-
-DensityTree prune_tree(const GrownTree& grown, double penalty_nats) {
-  const auto splits = splits_retained_below(grown, penalty_nats);
-  DensityTree tree;
-  tree.rays = grown.effective_rays;
-  tree.nodes.resize(2 * static_cast<std::size_t>(splits[0]) + 1);
-  struct Pending {
-    std::size_t from, to;
-    double share;
-  };
-  std::vector<Pending> stack{{0, 0, 1.0}};
-  while (!stack.empty()) {
-    const Pending p = stack.back();
-    stack.pop_back();
-    if (splits[p.from] == 0) continue;
-    const auto& node = grown.nodes[p.from];
-    TreeNode& retained = tree.nodes[p.to];
-    retained.right = 2 + 2 * splits[p.from + 1];
-    retained.axis = node.axis;
-    retained.cut = node.cut;
-    retained.step = coded_step(grown, p.from, tree.rays * p.share);
-    const double left = tree_share(retained, tree.rays * p.share);
-    stack.push_back({p.from + node.right, p.to + retained.right, p.share * (1.0 - left)});
-    stack.push_back({p.from + 1, p.to + 1, p.share * left});
-  }
-  return tree;
 }
 
 double tree_density(const DensityTree& tree, const TreeBox& box, const std::array<double, 4>& c) {

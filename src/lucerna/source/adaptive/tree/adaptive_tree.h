@@ -106,6 +106,9 @@ struct GrownTree {
   double total_weight = 0.0, effective_rays = 0.0;
 };
 
+/// Sets of axes: bit d is axis d.
+inline constexpr std::uint32_t kAllAxes = 15, kPlaceAxes = 3, kDirectionAxes = 12;
+
 struct GrowOptions {
   /// A split must gain so much likelihood; see prune for the size that is kept.
   double penalty_nats = 4.0;
@@ -114,6 +117,9 @@ struct GrowOptions {
   /// Trees below this number offer all cuts everywhere; small nodes of the others a quarter of them (needed
   /// for averages; faster).
   std::uint64_t fine_trees = 0;
+  /// These axes are cut as long as that gains enough, and only then the others: what other trees sum over
+  /// before they see it, such a tree sees with all rays.
+  std::uint32_t first_axes = kAllAxes;
 };
 
 /// Splits `box` by the likelihood of `items` (which it reorders) until nothing is gained: histograms of 64
@@ -128,6 +134,19 @@ std::vector<GrownTree> grow_trees(std::span<TreeItem> items, const TreeBox& box,
 /// Keeps the subtrees whose splits gain `penalty_nats` each on average (weakest-link pruning, L. Breiman et
 /// al., "Classification and Regression Trees", 1984) and settles the shares in stored steps.
 DensityTree prune_tree(const GrownTree& grown, double penalty_nats);
+
+/// A tree without the rounding of its file: nodes whose steps say nothing but which sides are empty, and the
+/// shares of the leaves in preorder; their sum is 1.
+struct PrunedTree {
+  DensityTree tree;
+  std::vector<double> leaf_shares;
+};
+
+/// As prune_tree, before shares are settled.
+PrunedTree prune_exactly(const GrownTree& grown, double penalty_nats);
+
+/// Settles the shares in stored steps.
+DensityTree settled(PrunedTree pruned);
 
 /// Splits that prune_tree would keep; O(nodes).
 std::size_t retained_splits(const GrownTree& grown, double penalty_nats);
