@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # How the time of one trace falls with the number of ranks on this machine, as a table: for an idle machine. Ranks up to the number
 # of cores are timed; 4 and 8 on fewer cores are run for their bits only. Usage: scripts/mpi_scaling.sh LUCERNA LUCERNA_MPI MPIEXEC
-# RAYS (default 2e8) are traced three times for each number of ranks; the median counts. Exit code 1: a file differs.
+# RAYS (default 2e8) are traced three times for each number of ranks; the median counts. Exit code 1: a file differs. Processor seconds say
+# what the wall clock cannot on a machine that others use too.
 set -eu
 [ $# -eq 3 ] || { echo "usage: $0 LUCERNA LUCERNA_MPI MPIEXEC" >&2; exit 2; }
 lucerna=$(realpath "$1") lucerna_mpi=$(realpath "$2") mpiexec=$3
@@ -15,28 +16,35 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_
 "$lucerna" init --force -o lamp.toml --quiet
 "$lucerna" trace lamp.toml -o one --rays 1e7 --quiet
 
-seconds() { # RANKS RAYS FOLDER: of the whole program, and of the trace in it
-  local begin end
-  begin=$(date +%s.%N)
-  "$mpiexec" -n "$1" "$lucerna_mpi" trace lamp.toml -o "$3" --rays "$2" --threads 1 --quiet --force >"$dir/log" 2>&1 || { cat "$dir/log" >&2; exit 1; }
-  end=$(date +%s.%N)
-  awk -v a="$begin" -v b="$end" 'BEGIN { print b - a }'
+# RANKS RAYS FOLDER: wall and processor seconds of the whole program; the latter count waiting ranks too, which spin.
+seconds() {
+  local took
+  TIMEFORMAT="%R %U %S"
+  took=$({ time "$mpiexec" -n "$1" "$lucerna_mpi" trace lamp.toml -o "$3" --rays "$2" --threads 1 --quiet --force >"$dir/log" 2>&1; } 2>&1) ||
+    { cat "$dir/log" >&2; exit 1; }
+  echo "$took" | awk 'END { print $1, $2 + $3 }'
+}
+median() { # of three runs: by wall time
+  for _ in 1 2 3; do seconds "$@"; done | sort -g | sed -n 2p
 }
 
 echo "commit $(git -C "$(dirname "$lucerna_mpi")" rev-parse --short HEAD 2>/dev/null || echo unknown), $(nproc) cores, $rays rays"
-echo "| ranks | s | of which start, sum and files | speed-up |"
-echo "|---|---|---|---|"
+echo "| ranks | s | of which start, figures and files | speed-up | processor s | M rays per processor s |"
+echo "|---|---|---|---|---|---|"
 first=""
 for ranks in 1 2 4 8; do
   seconds "$ranks" 1e7 "bits$ranks" >/dev/null
   cmp one/trace.sums "bits$ranks/trace.sums" || exit 1
   if [ "$ranks" -gt "$(nproc)" ]; then
-    echo "| $ranks | more ranks than cores: the same bits | | |"
+    echo "| $ranks | more ranks than cores: the same bits | | | | |"
     continue
   fi
   # What does not grow with the rays: a run of one block.
-  fixed=$(for _ in 1 2 3; do seconds "$ranks" 512 fixed; done | sort -g | sed -n 2p)
-  whole=$(for _ in 1 2 3; do seconds "$ranks" "$rays" whole; done | sort -g | sed -n 2p)
+  read -r fixed fixed_cpu <<<"$(median "$ranks" 512 fixed)"
+  read -r whole whole_cpu <<<"$(median "$ranks" "$rays" whole)"
   [ -n "$first" ] || first=$whole
-  printf '| %d | %.2f | %.2f | %.2f |\n' "$ranks" "$whole" "$fixed" "$(awk -v a="$first" -v b="$whole" 'BEGIN { print a / b }')"
+  awk -v ranks="$ranks" -v fixed="$fixed" -v fixed_cpu="$fixed_cpu" -v whole="$whole" -v cpu="$whole_cpu" -v first="$first" -v rays="$rays" \
+    'BEGIN { printf "| %d | %.2f | %.2f | %.2f | %.2f | %.1f |\n", ranks, whole, fixed, first / whole, cpu, 1e-6 * rays / (cpu - fixed_cpu) }'
 done
+echo
+echo "The time of more ranks: scripts/mpi_model.py with the speed and the fixed time of one rank."

@@ -53,7 +53,7 @@ const std::map<std::string, Layers> kSubRooms{
          {"io", {}},
          {"image", {"io"}},
          {"math", {}},
-         {"parallel", {}},
+         {"parallel", {"io"}},
          {"random", {"io"}},
      }},
     {"rayset",

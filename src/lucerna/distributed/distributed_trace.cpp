@@ -9,7 +9,7 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
-#include "lucerna/distributed/message_bytes.h"
+#include "lucerna/core/io/message_bytes.h"
 #include "lucerna/distributed/reduction.h"
 #include "lucerna/simd/processor.h"
 #include "lucerna/trace/result/addition.h"
@@ -177,11 +177,7 @@ class RankTrace {
 
   void agree_on_scene() {
     const std::string mine = origin_.program_version + " " + mine_.sums.isa + " " + origin_.scene_id;
-    const std::string first = ranks_.broadcast(mine);
-    agree(ranks_,
-          mine == first
-              ? ""
-              : fmt::format("has the version, instruction set and project {}, rank 0 has {}", mine, first));
+    agree_on_same(ranks_, "version, instruction set and project", mine);
   }
 
   /// Reads one part; what keeps it from being gone on with is an error, but damage is not.

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <barrier>
 #include <cstdlib>
 #include <numeric>
 #include <thread>
@@ -19,60 +18,13 @@
 #include "lucerna/trace/tally/flux_quanta.h"
 #include "lucerna/trace/tally/wide_sums.h"
 #include "lucerna/trace_file.h"
+#include "tests/support/local_ranks.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// What threads that play ranks share.
-struct LocalWorld {
-  explicit LocalWorld(int n) : size(n), meet(n), texts(static_cast<std::size_t>(n)), sums(texts.size()) {}
-  int size;
-  std::barrier<> meet;
-  std::vector<std::string> texts;
-  std::vector<std::span<std::int64_t>> sums;
-  std::atomic<std::uint64_t> next{0};
-};
-
-/// Ranks as threads of one process: the algorithm without MPI.
-class LocalRanks final : public Ranks {
- public:
-  LocalRanks(LocalWorld& world, int rank) : world_(world), rank_(rank) {}
-  int rank() const override { return rank_; }
-  int size() const override { return world_.size; }
-  std::uint64_t take_number() override { return world_.next.fetch_add(1); }
-  void skip_numbers() override { world_.next.fetch_add(std::uint64_t{1} << 40); }
-  void poll() override {}
-  std::string broadcast(const std::string& text) override {
-    world_.meet.arrive_and_wait();
-    if (rank_ == 0) world_.texts[0] = text;
-    world_.meet.arrive_and_wait();
-    return world_.texts[0];
-  }
-  std::vector<std::string> gather(const std::string& text) override {
-    world_.meet.arrive_and_wait();
-    world_.texts[static_cast<std::size_t>(rank_)] = text;
-    world_.meet.arrive_and_wait();
-    return rank_ == 0 ? world_.texts : std::vector<std::string>();
-  }
-  void add_to_first(std::span<std::int64_t> numbers) override {
-    world_.sums[static_cast<std::size_t>(rank_)] = numbers;
-    world_.meet.arrive_and_wait();
-    if (rank_ == 0) {
-      for (std::size_t r = 1; r < world_.sums.size(); ++r) {
-        for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] += world_.sums[r][i];
-      }
-    }
-    world_.meet.arrive_and_wait();
-  }
-  [[noreturn]] void abort(int) override { std::abort(); }
-
- private:
-  LocalWorld& world_;
-  int rank_;
-};
 
 /// What the ranks of a run returned or threw.
 struct Outcome {
@@ -84,14 +36,14 @@ struct Outcome {
 using Body = std::function<DistributedTrace(Ranks& ranks)>;
 
 Outcome on_ranks(int n, const Body& body) {
-  LocalWorld world(n);
+  test::LocalWorld world(n);
   Outcome out;
   out.traces.resize(static_cast<std::size_t>(n));
   out.errors.resize(out.traces.size());
   std::vector<std::thread> threads;
   for (int r = 0; r < n; ++r) {
     threads.emplace_back([&, r] {
-      LocalRanks ranks(world, r);
+      test::LocalRanks ranks(world, r);
       const auto at = static_cast<std::size_t>(r);
       try {
         out.traces[at] = body(ranks);

@@ -5,8 +5,8 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
+#include "lucerna/core/io/message_bytes.h"
 #include "lucerna/core/io/sha256.h"
-#include "lucerna/distributed/message_bytes.h"
 #include "lucerna/results/folders/trace_file.h"
 #include "lucerna/trace/result/addition.h"
 

@@ -25,6 +25,11 @@ std::vector<std::string> gather_everywhere(Ranks& ranks, const std::string& text
   return texts;
 }
 
+void agree_on_same(Ranks& ranks, const std::string& what, const std::string& mine) {
+  const std::string first = ranks.broadcast(mine);
+  agree(ranks, mine == first ? "" : fmt::format("has the {} {}, rank 0 has {}", what, mine, first));
+}
+
 void agree(Ranks& ranks, const std::string& error) {
   const std::vector<std::string> errors = gather_everywhere(ranks, error);
   for (std::size_t r = 0; r < errors.size(); ++r) {

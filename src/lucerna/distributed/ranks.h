@@ -31,6 +31,8 @@ class Ranks {
   virtual std::string broadcast(const std::string& text) = 0;
   /// The texts of all ranks in order, at the first; nothing elsewhere.
   virtual std::vector<std::string> gather(const std::string& text) = 0;
+  /// to[r] goes to rank r; returns what each rank has sent to this one, in order.
+  virtual std::vector<std::string> exchange(const std::vector<std::string>& to) = 0;
   /// Adds the numbers of all ranks, at the first; elsewhere they are left.
   virtual void add_to_first(std::span<std::int64_t> numbers) = 0;
 
@@ -46,6 +48,10 @@ class AgreedError final : public InputError {
  public:
   explicit AgreedError(const std::string& what) : InputError(what, ErrorCause::mismatch) {}
 };
+
+/// Throws AgreedError on all ranks unless each has the text of the first, of which `what` says what it is.
+/// Collective.
+void agree_on_same(Ranks& ranks, const std::string& what, const std::string& mine);
 
 /// Throws AgreedError on all ranks if one of them has an error to tell (not empty): the first of them.
 /// Collective.

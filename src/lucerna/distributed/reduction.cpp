@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "lucerna/core/io/error.h"
-#include "lucerna/distributed/message_bytes.h"
+#include "lucerna/core/io/message_bytes.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 #include "lucerna/trace/tally/wide_sums.h"
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "lucerna/cli/commands/run.h"
+#include "lucerna/mpi/design_command.h"
 #include "lucerna/mpi/mpi_ranks.h"
 #include "lucerna/mpi/trace_command.h"
 #include "lucerna/version.h"
@@ -18,9 +19,10 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   lucerna::cli::Session session;
   session.set_command("lucerna-mpi", argc, argv);
+  int exit_code = 0;
   lucerna::cli::add_mpi_trace(app, session, ranks);
-  const int done = 0;
-  return lucerna::cli::parse_and_run(app, argc, argv, done, ranks.is_first());
+  lucerna::cli::add_mpi_design(app, session, ranks, exit_code);
+  return lucerna::cli::parse_and_run(app, argc, argv, exit_code, ranks.is_first());
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 
 /// Counts of MPI are ints, and libraries are at their best with pieces that fit their buffers many times.
 constexpr std::size_t kPiece = std::size_t{1} << 24;
-constexpr int kTextTag = 1;
+constexpr int kTextTag = 1, kExchangeTag = 2;
 
 }  // namespace
 
@@ -93,6 +93,37 @@ std::vector<std::string> MpiRanks::gather(const std::string& text) {
     }
   }
   return texts;
+}
+
+std::vector<std::string> MpiRanks::exchange(const std::vector<std::string>& to) {
+  std::vector<std::uint64_t> sent, received(to.size());
+  for (const std::string& text : to) sent.push_back(text.size());
+  MPI_Alltoall(sent.data(), 1, MPI_UINT64_T, received.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
+  std::vector<std::string> from(to.size());
+  std::vector<MPI_Request> requests;
+  const auto each_piece = [](std::size_t size, const auto& body) {
+    for (std::size_t at = 0; at < size; at += kPiece) body(at, static_cast<int>(std::min(kPiece, size - at)));
+  };
+  const auto own = static_cast<std::size_t>(rank_);
+  for (std::size_t r = 0; r < to.size(); ++r) {
+    if (r == own) continue;
+    from[r].resize(received[r]);
+    each_piece(received[r], [&](std::size_t at, int n) {
+      MPI_Irecv(from[r].data() + at, n, MPI_BYTE, static_cast<int>(r), kExchangeTag, MPI_COMM_WORLD,
+                &requests.emplace_back());
+    });
+  }
+  // Each begins with the rank after it, so that not all send to one.
+  for (std::size_t k = 1; k < to.size(); ++k) {
+    const std::size_t r = (own + k) % to.size();
+    each_piece(to[r].size(), [&](std::size_t at, int n) {
+      MPI_Isend(to[r].data() + at, n, MPI_BYTE, static_cast<int>(r), kExchangeTag, MPI_COMM_WORLD,
+                &requests.emplace_back());
+    });
+  }
+  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  from[own] = to[own];
+  return from;
 }
 
 void MpiRanks::add_to_first(std::span<std::int64_t> numbers) {

@@ -23,6 +23,7 @@ class MpiRanks final : public Ranks {
   void poll() override;
   std::string broadcast(const std::string& text) override;
   std::vector<std::string> gather(const std::string& text) override;
+  std::vector<std::string> exchange(const std::vector<std::string>& to) override;
   void add_to_first(std::span<std::int64_t> numbers) override;
   [[noreturn]] void abort(int exit_code) override;
 

@@ -3,13 +3,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
@@ -17,6 +13,7 @@
 
 #include "lucerna/core/io/file.h"
 #include "lucerna/random.h"
+#include "tests/support/mpi_runs.h"
 #include "tests/support/paths.h"
 #include "tests/support/temp_dir.h"
 
@@ -25,54 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-constexpr std::uint64_t kMost = 1u << 26;
-
-/// More ranks than cores, also as root: what each library needs for that.
-std::vector<std::string> mpi_command(int ranks) {
-  std::vector<std::string> words{LUCERNA_MPIEXEC};
-  if (std::string(LUCERNA_MPI_LIBRARY).find("openmpi") != std::string::npos)
-    words.insert(words.end(), {"--allow-run-as-root", "--oversubscribe", "--quiet"});
-  words.insert(words.end(), {"-n", std::to_string(ranks), LUCERNA_MPI_PROGRAM, "trace"});
-  return words;
-}
-
-/// Starts a command in a group of its own, its output in a file; returns its process.
-pid_t start(const std::vector<std::string>& words, const fs::path& log) {
-  const pid_t child = ::fork();
-  if (child != 0) return child;
-  ::setpgid(0, 0);
-  if (std::freopen(log.c_str(), "w", stdout) == nullptr) std::_Exit(126);
-  ::dup2(1, 2);
-  std::vector<char*> argv;
-  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-  argv.push_back(nullptr);
-  ::execvp(argv[0], argv.data());
-  std::_Exit(127);
-}
-
-int wait_for(pid_t child) {
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
-/// The children of a process and theirs that run lucerna-mpi: the ranks.
-std::vector<pid_t> ranks_below(pid_t top) {
-  std::vector<pid_t> all{top}, ranks;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    std::error_code none;
-    const fs::path tasks = fs::path("/proc") / std::to_string(all[i]) / "task";
-    for (const auto& task : fs::directory_iterator(tasks, none)) {
-      // Files of /proc have no size: they are read as streams.
-      std::ifstream children(task.path() / "children");
-      for (pid_t child = 0; children >> child;) all.push_back(child);
-    }
-    const fs::path program = fs::read_symlink(fs::path("/proc") / std::to_string(all[i]) / "exe", none);
-    if (program.filename() == "lucerna-mpi") ranks.push_back(all[i]);
-  }
-  return ranks;
-}
 
 constexpr const char* kLamp = R"([[source]]
 kind = "led"
@@ -110,20 +59,20 @@ class MpiTraceTest : public testing::Test {
     std::vector<std::string> words{test::program().string(),  "trace",  lamp(), "-o",
                                    (dir_ / "alone").string(), "--quiet"};
     words.insert(words.end(), how.begin(), how.end());
-    ASSERT_EQ(wait_for(start(words, log)), 0) << read_file(log, kMost);
+    ASSERT_EQ(test::wait_for(test::start(words, log)), 0) << read_file(log, test::kMostBytes);
   }
   void trace_alone(const std::string& project, const std::string& rays) {
     trace_alone(project, std::vector<std::string>{"--rays", rays});
   }
   std::string lamp() const { return (dir_ / "lamp.toml").string(); }
-  std::string log() const { return read_file(dir_ / "log", kMost); }
+  std::string log() const { return read_file(dir_ / "log", test::kMostBytes); }
 
   pid_t start_ranks(int ranks, const std::string& out, const std::vector<std::string>& more) const {
-    std::vector<std::string> words = mpi_command(ranks);
+    std::vector<std::string> words = test::mpi_command(ranks, "trace");
     words.insert(words.end(), {lamp(), "-o", (dir_ / out).string()});
     words.insert(words.end(), how_.begin(), how_.end());
     words.insert(words.end(), more.begin(), more.end());
-    return start(words, dir_ / "log");
+    return test::start(words, dir_ / "log");
   }
 
   /// Every file of the one folder is in the other to the byte; of result.json all but how it was made.
@@ -131,7 +80,8 @@ class MpiTraceTest : public testing::Test {
     std::size_t files = 0;
     for (const auto& entry : fs::directory_iterator(dir_ / "alone")) {
       const fs::path name = entry.path().filename();
-      const std::string a = read_file(entry.path(), kMost), b = read_file(dir_ / out / name, kMost);
+      const std::string a = read_file(entry.path(), test::kMostBytes),
+                        b = read_file(dir_ / out / name, test::kMostBytes);
       ++files;
       if (name == "result.json") {
         EXPECT_EQ(without_run(a), without_run(b)) << what;
@@ -160,7 +110,7 @@ TEST_F(MpiTraceTest, FilesAreThoseOfOneProcessMpi) {
     for (const char* threads : {"1", "2"}) {
       for (const char* chunk : {"512", "4096", "1e6"}) {
         const std::string out = "out" + std::to_string(run++);
-        const int code = wait_for(start_ranks(ranks, out, {"--threads", threads, "--chunk", chunk}));
+        const int code = test::wait_for(start_ranks(ranks, out, {"--threads", threads, "--chunk", chunk}));
         ASSERT_EQ(code, 0) << log();
         expect_same(out, fmt::format("{} ranks, {} threads, chunks of {}", ranks, threads, chunk));
       }
@@ -172,7 +122,7 @@ TEST_F(MpiTraceTest, ByNoiseTheRoundsAreThoseOfOneProcessMpi) {
   trace_alone(kLamp, std::vector<std::string>{"--noise", "2%", "--time", "1e6"});
   for (const int ranks : {1, 3}) {
     const std::string out = "out" + std::to_string(ranks);
-    ASSERT_EQ(wait_for(start_ranks(ranks, out, {"--threads", "1", "--chunk", "65536"})), 0) << log();
+    ASSERT_EQ(test::wait_for(start_ranks(ranks, out, {"--threads", "1", "--chunk", "65536"})), 0) << log();
     expect_same(out, fmt::format("{} ranks", ranks));
   }
 }
@@ -180,12 +130,12 @@ TEST_F(MpiTraceTest, ByNoiseTheRoundsAreThoseOfOneProcessMpi) {
 TEST_F(MpiTraceTest, AFinishedTraceGetsMoreRaysMpi) {
   trace_alone(std::string(kLamp) + kKept, "40011");
   how_ = {"--rays", "12345"};
-  ASSERT_EQ(wait_for(start_ranks(2, "out", {"--seed", "1"})), 0) << log();
+  ASSERT_EQ(test::wait_for(start_ranks(2, "out", {"--seed", "1"})), 0) << log();
   how_ = {"--rays", "40011"};
-  ASSERT_EQ(wait_for(start_ranks(3, "out", {"--resume", "--chunk", "512"})), 0) << log();
+  ASSERT_EQ(test::wait_for(start_ranks(3, "out", {"--resume", "--chunk", "512"})), 0) << log();
   EXPECT_NE(log().find("12345 rays are there already"), std::string::npos) << log();
   expect_same("out", "after going on");
-  EXPECT_EQ(wait_for(start_ranks(2, "out", {"--resume", "--seed", "7"})), 1) << log();
+  EXPECT_EQ(test::wait_for(start_ranks(2, "out", {"--resume", "--seed", "7"})), 1) << log();
 }
 
 TEST_F(MpiTraceTest, ASignalWritesAndExitsWithThreeMpi) {
@@ -194,13 +144,13 @@ TEST_F(MpiTraceTest, ASignalWritesAndExitsWithThreeMpi) {
     const std::string out = "out" + std::to_string(signal);
     const pid_t run = start_ranks(2, out, {"--threads", "1", "--chunk", "65536"});
     std::this_thread::sleep_for(std::chrono::milliseconds(2500));
-    const std::vector<pid_t> ranks = ranks_below(run);
+    const std::vector<pid_t> ranks = test::ranks_below(run);
     ASSERT_EQ(ranks.size(), 2u) << log();
     ::kill(ranks[1], signal);
-    EXPECT_EQ(wait_for(run), 3) << log();
+    EXPECT_EQ(test::wait_for(run), 3) << log();
     EXPECT_FALSE(fs::is_empty(dir_ / out / "parts"));
     EXPECT_FALSE(fs::exists(dir_ / out / "result.json"));
-    ASSERT_EQ(wait_for(start_ranks(3, out, {"--resume", "--threads", "1"})), 0) << log();
+    ASSERT_EQ(test::wait_for(start_ranks(3, out, {"--resume", "--threads", "1"})), 0) << log();
     EXPECT_NE(log().find("are there already"), std::string::npos) << log();
     expect_same(out, "after a signal");
   }
@@ -219,13 +169,13 @@ TEST_F(MpiTraceTest, AnyKillCostsAnIntervalAndNoBitMpiSlow) {
           start_ranks(ranks, out, {"--resume", "--threads", "1", "--chunk", "16384", "--checkpoint", "0.05"});
       if (attempt < 4) {
         std::this_thread::sleep_for(std::chrono::milliseconds(300 + rng.bits() % 2000));
-        const std::vector<pid_t> there = ranks_below(run);
+        const std::vector<pid_t> there = test::ranks_below(run);
         if (!there.empty()) {
           ::kill(there[rng.bits() % there.size()], SIGKILL);
           ++kills;
         }
       }
-      if (wait_for(run) == 0) break;
+      if (test::wait_for(run) == 0) break;
       ASSERT_LT(attempt, 6) << log();
     }
     expect_same(out, "after kills");
@@ -235,13 +185,13 @@ TEST_F(MpiTraceTest, AnyKillCostsAnIntervalAndNoBitMpiSlow) {
 TEST_F(MpiTraceTest, ErrorsAreToldOnceAndEndAllMpi) {
   how_ = {"--rays", "1000"};
   write_file(dir_ / "lamp.toml", "[[source]]\nkind = \"nothing\"\n");
-  EXPECT_EQ(wait_for(start_ranks(3, "out", {})), 1) << log();
+  EXPECT_EQ(test::wait_for(start_ranks(3, "out", {})), 1) << log();
   const std::string text = log();
   const std::size_t first = text.find("nothing");
   ASSERT_NE(first, std::string::npos) << text;
   write_file(dir_ / "lamp.toml", kLamp);
-  EXPECT_EQ(wait_for(start_ranks(2, "out", {"--chunk", "0"})), 2) << log();
-  EXPECT_EQ(wait_for(start_ranks(2, "out", {"--no-such-option"})), 2) << log();
+  EXPECT_EQ(test::wait_for(start_ranks(2, "out", {"--chunk", "0"})), 2) << log();
+  EXPECT_EQ(test::wait_for(start_ranks(2, "out", {"--no-such-option"})), 2) << log();
 }
 
 }  // namespace

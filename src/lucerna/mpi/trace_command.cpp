@@ -12,6 +12,7 @@
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
 #include "lucerna/distributed/distributed_trace.h"
+#include "lucerna/mpi/together.h"
 #include "lucerna/project.h"
 #include "lucerna/results/metrics/trace_warnings.h"
 #include "lucerna/trace/run/empty_trace.h"
@@ -28,18 +29,6 @@ struct MpiTraceArguments {
                                checkpoint = "300", report;
   bool resume = false;
 };
-
-/// Does `work` and tells all ranks what went wrong on one.
-template <class Work>
-void together(Ranks& ranks, const Work& work) {
-  std::string error;
-  try {
-    work();
-  } catch (const std::exception& e) {
-    error = e.what();
-  }
-  agree(ranks, error);
-}
 
 TraceOptions trace_options(const MpiTraceArguments& a) {
   TraceOptions options;
@@ -183,20 +172,8 @@ void add_mpi_trace(CLI::App& app, Session& session, Ranks& ranks) {
   command.flag("--force", session.force, "Write into a folder that is not empty");
   session.add_json(command);
   session.add_common(command);
-  command.on_run([arguments, &session, &ranks] {
-    try {
-      run_mpi_trace(*arguments, session, ranks);
-    } catch (const AgreedError&) {
-      throw;
-    } catch (const UsageError&) {
-      throw;  // the same line on all ranks
-    } catch (const Interrupted&) {
-      throw;  // after all have agreed
-    } catch (const std::exception& e) {
-      fmt::print(stderr, "lucerna-mpi: rank {}: {}\n", ranks.rank(), e.what());
-      ranks.abort(1);
-    }
-  });
+  command.on_run(
+      [arguments, &session, &ranks] { or_abort(ranks, [&] { run_mpi_trace(*arguments, session, ranks); }); });
 }
 
 }  // namespace lucerna::cli

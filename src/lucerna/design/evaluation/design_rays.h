@@ -17,6 +17,7 @@ namespace lucerna {
 class Accelerator;
 class BodyShadows;
 class DeviceEvaluator;
+class Peers;
 
 /// What blocks of rays are padded to and dealt by, so that the order of summing is fixed.
 inline constexpr std::size_t kDesignTasks = 16;
@@ -52,6 +53,12 @@ class DesignRays {
   /// Null without bodies.
   const BodyShadows* shadows() const { return shadows_.get(); }
 
+  /// From now on evaluations are shared with other processes, which make all of them too (peers.h); null:
+  /// this one makes them alone.
+  void share_with(Peers* peers) { peers_ = peers; }
+  /// Null alone.
+  Peers* peers() const { return peers_; }
+
   /// A copy of the first `max` rays (whole blocks of them), for what takes ray sets.
   RayBlock first(std::uint64_t max) const;
 
@@ -67,6 +74,7 @@ class DesignRays {
   std::vector<Block> block_;
   std::shared_ptr<DeviceEvaluator> device_;
   std::shared_ptr<const BodyShadows> shadows_;
+  Peers* peers_ = nullptr;
 };
 
 }  // namespace lucerna

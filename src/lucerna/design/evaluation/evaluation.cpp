@@ -5,16 +5,19 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/core/io/message_bytes.h"
 #include "lucerna/core/parallel/parallel.h"
 #include "lucerna/design/evaluation/body_shadows.h"
 #include "lucerna/design/evaluation/device_evaluator.h"
 #include "lucerna/design/evaluation/evaluation_sums.h"
 #include "lucerna/design/evaluation/hit_kernels.h"
+#include "lucerna/design/evaluation/shared_sums.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
 namespace lucerna {
@@ -224,6 +227,29 @@ std::size_t jacobian_groups(std::uint64_t rays) {
   return groups;
 }
 
+/// The other processes' tasks, where there are any; tasks go by groups.
+template <class Sums>
+void share_tasks(Peers* peers, std::size_t groups, std::uint64_t key, std::vector<Sums>& tasks) {
+  const std::size_t each = tasks.size() / groups;
+  const auto ends = [](TaskSums& t) {
+    return std::array{&t.weight, &t.reflected, &t.direct, &t.absorbed, &t.back, &t.lost, &t.bodies};
+  };
+  share_items(
+      peers, groups, key,
+      [&](std::size_t group, std::string& bytes) {
+        for (std::size_t r = group * each; r < (group + 1) * each; ++r) {
+          append(bytes, tasks[r].flux);
+          for (const double* sum : ends(tasks[r])) append_double(bytes, *sum);
+        }
+      },
+      [&](std::size_t group, std::string_view& bytes) {
+        for (std::size_t r = group * each; r < (group + 1) * each; ++r) {
+          take(bytes, tasks[r].flux);
+          for (double* sum : ends(tasks[r])) *sum = take_double(bytes);
+        }
+      });
+}
+
 template <class Sums>
 EvaluationSums total(const std::vector<Sums>& tasks, std::size_t bins) {
   EvaluationSums sums;
@@ -248,11 +274,12 @@ Evaluation evaluate_family(const DesignShape& design, const Shape& shape, const 
                            const DesignRays& rays, const TentBins& bins, const EvaluationOptions& options) {
   const std::uint64_t per_task = options.rays / kBlockRays / kDesignTasks;
   const auto view = evaluation_view(shape, design.aperture(), reflectance, bins, options);
-  const std::size_t groups = jacobian_groups(options.rays);
+  const std::size_t groups = options.derivatives ? jacobian_groups(options.rays) : kDesignTasks;
   std::vector<std::vector<double>> jacobians(options.derivatives ? groups : 0);
   std::vector<TaskSums> sums(kDesignTasks);
-  parallel_blocks(options.derivatives ? groups : kDesignTasks, 1, [&](std::size_t group, std::size_t) {
-    const std::size_t each = options.derivatives ? kDesignTasks / groups : 1;
+  const ItemRange own = own_items(rays.peers(), groups);
+  parallel_blocks(own.size(), 1, [&](std::size_t i, std::size_t) {
+    const std::size_t group = own.first + i, each = kDesignTasks / groups;
     const std::size_t coefficients = shape.coefficients().size();
     if (options.derivatives) jacobians[group].assign(bins.size() * coefficients, 0.0);
     const auto tracer = std::make_unique<BlockTracer<decltype(shape.view())>>(view, rays.shadows());
@@ -263,10 +290,14 @@ Evaluation evaluate_family(const DesignShape& design, const Shape& shape, const 
       for (std::uint64_t b = 0; b < per_task; ++b) tracer->add(rays.block(b * kDesignTasks + r), sums[r]);
     }
   });
+  share_tasks(rays.peers(), groups, state_key(design, bins.size(), options), sums);
   const EvaluationSums all = total(sums, bins.size());
   Evaluation e = evaluation_of(all);
   e.rays = per_task * kDesignTasks * kBlockRays;
-  if (options.derivatives) e.jacobian = fold_jacobians(jacobians, bins.size(), design, 1.0 / all.weight);
+  if (!options.derivatives) return e;
+  e.jacobian = rays.peers() == nullptr
+                   ? fold_jacobians(jacobians, bins.size(), design, 1.0 / all.weight)
+                   : shared_jacobian(*rays.peers(), jacobians, bins.size(), design, 1.0 / all.weight);
   return e;
 }
 
@@ -281,7 +312,9 @@ Evaluation evaluate_sparse(const DesignShape& design, const Reflectance& reflect
   std::vector<SparseSums> blocks(groups,
                                  SparseSums(across * static_cast<std::uint32_t>(shape.row_y().intervals)));
   std::vector<SparseTaskSums> sums(kDesignTasks);
-  parallel_blocks(groups, 1, [&](std::size_t group, std::size_t) {
+  const ItemRange own = own_items(rays.peers(), groups);
+  parallel_blocks(own.size(), 1, [&](std::size_t i, std::size_t) {
+    const std::size_t group = own.first + i;
     const auto tracer = std::make_unique<BlockTracer<BsplineView>>(view, rays.shadows());
     for (std::size_t r = group * each; r < (group + 1) * each; ++r) {
       sums[r].flux.assign(bins.size(), 0.0);
@@ -290,10 +323,13 @@ Evaluation evaluate_sparse(const DesignShape& design, const Reflectance& reflect
       for (std::uint64_t b = 0; b < per_task; ++b) tracer->add(rays.block(b * kDesignTasks + r), sums[r]);
     }
   });
+  share_tasks(rays.peers(), groups, state_key(design, bins.size(), options), sums);
   const EvaluationSums all = total(sums, bins.size());
   Evaluation e = evaluation_of(all);
   e.rays = per_task * kDesignTasks * kBlockRays;
+  if (rays.peers() != nullptr) blocks = exchanged_blocks(*rays.peers(), blocks, bins.size());
   SparseDerivatives derivatives = sparse_derivatives(blocks, bins.size(), design, 1.0 / all.weight);
+  if (rays.peers() != nullptr) share_rows(*rays.peers(), derivatives);
   e.rows.swap(derivatives.rows);
   e.rows_noise = std::move(derivatives.noise);
   return e;

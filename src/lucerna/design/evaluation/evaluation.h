@@ -61,8 +61,9 @@ struct Evaluation {
 /// that depends on the angle is taken at the ray's own angle, its change is left out. Bodies that shade the
 /// rays take light where it hits them first; light that crosses the edge of a body as the surface moves, and
 /// how light moves that a body reflected, are left out of the derivatives. `rays` must hold that many. Rays
-/// of one task are summed in order, tasks are added in order: the same bits for any number of threads. Thread
-/// safe.
+/// of one task are summed in order, tasks are added in order: the same bits for any number of threads.
+/// Where `rays` are shared with peers, each traces some of the tasks and all return the same bits; then the
+/// call is collective. Thread safe without peers.
 Evaluation evaluate(const DesignShape& shape, const Reflectance& reflectance, const DesignRays& rays,
                     const TentBins& bins, const EvaluationOptions& options);
 

@@ -34,6 +34,7 @@ class SparseSums {
     return insert(key, at);
   }
 
+  std::uint32_t cells() const { return cells_; }
   std::size_t size() const { return keys_.size(); }
   std::uint32_t bin(std::size_t i) const { return static_cast<std::uint32_t>(keys_[i] / cells_); }
   std::uint32_t cell(std::size_t i) const { return static_cast<std::uint32_t>(keys_[i] % cells_); }

@@ -65,7 +65,7 @@ void check_result(const FitProblem& fit, const DesignOptions& options, const Tim
   double max_s = kNoLimit;
   if (result.end != DesignTermination::converged) {
     const std::uint64_t min = std::min(rays, kMinValidationRays);
-    const double left = time.left_s() - time.rays_after_s();
+    const double left = of_first(options.peers, time.left_s() - time.rays_after_s());
     if (result.end == DesignTermination::interrupted) rays = min;
     while (rays / 2 >= min && check.seconds(rays) > left) rays /= 2;
     if (result.end == DesignTermination::time) max_s = left;  // the first round of rays it takes anyway
@@ -80,6 +80,7 @@ DesignRays design_rays(const DesignProblem& problem, const DesignOptions& option
   DesignRays rays(problem.project.scene.sources, mirror_from_world, seed);
   rays.evaluate_on(options.accelerator);
   rays.shade_by(shadows_of(problem.project.scene, mirror_from_world));
+  rays.share_with(options.peers);
   return rays;
 }
 
@@ -116,7 +117,8 @@ void check(const DesignOptions& options) {
 DesignResult design(const DesignProblem& problem, const DesignOptions& options, Progress& progress,
                     const DesignObserver& observer) {
   check(options);
-  TimeBudget time(options.time_s.value_or(problem.time_s));
+  LUCERNA_CHECK(options.peers == nullptr || !options.accelerator, "a device is not shared with peers");
+  TimeBudget time(options.time_s.value_or(problem.time_s), options.peers);
   DesignRays rays = design_rays(problem, options, options.seed);
   FitProblem fit = fit_problem(problem, options, rays);
   ResultCheck result_check(problem, options, progress);

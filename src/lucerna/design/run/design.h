@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "lucerna/core/parallel/peers.h"
 #include "lucerna/design.h"
 #include "lucerna/design/constraints/limit_check.h"
 #include "lucerna/design/run/advice.h"
@@ -18,6 +19,7 @@
 #include "lucerna/design/validation/bounds.h"
 #include "lucerna/design/validation/box_error.h"
 #include "lucerna/design/validation/zone_check.h"
+#include "lucerna/trace.h"
 
 namespace lucerna {
 
@@ -35,6 +37,12 @@ struct DesignOptions {
   std::uint64_t rays_after = 0;
   /// Where evaluations are traced (device_evaluator.h); null: on the CPU.
   std::shared_ptr<Accelerator> accelerator;
+  /// Processes that run the same design and share its work (peers.h): each calls with the same arguments, and
+  /// its progress asks to stop at the same moments of the design. CPU only. Null: this one alone.
+  Peers* peers = nullptr;
+  /// Traces the light of the result (run_design); empty: `trace_until`. With peers it returns the same on
+  /// all.
+  std::function<NoiseTrace(const Scene&, const TraceOptions&, const NoiseGoal&)> final_trace;
   /// Also the trade between error and light (pareto.h), after the time that was given.
   bool pareto = false;
   /// Also what other outlines and families would bring (advice.h), each designed for the same time.

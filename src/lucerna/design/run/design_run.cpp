@@ -76,13 +76,16 @@ DesignRun run_design(const DesignProblem& problem, DesignOptions options, Progre
   NoiseGoal goal;
   goal.max_seconds = std::clamp(kFinalTraceShare * options.time_s.value_or(problem.time_s), 1.0, 10.0);
   run.noise_goal = goal.noise;
-  run.trace = timed(run.trace_s, [&] { return trace_until(scene, {.seed = options.seed + 1}, goal); });
+  const TraceOptions traced{.seed = options.seed + 1};
+  run.trace = timed(run.trace_s, [&] {
+    return options.final_trace ? options.final_trace(scene, traced, goal) : trace_until(scene, traced, goal);
+  });
   run.figures = timed(run.figures_s, [&] {
     return design_metrics(problem.target, run.result.error.scale, run.trace.result, scene, progress);
   });
   if (problem.tolerances && run.result.end != DesignTermination::interrupted) {
     run.figures.tolerances = timed(run.tolerances_s, [&] {
-      return tolerance_sweep(scene, *problem.tolerances, options.seed + 2, progress);
+      return tolerance_sweep(scene, *problem.tolerances, options.seed + 2, progress, options.peers);
     });
   }
   return run;

@@ -95,6 +95,7 @@ std::vector<ParetoPoint> pareto_front(const DesignProblem& problem, const Design
       ValidationOptions o;
       o.seed = options.seed;
       o.min_rays = o.max_rays = std::min(options.validation_rays, kValidationRays);
+      o.peers = options.peers;
       points.push_back({fit.flux_weight, shape.at(0.0, 0.0).z_mm - problem.start.at(0.0, 0.0).z_mm,
                         validate(scene, boxes, target, problem.target.mode, o).error});
       progress.update("pareto", points.size(), 2 * from.size());

@@ -135,6 +135,7 @@ Validation ResultCheck::validated(const DesignShape& shape, std::uint64_t min_ra
   o.max_rays = max_rays;
   o.max_s = max_s;
   o.zones = problem_.target.zones.get();
+  o.peers = options_.peers;
   if (options_.validation_rays < kStartCheckRays) o.tolerance = kCoarseMesh;
   return validate(scene, boxes_, target_, problem_.target.mode, o, progress);
 }

@@ -5,14 +5,17 @@
 #include <chrono>
 #include <cstdint>
 
+#include "lucerna/core/parallel/peers.h"
+
 namespace lucerna {
 
 /// When a design has to stop so that what follows the search still fits into its time. It only stops: no
-/// decision of a search depends on it.
+/// decision of a search depends on it. With peers the clock of the first process counts for `spent`, which is
+/// collective then.
 class TimeBudget {
  public:
-  explicit TimeBudget(double time_s)
-      : begin_(Clock::now()), search_(begin_), last_(begin_), time_s_(time_s) {}
+  explicit TimeBudget(double time_s, Peers* peers = nullptr)
+      : peers_(peers), begin_(Clock::now()), search_(begin_), last_(begin_), time_s_(time_s) {}
 
   /// To be called where the search begins: what will follow it, in seconds, and in rays at the rate of the
   /// search's own.
@@ -32,13 +35,14 @@ class TimeBudget {
     last_ = now;
     last_rays_ = rays;
     per_ray_s_ = rays > 0 ? seconds(search_, now) / static_cast<double>(rays) : 0.0;
-    return seconds(begin_, now) + step + std::min(seconds_after_ + rays_after_s(), time_s_ / 3.0) > time_s_;
+    const double after = std::min(seconds_after_ + rays_after_s(), time_s_ / 3.0);
+    return of_first(peers_, seconds(begin_, now) + step + after > time_s_);
   }
 
   /// Seconds that the rays after the search will take; 0 before it has traced any.
   double rays_after_s() const { return rays_after_ * per_ray_s_; }
 
-  /// Seconds until the time is up; below 0 after it.
+  /// Seconds until the time is up, by the own clock; below 0 after it.
   double left_s() const { return time_s_ - seconds(begin_, Clock::now()); }
 
  private:
@@ -46,6 +50,7 @@ class TimeBudget {
   static double seconds(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double>(to - from).count();
   }
+  Peers* peers_;
   Clock::time_point begin_, search_, last_;
   std::uint64_t last_rays_ = 0;
   double time_s_, seconds_after_ = 0.0, rays_after_ = 0.0, per_ray_s_ = 0.0;

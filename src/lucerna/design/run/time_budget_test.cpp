@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/local_peers.h"
+
 namespace lucerna {
 namespace {
 
@@ -20,6 +22,16 @@ TEST(TimeBudget, ASearchMayUseAllThatIsNotNeededLater) {
 }
 
 /// What follows has a third of the time at most, however long it would take.
+TEST(TimeBudget, TheFirstOfSeveralProcessesDecides) {
+  test::on_peers(3, [](Peers& peers) {
+    const bool first = peers.rank() == 0;
+    TimeBudget spent(first ? 0.0 : 1e9, &peers);
+    EXPECT_TRUE(spent.spent(0, 1));
+    TimeBudget ample(first ? 1e9 : 0.0, &peers);
+    EXPECT_FALSE(ample.spent(0, 1));
+  });
+}
+
 TEST(TimeBudget, WhatFollowsHasAThirdAtMost) {
   TimeBudget time(1e6);
   time.begin_search(1e9, 0);

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "lucerna/core/io/error.h"
-#include "lucerna/core/parallel/parallel.h"
+#include "lucerna/core/parallel/peers.h"
 #include "lucerna/design/initial/initial_guesses.h"
 #include "lucerna/design/search/profile_search.h"
 
@@ -123,7 +123,7 @@ bool prepare_guesses(FitProblem& problem, const DesignShape& shape, const Contin
     if (!fresh) {
       std::copy_n(costs.begin() + static_cast<std::ptrdiff_t>(asked), n, now.begin());
     } else {
-      parallel_blocks(n, 1, [&](std::size_t i, std::size_t) {
+      for_each_shared(problem.rays->peers(), n, [&](std::size_t i) {
         const double cost = fit_cost(problem, space.shape.with(points[i]), bins, target, rays);
         now[i] = std::isfinite(cost) ? cost : 1e30;
       });

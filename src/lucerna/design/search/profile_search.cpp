@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lucerna/core/parallel/parallel.h"
+#include "lucerna/core/parallel/peers.h"
 #include "lucerna/design/constraints/limits.h"
 #include "lucerna/design/initial/initial_guesses.h"
 #include "lucerna/design/initial/zone_table.h"
@@ -117,7 +118,7 @@ class Search {
     problem_.rays->grow(options.rays);
     std::vector<Traced> now;
     for (std::size_t i = 0; i < n; ++i) now.push_back({candidates[first + i], {}, {}, round});
-    parallel_blocks(n, 1, [&](std::size_t i, std::size_t) {
+    for_each_shared(problem_.rays->peers(), n, [&](std::size_t i) {
       Candidate& c = now[i].candidate;
       const Evaluation e = evaluate(c.shape, problem_.reflectance, *problem_.rays, problem_.bins, options);
       const Evaluation table = table_.evaluate(c.shape);

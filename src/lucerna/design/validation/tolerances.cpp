@@ -7,9 +7,11 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/core/io/message_bytes.h"
 #include "lucerna/photometry/metrics/far_field_metrics.h"
 #include "lucerna/random.h"
 #include "lucerna/trace.h"
@@ -142,7 +144,7 @@ Scene changed(const Scene& scene, const ToleranceCase& change) {
 }
 
 ToleranceSweep tolerance_sweep(const Scene& scene, const ToleranceRanges& ranges, std::uint64_t seed,
-                               Progress& progress) {
+                               Progress& progress, Peers* peers) {
   ToleranceSweep sweep;
   sweep.ranges = ranges;
   sweep.cases = tolerance_cases(ranges, seed);
@@ -154,10 +156,25 @@ ToleranceSweep tolerance_sweep(const Scene& scene, const ToleranceRanges& ranges
   plain.planes.clear();
   plain.luminances.clear();
   plain.ray_detectors.clear();
-  for (const ToleranceCase& c : sweep.cases) {
+  sweep.figures.resize(sweep.cases.size());
+  // A case for each process at a time.
+  const std::size_t all = sweep.cases.size(),
+                    each = peers == nullptr ? 1 : static_cast<std::size_t>(peers->size());
+  for (std::size_t first = 0; first < all; first += each) {
     if (progress.stop_requested()) throw Interrupted();
-    sweep.figures.push_back(figures_of(trace(changed(plain, c), options)));
-    progress.update("tolerances", sweep.figures.size(), sweep.cases.size());
+    const std::size_t n = std::min(each, all - first);
+    const ItemRange own = own_items(peers, n);
+    for (std::size_t i = first + own.first; i < first + own.last; ++i)
+      sweep.figures[i] = figures_of(trace(changed(plain, sweep.cases[i]), options));
+    share_items(
+        peers, n, StateKey().add(std::uint64_t{first}).value(),
+        [&](std::size_t i, std::string& bytes) { append(bytes, std::vector{sweep.figures[first + i]}); },
+        [&](std::size_t i, std::string_view& bytes) {
+          std::vector<ToleranceMetrics> one;
+          take(bytes, one);
+          sweep.figures[first + i] = one.front();
+        });
+    progress.update("tolerances", first + n, all);
   }
   sweep.spread = {
       spread_of("efficiency", sweep, [](const ToleranceMetrics& f) { return f.efficiency; }),

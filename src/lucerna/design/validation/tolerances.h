@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lucerna/core/parallel/peers.h"
 #include "lucerna/design.h"
 #include "lucerna/progress.h"
 #include "lucerna/project/schema/toml_reader.h"
@@ -22,9 +23,10 @@ std::vector<ToleranceCase> tolerance_cases(const ToleranceRanges& ranges, std::u
 /// stays within [0, 1].
 Scene changed(const Scene& scene, const ToleranceCase& change);
 
-/// Traces every case. Progress phase "tolerances", in cases. Throws Interrupted when asked to stop.
+/// Traces every case. Progress phase "tolerances", in cases. Throws Interrupted when asked to stop. `peers`:
+/// processes that make the same sweep and share its cases (peers.h); null: this one alone.
 ToleranceSweep tolerance_sweep(const Scene& scene, const ToleranceRanges& ranges, std::uint64_t seed,
-                               Progress& progress = no_progress());
+                               Progress& progress = no_progress(), Peers* peers = nullptr);
 
 /// One line a case: its changes, its figures.
 std::string tolerances_csv(const ToleranceSweep& sweep);

@@ -5,9 +5,11 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/core/io/message_bytes.h"
 #include "lucerna/core/parallel/counted_progress.h"
 #include "lucerna/core/parallel/parallel.h"
 #include "lucerna/design/validation/mesh_hits.h"
@@ -322,12 +324,28 @@ class BatchTracer {
   std::uint32_t sort_key_[kMeshBatch], order_[kMeshBatch], begin_[2 * kSortSide * kSortSide + 1];
 };
 
+/// The sums of a replicate as bytes, and back.
+void append_sums(const BoxSums& s, std::string& bytes) {
+  for (const auto* values : {&s.flux, &s.direct, &s.zones}) append(bytes, *values);
+  for (const double x : {s.emitted, s.out_direct, s.out_reflected, s.absorbed, s.back, s.bodies, s.lost})
+    append_double(bytes, x);
+  append(bytes, s.rays);
+}
+void take_sums(BoxSums& s, std::string_view& bytes) {
+  for (auto* values : {&s.flux, &s.direct, &s.zones}) take(bytes, *values);
+  for (double* x : {&s.emitted, &s.out_direct, &s.out_reflected, &s.absorbed, &s.back, &s.bodies, &s.lost})
+    *x = take_double(bytes);
+  s.rays = take(bytes);
+}
+
 /// Blocks [first, last) of every replicate; block j of replicate r is number 16 j + r.
 void trace_round(const Scene& scene, const RayNumbering& numbering, const Meshes& meshes,
                  const ErrorBoxes& boxes, const ZoneCells* zones, std::uint64_t first, std::uint64_t last,
-                 std::vector<BoxSums>& replicates, std::uint64_t expected, Progress& progress) {
+                 std::vector<BoxSums>& replicates, std::uint64_t expected, Progress& progress, Peers* peers) {
   CountedProgress counted(progress, "validate", first * kReplicates * kBlockRays, expected);
-  parallel_blocks(kReplicates, 1, [&](std::size_t r, std::size_t) {
+  const ItemRange own = own_items(peers, kReplicates);
+  parallel_blocks(own.size(), 1, [&](std::size_t i, std::size_t) {
+    const std::size_t r = own.first + i;
     const auto tracer = std::make_unique<BatchTracer>(scene, numbering, meshes, boxes, zones);
     BoxSums& sums = replicates[r];
     std::uint64_t reported = first;
@@ -339,6 +357,10 @@ void trace_round(const Scene& scene, const RayNumbering& numbering, const Meshes
     }
     tracer->finish(sums);
   });
+  share_items(
+      peers, kReplicates, StateKey().add(last).value(),
+      [&](std::size_t r, std::string& bytes) { append_sums(replicates[r], bytes); },
+      [&](std::size_t r, std::string_view& bytes) { take_sums(replicates[r], bytes); });
 }
 
 /// Rays to trace in all after `rays` took `seconds` and the meshes `before_s`, or 0: enough.
@@ -395,11 +417,11 @@ Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const
     r.zones.assign(options.zones != nullptr ? options.zones->size() : 0, 0.0);
   }
   const Clock::time_point traced = Clock::now();
-  out.mesh_s = seconds_since(start);
+  out.mesh_s = of_first(options.peers, seconds_since(start));
   std::uint64_t next = std::min(kFirstRound, options.max_rays) / kRoundUnit;
   for (std::uint64_t blocks = 0; next > blocks;) {
     trace_round(scene, numbering, meshes, boxes, options.zones, blocks, next, replicates, options.min_rays,
-                progress);
+                progress, options.peers);
     blocks = next;
     out.rays = blocks * kRoundUnit;
     out.error = box_error(boxes, target, replicates, mode);
@@ -407,10 +429,11 @@ Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const
       out.zones = check_zones(*options.zones, replicates, total_flux(scene.sources));
     const bool clear = out.error.c48.floor <= 0.5 * out.error.c48.excess && !any_undetermined(out.zones);
     if (progress.stop_requested()) break;
-    next = next_rays(options, out.rays, seconds_since(traced), out.mesh_s, clear) / kRoundUnit;
+    const double seconds = of_first(options.peers, seconds_since(traced));
+    next = next_rays(options, out.rays, seconds, out.mesh_s, clear) / kRoundUnit;
   }
   set_shares(replicates, out);
-  out.seconds = seconds_since(start);
+  out.seconds = of_first(options.peers, seconds_since(start));
   return out;
 }
 

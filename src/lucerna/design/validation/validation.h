@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lucerna/cad.h"
+#include "lucerna/core/parallel/peers.h"
 #include "lucerna/design/validation/zone_check.h"
 #include "lucerna/progress.h"
 #include "lucerna/scene.h"
@@ -33,6 +34,9 @@ struct ValidationOptions {
   /// Zones whose light is counted too; then rays are also doubled until every zone's verdict is clear. Null:
   /// none. Must outlive the call.
   const ZoneCells* zones = nullptr;
+  /// Processes that validate the same mirror and share its rays (peers.h), by replicates; null: this one
+  /// alone.
+  Peers* peers = nullptr;
 };
 
 /// What a mirror does with light, found by code that shares nothing with the fit.

@@ -47,7 +47,8 @@ std::vector<std::string> summary_with(const std::vector<ToleranceSpread>& spread
   peak.direction = direction_from_type_c({.c_rad = 2.543, .gamma_rad = 1.0996});
   metrics.tolerances = ToleranceSweep{};
   metrics.tolerances->spread = spread;
-  return design_summary(problem, DesignResult(problem.start), metrics);
+  const DesignResult result(problem.start);
+  return design_summary(problem.target, result, design_form(result), metrics);
 }
 
 const std::string& line_of(const std::vector<std::string>& lines, std::string_view start) {

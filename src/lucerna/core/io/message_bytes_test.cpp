@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/distributed/message_bytes.h"
+#include "lucerna/core/io/message_bytes.h"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
 
 namespace lucerna {
 namespace {
@@ -26,6 +29,25 @@ TEST(MessageBytes, AreTakenInTheOrderTheyWereAppended) {
   EXPECT_EQ(taken, floats);
   EXPECT_TRUE(empty.empty());
   EXPECT_TRUE(rest.empty());
+}
+
+TEST(MessageBytes, DoublesKeepTheirBits) {
+  std::string bytes;
+  for (const double x : {0.1, -0.0, 1e-310}) append_double(bytes, x);
+  std::string_view rest = bytes;
+  EXPECT_EQ(take_double(rest), 0.1);
+  EXPECT_TRUE(std::signbit(take_double(rest)));
+  EXPECT_EQ(take_double(rest), 1e-310);
+}
+
+TEST(MessageBytes, WhatEndsEarlyIsAnError) {
+  std::string bytes;
+  append(bytes, std::vector<double>{1.0, 2.0, 3.0});
+  std::vector<double> items;
+  for (const std::size_t n : {std::size_t{0}, std::size_t{7}, std::size_t{8}, bytes.size() - 1}) {
+    std::string_view cut = std::string_view(bytes).substr(0, n);
+    EXPECT_THROW(take(cut, items), std::logic_error) << n;
+  }
 }
 
 }  // namespace

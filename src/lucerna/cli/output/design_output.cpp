@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/cli/output/design_output.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "lucerna/cli/output/trace_output.h"
+#include "lucerna/report/html/report_design.h"
+#include "lucerna/results/folders/design_files.h"
+#include "lucerna/results/json/trace_json.h"
+#include "lucerna/results/metrics/trace_warnings.h"
+
+namespace lucerna::cli {
+
+void DesignWatch::operator()(const FitRecord& record, const DesignShape& best,
+                             const std::string& checkpoint) {
+  const std::string line = history_csv({record});
+  const std::size_t header = line.find('\n') + 1;
+  history_ += history_.empty() ? line : line.substr(header);
+  write_design_progress(folder_, problem_, best, history_, checkpoint);
+  session_.show(
+      fmt::format("design: error {:.2f} %, noise {:.2f} %, efficiency {:.1f} %, {:.3g} M rays, {:.0f} s",
+                  100.0 * record.error, 100.0 * record.floor, 100.0 * record.efficiency,
+                  1e-6 * static_cast<double>(record.total_rays), seconds()));
+}
+
+DesignRun run_watched(const DesignProblem& problem, const DesignOptions& options, const DesignObserver& watch,
+                      Session& session, Progress& progress) {
+  DesignRun made = run_design(problem, options, progress, watch);
+  session.add_seconds("design", made.design_s);
+  session.add_seconds("trace", made.trace_s);
+  session.add_seconds("figures", made.figures_s);
+  if (made.figures.tolerances) session.add_seconds("tolerances", made.tolerances_s);
+  if (made.trace.end == NoiseEnd::time) {
+    note_noise("trace of the result: ", made.trace, made.noise_goal, session);
+  }
+  return made;
+}
+
+int write_design_output(const DesignOutput& output, const DesignProblem& problem, const DesignRun& made,
+                        Session& session) {
+  const DesignResult& result = made.result;
+  const TraceResult& traced = made.trace.result;
+  const DesignMetrics& figures = made.figures;
+  Json json = session.json_head(output.seed, traced.isa);
+  json["device"] = output.device;
+  json.update(design_json(problem.target, result, design_form(result), figures));
+  json.update(trace_json(figures.trace));
+  const std::vector<std::string> warnings = trace_warnings(figures.trace, problem.project.scene);
+  for (const std::string& warning : warnings) session.note(warning);
+  json["warnings"] = warnings;
+  const auto names = session.timed("files", [&] {
+    return write_design_files(output.folder, problem, result, figures, traced, output.history, json);
+  });
+  session.print_json(json);
+  session.print_line(fmt::format("{}: {} parameters, {} evaluations, {:.3g} M rays in {:.3g} s ({})",
+                                 output.folder, result.shape.parameter_count(), result.evaluations,
+                                 1e-6 * static_cast<double>(result.rays), session.seconds("design"),
+                                 to_string(result.end)));
+  for (const std::string& line : design_summary(problem.target, result, design_form(result), figures))
+    session.print_line(line);
+  session.print_line(fmt::format("  written: {}", fmt::join(names, " ")));
+  if (!output.report.empty()) {
+    write_design_report(output.folder, output.report);
+    session.print_line(fmt::format("  report: {}", output.report));
+  }
+  int exit_code = 0;
+  for (const LimitCheck& c : result.limits) {
+    if (!c.held) exit_code = 1;
+  }
+  for (const ZoneCheck& zone : result.zones) {
+    if (zone.verdict() != ZoneVerdict::met) exit_code = 1;
+  }
+  if (result.end == DesignTermination::interrupted) exit_code = 3;
+  return exit_code;
+}
+
+}  // namespace lucerna::cli
