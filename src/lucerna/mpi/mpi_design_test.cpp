@@ -26,14 +26,9 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A far field of large cells: its noise is reached in one round.
 constexpr const char* kDesignScene = R"([[source]]
 kind = "disk"
 radius_mm = 1.0
-[[detector]]
-kind = "far-field"
-c_step_deg = 90.0
-gamma_step_deg = 5.0
 [target]
 file = "spot.ldt"
 [[reflector]]
@@ -44,11 +39,18 @@ position_mm = [0, 0, 8]
 axis = "-z"
 reflectance = 0.9
 )";
+/// A far field of large cells: its noise is reached in one round. To find its peak takes most of a run.
+constexpr const char* kFarField = R"([[detector]]
+kind = "far-field"
+c_step_deg = 90.0
+gamma_step_deg = 5.0
+)";
 constexpr const char* kRevolution = R"(family = "revolution"
 preset = "parabola"
 [design]
 intervals = 3
-restarts = 1
+restarts = 0
+optimizer = "least-squares"
 time_s = 1e6
 [design.tolerances]
 samples = 2
@@ -56,14 +58,14 @@ rays = 20000
 )";
 constexpr const char* kFreeForm = R"(family = "bspline"
 [design]
-intervals = [6, 6]
-restarts = 1
+intervals = [2, 2]
+restarts = 0
 time_s = 1e6
 )";
 
 class MpiDesignTest : public testing::Test {
  protected:
-  void design_alone(const std::string& mirror, const std::string& more = "") {
+  void design_alone(const std::string& mirror, const std::string& detector = "") {
     PhotometricFile spot;
     spot.distribution = uniform_distribution(0.0, 1.0);
     for (std::size_t g = 0; g < spot.distribution.gamma_deg.size(); ++g) {
@@ -71,7 +73,7 @@ class MpiDesignTest : public testing::Test {
       spot.distribution.at(0, g) = 1000.0 * std::exp(-gamma * gamma / 200.0);
     }
     write_photometric_file(dir_ / "spot.ldt", spot, PhotometricFormat::ldt);
-    write_file(dir_ / "p.toml", kDesignScene + mirror + more);
+    write_file(dir_ / "p.toml", detector + kDesignScene + mirror);
     const std::vector<std::string> words{test::program().string(),
                                          "design",
                                          project(),
@@ -108,7 +110,7 @@ class MpiDesignTest : public testing::Test {
         EXPECT_TRUE(a == b) << name << ", " << what;
       }
     }
-    EXPECT_GE(files, 12u);
+    EXPECT_GE(files, 10u);
   }
   static std::string without_run(const std::string& json) {
     Json j = Json::parse(json);
@@ -123,7 +125,7 @@ class MpiDesignTest : public testing::Test {
 TEST_F(MpiDesignTest, FilesAreThoseOfOneProcessMpi) {
   for (const char* mirror : {kRevolution, kFreeForm}) {
     fs::remove_all(dir_ / "alone");
-    design_alone(mirror);
+    design_alone(mirror, kFarField);
     int run = 0;
     for (const int ranks : {1, 2, 3, 5}) {
       for (const char* threads : {"1", "2"}) {
