@@ -198,6 +198,7 @@ TEST_F(MpiDesignTest, ErrorsAreToldOnceAndEndAllMpi) {
   EXPECT_THAT(log(), testing::HasSubstr("expected at least 8192"));
   EXPECT_EQ(test::wait_for(start_ranks(2, "out", {"--device", "cpu"})), 2) << log();
   // Found in the middle of the computation.
+  fs::create_directory(dir_ / "out");
   write_file(dir_ / "out" / "checkpoint", "lucerna-design nothing\n");
   EXPECT_EQ(test::wait_for(start_ranks(3, "out", {"--resume"})), 1) << log();
   EXPECT_THAT(log(), testing::HasSubstr("checkpoint"));
