@@ -22,13 +22,12 @@ constexpr double kSmoothing = 0.25;
 constexpr double kGlareRadius_deg = 2.5;
 /// The brightest direction is looked for within this share of the distance between those that the cells show.
 constexpr double kPeakSearch = 0.5;
-/// A narrower lobe is one image of the source and smooth; others have ripples where images overlap.
-constexpr double kSmoothLobe_deg = 3.0;
-/// Arcs of C0 and C90 below this are measured by `exact`. Their ends are looked for within this share of
-/// them.
-constexpr double kNarrowArc_deg = 20.0, kArcWindow = 0.25;
-/// Ends of a centre darker than this share of the peak lie on a lobe's foot, which bends within any window.
-constexpr double kBrightCentre = 0.5;
+/// Kernels move the ends of an arc below this by more than noise does. Those of a wider one are looked for by
+/// `exact` down to this share of the peak: below it backward light may come by paths that few points find.
+constexpr double kNarrowArc_deg = 20.0, kWellFound = 0.25;
+/// Ends of arcs are looked for by `exact` in steps of this share of the arc, and of what the cells resolve;
+/// no further away than this.
+constexpr double kArcStep = 0.05, kResolutionStep = 0.5, kMaxWindow_deg = 20.0;
 /// Beyond this a peak's C is not determined.
 constexpr double kTurned_deg = 90.0;
 /// Narrower than the beam is wide, wide enough for its axis where no peak was found.
@@ -44,19 +43,20 @@ struct PlaneResult {
   std::optional<Jackknife> reach;
 };
 
-/// The arc where a share of `full` is reached. Kernels widen narrow ones: there `exact` looks for the ends.
+/// The arc where a share of `full` is reached. Kernels move its ends: there `exact` looks for them.
 std::optional<Estimate> arc_deg(const PointIntensity& exact, double resolution_deg, Section& section,
-                                const Jackknife& full, double share_of_full) {
-  const Jackknife threshold = share(full, share_of_full);
+                                double peak_cd, const Jackknife& full, double share_of_full) {
+  const Estimate threshold = share(full, share_of_full).estimate();
   const std::optional<Estimate> counted = section.arc_deg(threshold);
-  if (!exact || !counted || counted->mean > kNarrowArc_deg) return counted;
-  const auto near = section.narrowest_arc(threshold.all());
-  const double window_deg =
-      std::max({resolution_deg, 3.0 * counted->standard_error, kArcWindow * counted->mean});
+  const auto near = exact ? section.place(threshold) : std::nullopt;
+  if (!near || near->outward_deg > kMaxWindow_deg) return counted;
+  const double size_deg = near->arc.to_deg - near->arc.from_deg;
+  if (size_deg > kNarrowArc_deg && threshold.mean < kWellFound * peak_cd) return counted;
+  const ArcWindow window{near->outward_deg + resolution_deg,
+                         std::min(kResolutionStep * resolution_deg, kArcStep * size_deg)};
   const auto ends = exact_arc_deg(
-      exact, [&](double angle) { return section.direction(angle); }, near.value_or(CircleArc{}), window_deg,
-      threshold.estimate());
-  return ends ? *ends : Estimate{counted->mean, std::hypot(counted->standard_error, window_deg)};
+      exact, [&](double angle) { return section.direction(angle); }, near->arc, window, threshold);
+  return ends && is_determined(*ends) ? ends : counted;
 }
 
 PlaneResult measure_plane(const CountedSphere& sphere, double c_deg, double widest_deg, bool up,
@@ -66,8 +66,7 @@ PlaneResult measure_plane(const CountedSphere& sphere, double c_deg, double wide
   r.plane.c_deg = c_deg;
   const bool has_ends = c_deg == 0.0 || c_deg == 90.0;
   const auto arc = [&](const Jackknife& full, double share_of_full) {
-    const bool bright = full.all() >= kBrightCentre * maximum.all();
-    return arc_deg(has_ends && bright ? exact : PointIntensity{}, sphere.resolution_deg(), section, full,
+    return arc_deg(has_ends ? exact : PointIntensity{}, sphere.resolution_deg(), section, maximum.all(), full,
                    share_of_full);
   };
   r.plane.beam_of_maximum = arc(maximum, 0.5);
@@ -147,8 +146,7 @@ void refine_peak(const PointIntensity& exact, const PointPeak& axis, FoundPeak& 
   if (axis.cd.mean > best.cd.mean) best = {axis.direction, axis.cd, best.search_error_cd};
   move(p, best.direction);
   p.cd = best.cd;
-  if (p.half_width_deg > kSmoothLobe_deg)
-    p.cd.standard_error = std::hypot(p.cd.standard_error, best.search_error_cd);
+  p.cd.standard_error = std::hypot(p.cd.standard_error, best.search_error_cd);
   p.values = independent(p.cd, p.values.replicates());
   p.radius_deg = p.c_radius_deg = 0.0;
 }

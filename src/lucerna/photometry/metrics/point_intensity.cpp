@@ -21,7 +21,12 @@ constexpr std::uint64_t kSearchSamples = 256, kSearchSeed = 11, kFinalSeed = 23;
 /// Starts that are searched about, and tops that are looked at again.
 constexpr std::size_t kSearched = 8, kRetained = 3;
 /// Starts below this share of the brightest are not: a search gains less.
-constexpr double kHopeful = 0.92;
+constexpr double kHopeful = 0.85;
+/// About the best top two rings of directions are looked at, as far away as starts are from each other and
+/// twice as far; the brightest of them are searched about, again from what that finds.
+constexpr double kFirstRing = 2.0, kSecondRing = 4.0;
+constexpr std::size_t kHops = 3;
+constexpr int kRounds = 2;
 constexpr int kNeighbours = 6;
 /// A search goes from the first step to the last, shares of the radius, with so many samples a direction.
 struct Steps {
@@ -33,15 +38,16 @@ struct Steps {
 constexpr Steps kCoarse{0.5, 0.1, kSearchSamples}, kFine{0.1, 0.0125, kFirstSamples};
 /// Of what the finer steps gained: still finer ones may gain so much.
 constexpr double kRestOfGain = 0.25;
-/// Steps into which a window is cut to find a crossing, and so many more from there.
-constexpr int kWindowSteps = 5, kMaxSteps = 6;
+/// So many more steps from where a crossing seems to be.
+constexpr int kMaxSteps = 6;
 /// Points of a mean within a step to either side, and the length of the last as a share of the others.
 constexpr int kMeanPoints = 6;
 constexpr double kShorter = 0.25;
 constexpr int kMaxShorter = 3;
 /// A mean this many errors from the threshold is at it.
 constexpr double kSameErrors = 2.0;
-constexpr std::uint64_t kWindowSamples = 256, kMeanSamples = 512;
+/// Of each direction of a window, and of those where that leaves open on which side of the threshold it is.
+constexpr std::uint64_t kWindowSamples = 256, kDoubtSamples = 2048, kMeanSamples = 512;
 
 Direction moved(const Direction& from, double angle_rad, double distance_rad) {
   const Frame frame = Frame::from_z(from);
@@ -59,15 +65,29 @@ void retain_brightest(std::vector<Found>& found, std::size_t max) {
   found.resize(std::min(found.size(), max));
 }
 
-/// A search that ends as high as this share of the best went up another ripple of the same top.
-constexpr double kSameTop = 0.95;
+/// A search that ends as high as this share of the best went up another ripple of the same top, a lower one a
+/// lobe of its own; searches that end within this share of the radius went up the same.
+constexpr double kSameTop = 0.97, kSameRipple = 0.25;
 
-/// Half of what the best two searches differ by: a ripple that none saw may be higher by about that.
-double search_error(std::vector<PointPeak> tops) {
-  std::sort(tops.begin(), tops.end(),
-            [](const PointPeak& a, const PointPeak& b) { return a.cd.mean > b.cd.mean; });
-  if (tops.size() < 2 || tops[1].cd.mean < kSameTop * tops[0].cd.mean) return 0.0;
-  return 0.5 * (tops[0].cd.mean - tops[1].cd.mean);
+/// The highest of `found`, which is sorted, that are not one ripple.
+std::vector<Found> highest_ripples(const std::vector<Found>& found, double radius_deg) {
+  std::vector<Found> ripples;
+  for (const Found& f : found) {
+    const bool other = std::all_of(ripples.begin(), ripples.end(), [&](const Found& r) {
+      return degrees(angle_between(r.direction, f.direction)) > kSameRipple * radius_deg;
+    });
+    if (other && f.cd >= kSameTop * found.front().cd) ripples.push_back(f);
+    if (ripples.size() == kRetained) break;
+  }
+  return ripples;
+}
+
+/// By how much a ripple that no search went up may be higher than the best that one did. At their upper end
+/// heights fall off exponentially, with the excess of the highest over the next as their scale (I. Weissman,
+/// 1978). If as many ripples are unseen as were seen, the highest of these is the higher one in half of the
+/// cases, and then by an exponential excess: on the average the square of it is that of the scale.
+double search_error(const std::vector<Found>& ripples) {
+  return ripples.size() < 2 ? 0.0 : ripples[0].cd - ripples[1].cd;
 }
 
 PointPeak precise_peak(const PointIntensity& intensity, const Direction& direction) {
@@ -93,6 +113,30 @@ Found pattern_search(const PointIntensity& intensity, const Direction& start, do
     if (!(best.cd > before)) step *= 0.5;
   }
   return best;
+}
+
+/// Searches from directions about the best of `found`, which is sorted, until that finds no better one.
+void search_around(const PointIntensity& intensity, double radius_deg, std::vector<Found>& found) {
+  for (int round = 0; round < kRounds; ++round) {
+    const Found best = found.front();
+    std::vector<Found> starts;
+    for (const double ring : {kFirstRing, kSecondRing}) {
+      for (int k = 0; k < kNeighbours; ++k) {
+        const double angle = (2.0 * k + ring / kSecondRing) * std::numbers::pi / kNeighbours;
+        const Direction d = moved(best.direction, angle, radians(ring * radius_deg));
+        starts.push_back({d, intensity(d, kSearchSamples, kSearchSeed).mean});
+      }
+    }
+    retain_brightest(starts, kHops);
+    std::erase_if(starts, [&](const Found& f) { return f.cd < kHopeful * best.cd; });
+    for (const Found& start : starts) {
+      Found top = pattern_search(intensity, start.direction, radius_deg, kCoarse);
+      top.cd = intensity(top.direction, kFirstSamples, kSearchSeed).mean;
+      found.push_back(top);
+    }
+    retain_brightest(found, found.size());
+    if (!(found.front().cd > best.cd)) return;
+  }
 }
 
 /// Where a section falls below a threshold, its slope there, and the error of its intensity.
@@ -158,22 +202,52 @@ std::optional<Crossing> precise_crossing(const PointIntensity& intensity, const 
   return found;
 }
 
+/// On which side of the threshold a direction is, and whether noise leaves that open.
+struct Side {
+  bool bright, certain;
+};
+
+Side side_of(const PointIntensity& intensity, const Direction& d, const Estimate& threshold) {
+  Side side{};
+  for (const std::uint64_t samples : {kWindowSamples, kDoubtSamples}) {
+    const Estimate cd = intensity(d, samples, kSearchSeed);
+    side.bright = cd.mean >= threshold.mean;
+    side.certain = std::abs(cd.mean - threshold.mean) >
+                   kIntervalErrors * std::hypot(cd.standard_error, threshold.standard_error);
+    if (side.certain) break;
+  }
+  return side;
+}
+
 /// The outermost crossing from `window_deg` outside of `near_deg` to `inward_deg` inside of it, or, where it
 /// is still bright there, the next one within another window. Outside is where `window_deg` has its sign to.
+/// Its error has the steps further outside that may be bright, and those further inside that may not be:
+/// where the light runs level along the threshold, noise over slope says nothing.
 std::optional<Crossing> find_crossing(const PointIntensity& intensity, const DirectionAt& at, double near_deg,
-                                      double window_deg, double inward_deg, double threshold) {
-  const auto bright = [&](double angle) {
-    return intensity(at(angle), kWindowSamples, kSearchSeed).mean >= threshold;
-  };
-  const double step = window_deg / kWindowSteps, outer = near_deg + window_deg;
-  const bool outward = bright(outer);
-  const int steps = outward ? kWindowSteps : kWindowSteps + static_cast<int>(inward_deg / std::abs(step));
+                                      double window_deg, double inward_deg, double step_deg,
+                                      const Estimate& threshold) {
+  const double step = std::copysign(step_deg, window_deg), outer = near_deg + window_deg;
+  const bool outward = side_of(intensity, at(outer), threshold).bright;
+  const int window = static_cast<int>(std::ceil(window_deg / step));
+  const int steps = outward ? window : window + static_cast<int>(inward_deg / step_deg);
+  std::optional<int> crossed, open;
+  int sure = 0;
   for (int k = 1; k <= steps; ++k) {
-    const double angle = outer + (outward ? k : -k) * step;
-    if (bright(angle) == outward) continue;
-    return precise_crossing(intensity, at, angle + (outward ? -0.5 : 0.5) * step, step, threshold);
+    const Side side = side_of(intensity, at(outer + (outward ? k : -k) * step), threshold);
+    if (!side.certain && !open) open = k;
+    if (side.bright != outward && !crossed) crossed = k;
+    sure = k;
+    if (crossed && side.bright != outward && side.certain) break;
   }
-  return std::nullopt;
+  if (!crossed) return std::nullopt;
+  const double angle = outer + (outward ? *crossed - 0.5 : 0.5 - *crossed) * step;
+  std::optional<Crossing> found = precise_crossing(intensity, at, angle, step, threshold.mean);
+  if (!found) return std::nullopt;
+  // One step to either side is what any crossing spans.
+  const int level = std::max({*crossed - open.value_or(*crossed), sure - *crossed, 1}) - 1;
+  const double level_cd = level * step_deg / kIntervalErrors * std::abs(found->cd_per_deg);
+  found->cd_error = std::max(found->cd_error, level_cd);
+  return found;
 }
 
 }  // namespace
@@ -199,27 +273,33 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
   const Direction brightest_start = found.front().direction;
   for (Found& f : found) f = pattern_search(intensity, f.direction, radius_deg, kCoarse);
   for (Found& f : found) f.cd = intensity(f.direction, kFirstSamples, kSearchSeed).mean;
-  retain_brightest(found, kRetained);
-  const double coarse_cd = found.front().cd;
-  found.front() = pattern_search(intensity, found.front().direction, radius_deg, kFine);
-  const double rest_cd = kRestOfGain * std::max(0.0, found.front().cd - coarse_cd);
+  retain_brightest(found, kSearched);
+  search_around(intensity, radius_deg, found);
+  std::vector<Found> ripples = highest_ripples(found, radius_deg);
+  const double coarse_cd = ripples.front().cd;
+  // Tips are sharper than the steps so far: what is left to climb is not the same for all.
+  for (Found& f : ripples) f = pattern_search(intensity, f.direction, radius_deg, kFine);
+  const double rest_cd = kRestOfGain * std::max(0.0, ripples.front().cd - coarse_cd);
+  retain_brightest(ripples, kRetained);
   // Other samples judge what was found: they do not hold the noise that led the search there.
   PointPeak best = precise_peak(intensity, brightest_start);
-  std::vector<PointPeak> tops;
-  for (const Found& f : found) {
-    tops.push_back(precise_peak(intensity, f.direction));
-    if (tops.back().cd.mean > best.cd.mean) best = tops.back();
+  for (const Found& f : ripples) {
+    const PointPeak top = precise_peak(intensity, f.direction);
+    if (top.cd.mean > best.cd.mean) best = top;
   }
   best.cd.standard_error = std::hypot(best.cd.standard_error, rest_cd);
-  best.search_error_cd = search_error(std::move(tops));
+  best.search_error_cd = search_error(ripples);
   return best;
 }
 
 std::optional<Estimate> exact_arc_deg(const PointIntensity& intensity, const DirectionAt& at,
-                                      const CircleArc& near, double window_deg, const Estimate& threshold) {
-  const double inward_deg = std::max(window_deg, 0.5 * (near.to_deg - near.from_deg));
-  const auto from = find_crossing(intensity, at, near.from_deg, -window_deg, inward_deg, threshold.mean);
-  const auto to = find_crossing(intensity, at, near.to_deg, window_deg, inward_deg, threshold.mean);
+                                      const CircleArc& near, const ArcWindow& window,
+                                      const Estimate& threshold) {
+  const double inward_deg = std::max(window.outward_deg, 0.5 * (near.to_deg - near.from_deg));
+  const auto end = [&](double near_deg, double outward_deg) {
+    return find_crossing(intensity, at, near_deg, outward_deg, inward_deg, window.step_deg, threshold);
+  };
+  const auto from = end(near.from_deg, -window.outward_deg), to = end(near.to_deg, window.outward_deg);
   if (!from || !to) return std::nullopt;
   const double by_threshold =
       threshold.standard_error * (1.0 / std::abs(from->cd_per_deg) + 1.0 / std::abs(to->cd_per_deg));

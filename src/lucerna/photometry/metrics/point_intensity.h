@@ -20,8 +20,8 @@ using PointIntensity =
 /// The intensity to a relative error of 0.3 %, or as near to it as 2^13 samples bring it.
 Estimate precise_intensity(const PointIntensity& intensity, const Direction& direction);
 
-/// A local maximum. On a top with ripples the highest may be higher by about `search_error_cd`: half of what
-/// the best two searches differ by, where they end on one top.
+/// A local maximum. On a top with ripples the highest may be higher by about `search_error_cd`, which follows
+/// from how the heights of those that were found are spread; 0 where all searches end on one.
 struct PointPeak {
   Direction direction;
   Estimate cd;
@@ -37,10 +37,18 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
 /// A line of directions, by angle.
 using DirectionAt = std::function<Direction(double angle_deg)>;
 
+/// Where the ends of an arc are looked for: from so far outside of where they seem to be, in such steps.
+struct ArcWindow {
+  double outward_deg = 0.0, step_deg = 0.0;
+};
+
 /// The size of an arc on which the intensity is `threshold` or more, and falls below it at both ends. The
-/// ends are looked for from two `window_deg` outside of `near` (kernels widen an arc, or shift it) to its
-/// middle; nothing where they are not there. 60 to 150 short estimates.
+/// outermost crossing is looked for inwards to the middle of `near` (kernels widen an arc, or shift it), or
+/// as far again outwards where it is still bright; nothing where it is not there. Where noise leaves open
+/// which of several crossings is the outermost, that is in the error. A ripple narrower than a step may be
+/// missed. 60 to 150 short estimates.
 std::optional<Estimate> exact_arc_deg(const PointIntensity& intensity, const DirectionAt& at,
-                                      const CircleArc& near, double window_deg, const Estimate& threshold);
+                                      const CircleArc& near, const ArcWindow& window,
+                                      const Estimate& threshold);
 
 }  // namespace lucerna

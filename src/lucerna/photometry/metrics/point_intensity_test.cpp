@@ -52,7 +52,7 @@ TEST(PointIntensity, FindsTheTopOfALobe) {
   EXPECT_NEAR(peak.cd.mean, 1000.0, 20.0);
 }
 
-/// A flat top of 5 x 5 ripples 1.5 degrees apart, of random heights within 3 % of 1000 cd, and the highest.
+/// A flat top of 11 x 11 ripples 1.5 degrees apart, of random heights within 3 % of 1000 cd, and the highest.
 struct Ripples {
   explicit Ripples(std::uint64_t seed) {
     Rng rng(seed, 5);
@@ -61,21 +61,21 @@ struct Ripples {
   double at(const Direction& d) const {
     const double x = degrees(d.x()) / 1.5, y = degrees(d.y()) / 1.5;
     double cd = 960.0;
-    for (int i = 0; i < 25; ++i) {
-      const double dx = x - i % 5 + 2.0, dy = y - i / 5 + 2.0;
+    for (int i = 0; i < kSide * kSide; ++i) {
+      const double dx = x - i % kSide + kSide / 2, dy = y - i / kSide + kSide / 2;
       cd = std::max(cd, height[i] - 100.0 * (dx * dx + dy * dy));
     }
     return cd;
   }
   double highest() const { return *std::max_element(std::begin(height), std::end(height)); }
-  double height[25];
+  static constexpr int kSide = 11;
+  double height[kSide * kSide];
 };
 
-// Four starts see few of the ripples. Half of what the best two searches differ by is stated, so
-// that the highest lies within three errors and 0.3 % in most of 40 tops: in more than with the noise of the
-// samples alone (three errors and 0.3 % are 0.5 %).
+// Four starts alone find a ripple within one per cent of the highest in 26 of 40 tops; what is looked at
+// about the best of them finds it in more. How heights are spread is stated.
 TEST(PointIntensityStatistical, FindsAHighRippleAndSaysHowHighOthersMayBe) {
-  int held = 0, held_by_noise = 0, within = 0;
+  int held = 0, within = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const Ripples top(seed);
     const PointIntensity noisy = [&](const Direction& d, std::uint64_t samples, std::uint64_t stream) {
@@ -85,24 +85,22 @@ TEST(PointIntensityStatistical, FindsAHighRippleAndSaysHowHighOthersMayBe) {
     std::vector<Direction> starts;
     Rng rng(seed, 6);
     for (int i = 0; i < 4; ++i)
-      starts.push_back(toward(360.0 * rng.uniform(), 3.5 * std::sqrt(rng.uniform())));
+      starts.push_back(toward(360.0 * rng.uniform(), 7.0 * std::sqrt(rng.uniform())));
     const PointPeak peak = brightest_point(noisy, starts, 0.75);
     const double gap = top.highest() - peak.cd.mean;
     const double error = std::hypot(peak.cd.standard_error, peak.search_error_cd);
     held += std::abs(gap) <= 3.0 * error + 3.0 ? 1 : 0;
-    held_by_noise += std::abs(gap) <= 5.0 ? 1 : 0;
     within += std::abs(gap) <= 10.0 ? 1 : 0;
   }
-  EXPECT_GE(held, held_by_noise + 5);
-  EXPECT_GE(held, 28);
-  EXPECT_GE(within, 26);
+  EXPECT_GE(held, 36);
+  EXPECT_GE(within, 36);
 }
 
 TEST(PointIntensity, SaysNothingWhereTheEndsAreNotThere) {
   const PointIntensity lobe = noisy_lobe(toward(0.0, 0.0), 3.0);
   const auto line = [](double angle) { return toward(angle < 0.0 ? 180.0 : 0.0, std::abs(angle)); };
-  EXPECT_FALSE(exact_arc_deg(lobe, line, {-4.0, 4.0}, 0.5, {1500.0, 0.0}));
-  EXPECT_FALSE(exact_arc_deg(lobe, line, {-1.0, 1.0}, 0.5, {500.0, 0.0}));
+  EXPECT_FALSE(exact_arc_deg(lobe, line, {-4.0, 4.0}, {0.5, 0.1}, {1500.0, 0.0}));
+  EXPECT_FALSE(exact_arc_deg(lobe, line, {-1.0, 1.0}, {0.5, 0.1}, {500.0, 0.0}));
 }
 
 /// How many of 100 arcs of a Gaussian lobe of `sigma` degrees hold the truth within two of their errors, and
@@ -118,8 +116,8 @@ Held held_arcs(double sigma, double window_deg, double shift_deg, double thresho
   for (std::uint64_t stream = 0; stream < 100; ++stream) {
     const double off = 0.01 * static_cast<double>(stream % 30) - 0.15 + shift_deg;
     const CircleArc near{-0.5 * truth + off, 0.5 * truth + off};
-    const auto arc = exact_arc_deg(noisy_lobe(toward(0.0, 0.0), sigma, stream), line, near, window_deg,
-                                   {threshold_cd, 0.0});
+    const auto arc = exact_arc_deg(noisy_lobe(toward(0.0, 0.0), sigma, stream), line, near,
+                                   {window_deg, 0.2 * window_deg}, {threshold_cd, 0.0});
     if (!arc) continue;
     out.arcs += std::abs(arc->mean - truth) <= 2.0 * arc->standard_error ? 1 : 0;
     out.mean_error += arc->standard_error / 100.0;

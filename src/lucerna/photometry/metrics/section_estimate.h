@@ -9,24 +9,36 @@
 
 namespace lucerna {
 
+/// Whether the error of an angle is below a degree or a tenth of it (or not known).
+bool is_determined(const Estimate& angle_deg);
+
 /// Crossings of one section of counted flux, the great circle of the planes C and C + 180. Kernel means along
 /// it are made once a radius and kept.
+///
+/// The error of a crossing is read off the confidence band of the section (E. C. Fieller, 1954): the places
+/// where intensity and threshold are equal within their errors. Where the light crosses steeply that is noise
+/// over slope. Where it runs level the band is wide, or wide to one side, and so is the error.
 class Section {
  public:
   /// Radii from the cells' own up to `widest_deg` are tried. Below `dark_cd` values need no errors. The
   /// sphere must outlive it.
   Section(const CountedSphere& sphere, double c_deg, double widest_deg, double dark_cd);
 
-  /// Full angle of the smallest arc that holds every direction with at least `threshold` (its values without
-  /// each replicate go with the section's), as `beam_angle_deg` has it. The section is smoothed with the
-  /// smallest kernel for which the angle's error is small (a tenth of a degree or 0.5 %), or with the one of
-  /// least error; where a smaller kernel sees another angle, that is part of the error. Nothing where the
-  /// threshold is not reached, or the angle is not determined: its error is above a degree and a tenth of it,
-  /// or some draw of the noise leaves no crossing.
-  std::optional<Estimate> arc_deg(const Jackknife& threshold);
+  /// Full angle of the smallest arc that holds every direction with at least `threshold`, as `beam_angle_deg`
+  /// has it. The noise of the threshold is taken to be independent of the section's. The section is smoothed
+  /// with the smallest kernel for which the angle's error is small (a tenth of a degree or 0.5 %), or with
+  /// the one of least error; where another kernel sees another angle, that is part of the error. Nothing
+  /// where the threshold is not reached, or the angle is not determined: its error is above a degree and a
+  /// tenth of it, or the band allows that nothing reaches the threshold.
+  std::optional<Estimate> arc_deg(const Estimate& threshold);
 
-  /// Where that arc lies, as the narrowest kernel sees the whole run.
-  std::optional<CircleArc> narrowest_arc(double threshold);
+  /// Where that arc lies, as the narrowest kernel sees it, and how far outside of either of its ends noise
+  /// allows that the threshold is reached.
+  struct Place {
+    CircleArc arc;
+    double outward_deg = 0.0;
+  };
+  std::optional<Place> place(const Estimate& threshold);
   /// The direction of an angle of the circle.
   Direction direction(double angle_deg) const;
 
@@ -37,18 +49,25 @@ class Section {
  private:
   struct Smoothed {
     double radius_deg = 0.0;
-    /// Of the whole run, then its draws (Jackknife::draws).
-    std::vector<std::vector<CirclePoint>> circles;
+    /// The section, and as high and as low as it may be.
+    std::vector<CirclePoint> middle, high, low;
+    /// The section with noise of its full size (Jackknife::draws).
+    std::vector<std::vector<CirclePoint>> draws;
   };
   const Smoothed& smoothed(std::size_t i);
+  struct Best {
+    Estimate angle;
+    /// Which of the radii it was taken with.
+    std::size_t radius;
+  };
   template <class Measure>
-  std::optional<Jackknife> measured(std::size_t radius, const Jackknife& levels, const Measure& measure);
-  template <class Measure>
-  std::optional<Jackknife> best(const Jackknife& threshold, const Measure& measure);
+  std::optional<Best> best(const Measure& measure);
 
   const CountedSphere& sphere_;
   double c_deg_, dark_cd_;
   std::vector<double> radii_deg_;
+  /// So many of the radii are for figures; one more may only show the bias of the last.
+  std::size_t usable_ = 0;
   std::vector<Smoothed> smoothed_;
 };
 

@@ -159,5 +159,13 @@ TEST(MetricsCoverageSlow, BatwingWithItsSceneHolds) {
   check({"batwing", 100, 1 << 20, 1 << 26, true}, 0.85, 0.93, 0.98);
 }
 
+// Scenes that nothing was tuned on.
+TEST(MetricsCoverageSlow, EllipseWithItsSceneHolds) {
+  check({"ellipse", 100, 1 << 20, 1 << 26, true}, 0.85, 0.93, 0.99);
+}
+TEST(MetricsCoverageSlow, FilamentHolds) {
+  check({"filament", 100, 1 << 20, 1 << 26, true}, 0.85, 0.93, 0.99);
+}
+
 }  // namespace
 }  // namespace lucerna
