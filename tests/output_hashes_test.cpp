@@ -20,9 +20,9 @@ namespace lucerna {
 namespace {
 
 constexpr std::string_view kIsa = "avx512";
-const std::map<std::string, std::string> kHashes{{"compress", "88e0f5f2e7d66796"},
+const std::map<std::string, std::string> kHashes{{"compress", "0cb0df858b7759d5"},
                                                  {"compress clusters", "6416d4aa69b030ed"},
-                                                 {"sample", "225146f3bcafb186b62b5dfe42999c48"},
+                                                 {"sample", "c5c7ac0519faa163ea5bfb82d301ad09"},
                                                  {"trace", "1143e8e671932cb0"},
                                                  {"design", "c9d6c5b6cbe01b98"}};
 

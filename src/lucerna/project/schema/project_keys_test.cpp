@@ -86,6 +86,7 @@ TEST(ProjectKeys, EachIsReadSomewhere) {
                            "project/sections/project_reflector.cpp", "project/sections/project_body.cpp",
                            "project/sections/project_detector.cpp", "design/run/design_problem.cpp",
                            "design/problem/design_limits.cpp", "design/problem/target.cpp",
+                           "design/lens/lens_problem.cpp", "design/lens/lens_limits.cpp",
                            "design/problem/target_zone.cpp", "design/validation/tolerances.cpp"}) {
     parsers += read_file(test::source_dir() / "src/lucerna" / file, 1 << 20);
   }
