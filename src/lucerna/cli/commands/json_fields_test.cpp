@@ -17,7 +17,6 @@ namespace {
 
 using test::run_lucerna;
 using test::TempDir;
-using Json = nlohmann::ordered_json;
 
 /// What commands print with --json, and which fields of the table none of them has had.
 class JsonFieldsCli : public testing::Test {
@@ -35,7 +34,7 @@ class JsonFieldsCli : public testing::Test {
     ASSERT_EQ(done.exit_code, exit_code) << arguments << '\n' << done.err;
     const auto of = unseen_.find(command);
     ASSERT_NE(of, unseen_.end());
-    EXPECT_EQ(test::unknown_paths(Json::parse(done.out), {"both", of->first}, of->second),
+    EXPECT_EQ(test::unknown_paths(nlohmann::ordered_json::parse(done.out), {"both", of->first}, of->second),
               std::set<std::string>{})
         << command << ' ' << arguments;
   }
