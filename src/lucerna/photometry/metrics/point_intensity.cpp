@@ -281,6 +281,9 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
   for (Found& f : ripples) f = pattern_search(intensity, f.direction, radius_deg, kFine);
   const double rest_cd = kRestOfGain * std::max(0.0, ripples.front().cd - coarse_cd);
   retain_brightest(ripples, kRetained);
+  // Fine steps can raise one tip above the others, which are lobes of their own then.
+  const double same_cd = kSameTop * ripples.front().cd;
+  std::erase_if(ripples, [&](const Found& f) { return f.cd < same_cd; });
   // Other samples judge what was found: they do not hold the noise that led the search there.
   PointPeak best = precise_peak(intensity, brightest_start);
   for (const Found& f : ripples) {
