@@ -137,8 +137,8 @@ void check(const Runs& runs, double min, double mean_min, double mean_max) {
 }
 
 // Thirty seeds: an interval of 95 % holds in 20 or fewer with a chance of 5e-7; one that is stated at half of
-// its size (67 %) would in most runs. No upper bound: the lobe is narrower than a kernel, whose bias is in the
-// error of all runs alike, so that most figures hold in all of them.
+// its size (67 %) would in most runs. No upper bound: the lobe is narrower than a kernel, whose bias is in
+// the error of all runs alike, so that most figures hold in all of them.
 TEST(MetricsCoverageStatistical, IntervalsHoldTheTruth) {
   check({"parabola", 30, 1 << 17, 1 << 22}, 0.68, 0.90, 1.0);
 }
