@@ -30,7 +30,7 @@ finish() {
     for _ in $(seq 50); do kill -0 "$pid" 2>/dev/null || break; sleep 0.1; done
     kill -KILL "$pid" 2>/dev/null
   done
-  [ "$code" -eq 0 ] || tail -n 20 "$dir"/*.log "$dir"/work/*.out >&2 2>/dev/null
+  [ "$code" -eq 0 ] || tail -n 20 "$dir"/*.log "$dir"/run/*.out >&2 2>/dev/null
   rm -rf "$dir"
   exit "$code"
 }
@@ -57,7 +57,7 @@ wait_until() { # SECONDS WHAT COMMAND...
 }
 
 start_slurm() {
-  mkdir -p "$dir/state" "$dir/spool" "$dir/work"
+  mkdir -p "$dir/state" "$dir/spool" "$dir/run"
   head -c 1024 /dev/urandom >"$dir/munge.key"
   chmod 400 "$dir/munge.key"
   # munged asks for folders that nobody else may write into, all the way up: /tmp is not one.
@@ -164,7 +164,7 @@ END
 }
 
 start_slurm
-cd "$dir/work" || exit 1
+cd "$dir/run" || exit 1
 cat >lamp.toml <<'END'
 [[source]]
 kind = "led"
