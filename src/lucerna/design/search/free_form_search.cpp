@@ -171,8 +171,6 @@ TransportChoice FreeFormSearch::choice(int number) const {
 
 std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormSnapshot& snapshot) {
   if (snapshot.candidate == 0) return nearer_of_given();
-  if (snapshot.candidate >= kApproach && snapshot.candidate < kNoApproach && !worth_an_approach())
-    return std::nullopt;
   // The first approach begins with the given mirror itself, later ones with perturbed copies.
   if (!snapshot.transport.exists()) return approached(snapshot.candidate - kApproach);
   const FreeFormLevel rough = level(0);
@@ -307,7 +305,7 @@ void FreeFormSearch::choose(Progress& progress) {
     return;
   }
   FreeFormSnapshot next;
-  if (state_.begun > kApproach && state_.begun < kNoApproach && !worth_an_approach())
+  if (state_.begun >= kApproach && state_.begun < kNoApproach && !worth_an_approach())
     state_.begun = kNoApproach;
   next.candidate = state_.begun++;
   next.level = 0;

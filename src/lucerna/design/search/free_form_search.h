@@ -60,11 +60,12 @@ struct FreeFormState {
 /// Finds a free form by successive halving: candidates (the given mirror; a point source's mirrors of both
 /// signs at several vertex distances) are fitted roughly, the best of them finely, the best of these to the
 /// end. Then, as long as there is time, the best is fitted on with more rays, before neighbours of it where
-/// noise is a good part of its error and after some of them elsewhere. A given mirror of few knots that is to
-/// have no more is first brought near the target (approach.h), any other of few knots where no mirror of a
-/// point source comes near. A given mirror keeps its knots as long as they
-/// bring it near the noise or the target. Knots are only ever refined. Every decision depends on the state
-/// alone: a search that is stopped after any step and taken up from its state continues bit-identically.
+/// it is an approach or noise is a good part of its error, and after some of them elsewhere. A given mirror
+/// of few knots that is to have no more is first brought near the target (approach.h), any other of few knots
+/// where no mirror of a point source comes near; perturbed copies of it then too, until one is at the target.
+/// A given mirror keeps its knots as long as they bring it near the noise or the target. Knots are only ever
+/// refined. Every decision depends on the state alone: a search that is stopped after any step and taken up
+/// from its state continues bit-identically.
 class FreeFormSearch {
  public:
   /// `given` with its own knots; `max_intervals`: knots along the longer side that the search may refine to
