@@ -121,15 +121,6 @@ struct ViewDifference {
   double raw = 0.0;
 };
 
-/// How far a test is from its reference in illuminance on the focus plane, in cells of one size.
-struct ScaleDifference {
-  /// Edge of the cells (root of their area): the window of the focus view, an edge of which is cut into 128,
-  /// 64, 32, 16 or 8.
-  double cell_mm = 0.0;
-  /// As in a view.
-  ViewDifference difference;
-};
-
 /// How far a test is from its reference in all five views.
 struct RaySetComparison {
   /// By view.
