@@ -235,7 +235,7 @@ std::array<double, 2> contradictions(std::span<const DensityTree> trees, const T
   return worst;
 }
 
-bool calibrate_leaves(std::span<const DensityTree> trees, const TreeBox& box, const TreeMarginals& rays,
+void calibrate_leaves(std::span<const DensityTree> trees, const TreeBox& box, const TreeMarginals& rays,
                       std::span<std::vector<double>> leaf_shares) {
   // Place and direction have the more passes: they are cut finely, and what they are by themselves shows
   // most.
@@ -243,11 +243,9 @@ bool calibrate_leaves(std::span<const DensityTree> trees, const TreeBox& box, co
   constexpr double kMostAtOnce = 3.0;
   const std::vector<LeafBoxes> boxes = all_leaf_boxes(trees, box);
   const Wanted wanted = wanted_shares(boxes, box, rays, leaf_shares);
-  bool any = false;
   for (int pass = 0; pass < kPasses; ++pass) {
     for (std::size_t p = 0; p < kAxisPairs.size(); ++p) {
       if (wanted[p].empty() || (p >= 2 && pass >= kOtherPasses)) continue;
-      any = true;
       std::vector<double> ratio = sums_of_trees(boxes, rays.stretch(), leaf_shares, kAxisPairs[p]);
       for (std::size_t i = 0; i < ratio.size(); ++i) {
         const double share = ratio[i];
@@ -256,7 +254,6 @@ bool calibrate_leaves(std::span<const DensityTree> trees, const TreeBox& box, co
       multiply_leaves(boxes, rays.stretch(), ratio, kAxisPairs[p], leaf_shares);
     }
   }
-  return any;
 }
 
 }  // namespace lucerna

@@ -11,9 +11,9 @@
 namespace lucerna {
 
 /// Moves the shares of all leaves of a chart's trees (in preorder, each tree's sum 1) so that the sums of the
-/// trees' mean over every pair of axes come to the shrunken shares of its rays. Returns false, and changes
-/// nothing, where the rays do not contradict the trees. Deterministic for any number of threads.
-bool calibrate_leaves(std::span<const DensityTree> trees, const TreeBox& box, const TreeMarginals& rays,
+/// trees' mean over every pair of axes come to the shrunken shares of its rays. Changes nothing where the
+/// rays do not contradict the trees. Deterministic for any number of threads.
+void calibrate_leaves(std::span<const DensityTree> trees, const TreeBox& box, const TreeMarginals& rays,
                       std::span<std::vector<double>> leaf_shares);
 
 /// By how many standard deviations (axis_contradiction) the rays contradict the mean of the trees in place,

@@ -42,8 +42,6 @@ class TreeMarginals {
     std::vector<double> weight, squares;
   };
 
-  /// Of no rays.
-  TreeMarginals() = default;
   /// On all threads, the same bits for any number of them. About 10 ns a ray.
   TreeMarginals(std::span<const TreeItem> items, const TreeBox& box);
 
