@@ -28,9 +28,9 @@ struct PointPeak {
   double search_error_cd = 0.0;
 };
 
-/// The brightest direction by pattern search about the brightest eight of `starts`, within about `radius_deg`
-/// of them. The value is from samples that the search has not seen. At least one start. Some 400 short
-/// estimates.
+/// The brightest direction by pattern searches, each within about `radius_deg` of where it starts: about the
+/// brightest eight of `starts`, then about places up to four radii from the best top. The value is from
+/// samples that the searches have not seen. At least one start. Some 500 short estimates.
 PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direction> starts,
                           double radius_deg);
 

@@ -105,16 +105,16 @@ Section::Section(const CountedSphere& sphere, double c_deg, double widest_deg, d
 const Section::Smoothed& Section::smoothed(std::size_t i) {
   Smoothed& s = smoothed_[i];
   if (!s.middle.empty()) return s;
-  s.radius_deg = radii_deg_[i];
+  const Kernel kernel(radii_deg_[i]);
   s.draws.resize(sphere_.replicates());
-  const int n = 4 * static_cast<int>(std::ceil(90.0 / (0.35 * s.radius_deg)));
+  const int n = 4 * static_cast<int>(std::ceil(90.0 / (0.35 * radii_deg_[i])));
   std::vector<double> variance;
   for (int k = 0; k < n; ++k) {
     const double angle = 360.0 * k / n;
     const Direction d = on_circle(c_deg_, angle);
-    const double all = sphere_.mean_of_all_cd(d, Kernel(s.radius_deg));
+    const double all = sphere_.mean_of_all_cd(d, kernel);
     Jackknife cd = Jackknife(sphere_.replicates()).map([all](double) { return all; });
-    if (all >= dark_cd_) cd = sphere_.mean_cd(d, Kernel(s.radius_deg));
+    if (all >= dark_cd_) cd = sphere_.mean_cd(d, kernel);
     const double error = sphere_.replicates() < 2 ? 0.0 : cd.estimate().standard_error;
     const Jackknife draws = cd.draws();
     for (std::size_t r = 0; r < s.draws.size(); ++r) s.draws[r].push_back({angle, draws.values()[r + 1]});

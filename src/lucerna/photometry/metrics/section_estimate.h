@@ -26,10 +26,10 @@ class Section {
 
   /// Full angle of the smallest arc that holds every direction with at least `threshold`, as `beam_angle_deg`
   /// has it. The noise of the threshold is taken to be independent of the section's. The section is smoothed
-  /// with the smallest kernel for which the angle's error is small (a tenth of a degree or 0.5 %), or with
-  /// the one of least error; where another kernel sees another angle, that is part of the error. Nothing
-  /// where the threshold is not reached, or the angle is not determined: its error is above a degree and a
-  /// tenth of it, or the band allows that nothing reaches the threshold.
+  /// with the smallest kernel for which the angle's error is small (half a per cent of it, within 0.1 and 0.5
+  /// degrees), or with the one of least error; where another kernel sees another angle, that is part of the
+  /// error. Nothing where the threshold is not reached, or the angle is not determined: its error is above a
+  /// degree and a tenth of it, or the band allows that nothing reaches the threshold.
   std::optional<Estimate> arc_deg(const Estimate& threshold);
 
   /// Where that arc lies, as the narrowest kernel sees it, and how far outside of either of its ends noise
@@ -48,7 +48,6 @@ class Section {
 
  private:
   struct Smoothed {
-    double radius_deg = 0.0;
     /// The section, and as high and as low as it may be.
     std::vector<CirclePoint> middle, high, low;
     /// The section with noise of its full size (Jackknife::draws).
