@@ -51,16 +51,21 @@ Named figures(const TraceResult& result, const PointIntensity& exact) {
 
 struct Coverage {
   int held = 0, runs = 0;
+  double squares = 0.0;  // of gaps in stated errors
   double share() const { return static_cast<double>(held) / runs; }
 };
 
-bool holds(const Estimate& e, const Estimate& truth) {
-  return std::abs(e.mean - truth.mean) <=
-         kIntervalErrors * std::hypot(e.standard_error, truth.standard_error);
+/// How far an estimate is from the truth, in the errors of both.
+double gap_in_errors(const Estimate& e, const Estimate& truth) {
+  return std::abs(e.mean - truth.mean) / std::hypot(e.standard_error, truth.standard_error);
 }
 
 /// A figure that is always the same, as the flux of a mirror that catches all, has nothing to cover.
 bool is_exact(const Estimate& e) { return e.standard_error <= 1e-9 * std::abs(e.mean); }
+
+/// Root mean square of the gaps of all figures, in stated errors: 1.07 for errors that are right, of sixteen
+/// draws. Below this, errors are larger than the bias of kernels makes them.
+constexpr double kLeastGap = 0.35;
 
 struct Nodes {
   Coverage within_2, within_3;
@@ -115,30 +120,41 @@ void check(const Runs& runs, double min, double mean_min, double mean_max) {
     for (const auto& [name, e] : figures_of(result)) {
       const auto found = truth.find(name);
       if (found == truth.end() || is_exact(e)) continue;
-      ++coverage[name].runs;
-      coverage[name].held += holds(e, found->second) ? 1 : 0;
+      Coverage& c = coverage[name];
+      const double gap = gap_in_errors(e, found->second);
+      ++c.runs;
+      c.held += gap <= kIntervalErrors ? 1 : 0;
+      c.squares += gap * gap;
     }
     count_nodes(node_intensity(far_field(result, 0)), truth_nodes, nodes);
   }
-  double sum = 0.0, n = 0.0;
+  double sum = 0.0, n = 0.0, squares = 0.0;
   for (const auto& [name, c] : coverage) {
-    std::cout << scene << ", " << name << ": " << 100.0 * c.share() << " % of " << c.runs << '\n';
+    std::cout << scene << ", " << name << ": " << 100.0 * c.share() << " % of " << c.runs << ", gaps of "
+              << std::sqrt(c.squares / c.runs) << " errors\n";
     if (c.runs < seeds / 2) continue;  // determined in few runs only
     EXPECT_GE(c.share(), min) << name;
     sum += c.share();
+    squares += c.squares / c.runs;
     n += 1.0;
   }
-  std::cout << scene << ", all figures: " << 100.0 * sum / n << " %; nodes within 2 errors "
-            << 100.0 * nodes.within_2.share() << " %, within 3 " << 100.0 * nodes.within_3.share() << " %\n";
+  const double gap = std::sqrt(squares / n);
+  std::cout << scene << ", all figures: " << 100.0 * sum / n << " %, gaps of " << gap
+            << " errors; nodes within 2 errors " << 100.0 * nodes.within_2.share() << " %, within 3 "
+            << 100.0 * nodes.within_3.share() << " %\n";
   EXPECT_GE(sum / n, mean_min);
   EXPECT_LE(sum / n, mean_max);
   EXPECT_GE(nodes.within_3.share(), 0.99);
   EXPECT_GE(nodes.within_2.share(), 0.92);
+  // Errors that are far too large hold the truth as well.
+  EXPECT_GE(gap, kLeastGap);
+  EXPECT_LE(nodes.within_2.share(), 0.96);
 }
 
 // Thirty seeds: an interval of 95 % holds in 20 or fewer with a chance of 5e-7; one that is stated at half of
-// its size (67 %) would in most runs. No upper bound: the lobe is narrower than a kernel, whose bias is in
-// the error of all runs alike, so that most figures hold in all of them.
+// its size (67 %) would in most runs. The mean has no upper bound: the lobe is narrower than a kernel, whose
+// bias is in the error of all runs alike, so that most figures hold in all of them. The gaps have a lower
+// bound (0.44 of the errors at 5b6bb2a).
 TEST(MetricsCoverageStatistical, IntervalsHoldTheTruth) {
   check({"parabola", 30, 1 << 17, 1 << 22}, 0.68, 0.90, 1.0);
 }
