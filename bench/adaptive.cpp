@@ -3,8 +3,8 @@
 // seconds, rays a second.
 //   bench_adaptive SOURCE RAYS [test rays] [trees] [penalty] [max-bytes ...]
 //   bench_adaptive table [RAYS] [test rays]
-// Of the twin and of a file also how far the illuminance on the focus plane is from the truth in cells of 12
-// to 240 um, of the model and of the rays that it was made from.
+// Also how far the illuminance on the focus plane is from the truth in cells of five sizes, of the model and
+// of the rays that it was made from: of the twin in 12 to 240 um, of a file in 1/128 to 1/8 of the view.
 //   ONE_SUPPORT=1 bench_adaptive ...     without a second support for light that overlaps
 // SOURCE is an emitter, one of own_sources.h (dome, tilted, strip, arc ...), or a ray file: then one half of
 // its rays trains and the other is the truth. 0 = default; one line per ceiling. `table` prints the table of
