@@ -43,11 +43,8 @@ std::vector<OutlineSide> LensCurves::make_sides(const LensShape& shape) {
   std::vector<OutlineSide> sides;
   std::vector<int> number_of_edge(form.corners.size(), -1);
   for (const LensFace& face : form.faces) {
-    std::vector<OutlinePoint> points;
-    for (std::size_t i = face.run.from; i <= face.run.to; ++i)
-      points.push_back(shape.corners()[corner_number(form, i)]);
     const std::size_t first = pieces_.size();
-    for (const OutlinePiece<double>& curve : spline_through(points, face.run.start, face.run.end)) {
+    for (const OutlinePiece<double>& curve : run_curve(shape.corners(), face.run)) {
       LensPiece piece{curve};
       if (face.is_free) {
         piece.first_number = static_cast<int>(numbers_);

@@ -46,10 +46,7 @@ std::vector<OutlineSample> samples_of(const LensShape& shape, int points, bool d
   Eigen::Index first = 0;
   for (std::size_t f = 0; f < form.faces.size(); ++f) {
     const LensFace& face = form.faces[f];
-    std::vector<OutlinePoint> corners;
-    for (std::size_t i = face.run.from; i <= face.run.to; ++i)
-      corners.push_back(shape.corners()[corner_number(form, i)]);
-    for (const OutlinePiece<double>& c : spline_through(corners, face.run.start, face.run.end)) {
+    for (const OutlinePiece<double>& c : run_curve(shape.corners(), face.run)) {
       for (int k = 0; k <= points; ++k) {
         const double u = static_cast<double>(k) / points;
         const CurvePoint p = curve_point(c, u);

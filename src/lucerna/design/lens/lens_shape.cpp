@@ -22,12 +22,6 @@ double corner_distance(const OutlinePoint& a, const OutlinePoint& b) {
   return std::hypot(b[0] - a[0], b[1] - a[1]);
 }
 
-std::vector<OutlinePiece<double>> curve_of(const Corners& corners, const OutlineRun& run) {
-  Corners points;
-  for (std::size_t i = run.from; i <= run.to; ++i) points.push_back(corners[i % corners.size()]);
-  return spline_through(points, run.start, run.end);
-}
-
 /// Corners that cut a curve in `n` pieces of equal length; its ends are kept.
 Corners resampled(const std::vector<OutlinePiece<double>>& curve, int n) {
   Corners fine{curve.front().from};
@@ -84,7 +78,7 @@ class FormMaker {
     const bool anew = is_free && (intervals > 0 || sides < 3);
     Corners points;
     if (anew) {
-      points = resampled(curve_of(given, run), intervals > 0 ? intervals : kLensIntervals);
+      points = resampled(run_curve(given, run), intervals > 0 ? intervals : kLensIntervals);
     } else {
       for (std::size_t i = run.from; i <= run.to; ++i) points.push_back(given[i % given.size()]);
     }
@@ -99,7 +93,7 @@ class FormMaker {
   }
 
   void add_moves(const LensFace& face) {
-    const auto curve = curve_of(form.corners, face.run);
+    const auto curve = run_curve(form.corners, face.run);
     const std::size_t n = form.corners.size();
     add_end(face.run.from % n);
     for (std::size_t i = face.run.from + 1; i < face.run.to; ++i) {

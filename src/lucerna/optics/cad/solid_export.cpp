@@ -44,9 +44,7 @@ class SolidStep {
 
   /// Two half turns, so that no edge is its own neighbour.
   void add(const OutlineRun& run) {
-    std::vector<OutlinePoint> points;
-    for (std::size_t i = run.from; i <= run.to; ++i) points.push_back(corners_[i % corners_.size()]);
-    const auto curve = spline_through(points, run.start, run.end);
+    const auto curve = run_curve(corners_, run);
     const SolidRing from = ring(run.from), to = ring(run.to);
     const int profile = step_.curve(step_curve(curve, 1.0));
     const int near = step_.edge(from.near, to.near, profile);

@@ -90,9 +90,7 @@ OutlineCurve curve_through(const Points& corners, double smooth_below_deg) {
   if (runs.empty()) return ring_through(corners);
   OutlineCurve out;
   for (const OutlineRun& run : runs) {
-    Points points;
-    for (std::size_t i = run.from; i <= run.to; ++i) points.push_back(corners[i % corners.size()]);
-    const OutlineCurve curve = spline_through(points, run.start, run.end);
+    const OutlineCurve curve = run_curve(corners, run);
     out.insert(out.end(), curve.begin(), curve.end());
   }
   return out;
@@ -186,6 +184,12 @@ std::vector<OutlineRun> outline_runs(std::span<const OutlinePoint> corners_mm, d
     from = to;
   }
   return out;
+}
+
+std::vector<OutlinePiece<double>> run_curve(std::span<const OutlinePoint> corners_mm, const OutlineRun& run) {
+  Points points;
+  for (std::size_t i = run.from; i <= run.to; ++i) points.push_back(corners_mm[i % corners_mm.size()]);
+  return spline_through(points, run.start, run.end);
 }
 
 int straight_pieces_of(const OutlinePiece<double>& piece, double tolerance_mm) {

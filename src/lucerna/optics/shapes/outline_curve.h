@@ -69,6 +69,9 @@ struct OutlineRun {
 /// and on the axis, without those along the axis; in order. Empty for an outline that is smooth all about.
 std::vector<OutlineRun> outline_runs(std::span<const OutlinePoint> corners_mm, double smooth_below_deg);
 
+/// The curve of a run of these corners, a piece a side.
+std::vector<OutlinePiece<double>> run_curve(std::span<const OutlinePoint> corners_mm, const OutlineRun& run);
+
 /// The point of a piece, the first and the second derivative there over 0 to 1.
 struct CurvePoint {
   OutlinePoint at, first, second;
