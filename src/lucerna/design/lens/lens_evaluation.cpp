@@ -210,16 +210,15 @@ Evaluation evaluate_lens(const LensShape& shape, const MediumView& medium, const
 double share_within(const LensShape& shape, const DesignRays& rays, std::uint64_t count) {
   const LensCurves curves(shape);
   const LensTracer tracer(curves, {1.0, 0.0});
-  LensPath path;
   double within = 0.0, all = 0.0;
   for (std::uint64_t b = 0; b < std::min(count, rays.size()) / kBlockRays; ++b) {
     const DesignRays::Block& block = rays.block(b);
     for (std::size_t i = 0; i < kBlockRays; ++i) {
       const double weight = block.weight[i];
-      tracer.follow({block.x_mm[i], block.y_mm[i], block.z_mm[i]}, {block.kx[i], block.ky[i], block.kz[i]},
-                    kNoGhost, path);
       all += weight;
-      if (path.began_inside) within += weight;
+      if (tracer.begins_inside({block.x_mm[i], block.y_mm[i], block.z_mm[i]},
+                               {block.kx[i], block.ky[i], block.kz[i]}))
+        within += weight;
     }
   }
   return within / all;

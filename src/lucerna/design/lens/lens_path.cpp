@@ -99,6 +99,11 @@ void LensTracer::set_boundary(LensHit& hit) const {
   hit.log_p = 2.0 * found.p * slopes.p;
 }
 
+bool LensTracer::begins_inside(const Vec3& origin, const Vec3& direction) const {
+  LensHit first;
+  return next_hit(origin, direction, false, false, first) && first.inside;
+}
+
 void LensTracer::follow(const Vec3& origin, const Vec3& direction, int ghost, LensPath& path) const {
   path.hits = path.partial = 0;
   path.s = path.p = path.clear = 1.0;
@@ -111,11 +116,10 @@ void LensTracer::follow(const Vec3& origin, const Vec3& direction, int ghost, Le
       path.origin = o;
       path.direction = d;
       if (!inside) path.end = path.hits == 0 ? LensEnd::direct : LensEnd::left;
-      if (path.hits == 0) path.began_inside = false;
       return;
     }
     if (path.hits == kMaxLensHits) return;
-    if (path.hits++ == 0) path.began_inside = hit.inside;
+    ++path.hits;
     set_boundary(hit);
     const bool total = hit.cos_refracted == 0.0;
     hit.reflected = total || path.partial == ghost;

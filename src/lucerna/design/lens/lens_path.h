@@ -47,8 +47,6 @@ struct LensPath {
   int hits = 0;
   /// Hits at which reflection was not total.
   int partial = 0;
-  /// It began within the medium.
-  bool began_inside = false;
   std::array<LensHit, kMaxLensHits> hit;
   /// Where the ray leaves from, and along what.
   Vec3 origin, direction;
@@ -69,6 +67,9 @@ class LensTracer {
 
   /// `ghost` >= 0: at that one of the hits where light may be refracted it is reflected instead.
   void follow(const Vec3& origin, const Vec3& direction, int ghost, LensPath& path) const;
+
+  /// Whether a ray begins within the medium: what it meets first it meets from within.
+  bool begins_inside(const Vec3& origin, const Vec3& direction) const;
 
  private:
   bool next_hit(const Vec3& origin, const Vec3& direction, bool begun, bool inside, LensHit& hit) const;
