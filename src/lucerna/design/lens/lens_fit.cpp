@@ -66,7 +66,7 @@ class LensStageObjective {
     out.light = evaluate_lens(shape, problem_.medium, rays_, bins_, options_);
     out.equations = normal_equations(out.light, target_, bins_, problem_.target.mode);
     ResidualRows rows;
-    out.equations.cost += lens_limits_cost(problem_.limits, shape, signs_, &rows);
+    out.equations.cost += lens_limits_cost(problem_.limits, shape, signs_, rows);
     rows.add_to(out.equations);
     if (problem_.target.mode == TargetMode::shape)
       add_flux_term(out.light, kFitFluxWeight, flux_reference_, out.equations);
@@ -145,8 +145,6 @@ class LensFit {
   bool finish(LensShape shape, std::size_t first) {
     bool noise = false;
     const double cost = through(shape, first, stages_.size(), &noise);
-    if (stopped_ && fine_cost_ < std::numeric_limits<double>::infinity() && !(cost < fine_cost_))
-      return false;
     if (!(cost < fine_cost_)) return false;
     const bool gained = cost < 0.97 * fine_cost_;
     fine_cost_ = cost;

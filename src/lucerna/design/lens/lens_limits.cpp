@@ -74,7 +74,7 @@ std::vector<OutlineSample> samples_of(const LensShape& shape, int points, bool d
 /// Collects hinges.
 class Hinges {
  public:
-  explicit Hinges(ResidualRows* rows) : rows_(rows) {}
+  explicit Hinges(ResidualRows& rows) : rows_(rows) {}
 
   /// `over`: by how much a limit is exceeded; `slope`: its derivative. What no parameter changes costs
   /// nothing.
@@ -82,17 +82,16 @@ class Hinges {
     const double residual = over / margin + 1.0;
     if (!(residual > 0.0) || slope.isZero(0.0)) return;
     cost += residual * residual;
-    if (rows_ == nullptr) return;
-    rows_->begin(residual);
+    rows_.begin(residual);
     for (Eigen::Index i = 0; i < slope.size(); ++i) {
-      if (slope[i] != 0.0) rows_->add(static_cast<int>(i), slope[i] / margin);
+      if (slope[i] != 0.0) rows_.add(static_cast<int>(i), slope[i] / margin);
     }
   }
 
   double cost = 0.0;
 
  private:
-  ResidualRows* rows_;
+  ResidualRows& rows_;
 };
 
 const OutlineSample& outermost(const std::vector<OutlineSample>& all, std::size_t axis, double sign) {
@@ -140,7 +139,7 @@ std::vector<double> draft_signs(const LensShape& shape) {
 }
 
 double lens_limits_cost(const LensLimits& limits, const LensShape& shape, const std::vector<double>& signs,
-                        ResidualRows* rows) {
+                        ResidualRows& rows) {
   if (!limits.any()) return 0.0;
   const auto all = samples_of(shape, kFitPoints, true);
   Hinges hinges(rows);

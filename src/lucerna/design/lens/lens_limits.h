@@ -23,14 +23,14 @@ struct LensLimits {
 
 /// Squares of excesses over a small margin (0.02 mm, 0.01 of a sine), from one margin within a limit on,
 /// at points of the curve; 0 where all hold. `signs`: where faces look to at the start (`draft_signs`). Adds
-/// its residuals to `rows` unless null. O(points^2).
+/// its residuals to `rows`. O(points^2).
 double lens_limits_cost(const LensLimits& limits, const LensShape& shape, const std::vector<double>& signs,
-                        ResidualRows* rows);
+                        ResidualRows& rows);
 
 /// Of each face, 1 where it looks along +z in its middle, -1 along -z.
 std::vector<double> draft_signs(const LensShape& shape);
 
-/// Every limit that is set as found in `solid`'s outline, in straight pieces ten times as fine as a fit's.
+/// Every limit that is set as found on the curve, at points ten times as close as a fit's.
 std::vector<LimitCheck> check_lens_limits(const LensLimits& limits, const LensShape& shape,
                                           const std::vector<double>& signs);
 
