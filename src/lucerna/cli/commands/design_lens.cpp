@@ -42,15 +42,6 @@ class LensWatch {
   std::string history_;
 };
 
-LensOptions lens_options(const DesignSettings& settings) {
-  LensOptions options;
-  options.seed = settings.seed;
-  options.time_s = settings.time_s;
-  options.max_rays = std::max<std::uint64_t>(std::uint64_t{1} << 13, settings.max_rays / 2);
-  options.validation_rays = 2 * options.max_rays;
-  return options;
-}
-
 void print_lens(const LensProblem& problem, const LensRun& run, const std::string& folder,
                 const std::vector<std::string>& names, Session& session) {
   const LensResult& result = run.result;

@@ -23,6 +23,9 @@
 
 namespace lucerna {
 
+/// How the light of a result is traced.
+using FinalTrace = std::function<NoiseTrace(const Scene&, const TraceOptions&, const NoiseGoal&)>;
+
 struct DesignOptions {
   std::uint64_t seed = 1;
   /// Wall time after which the design stops at the next step; nothing: the problem's own. It only stops:
@@ -42,7 +45,7 @@ struct DesignOptions {
   Peers* peers = nullptr;
   /// Traces the light of the result (run_design); empty: `trace_until`. With peers it returns the same on
   /// all.
-  std::function<NoiseTrace(const Scene&, const TraceOptions&, const NoiseGoal&)> final_trace;
+  FinalTrace final_trace;
   /// Also the trade between error and light (pareto.h), after the time that was given.
   bool pareto = false;
   /// Also what other outlines and families would bring (advice.h), each designed for the same time.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/design/run/design_run.h"
 
-#include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "lucerna/core/io/error.h"
@@ -13,9 +11,8 @@ namespace lucerna {
 
 namespace {
 
-/// The result is traced no longer than this share of the time (1 to 10 seconds); and as many rays are set
-/// aside for it and for the figures, in units of what a trace would take by default.
-constexpr double kFinalTraceShare = 0.1;
+/// Rays that are set aside for the trace of the result and for the figures, in units of what a trace would
+/// take by default.
 constexpr std::uint64_t kFinalTraceRays = 8;
 
 std::uint64_t rays_after(const DesignProblem& problem) {
@@ -24,19 +21,6 @@ std::uint64_t rays_after(const DesignProblem& problem) {
     rays += problem.tolerances->rays * tolerance_cases(*problem.tolerances, 1).size();
   }
   return rays;
-}
-
-/// What `work` returns; `seconds` gets how long it took.
-template <class Work>
-auto timed(double& seconds, const Work& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  auto made = work();
-  seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return made;
-}
-
-DesignStep design_step(const FitRecord& r) {
-  return {r.evaluations, r.total_rays, r.error, r.floor, r.efficiency, r.in_rectangle, r.accepted};
 }
 
 /// What users of the library get of it.
@@ -70,19 +54,11 @@ DesignRun run_design(const DesignProblem& problem, DesignOptions options, Progre
                      const DesignObserver& observer) {
   options.rays_after = rays_after(problem);
   double design_s = 0.0;
-  DesignRun run{timed(design_s, [&] { return design(problem, options, progress, observer); })};
+  DesignRun run(timed(design_s, [&] { return design(problem, options, progress, observer); }));
   run.design_s = design_s;
   const Scene scene = with_shape(problem, run.result.shape).scene;
-  NoiseGoal goal;
-  goal.max_seconds = std::clamp(kFinalTraceShare * options.time_s.value_or(problem.time_s), 1.0, 10.0);
-  run.noise_goal = goal.noise;
-  const TraceOptions traced{.seed = options.seed + 1};
-  run.trace = timed(run.trace_s, [&] {
-    return options.final_trace ? options.final_trace(scene, traced, goal) : trace_until(scene, traced, goal);
-  });
-  run.figures = timed(run.figures_s, [&] {
-    return design_metrics(problem.target, run.result.error.scale, run.trace.result, scene, progress);
-  });
+  follow_up(problem.target, run.result.error.scale, scene, {.seed = options.seed + 1},
+            final_goal(options.time_s.value_or(problem.time_s)), options.final_trace, progress, run);
   if (problem.tolerances && run.result.end != DesignTermination::interrupted) {
     run.figures.tolerances = timed(run.tolerances_s, [&] {
       return tolerance_sweep(scene, *problem.tolerances, options.seed + 2, progress, options.peers);

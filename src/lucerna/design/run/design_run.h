@@ -3,23 +3,17 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 
-#include "lucerna/design/run/design_metrics.h"
-#include "lucerna/trace.h"
+#include "lucerna/design/run/follow_up.h"
 
 namespace lucerna {
 
-/// A design with all that follows it.
-struct DesignRun {
+/// A design with all that follows it: figures with tolerances where the problem has ranges, unless the design
+/// was interrupted.
+struct DesignRun : FollowUp {
+  explicit DesignRun(DesignResult found) : result(std::move(found)) {}
   DesignResult result;
-  /// Light of the project with the result's mirror.
-  NoiseTrace trace;
-  /// Noise that `trace` was to have.
-  double noise_goal = 0.0;
-  /// With tolerances where the problem has ranges, unless the design was interrupted.
-  DesignMetrics figures;
-  /// Seconds of each phase.
-  double design_s = 0.0, trace_s = 0.0, figures_s = 0.0, tolerances_s = 0.0;
 };
 
 /// What `write_design` needs beside the rest of a DesignedMirror.

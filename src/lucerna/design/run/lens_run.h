@@ -2,22 +2,17 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "lucerna/design/lens/lens_design.h"
-#include "lucerna/design/run/design_metrics.h"
-#include "lucerna/trace.h"
+#include "lucerna/design/run/follow_up.h"
 
 namespace lucerna {
 
 /// A lens with all that follows its design.
-struct LensRun {
+struct LensRun : FollowUp {
+  explicit LensRun(LensResult found) : result(std::move(found)) {}
   LensResult result;
-  /// Light of the project with the result's lens, and the noise that it was to have.
-  NoiseTrace trace;
-  double noise_goal = 0.0;
-  DesignMetrics figures;
-  /// Seconds of each phase.
-  double design_s = 0.0, trace_s = 0.0, figures_s = 0.0;
 };
 
 /// What `write_design` needs beside the rest of a DesignedMirror.
@@ -40,5 +35,8 @@ DesignedMirror designed_lens(Project project, const std::string& name, const Des
 
 /// Throws InputError for these.
 void check_lens_settings(const DesignSettings& settings);
+
+/// What a lens takes of the others.
+LensOptions lens_options(const DesignSettings& settings);
 
 }  // namespace lucerna
