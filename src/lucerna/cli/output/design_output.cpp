@@ -13,52 +13,59 @@
 
 namespace lucerna::cli {
 
-void DesignWatch::operator()(const FitRecord& record, const DesignShape& best,
-                             const std::string& checkpoint) {
+void add_step(const FitRecord& record, std::string& history) {
   const std::string line = history_csv({record});
   const std::size_t header = line.find('\n') + 1;
-  history_ += history_.empty() ? line : line.substr(header);
+  history += history.empty() ? line : line.substr(header);
+}
+
+std::string step_line(const FitRecord& record) {
+  return fmt::format("design: error {:.2f} %, noise {:.2f} %, efficiency {:.1f} %, {:.3g} M rays",
+                     100.0 * record.error, 100.0 * record.floor, 100.0 * record.efficiency,
+                     1e-6 * static_cast<double>(record.total_rays));
+}
+
+void note_phases(const FollowUp& run, Session& session) {
+  session.add_seconds("design", run.design_s);
+  session.add_seconds("trace", run.trace_s);
+  session.add_seconds("figures", run.figures_s);
+  if (run.figures.tolerances) session.add_seconds("tolerances", run.tolerances_s);
+  if (run.trace.end == NoiseEnd::time)
+    note_noise("trace of the result: ", run.trace, run.noise_goal, session);
+}
+
+void DesignWatch::operator()(const FitRecord& record, const DesignShape& best,
+                             const std::string& checkpoint) {
+  add_step(record, history_);
   write_design_progress(folder_, problem_, best, history_, checkpoint);
-  session_.show(
-      fmt::format("design: error {:.2f} %, noise {:.2f} %, efficiency {:.1f} %, {:.3g} M rays, {:.0f} s",
-                  100.0 * record.error, 100.0 * record.floor, 100.0 * record.efficiency,
-                  1e-6 * static_cast<double>(record.total_rays), seconds()));
+  session_.show(fmt::format("{}, {:.0f} s", step_line(record), seconds()));
 }
 
 DesignRun run_watched(const DesignProblem& problem, const DesignOptions& options, const DesignObserver& watch,
                       Session& session, Progress& progress) {
   DesignRun made = run_design(problem, options, progress, watch);
-  session.add_seconds("design", made.design_s);
-  session.add_seconds("trace", made.trace_s);
-  session.add_seconds("figures", made.figures_s);
-  if (made.figures.tolerances) session.add_seconds("tolerances", made.tolerances_s);
-  if (made.trace.end == NoiseEnd::time) {
-    note_noise("trace of the result: ", made.trace, made.noise_goal, session);
-  }
+  note_phases(made, session);
   return made;
 }
 
-int write_design_output(const DesignOutput& output, const DesignProblem& problem, const DesignRun& made,
+int write_design_output(const DesignOutput& output, const FinishedDesign& design, const DesignFiles& write,
                         Session& session) {
-  const DesignResult& result = made.result;
-  const TraceResult& traced = made.trace.result;
-  const DesignMetrics& figures = made.figures;
-  Json json = session.json_head(output.seed, traced.isa);
+  const DesignFindings& result = design.result;
+  const DesignMetrics& figures = design.run.figures;
+  Json json = session.json_head(output.seed, design.run.trace.result.isa);
   json["device"] = output.device;
-  json.update(design_json(problem.target, result, design_form(result), figures));
+  json.update(design_json(design.target, result, design.form, figures));
   json.update(trace_json(figures.trace));
-  const std::vector<std::string> warnings = trace_warnings(figures.trace, problem.project.scene);
+  const std::vector<std::string> warnings = trace_warnings(figures.trace, design.scene);
   for (const std::string& warning : warnings) session.note(warning);
   json["warnings"] = warnings;
-  const auto names = session.timed("files", [&] {
-    return write_design_files(output.folder, problem, result, figures, traced, output.history, json);
-  });
+  const auto names = session.timed("files", [&] { return write(json); });
   session.print_json(json);
-  session.print_line(fmt::format("{}: {} parameters, {} evaluations, {:.3g} M rays in {:.3g} s ({})",
-                                 output.folder, result.shape.parameter_count(), result.evaluations,
-                                 1e-6 * static_cast<double>(result.rays), session.seconds("design"),
-                                 to_string(result.end)));
-  for (const std::string& line : design_summary(problem.target, result, design_form(result), figures))
+  session.print_line(
+      fmt::format("{}: {}{} parameters, {} evaluations, {:.3g} M rays in {:.3g} s ({})", output.folder,
+                  design.form.is_lens ? "a lens of " : "", design.form.parameters, result.evaluations,
+                  1e-6 * static_cast<double>(result.rays), session.seconds("design"), to_string(result.end)));
+  for (const std::string& line : design_summary(design.target, result, design.form, figures))
     session.print_line(line);
   session.print_line(fmt::format("  written: {}", fmt::join(names, " ")));
   if (!output.report.empty()) {
@@ -74,6 +81,17 @@ int write_design_output(const DesignOutput& output, const DesignProblem& problem
   }
   if (result.end == DesignTermination::interrupted) exit_code = 3;
   return exit_code;
+}
+
+int write_design_output(const DesignOutput& output, const DesignProblem& problem, const DesignRun& made,
+                        Session& session) {
+  const auto write = [&](const Json& json) {
+    return write_design_files(output.folder, problem, made.result, made.figures, made.trace.result,
+                              output.history, json);
+  };
+  return write_design_output(
+      output, {problem.target, made.result, design_form(made.result), made, problem.project.scene}, write,
+      session);
 }
 
 }  // namespace lucerna::cli

@@ -3,13 +3,24 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "lucerna/cli/parse/session.h"
 #include "lucerna/design/run/design_run.h"
+#include "lucerna/results/json/design_json.h"
 
 namespace lucerna::cli {
+
+/// Adds a step to the lines of history.csv.
+void add_step(const FitRecord& record, std::string& history);
+/// What is drawn of a step while a design runs.
+std::string step_line(const FitRecord& record);
+/// Notes how long each phase took, and where the time did not bring the trace's noise to its goal.
+void note_phases(const FollowUp& run, Session& session);
 
 /// Draws the progress and leaves the best so far in the folder after every step.
 class DesignWatch {
@@ -47,8 +58,21 @@ struct DesignOutput {
   std::string history;
 };
 
+/// A design that is over.
+struct FinishedDesign {
+  const DesignTarget& target;
+  const DesignFindings& result;
+  DesignForm form;
+  const FollowUp& run;
+  const Scene& scene;
+};
+/// Fills the folder, `result.json` with these fields last; returns the names.
+using DesignFiles = std::function<std::vector<std::string>(const nlohmann::ordered_json&)>;
+
 /// The end of `design`: fills the folder, prints the figures, writes the report unless its name is empty.
 /// Returns the exit code: 1 where a limit is not held or a zone not met, 3 where the design was interrupted.
+int write_design_output(const DesignOutput& output, const FinishedDesign& design, const DesignFiles& write,
+                        Session& session);
 int write_design_output(const DesignOutput& output, const DesignProblem& problem, const DesignRun& made,
                         Session& session);
 
