@@ -8,8 +8,6 @@
 #include "lucerna/cli/output/trace_output.h"
 #include "lucerna/report/html/report_design.h"
 #include "lucerna/results/folders/design_files.h"
-#include "lucerna/results/json/trace_json.h"
-#include "lucerna/results/metrics/trace_warnings.h"
 
 namespace lucerna::cli {
 
@@ -53,12 +51,8 @@ int write_design_output(const DesignOutput& output, const FinishedDesign& design
   const DesignFindings& result = design.result;
   const DesignMetrics& figures = design.run.figures;
   Json json = session.json_head(output.seed, design.run.trace.result.isa);
-  json["device"] = output.device;
-  json.update(design_json(design.target, result, design.form, figures));
-  json.update(trace_json(figures.trace));
-  const std::vector<std::string> warnings = trace_warnings(figures.trace, design.scene);
-  for (const std::string& warning : warnings) session.note(warning);
-  json["warnings"] = warnings;
+  json.update(finished_design_json(output.device, design.target, result, design.form, figures, design.scene));
+  for (const auto& warning : json["warnings"]) session.note(warning.get<std::string>());
   const auto names = session.timed("files", [&] { return write(json); });
   session.print_json(json);
   session.print_line(

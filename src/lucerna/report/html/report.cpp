@@ -17,7 +17,6 @@
 #include "lucerna/results/json/design_json.h"
 #include "lucerna/results/json/model_json.h"
 #include "lucerna/results/json/run_json.h"
-#include "lucerna/results/json/trace_json.h"
 #include "lucerna/results/metrics/trace_warnings.h"
 #include "lucerna/source_model.h"
 
@@ -60,10 +59,8 @@ std::vector<std::string> write_lens(const std::filesystem::path& folder, const D
   LensProblem problem = record.problem;
   problem.project = save_memory(problem.project, folder);
   nlohmann::ordered_json json = run_json({.inputs = problem.project.inputs}, record.seed, lens.traced.isa);
-  json["device"] = "cpu";
-  json.update(design_json(problem.target, record.result, design_form(record.result), record.figures));
-  json.update(trace_json(record.figures.trace));
-  json["warnings"] = trace_warnings(record.figures.trace);
+  json.update(finished_design_json("cpu", problem.target, record.result, design_form(record.result),
+                                   record.figures, problem.project.scene));
   return write_lens_files(folder, problem, record.result, record.figures, lens.traced,
                           history_csv(record.result.history), json);
 }
@@ -77,10 +74,8 @@ std::vector<std::string> write_design(const std::filesystem::path& folder, const
   DesignProblem problem = record.problem;
   problem.project = save_memory(problem.project, folder);
   nlohmann::ordered_json json = run_json({.inputs = problem.project.inputs}, record.seed, mirror.traced.isa);
-  json["device"] = record.device;
-  json.update(design_json(problem.target, record.result, design_form(record.result), record.figures));
-  json.update(trace_json(record.figures.trace));
-  json["warnings"] = trace_warnings(record.figures.trace, problem.project.scene);
+  json.update(finished_design_json(record.device, problem.target, record.result, design_form(record.result),
+                                   record.figures, problem.project.scene));
   return write_design_files(folder, problem, record.result, record.figures, mirror.traced,
                             history_csv(record.result.history), json);
 }

@@ -9,6 +9,7 @@
 #include "lucerna/results/json/error_json.h"
 #include "lucerna/results/json/trace_json.h"
 #include "lucerna/results/json/zone_json.h"
+#include "lucerna/results/metrics/trace_warnings.h"
 
 namespace lucerna {
 
@@ -300,6 +301,15 @@ Json design_json(const DesignTarget& target, const DesignFindings& result, const
   if (f.tolerances) json["tolerances"] = tolerances_json(*f.tolerances);
   json["end"] = std::string(to_string(result.end));
   json["remarks"] = result.remarks;
+  return json;
+}
+
+Json finished_design_json(const std::string& device, const DesignTarget& target, const DesignFindings& result,
+                          const DesignForm& form, const DesignMetrics& figures, const Scene& scene) {
+  Json json{{"device", device}};
+  json.update(design_json(target, result, form, figures));
+  json.update(trace_json(figures.trace));
+  json["warnings"] = trace_warnings(figures.trace, scene);
   return json;
 }
 

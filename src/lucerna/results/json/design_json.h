@@ -24,6 +24,12 @@ DesignForm design_form(const LensResult& result);
 nlohmann::ordered_json design_json(const DesignTarget& target, const DesignFindings& result,
                                    const DesignForm& form, const DesignMetrics& figures);
 
+/// All that a design adds: the device that evaluated it, design_json, trace_json of the figures' trace of
+/// `scene`, and its warnings.
+nlohmann::ordered_json finished_design_json(const std::string& device, const DesignTarget& target,
+                                            const DesignFindings& result, const DesignForm& form,
+                                            const DesignMetrics& figures, const Scene& scene);
+
 /// The table of target against result, losses, limits and tolerances for people, one line an entry.
 std::vector<std::string> design_summary(const DesignTarget& target, const DesignFindings& result,
                                         const DesignForm& form, const DesignMetrics& figures);
