@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/design/problem/design_detectors.h"
 #include "lucerna/project/schema/project_tables.h"
 #include "lucerna/project/schema/toml_reader.h"
 
@@ -63,20 +64,6 @@ LensLimits read_lens_limits(TomlReader reader) {
   return limits;
 }
 
-/// What light is to be seen in.
-void add_far_field(Project& project) {
-  if (!project.scene.far_fields.empty()) return;
-  project.scene.far_fields.emplace_back();
-  FarFieldDetector& far = project.scene.far_fields.back();
-  far.name = "far";
-  toml::table& tables = toml_tables(project);
-  if (tables["detector"].as_array() == nullptr) tables.insert_or_assign("detector", toml::array{});
-  tables["detector"].as_array()->push_back(toml::table{{"name", far.name},
-                                                       {"kind", "far-field"},
-                                                       {"c_step_deg", far.c_step_deg},
-                                                       {"gamma_step_deg", far.gamma_step_deg}});
-}
-
 /// The [[body]] of the lens: the project's only one.
 toml::table& lens_table(Project& project) {
   return *toml_tables(project)["body"].as_array()->get(0)->as_table();
@@ -127,7 +114,7 @@ LensProblem lens_problem(Project project, const std::filesystem::path& path) {
     root.fail("target", "found zones, which only free-form mirrors are designed for");
   const MediumView medium{solid.refractive_index, solid.absorption_per_mm};
   const Frame placed = solid.world_from_solid;
-  add_far_field(project);
+  add_design_detectors(project, target);
   return {std::move(project),        std::move(target), limits, start, medium, placed, time_s,
           static_cast<int>(restarts)};
 }

@@ -29,8 +29,8 @@ struct LensProblem {
 bool is_lens_design(const Project& project);
 
 /// Reads [target] and [design] of a project with one solid, given by its outline, and nothing else in the
-/// light's way. Throws InputError with file, line, key, found and expected. The project gets a far field
-/// "far" if it has none.
+/// light's way. Throws InputError with file, line, key, found and expected. The project gets the
+/// detectors of every design (add_design_detectors).
 LensProblem lens_problem(Project project, const std::filesystem::path& path);
 
 /// The bins of the last stages: 48 rings where the target turns about the lens's axis, else 48 x 48.

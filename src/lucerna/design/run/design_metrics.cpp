@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "lucerna/design/problem/design_detectors.h"
+
 namespace lucerna {
 
 namespace {

@@ -11,6 +11,7 @@
 #include "lucerna/design/constraints/limits.h"
 #include "lucerna/design/evaluation/design_rays.h"
 #include "lucerna/design/evaluation/window.h"
+#include "lucerna/design/problem/design_detectors.h"
 #include "lucerna/design/run/search_mirror.h"
 #include "lucerna/optics/shapes/profile.h"
 #include "lucerna/optics/shapes/trough_surface.h"
@@ -118,44 +119,6 @@ DesignShape in_front_of_source(const DesignShape& given, const DesignShape& held
   const double rise = clearance_mm(given, given, rays) - clearance_mm(held, given, rays);
   if (!(rise > 0.0)) return held;
   return held.with((held.parameters().array() - rise).matrix());
-}
-
-toml::array point(const Vec3& p) { return toml::array{p.x, p.y, p.z}; }
-
-/// What every design watches, also when its project is read again: a far field, and a plane target's plane.
-void add_detectors(Project& project, const DesignTarget& target) {
-  Scene& scene = project.scene;
-  if (scene.far_fields.empty()) {
-    scene.far_fields.emplace_back();
-    scene.far_fields.back().name = "far";
-  }
-  if (toml_tables(project)["detector"].as_array() == nullptr)
-    toml_tables(project).insert_or_assign("detector", toml::array{});
-  toml::array& tables = *toml_tables(project)["detector"].as_array();
-  const auto is_far = [](const toml::node& n) {
-    const auto* t = n.as_table();
-    return t != nullptr && (*t)["kind"].value_or(std::string()) == "far-field";
-  };
-  if (std::none_of(tables.begin(), tables.end(), is_far)) {
-    const FarFieldDetector& far = scene.far_fields.front();
-    tables.push_back(toml::table{{"name", far.name},
-                                 {"kind", "far-field"},
-                                 {"c_step_deg", far.c_step_deg},
-                                 {"gamma_step_deg", far.gamma_step_deg}});
-  }
-  const auto is_target = [](const PlaneDetector& p) { return p.name == kTargetPlane; };
-  if (!target.plane || std::any_of(scene.planes.begin(), scene.planes.end(), is_target)) return;
-  const PlaneTarget& plane = *target.plane;
-  const int cells = WindowOptions().count;
-  const auto n = static_cast<std::size_t>(cells);
-  scene.planes.push_back({kTargetPlane, {plane.world_from_plane, plane.size_x_mm, plane.size_y_mm, n, n}});
-  tables.push_back(toml::table{{"name", kTargetPlane},
-                               {"kind", "plane"},
-                               {"position_mm", point(plane.world_from_plane.origin_mm())},
-                               {"normal", point(plane.world_from_plane.ez())},
-                               {"turn_deg", plane.turn_deg},
-                               {"size_mm", toml::array{plane.size_x_mm, plane.size_y_mm}},
-                               {"cells", toml::array{cells, cells}}});
 }
 
 Optimizer read_optimizer(TomlReader& design) { return optimizer(design.word("optimizer").value_or("auto")); }
@@ -275,7 +238,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   design.finish();
   start = start_within(limits, start, project.scene.sources, placed.world_from_reflector);
   const int knot_doublings = doublings(start, WindowOptions().count, !intervals.empty());
-  add_detectors(project, target);
+  add_design_detectors(project, target);
   DesignProblem problem{std::move(project),
                         std::move(target),
                         std::move(limits),

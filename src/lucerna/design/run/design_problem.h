@@ -40,9 +40,6 @@ struct DesignProblem {
   std::optional<ToleranceRanges> tolerances;
 };
 
-/// The name of the detector that watches a plane target's rectangle.
-inline constexpr const char* kTargetPlane = "target";
-
 /// Reads [target] and [design] of a project and its [[reflector]] (of several the one that `reflector` of
 /// [design] numbers, which becomes the first) as a shape with free parameters: a
 /// paraboloid, a profile of revolution or of a trough (fitted by the family's spline) or a B-spline. Throws

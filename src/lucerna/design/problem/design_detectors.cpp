@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/problem/design_detectors.h"
+
+#include <algorithm>
+#include <string>
+
+#include "lucerna/design/evaluation/window.h"
+#include "lucerna/project/schema/project_tables.h"
+
+namespace lucerna {
+
+void add_design_detectors(Project& project, const DesignTarget& target) {
+  Scene& scene = project.scene;
+  if (scene.far_fields.empty()) {
+    scene.far_fields.emplace_back();
+    scene.far_fields.back().name = "far";
+  }
+  if (toml_tables(project)["detector"].as_array() == nullptr)
+    toml_tables(project).insert_or_assign("detector", toml::array{});
+  toml::array& tables = *toml_tables(project)["detector"].as_array();
+  const auto is_far = [](const toml::node& n) {
+    const auto* t = n.as_table();
+    return t != nullptr && (*t)["kind"].value_or(std::string()) == "far-field";
+  };
+  if (std::none_of(tables.begin(), tables.end(), is_far)) {
+    const FarFieldDetector& far = scene.far_fields.front();
+    tables.push_back(toml::table{{"name", far.name},
+                                 {"kind", "far-field"},
+                                 {"c_step_deg", far.c_step_deg},
+                                 {"gamma_step_deg", far.gamma_step_deg}});
+  }
+  const auto is_target = [](const PlaneDetector& p) { return p.name == kTargetPlane; };
+  if (!target.plane || std::any_of(scene.planes.begin(), scene.planes.end(), is_target)) return;
+  const PlaneTarget& plane = *target.plane;
+  const auto point = [](const Vec3& p) { return toml::array{p.x, p.y, p.z}; };
+  const int cells = WindowOptions().count;
+  const auto n = static_cast<std::size_t>(cells);
+  scene.planes.push_back({kTargetPlane, {plane.world_from_plane, plane.size_x_mm, plane.size_y_mm, n, n}});
+  tables.push_back(toml::table{{"name", kTargetPlane},
+                               {"kind", "plane"},
+                               {"position_mm", point(plane.world_from_plane.origin_mm())},
+                               {"normal", point(plane.world_from_plane.ez())},
+                               {"turn_deg", plane.turn_deg},
+                               {"size_mm", toml::array{plane.size_x_mm, plane.size_y_mm}},
+                               {"cells", toml::array{cells, cells}}});
+}
+
+}  // namespace lucerna

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "lucerna/design/problem/target.h"
+#include "lucerna/project.h"
+
+namespace lucerna {
+
+/// Name of the detector that a plane target is watched by.
+inline constexpr const char* kTargetPlane = "target";
+
+/// Adds what every design watches, also when its project is read again, where the project does not have it: a
+/// far field, and the plane of a plane target. In the scene and in the project's tables.
+void add_design_detectors(Project& project, const DesignTarget& target);
+
+}  // namespace lucerna
