@@ -21,7 +21,6 @@ TEST(TimeBudget, ASearchMayUseAllThatIsNotNeededLater) {
   EXPECT_LE(none.left_s(), 0.0);
 }
 
-/// What follows has a third of the time at most, however long it would take.
 TEST(TimeBudget, TheFirstOfSeveralProcessesDecides) {
   test::on_peers(3, [](Peers& peers) {
     const bool first = peers.rank() == 0;
@@ -32,6 +31,7 @@ TEST(TimeBudget, TheFirstOfSeveralProcessesDecides) {
   });
 }
 
+/// What follows has a third of the time at most, however long it would take.
 TEST(TimeBudget, WhatFollowsHasAThirdAtMost) {
   TimeBudget time(1e6);
   time.begin_search(1e9, 0);
