@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -9,8 +10,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "lucerna/core/io/file.h"
+#include "tests/support/paths.h"
+#include "tests/support/temp_dir.h"
 
 /// Programs under mpirun, for mpi_tests, which says where they are.
 namespace lucerna::test {
@@ -64,5 +70,54 @@ inline std::vector<pid_t> ranks_below(pid_t top) {
   }
   return ranks;
 }
+
+/// A run of one process and runs under mpirun, whose files are to be the same.
+class MpiTest : public testing::Test {
+ protected:
+  /// `lucerna` with these words and the folder "alone".
+  void run_alone(std::vector<std::string> words) const {
+    words.insert(words.begin(), program().string());
+    words.insert(words.end(), {"-o", (dir_ / "alone").string()});
+    ASSERT_EQ(wait_for(start(words, dir_ / "log")), 0) << log();
+  }
+  /// `lucerna-mpi` with these words and the folder `out`.
+  pid_t start_ranks(int ranks, const std::string& command, const std::string& out,
+                    const std::vector<std::string>& more) const {
+    std::vector<std::string> words = mpi_command(ranks, command);
+    words.insert(words.end(), more.begin(), more.end());
+    words.insert(words.end(), {"-o", (dir_ / out).string()});
+    return start(words, dir_ / "log");
+  }
+  /// Output of the latest run.
+  std::string log() const { return read_file(dir_ / "log", kMostBytes); }
+
+  /// Every file of "alone", at least so many, is in the other folder to the byte; of result.json all but how
+  /// it was made.
+  void expect_same(const std::string& out, std::size_t least, const std::string& what) const {
+    std::size_t files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(dir_ / "alone")) {
+      const std::filesystem::path name = entry.path().filename();
+      const std::string a = read_file(entry.path(), kMostBytes), b = read_file(dir_ / out / name, kMostBytes);
+      ++files;
+      if (name == "result.json") {
+        EXPECT_EQ(without_run(a), without_run(b)) << what;
+      } else {
+        EXPECT_TRUE(a == b) << name << ", " << what;
+      }
+    }
+    EXPECT_GE(files, least);
+    EXPECT_FALSE(std::filesystem::exists(dir_ / out / "parts")) << what;
+  }
+
+  TempDir dir_;
+
+ private:
+  static std::string without_run(const std::string& json) {
+    auto j = nlohmann::ordered_json::parse(json);
+    for (const char* key : {"command", "threads", "wall_s"}) j.erase(key);
+    if (j.contains("validation")) j["validation"].erase("seconds");
+    return j.dump(1);
+  }
+};
 
 }  // namespace lucerna::test

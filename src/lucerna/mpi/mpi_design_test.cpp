@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/wait.h>
 
 #include <chrono>
 #include <cmath>
@@ -11,14 +12,13 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "lucerna/core/io/file.h"
 #include "lucerna/photometric_file.h"
 #include "lucerna/random.h"
 #include "tests/support/mpi_runs.h"
-#include "tests/support/paths.h"
-#include "tests/support/temp_dir.h"
 
 namespace lucerna {
 namespace {
@@ -40,11 +40,12 @@ axis = "-z"
 reflectance = 0.9
 )";
 /// A far field of large cells, whose noise is reached in one round: the time, at most 10 s, does not end the
-/// final trace.
+/// final trace. Of its tent bins light is not followed backward, which would take longer than all the rest.
 constexpr const char* kFarField = R"([[detector]]
 kind = "far-field"
 c_step_deg = 90.0
 gamma_step_deg = 5.0
+bins = "tent"
 )";
 constexpr const char* kRevolution = R"(family = "revolution"
 preset = "parabola"
@@ -64,7 +65,17 @@ restarts = 0
 time_s = 1e6
 )";
 
-class MpiDesignTest : public testing::Test {
+/// Steps that are many and quick.
+constexpr const char* kManySteps = R"(family = "revolution"
+preset = "parabola"
+[design]
+intervals = 1
+restarts = 0
+optimizer = "cma-es"
+time_s = 1e6
+)";
+
+class MpiDesignTest : public test::MpiTest {
  protected:
   void design_alone(const std::string& mirror) {
     PhotometricFile spot;
@@ -75,100 +86,87 @@ class MpiDesignTest : public testing::Test {
     }
     write_photometric_file(dir_ / "spot.ldt", spot, PhotometricFormat::ldt);
     write_file(dir_ / "p.toml", std::string(kFarField) + kDesignScene + mirror);
-    const std::vector<std::string> words{test::program().string(),
-                                         "design",
-                                         project(),
-                                         "-o",
-                                         (dir_ / "alone").string(),
-                                         "--rays",
-                                         "8192",
-                                         "--device",
-                                         "cpu"};
-    ASSERT_EQ(test::wait_for(test::start(words, dir_ / "log")), 0) << log();
+    fs::remove_all(dir_ / "alone");
+    run_alone({"design", project(), "--rays", "8192", "--device", "cpu"});
   }
   std::string project() const { return (dir_ / "p.toml").string(); }
-  std::string log() const { return read_file(dir_ / "log", test::kMostBytes); }
 
   pid_t start_ranks(int ranks, const std::string& out, const std::vector<std::string>& more,
                     const std::string& rays = "8192") const {
-    std::vector<std::string> words = test::mpi_command(ranks, "design");
-    words.insert(words.end(), {project(), "-o", (dir_ / out).string(), "--rays", rays});
+    std::vector<std::string> words{project(), "--rays", rays};
     words.insert(words.end(), more.begin(), more.end());
-    return test::start(words, dir_ / "log");
+    return MpiTest::start_ranks(ranks, "design", out, words);
   }
-
-  /// Every file of the one folder is in the other to the byte; of result.json all but how it was made.
   void expect_same(const std::string& out, const std::string& what) const {
-    std::size_t files = 0;
-    for (const auto& entry : fs::directory_iterator(dir_ / "alone")) {
-      const fs::path name = entry.path().filename();
-      const std::string a = read_file(entry.path(), test::kMostBytes);
-      const std::string b = read_file(dir_ / out / name, test::kMostBytes);
-      ++files;
-      if (name == "result.json") {
-        EXPECT_EQ(without_run(a), without_run(b)) << what;
-      } else {
-        EXPECT_TRUE(a == b) << name << ", " << what;
-      }
-    }
-    EXPECT_GE(files, 10u);
-  }
-  static std::string without_run(const std::string& json) {
-    Json j = Json::parse(json);
-    for (const char* key : {"command", "threads", "wall_s"}) j.erase(key);
-    if (j.contains("validation")) j["validation"].erase("seconds");
-    return j.dump(1);
+    MpiTest::expect_same(out, 10, what);
   }
 
-  test::TempDir dir_;
+  /// Until a run has made another step of its design, or has ended.
+  void wait_for_step(const std::string& out, pid_t run) const {
+    const auto size = [&] {
+      std::error_code none;
+      const auto bytes = fs::file_size(dir_ / out / "history.csv", none);
+      return none ? 0 : bytes;
+    };
+    const auto before = size();
+    siginfo_t ended{};
+    while (size() <= before &&
+           ::waitid(P_PID, static_cast<id_t>(run), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           ended.si_pid == 0)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  void expect_same_on(const std::vector<std::pair<int, const char*>>& ranks_and_threads) const {
+    for (const auto& [ranks, threads] : ranks_and_threads) {
+      ASSERT_EQ(test::wait_for(start_ranks(ranks, "out", {"--threads", threads, "--force"})), 0) << log();
+      expect_same("out", fmt::format("{} ranks, {} threads", ranks, threads));
+    }
+  }
+  /// Kills one of one to three ranks after at least one more step, until the design has ended or been killed
+  /// so many times, and then lets it end; returns how many times.
+  int kill_until_done(Rng& rng, int times) const {
+    for (int kills = 0;; ++kills) {
+      const int ranks = 1 + static_cast<int>(rng.bits() % 3);
+      const pid_t run = start_ranks(ranks, "out", {"--resume", "--threads", "1"});
+      if (kills < times) {
+        wait_for_step("out", run);
+        std::this_thread::sleep_for(std::chrono::milliseconds(rng.bits() % 200));
+        const std::vector<pid_t> there = test::ranks_below(run);
+        if (!there.empty()) ::kill(there[rng.bits() % there.size()], SIGKILL);
+      }
+      const int code = test::wait_for(run);
+      if (code == 0) return kills;
+      EXPECT_LT(kills, times) << log();
+      if (kills >= times) return kills;
+    }
+  }
 };
 
 TEST_F(MpiDesignTest, FilesAreThoseOfOneProcessMpi) {
-  for (const char* mirror : {kRevolution, kFreeForm}) {
-    fs::remove_all(dir_ / "alone");
-    design_alone(mirror);
-    int run = 0;
-    for (const int ranks : {1, 2, 3, 5}) {
-      for (const char* threads : {"1", "2"}) {
-        const std::string out = fmt::format("out{}", run++);
-        ASSERT_EQ(test::wait_for(start_ranks(ranks, out, {"--threads", threads, "--force"})), 0) << log();
-        expect_same(out, fmt::format("{} ranks, {} threads", ranks, threads));
-      }
-    }
-  }
+  design_alone(kRevolution);
+  expect_same_on({{1, "2"}, {2, "1"}, {3, "2"}, {5, "1"}});
+}
+
+TEST_F(MpiDesignTest, FilesOfAFreeFormAreThoseOfOneProcessMpi) {
+  design_alone(kFreeForm);
+  expect_same_on({{1, "2"}, {3, "1"}});
 }
 
 TEST_F(MpiDesignTest, AnyKillAndAnotherNumberOfRanksLeaveTheBitsMpi) {
-  design_alone(kFreeForm);
   Rng rng(17, 0);
-  int kills = 0;
-  for (int round = 0; kills < 6; ++round) {
-    const std::string out = fmt::format("out{}", round);
-    for (int attempt = 0;; ++attempt) {
-      const int ranks = 1 + static_cast<int>(rng.bits() % 4);
-      const pid_t run = start_ranks(ranks, out, {"--resume", "--threads", "1"});
-      if (attempt < 3) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(500 + rng.bits() % 4000));
-        const std::vector<pid_t> there = test::ranks_below(run);
-        if (!there.empty()) {
-          ::kill(there[rng.bits() % there.size()], SIGKILL);
-          ++kills;
-        }
-      }
-      if (test::wait_for(run) == 0) break;
-      ASSERT_LT(attempt, 5) << log();
-    }
-    expect_same(out, "after kills");
+  for (const char* mirror : {kManySteps, kFreeForm}) {
+    design_alone(mirror);
+    fs::remove_all(dir_ / "out");
+    EXPECT_GE(kill_until_done(rng, 3), 1);
+    expect_same("out", "after kills");
   }
 }
 
 TEST_F(MpiDesignTest, ASignalToOneRankWritesTheBestSoFarMpi) {
-  design_alone(kFreeForm);
+  design_alone(kManySteps);
   for (const int signal : {SIGUSR1, SIGTERM, SIGINT}) {
     const std::string out = fmt::format("out{}", signal);
     const pid_t run = start_ranks(3, out, {"--threads", "1"});
-    while (!fs::exists(dir_ / out / "checkpoint") && ::kill(run, 0) == 0)
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    wait_for_step(out, run);
     const std::vector<pid_t> ranks = test::ranks_below(run);
     ASSERT_EQ(ranks.size(), 3u) << log();
     ::kill(ranks[1], signal);

@@ -6,7 +6,6 @@
 
 #include <chrono>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
@@ -14,14 +13,11 @@
 #include "lucerna/core/io/file.h"
 #include "lucerna/random.h"
 #include "tests/support/mpi_runs.h"
-#include "tests/support/paths.h"
-#include "tests/support/temp_dir.h"
 
 namespace lucerna {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kLamp = R"([[source]]
 kind = "led"
@@ -49,56 +45,31 @@ cells = [20, 20]
 )";
 constexpr const char* kKept = "[[detector]]\nkind = \"rays\"\n";
 
-class MpiTraceTest : public testing::Test {
+class MpiTraceTest : public test::MpiTest {
  protected:
   /// The trace of one process, which all others are to equal.
   void trace_alone(const std::string& project, const std::vector<std::string>& how) {
     how_ = how;
     write_file(dir_ / "lamp.toml", project);
-    const fs::path log = dir_ / "alone.log";
-    std::vector<std::string> words{test::program().string(),  "trace",  lamp(), "-o",
-                                   (dir_ / "alone").string(), "--quiet"};
+    std::vector<std::string> words{"trace", lamp(), "--quiet"};
     words.insert(words.end(), how.begin(), how.end());
-    ASSERT_EQ(test::wait_for(test::start(words, log)), 0) << read_file(log, test::kMostBytes);
+    run_alone(words);
   }
   void trace_alone(const std::string& project, const std::string& rays) {
     trace_alone(project, std::vector<std::string>{"--rays", rays});
   }
   std::string lamp() const { return (dir_ / "lamp.toml").string(); }
-  std::string log() const { return read_file(dir_ / "log", test::kMostBytes); }
 
   pid_t start_ranks(int ranks, const std::string& out, const std::vector<std::string>& more) const {
-    std::vector<std::string> words = test::mpi_command(ranks, "trace");
-    words.insert(words.end(), {lamp(), "-o", (dir_ / out).string()});
+    std::vector<std::string> words{lamp()};
     words.insert(words.end(), how_.begin(), how_.end());
     words.insert(words.end(), more.begin(), more.end());
-    return test::start(words, dir_ / "log");
+    return MpiTest::start_ranks(ranks, "trace", out, words);
   }
-
-  /// Every file of the one folder is in the other to the byte; of result.json all but how it was made.
   void expect_same(const std::string& out, const std::string& what) const {
-    std::size_t files = 0;
-    for (const auto& entry : fs::directory_iterator(dir_ / "alone")) {
-      const fs::path name = entry.path().filename();
-      const std::string a = read_file(entry.path(), test::kMostBytes),
-                        b = read_file(dir_ / out / name, test::kMostBytes);
-      ++files;
-      if (name == "result.json") {
-        EXPECT_EQ(without_run(a), without_run(b)) << what;
-      } else {
-        EXPECT_TRUE(a == b) << name << ", " << what;
-      }
-    }
-    EXPECT_GE(files, 8u);
-    EXPECT_FALSE(fs::exists(dir_ / out / "parts")) << what;
-  }
-  static std::string without_run(const std::string& json) {
-    Json j = Json::parse(json);
-    for (const char* key : {"command", "threads", "wall_s"}) j.erase(key);
-    return j.dump();
+    MpiTest::expect_same(out, 8, what);
   }
 
-  test::TempDir dir_;
   /// The options that say how much is traced.
   std::vector<std::string> how_;
 };
