@@ -16,7 +16,6 @@
 #include "lucerna/cli/parse/design_arguments.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
-#include "lucerna/core/io/message_bytes.h"
 #include "lucerna/core/io/sha256.h"
 #include "lucerna/design/lens/lens_problem.h"
 #include "lucerna/distributed/distributed_trace.h"
@@ -25,7 +24,6 @@
 #include "lucerna/project/schema/project_tables.h"
 #include "lucerna/results/folders/design_files.h"
 #include "lucerna/trace/run/empty_trace.h"
-#include "lucerna/trace_file.h"
 #include "lucerna/version.h"
 
 namespace lucerna::cli {
@@ -48,9 +46,9 @@ std::string identity(const Project& project) {
   return fmt::format("{} {} {}", version(), best_isa(), sha256_of_text(all));
 }
 
-/// The light of the result, traced by all ranks, on all of them.
-NoiseTrace traced_by_all(Ranks& ranks, const fs::path& folder, const Scene& scene,
-                         const TraceOptions& requested, const NoiseGoal& goal) {
+/// The light of the result, traced by all ranks, on the first.
+std::optional<NoiseTrace> traced_by_all(Ranks& ranks, const fs::path& folder, const Scene& scene,
+                                        const TraceOptions& requested, const NoiseGoal& goal) {
   TraceOptions options = requested;
   options.isa = best_isa();
   const RangeTracer tracer = [&](const RayInterval& rays, Progress& progress) {
@@ -66,19 +64,7 @@ NoiseTrace traced_by_all(Ranks& ranks, const fs::path& folder, const Scene& scen
   const TraceOrigin origin{"design", std::string(version()), "", 0.0, 0.0};
   DistributedNoise traced =
       trace_until_on_ranks(ranks, scene, empty_trace(scene, options), tracer, origin, how, goal);
-  std::string bytes;
-  if (traced.result) {
-    append_double(bytes, traced.result->noise);
-    append(bytes, static_cast<std::uint64_t>(traced.result->end));
-    bytes += trace_bytes(traced.result->result);
-  }
-  bytes = ranks.broadcast(bytes);
-  std::string_view view = bytes;
-  NoiseTrace out;
-  out.noise = take_double(view);
-  out.end = static_cast<NoiseEnd>(take(view));
-  out.result = trace_from_bytes(view);
-  return out;
+  return std::move(traced.result);
 }
 
 /// All ranks compute alike, so that bad input is found by each of them: the first one tells of it.

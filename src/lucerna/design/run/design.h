@@ -24,7 +24,8 @@
 namespace lucerna {
 
 /// How the light of a result is traced.
-using FinalTrace = std::function<NoiseTrace(const Scene&, const TraceOptions&, const NoiseGoal&)>;
+using FinalTrace =
+    std::function<std::optional<NoiseTrace>(const Scene&, const TraceOptions&, const NoiseGoal&)>;
 
 struct DesignOptions {
   std::uint64_t seed = 1;
@@ -43,8 +44,8 @@ struct DesignOptions {
   /// Processes that run the same design and share its work (peers.h): each calls with the same arguments, and
   /// its progress asks to stop at the same moments of the design. CPU only. Null: this one alone.
   Peers* peers = nullptr;
-  /// Traces the light of the result (run_design); empty: `trace_until`. With peers it returns the same on
-  /// all.
+  /// Traces the light of the result (run_design); empty: `trace_until`. With peers all call it, and the
+  /// first alone has to return something: the others have no light and no figures.
   FinalTrace final_trace;
   /// Also the trade between error and light (pareto.h), after the time that was given.
   bool pareto = false;

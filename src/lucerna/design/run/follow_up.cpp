@@ -16,9 +16,11 @@ void follow_up(const DesignTarget& target, double error_scale, const Scene& fini
                const TraceOptions& options, const NoiseGoal& goal, const FinalTrace& trace,
                const Progress& progress, FollowUp& out) {
   out.noise_goal = goal.noise;
-  out.trace = timed(out.trace_s, [&] {
+  std::optional<NoiseTrace> traced = timed(out.trace_s, [&] {
     return trace ? trace(finished, options, goal) : trace_until(finished, options, goal);
   });
+  if (!traced) return;
+  out.trace = std::move(*traced);
   out.figures = timed(out.figures_s, [&] {
     return design_metrics(target, error_scale, out.trace.result, finished, progress);
   });
