@@ -229,13 +229,15 @@ std::size_t jacobian_groups(std::uint64_t rays) {
 
 /// The other processes' tasks, where there are any; tasks go by groups.
 template <class Sums>
-void share_tasks(Peers* peers, std::size_t groups, std::uint64_t key, std::vector<Sums>& tasks) {
+void share_tasks(Peers* peers, std::size_t groups, const DesignShape& design, std::size_t bins,
+                 const EvaluationOptions& options, std::vector<Sums>& tasks) {
+  if (peers == nullptr) return;
   const std::size_t each = tasks.size() / groups;
   const auto ends = [](TaskSums& t) {
     return std::array{&t.weight, &t.reflected, &t.direct, &t.absorbed, &t.back, &t.lost, &t.bodies};
   };
   share_items(
-      peers, groups, key,
+      peers, groups, state_key(design, bins, options),
       [&](std::size_t group, std::string& bytes) {
         for (std::size_t r = group * each; r < (group + 1) * each; ++r) {
           append(bytes, tasks[r].flux);
@@ -290,7 +292,7 @@ Evaluation evaluate_family(const DesignShape& design, const Shape& shape, const 
       for (std::uint64_t b = 0; b < per_task; ++b) tracer->add(rays.block(b * kDesignTasks + r), sums[r]);
     }
   });
-  share_tasks(rays.peers(), groups, state_key(design, bins.size(), options), sums);
+  share_tasks(rays.peers(), groups, design, bins.size(), options, sums);
   const EvaluationSums all = total(sums, bins.size());
   Evaluation e = evaluation_of(all);
   e.rays = per_task * kDesignTasks * kBlockRays;
@@ -323,7 +325,7 @@ Evaluation evaluate_sparse(const DesignShape& design, const Reflectance& reflect
       for (std::uint64_t b = 0; b < per_task; ++b) tracer->add(rays.block(b * kDesignTasks + r), sums[r]);
     }
   });
-  share_tasks(rays.peers(), groups, state_key(design, bins.size(), options), sums);
+  share_tasks(rays.peers(), groups, design, bins.size(), options, sums);
   const EvaluationSums all = total(sums, bins.size());
   Evaluation e = evaluation_of(all);
   e.rays = per_task * kDesignTasks * kBlockRays;
