@@ -11,7 +11,7 @@
 namespace lucerna {
 namespace {
 
-constexpr const char* kScene = "[[source]]\nkind = \"disk\"\n";
+constexpr const char* kLampAlone = "[[source]]\nkind = \"disk\"\n";
 
 std::string text_of(const Project& project) {
   std::ostringstream text;
@@ -20,7 +20,7 @@ std::string text_of(const Project& project) {
 }
 
 TEST(DesignDetectors, AFarFieldAndTheTargetsPlaneAreThereOnce) {
-  Project project = parse_project(kScene, "p.toml");
+  Project project = parse_project(kLampAlone, "p.toml");
   DesignTarget target;
   target.plane.emplace();
   target.plane->size_x_mm = 800;
@@ -39,7 +39,7 @@ TEST(DesignDetectors, AFarFieldAndTheTargetsPlaneAreThereOnce) {
 
 TEST(DesignDetectors, WhatTheProjectHasIsKept) {
   Project project = parse_project(
-      std::string(kScene) + "[[detector]]\nname = \"mine\"\nkind = \"far-field\"\nc_step_deg = 5.0\n",
+      std::string(kLampAlone) + "[[detector]]\nname = \"mine\"\nkind = \"far-field\"\nc_step_deg = 5.0\n",
       "p.toml");
   const std::string before = text_of(project);
   add_design_detectors(project, DesignTarget{});
