@@ -24,7 +24,8 @@ struct FollowUp {
 /// to 10 seconds, at most.
 NoiseGoal final_goal(double time_s);
 
-/// Traces the finished scene, by `trace` unless it is empty, and works out its figures. `error_scale`: DesignError::scale of the result.
+/// Traces the finished scene, by `trace` unless it is empty, and works out its figures. `error_scale`:
+/// DesignError::scale of the result.
 void follow_up(const DesignTarget& target, double error_scale, const Scene& finished,
                const TraceOptions& options, const NoiseGoal& goal, const FinalTrace& trace,
                const Progress& progress, FollowUp& out);
