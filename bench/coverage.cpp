@@ -2,7 +2,7 @@
 // How often do stated intervals hold the truth? `runs` prints the figures of many short traces; `truth` what
 // they should be: peak, axis and sections by backward light in single directions, without cells and kernels,
 // fluxes from a long trace. A line a figure: scene, seed, figure, value, standard error.
-// bench/figures/coverage.py compares them. Runs of one scene may be split over several calls.
+// bench/coverage.py calls it and compares them. Runs of one scene may be split over several calls.
 // Usage: bench_coverage runs PROJECT.toml RAYS FIRST_SEED LAST_SEED [counted]    counted: no backward light
 //        bench_coverage truth PROJECT.toml RAYS RUNS.csv                         RUNS has where to look
 #include <fmt/format.h>
