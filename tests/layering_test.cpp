@@ -186,6 +186,7 @@ const std::map<std::string, std::string> kPublicHeaders{
     {"photometric_metrics.h", "photometry"},
     {"photometric_file.h", "photometry"},
     {"bounding_surface.h", "rayset"},
+    {"held_out.h", "source"},
     {"source.h", "source"},
     {"source_model.h", "source"},
     {"build_info.h", "trace"},

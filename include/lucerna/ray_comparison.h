@@ -142,6 +142,16 @@ struct RaySetComparison {
 [[nodiscard]] RaySetComparison compare_ray_sets(const RayBlock& reference, const RayBlock& test,
                                                 const RayBlock* training = nullptr);
 
+/// How far a test is from its reference in illuminance on the focus plane, in cells of one size. Light
+/// outside the window, which in one cell would outweigh small ones, is left to the focus view.
+struct ScaleDifference {
+  /// Edge of the cells (root of their area): the window of the focus view, an edge of which is cut into 128,
+  /// 64, 32, 16 or 8.
+  double cell_mm = 0.0;
+  /// As in a view.
+  ViewDifference difference;
+};
+
 /// Illuminance where the lines cross the focus plane, in square cells, all of them however far out.
 struct PlaneDifference {
   /// Side of the cells.

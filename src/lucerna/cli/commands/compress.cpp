@@ -5,10 +5,13 @@
 #include <nlohmann/json.hpp>
 
 #include "lucerna/cli/commands/commands.h"
+#include "lucerna/cli/output/compare_parts.h"
 #include "lucerna/cli/parse/arguments.h"
 #include "lucerna/cli/parse/input_kind.h"
 #include "lucerna/core/io/error.h"
+#include "lucerna/held_out.h"
 #include "lucerna/report/html/write_model_report.h"
+#include "lucerna/results/json/views_json.h"
 #include "lucerna/source_model.h"
 
 namespace lucerna::cli {
@@ -17,7 +20,7 @@ namespace {
 
 struct CompressArguments {
   std::vector<std::string> inputs;
-  std::string output, method = "adaptive", max_bytes, flux, seed = "1", report;
+  std::string output, method = "adaptive", max_bytes, flux, seed = "1", held_out = "2e6", report;
 };
 
 std::optional<double> given_flux(const CompressArguments& a) {
@@ -54,10 +57,23 @@ CompressedFiles make_model(const CompressArguments& a, Session& session) {
   return made;
 }
 
+/// Says and notes how far the model is to be trusted, if there are rays enough to say so.
+void judge(const CompressArguments& a, std::uint64_t max_rays, Json& json, Session& session) {
+  if (max_rays == 0) return;
+  const auto found = session.timed("held-out", [&] {
+    return compare_held_out({a.inputs.begin(), a.inputs.end()}, max_rays, compress_options(a),
+                            session.progress());
+  });
+  if (!found) return;
+  json["held_out"] = held_out_json(*found);
+  print_held_out(*found, session);
+}
+
 void run_compress(const CompressArguments& a, Session& session) {
   session.start();
   check_output(a);
   for (const std::string& input : a.inputs) require_ray_file(input);
+  const std::uint64_t held_out = parse_count(a.held_out);
   const auto made = session.timed("compress", [&] { return make_model(a, session); });
   const SourceModel* model = made.model.get();
   const std::uint64_t rays = made.rays;
@@ -69,13 +85,14 @@ void run_compress(const CompressArguments& a, Session& session) {
   json["layers"] = model->layers();
   json["leaves"] = model->leaves();
   json[model->flux_unit() == FluxUnit::lumen ? "flux_lm" : "flux_w"] = model->flux();
-  session.print_json(json);
   const double ratio = 28.0 * static_cast<double>(rays) / static_cast<double>(bytes);
   session.print_line(fmt::format(
       "{}: {} rays to {} bytes ({}), method {}, {} layer(s), {} leaves, {:g} {}; {:.3g} s", a.output, rays,
       bytes, ratio >= 1.0 ? fmt::format("{:.3g} times smaller", ratio) : "larger than the rays themselves",
       model->method(), model->layers(), model->leaves(), model->flux(), symbol(model->flux_unit()),
       session.seconds("compress")));
+  judge(a, held_out, json, session);
+  session.print_json(json);
   if (a.report.empty()) return;
   write_model_report(*model, a.output, {a.inputs.begin(), a.inputs.end()}, std::move(json), a.report,
                      session.progress());
@@ -95,6 +112,9 @@ void add_compress(CLI::App& app, Session& session, int&) {
   command.option("--max-bytes", a.max_bytes, "Largest size of the file (64k, 1MB, 64KiB)");
   command.option("--flux", a.flux, "Total flux, in the rays' unit, instead of what the files state");
   command.option("--seed", a.seed, "Seed of the random choices");
+  command.option(
+      "--held-out", a.held_out,
+      "Rays by which the model is judged: one of half of them is compared with the other half; 0: none");
   command.option("--report", a.report, "Also write the report as one HTML file");
   session.add_json(command);
   session.add_strict(command);

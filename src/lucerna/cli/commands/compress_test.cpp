@@ -91,11 +91,30 @@ TEST_F(CompressCli, ALargestSizeHolds) {
 
 TEST_F(CompressCli, WritesAReportWhereAskedTo) {
   ASSERT_EQ(run("s.tm25ray -o m.nfl --report m.html").exit_code, 0);
-  EXPECT_TRUE(has(test::slurp(dir / "m.html"), "</html>"));
+  const std::string page = test::slurp(dir / "m.html");
+  EXPECT_TRUE(has(page, "</html>"));
+  EXPECT_TRUE(has(page, "others, which it has not seen"));
+  ASSERT_EQ(run("s.tm25ray -o m.nfl --held-out 0 --report m.html").exit_code, 0);
+  EXPECT_FALSE(has(test::slurp(dir / "m.html"), "others, which it has not seen"));
+}
+
+TEST_F(CompressCli, SaysHowFarAModelIsFromRaysThatItHasNotSeen) {
+  const Json json = json_of("s.tm25ray -o m.nfl");
+  const Json& held_out = json["held_out"];
+  EXPECT_EQ(held_out["rays"].get<int>() + held_out["training_rays"].get<int>(), 20000);
+  EXPECT_EQ(held_out["views"].size(), 5u);
+  EXPECT_LT(held_out["views"]["far"]["excess"].get<double>(), held_out["views"]["far"]["raw"].get<double>());
+  EXPECT_EQ(held_out["scales"].size(), 5u);
+  const std::string printed = run("s.tm25ray -o m.nfl --held-out 1e4").out;
+  EXPECT_TRUE(has(printed, "  held out: a model of ")) << printed;
+  EXPECT_TRUE(has(printed, "  four_d ")) << printed;
+  EXPECT_FALSE(has(run("s.tm25ray -o m.nfl --held-out 0").out, "held out"));
+  EXPECT_FALSE(json_of("s.tm25ray -o m.nfl --held-out 100").contains("held_out"));
 }
 
 TEST_F(CompressCli, RefusesInOneLineAndWritesNoModel) {
   refuse(2, "s.tm25ray --method zip", "unknown method 'zip'; expected adaptive or clusters");
+  refuse(2, "s.tm25ray --held-out some", "'some' is not a whole number");
   refuse(2, "s.tm25ray --flux 0", "--flux 0 is not > 0");
   refuse(1, "s.tm25ray --max-bytes 10", "does not fit in 10 bytes");
   refuse(1, "missing.tm25ray", "missing.tm25ray");

@@ -6,6 +6,7 @@
 #include "lucerna/cli/parse/photometric_arguments.h"
 #include "lucerna/cli/parse/session.h"
 #include "lucerna/comparison.h"
+#include "lucerna/held_out.h"
 
 namespace lucerna::cli {
 
@@ -14,6 +15,8 @@ struct CompareArguments {
   PhotometricArguments photometric;
 };
 
+/// How far a model of half of the rays is from the others, as tables.
+void print_held_out(const HeldOutComparison& h, Session& session);
 /// Of two ray sets or models, the result's keys; and what is said of it.
 Json rays_json(const RayFileComparison& r);
 void say_rays(const CompareArguments& a, const RayFileComparison& r, Session& session);

@@ -5,6 +5,7 @@
 
 #include "lucerna/cli/output/compare_parts.h"
 #include "lucerna/cli/output/describe.h"
+#include "lucerna/results/json/views_json.h"
 
 namespace lucerna::cli {
 
@@ -45,19 +46,24 @@ void print_fields(const RayFileComparison& r, Session& session) {
   }
 }
 
+void print_difference(const std::string& name, const ViewDifference& d, Session& session) {
+  session.print_line(fmt::format("  {:<8}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}", name,
+                                 100.0 * d.error, 100.0 * d.floor, 100.0 * d.excess, 100.0 * d.standard_error,
+                                 100.0 * d.raw));
+}
+
+void print_views(const RaySetComparison& views, Session& session) {
+  session.print_line(
+      fmt::format("  {:<8}{:>10}{:>10}{:>10}{:>10}{:>10}", "view", "error", "floor", "excess", "+-", "raw"));
+  for (const ViewKind kind : kViewKinds) print_difference(std::string(to_string(kind)), views[kind], session);
+}
+
 }  // namespace
 
 Json rays_json(const RayFileComparison& r) {
   Json json;
   json["rays"] = {r.reference_rays, r.test_rays};
-  for (const ViewKind kind : kViewKinds) {
-    const ViewDifference& d = r.views[kind];
-    json["views"][std::string(to_string(kind))] = {{"error", to_json(d.error)},
-                                                   {"floor", to_json(d.floor)},
-                                                   {"excess", to_json(d.excess)},
-                                                   {"standard_error", to_json(d.standard_error)},
-                                                   {"raw", to_json(d.raw)}};
-  }
+  json["views"] = views_json(r.views);
   json["focus_plane"] = Json::array();
   for (const PlaneDifference& d : r.focus_plane) {
     json["focus_plane"].push_back(
@@ -78,17 +84,20 @@ Json rays_json(const RayFileComparison& r) {
   return json;
 }
 
+void print_held_out(const HeldOutComparison& h, Session& session) {
+  session.print_line(
+      fmt::format("  held out: a model of {} rays against {} others; shares of the l2 norm, in per cent",
+                  h.training_rays, h.held_out_rays));
+  print_views(h.views, session);
+  session.print_line("  the same of illuminance on the focus plane, by size of the cells");
+  for (const ScaleDifference& s : h.scales)
+    print_difference(fmt::format("{:.3g} mm", s.cell_mm), s.difference, session);
+}
+
 void say_rays(const CompareArguments& a, const RayFileComparison& r, Session& session) {
   session.print_line(fmt::format("{} ({} rays) against {} ({} rays); shares of the l2 norm, in per cent",
                                  a.test, r.test_rays, a.reference, r.reference_rays));
-  session.print_line(
-      fmt::format("  {:<8}{:>10}{:>10}{:>10}{:>10}{:>10}", "view", "error", "floor", "excess", "+-", "raw"));
-  for (const ViewKind kind : kViewKinds) {
-    const ViewDifference& d = r.views[kind];
-    session.print_line(fmt::format("  {:<8}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}", to_string(kind),
-                                   100.0 * d.error, 100.0 * d.floor, 100.0 * d.excess,
-                                   100.0 * d.standard_error, 100.0 * d.raw));
-  }
+  print_views(r.views, session);
   print_fields(r, session);
 }
 

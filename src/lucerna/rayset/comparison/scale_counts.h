@@ -35,18 +35,8 @@ class ScaleCounts {
   std::vector<double> weights_, squares_;
 };
 
-/// How far a test is from its reference in illuminance on the focus plane, in cells of one size.
-struct ScaleDifference {
-  /// Edge of the cells (root of their area): the window of the focus view, an edge of which is cut into 128,
-  /// 64, 32, 16 or 8.
-  double cell_mm = 0.0;
-  /// As in a view.
-  ViewDifference difference;
-};
-
-/// Illuminance on the focus plane at five scales, the smallest cells first; as compare_view_counts otherwise,
-/// but light outside the window, which in one cell would outweigh small ones, is left to the focus view.
-/// Throws InputError when reference or test has no flux.
+/// Illuminance on the focus plane at five scales, the smallest cells first. Throws InputError when reference
+/// or test has no flux.
 std::array<ScaleDifference, 5> compare_scales(const ScaleCounts& reference, const ScaleCounts& test,
                                               const ScaleCounts& training);
 

@@ -12,6 +12,7 @@
 #include "lucerna/report/html/model_arrays.h"
 #include "lucerna/report/html/report_parts.h"
 #include "lucerna/report/html/view_maps.h"
+#include "lucerna/results/json/views_json.h"
 #include "lucerna/results/svg/html_escaped.h"
 #include "lucerna/results/svg/svg_curves.h"
 #include "lucerna/source/adaptive/sampling/adaptive_model.h"
@@ -97,25 +98,46 @@ void add_luminance(HtmlPage& page, const SourceModel& model, const std::string& 
   page.script(assets::model_view_js);
 }
 
-std::string view_table(const ResultFigures& result, bool rays_are_all) {
-  HtmlTable table{rays_are_all
-                      ? "Model against the rays it was made from, per cent of the rays' l2 norm in each view"
-                      : "Model against the rays shown, per cent of the rays' l2 norm in each view",
-                  {"View", "error", "floor", "excess", "raw"},
-                  {}};
+std::vector<std::string> difference_row(const ResultFigures& result, const std::string& name,
+                                        const std::string& key) {
+  return {name, result.percent(key + "/error"), result.percent(key + "/floor"),
+          result.percent(key + "/excess") + " ± " + result.percent(key + "/standard_error"),
+          result.percent(key + "/raw")};
+}
+
+/// The five views below `key` of the result.
+std::string view_table(const ResultFigures& result, const std::string& key, const std::string& title) {
+  HtmlTable table{title, {"View", "error", "floor", "excess", "raw"}, {}};
   for (const ViewKind kind : kViewKinds) {
-    const std::string key = "/views/" + std::string(to_string(kind)) + "/";
-    table.rows.push_back({std::string(to_string(kind)), result.percent(key + "error"),
-                          result.percent(key + "floor"),
-                          result.percent(key + "excess") + " ± " + result.percent(key + "standard_error"),
-                          result.percent(key + "raw")});
+    const std::string name(to_string(kind));
+    table.rows.push_back(difference_row(result, name, key + "/" + name));
   }
-  return html_table(table) +
+  return html_table(table);
+}
+
+std::string own_rays_table(const ResultFigures& result, bool rays_are_all) {
+  return view_table(result, "/views",
+                    fmt::format("Model against the rays {}, per cent of the rays' l2 norm in each view",
+                                rays_are_all ? "it was made from" : "shown")) +
          "<p>error: what is seen; floor: the counting noise of both; excess: the model's own error; raw: the "
-         "noise "
-         "that the rays themselves have in that view. An excess below raw is a model nearer to the source "
-         "than its "
-         "rays.</p>\n";
+         "noise that the rays themselves have in that view. An excess below raw is a model nearer to the "
+         "source than its rays.</p>\n";
+}
+
+/// What `compress` found with rays that a model had not seen.
+std::string held_out_tables(const ResultFigures& result, const Json& json) {
+  if (!json.contains("held_out")) return "";
+  HtmlTable scales{"The same of illuminance on the focus plane, in cells of five sizes",
+                   {"Cells", "error", "floor", "excess", "raw"},
+                   {}};
+  for (std::size_t k = 0; k < json["held_out"]["scales"].size(); ++k) {
+    const std::string key = fmt::format("/held_out/scales/{}", k);
+    scales.rows.push_back(difference_row(result, result.figure(key + "/cell_mm") + " mm", key));
+  }
+  return view_table(result, "/held_out/views",
+                    fmt::format("A model of {} rays against {} others, which it has not seen, per cent",
+                                result.figure("/held_out/training_rays"), result.figure("/held_out/rays"))) +
+         html_table(scales);
 }
 
 std::string layer_table(const SourceModel& model) {
@@ -207,7 +229,7 @@ std::string model_report_html(const SourceModel& model, Json json, const ModelRe
     page.section(
         "views", "Rays and model in five views",
         fmt::format("<p>Left {}, at the centre {} rays drawn from the model.</p>\n", of, options.model_rays) +
-            view_table(result, all) + compared.view_plots);
+            held_out_tables(result, json) + own_rays_table(result, all) + compared.view_plots);
   } else {
     page.section("views", "Rays and model in five views",
                  "<p>The rays that the model was made from were not given, so "

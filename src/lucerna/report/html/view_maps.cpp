@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "lucerna/report/html/grid_map.h"
@@ -95,20 +94,6 @@ std::string view_metrics(HtmlPage& page, ViewKind kind, const ViewCounts& refere
   map.diverging = true;
   add("difference");
   return out + "</div>\n";
-}
-
-Json views_json(const RaySetComparison& comparison) {
-  const auto number = [](double v) { return std::isfinite(v) ? Json(v) : Json(); };
-  Json views;
-  for (const ViewKind kind : kViewKinds) {
-    const ViewDifference& d = comparison[kind];
-    views[std::string(to_string(kind))] = {{"error", number(d.error)},
-                                           {"floor", number(d.floor)},
-                                           {"excess", number(d.excess)},
-                                           {"standard_error", number(d.standard_error)},
-                                           {"raw", number(d.raw)}};
-  }
-  return views;
 }
 
 }  // namespace lucerna

@@ -12,7 +12,4 @@ namespace lucerna {
 /// the four-dimensional view as 8 x 8 places of 8 x 8 directions. For the page's lists (grid_map.h).
 std::string view_metrics(HtmlPage& page, ViewKind kind, const ViewCounts& reference, const ViewCounts& test);
 
-/// `views` of result.json: error floor excess standard_error raw of all five; null where not finite.
-nlohmann::ordered_json views_json(const RaySetComparison& comparison);
-
 }  // namespace lucerna

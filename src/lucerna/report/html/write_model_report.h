@@ -11,8 +11,8 @@
 namespace lucerna {
 
 /// Writes the report of the model in the file `model_path` to `html`, against the rays of `ray_files` (none:
-/// without a comparison). `json` is the result that the page shows (model_report_html). Of large files every
-/// so-manieth ray is taken, 4 M together. Progress phase "report: rays".
+/// without a comparison). `json` is the result that the page shows (model_report_html). Of large files 4 M
+/// rays are taken together (thinned_ray_set).
 void write_model_report(const SourceModel& model, const std::filesystem::path& model_path,
                         const std::vector<std::filesystem::path>& ray_files, nlohmann::ordered_json json,
                         const std::filesystem::path& html, Progress& progress = no_progress());

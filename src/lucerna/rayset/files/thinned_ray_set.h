@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "lucerna/progress.h"
+#include "lucerna/rays.h"
+
+namespace lucerna {
+
+/// At most `max_rays` rays of files that are superposed: of each file its share, spread over it (RaySubset);
+/// several files keep their fluxes (merge_ray_sets, which says what it refuses). Reads block by block, so
+/// that files may be larger than memory. Progress phase "read rays". Throws what `open_ray_file` throws.
+RaySet thinned_ray_set(const std::vector<std::filesystem::path>& files, std::uint64_t max_rays,
+                       std::uint64_t seed, Progress& progress);
+
+}  // namespace lucerna
