@@ -19,10 +19,12 @@ any `os.PathLike`. `array_like` is what `numpy.asarray` takes; it is copied only
 order asks for it. Arrays that are returned are read-only and keep alive what they belong to.
 Numbers of rays may be written as `1e6`. Nothing prints.
 
-Every call that takes a millisecond or more releases the interpreter's lock, and objects may be
-shared between threads. Ctrl-C stops a long call. A callback is called ten times a second at most;
-an exception of it stops the call and is raised. Processes have to be started by the method `spawn`
-or `forkserver`.
+Objects may be shared between threads. Calls that compute release the interpreter's lock; what only
+copies arrays, compares or pickles holds it. Ctrl-C stops a call that takes a callback, and is
+raised behind any other: sampling into memory, comparing in memory and the figures of a trace are
+not cut short. A callback is called ten times a second at most; an exception of it stops the call
+and is raised. Processes have to be started by the method `spawn` or `forkserver`. In one that was
+forked, scenes, mirrors, traces and designs raise when they are used.
 
 Errors are `lucerna.InputError` for bad input, `OSError` for files and `TypeError` for arguments of
 a wrong type.

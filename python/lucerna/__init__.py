@@ -19,6 +19,7 @@ for _name in (DesignResult, IntensityDistribution, PlaneImage, RaySet, Reflector
     if isinstance(_name, type) or hasattr(_name, "__dict__"):
         _name.__module__ = "lucerna"
 del _name
+_core._seal()
 
 __all__ = ["Body", "DesignResult", "Detector", "Estimate", "InputError", "IntensityDistribution", "Objective",
            "PlaneImage", "RaySet", "Record", "Reflector", "Scene", "Source", "SourceModel", "TraceResult",

@@ -260,6 +260,41 @@ def _design_repr(self: Any) -> str:
     return f"DesignResult(relative_rms {self.relative_rms}, end={self.end!r})"
 
 
+class _NotHere:
+    """What an object becomes that was sent to a process in which it cannot be made: raises when it is used."""
+
+    def __init__(self, name: str) -> None:
+        self.__dict__["_name"] = name
+
+    def __getattr__(self, name: str) -> Any:
+        raise RuntimeError(
+            f"{self.__dict__['_name']}: lucerna was used before this process was forked, and its threads are not in "
+            "it; expected a process started by the method 'spawn' or 'forkserver' (multiprocessing.get_context)")
+
+
+# Their objects are read anew from what a pickle has, by parallel loops.
+_PARSED = (_core.Scene, _core.Reflector, _core.TraceResult, _core.DesignResult, _core._Objective)
+
+
+def _restored(cls: type, state: Any, attributes: dict[str, Any] | None) -> Any:
+    """The object of a pickle. An exception here would make a pool start its workers again for ever."""
+    if issubclass(cls, _PARSED) and _core._is_forked():
+        return _NotHere(cls.__name__)
+    made = cls.__new__(cls)
+    made.__setstate__(state)
+    if attributes:
+        made.__dict__.update(attributes)
+    return made
+
+
+def _reduce_ex(self: Any, protocol: int) -> Any:
+    # The same for all protocols: the older ones would make an object of pybind11's base class.
+    return _restored, (type(self), self.__getstate__(), getattr(self, "__dict__", None) or None)
+
+
+for _class in (_core.RaySet, _core.SourceModel, _core.PlaneImage, *_PARSED):
+    _class.__reduce_ex__ = _reduce_ex
+
 for _class, _plot in ((_core.IntensityDistribution, _plots.plot_intensity), (_core.PlaneImage, _plots.plot_plane),
                       (_core.SourceModel, _plots.plot_model), (_core.DesignResult, _plots.plot_design),
                       (_core.Reflector, _plots.plot_reflector)):

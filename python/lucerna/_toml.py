@@ -117,6 +117,14 @@ def reflector_text(family: str, **keys: Any) -> str:
     return "[[reflector]]\n" + _lines(_with_absolute_file(given))
 
 
+def absolute_reflector(text: str, folder: Any) -> str:
+    """The text of a reflector whose file, if it has one, is found from any folder; `text` has been read."""
+    keys = tomllib.loads(text)["reflector"][0]
+    if "file" not in keys or os.path.isabs(keys["file"]):
+        return text
+    return reflector_text(**{**keys, "file": os.path.join(os.path.abspath(folder), keys["file"])})
+
+
 def _keys_of(table: Any, kind: type[Table]) -> dict[str, Any]:
     if isinstance(table, kind):
         return table.keys

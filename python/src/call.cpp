@@ -6,6 +6,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <set>
 #include <stdexcept>
 #include <thread>
 
@@ -18,16 +19,71 @@ namespace {
 /// Between two looks at signals, and two calls of a callback.
 constexpr std::chrono::milliseconds kInterval{100};
 
+/// The process that made the first call.
+std::atomic<pid_t> user_pid = 0;
+
+/// The calls of all threads. Never destroyed, for threads may outlive what is static.
+struct Calls {
+  std::mutex mutex;
+  std::condition_variable fewer;
+  std::size_t count = 0;
+  bool closed = false;
+  std::set<Watch*> watches;
+};
+Calls& calls() {
+  static auto* const all = new Calls;
+  return *all;
+}
+
+void end_calls() {
+  if (is_forked()) return;  // threads that would end the calls are not here
+  const py::gil_scoped_release unlocked;
+  std::unique_lock lock(calls().mutex);
+  calls().closed = true;
+  for (Watch* watch : calls().watches) watch->stop();
+  calls().fewer.wait(lock, [] { return calls().count == 0; });
+}
+
 }  // namespace
 
-void check_not_forked() {
-  static std::atomic<pid_t> user = 0;
-  const pid_t self = ::getpid();
+bool is_forked() {
+  const pid_t user = user_pid;
+  return user != 0 && user != ::getpid();
+}
+
+Call::Call() {
   pid_t none = 0;
-  if (user.compare_exchange_strong(none, self) || none == self) return;
-  throw std::runtime_error(
-      "lucerna was used before this process was forked, and its threads are not in it; expected a process "
-      "started by the method 'spawn' or 'forkserver' (multiprocessing.get_context)");
+  user_pid.compare_exchange_strong(none, ::getpid());
+  if (is_forked())
+    throw std::runtime_error(
+        "lucerna was used before this process was forked, and its threads are not in it; expected a process "
+        "started by the method 'spawn' or 'forkserver' (multiprocessing.get_context)");
+  const std::lock_guard lock(calls().mutex);
+  if (calls().closed) throw std::runtime_error("the interpreter is at its end: no call of lucerna is begun");
+  ++calls().count;
+}
+
+Call::~Call() {
+  const std::lock_guard lock(calls().mutex);
+  --calls().count;
+  calls().fewer.notify_all();
+}
+
+void end_calls_at_exit() { py::module_::import("atexit").attr("register")(py::cpp_function(&end_calls)); }
+
+Watch::Watch() {
+  const std::lock_guard lock(calls().mutex);
+  calls().watches.insert(this);
+}
+
+Watch::~Watch() {
+  const std::lock_guard lock(calls().mutex);
+  calls().watches.erase(this);
+}
+
+bool Watch::stop_requested() const {
+  if (stop_) noticed_ = true;
+  return stop_;
 }
 
 void Watch::update(std::string_view phase, std::uint64_t done, std::uint64_t total) {
@@ -58,8 +114,8 @@ std::optional<py::object> Watch::news() {
 namespace {
 
 /// Signals, then the callback. Throws what they raise.
-void attend(const py::object& callback, Watch& watch, bool& called) {
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+void attend(const py::object& callback, Watch& watch, bool& called, bool ended) {
+  if (!ended && PyErr_CheckSignals() != 0) throw py::error_already_set();
   if (callback.is_none()) return;
   if (const std::optional<py::object> news = watch.news()) {
     called = true;
@@ -71,7 +127,7 @@ void attend(const py::object& callback, Watch& watch, bool& called) {
 
 void run_watched(const py::object& callback, OnInterrupt on_interrupt,
                  const std::function<void(Watch&)>& work) {
-  check_not_forked();
+  const Call call;
   Watch watch;
   std::mutex mutex;
   std::condition_variable finished;
@@ -94,9 +150,10 @@ void run_watched(const py::object& callback, OnInterrupt on_interrupt,
       std::unique_lock lock(mutex);
       ended = finished.wait_for(lock, kInterval, [&] { return done; });
     }
-    if (raised || (ended && called)) continue;
+    // What is pressed after the end is for the interpreter, which raises it behind this call.
+    if (raised || (ended && (called || callback.is_none()))) continue;
     try {
-      attend(callback, watch, called);
+      attend(callback, watch, called, ended);
     } catch (py::error_already_set& error) {
       raised.emplace(std::move(error));
       watch.stop();
@@ -106,8 +163,11 @@ void run_watched(const py::object& callback, OnInterrupt on_interrupt,
     const py::gil_scoped_release unlocked;
     worker.join();
   }
-  if (raised && (failure || on_interrupt == OnInterrupt::raise || !raised->matches(PyExc_KeyboardInterrupt)))
-    throw std::move(*raised);
+  const auto may_be_kept = [&] {
+    return on_interrupt == OnInterrupt::keep && !failure && watch.was_noticed() &&
+           raised->matches(PyExc_KeyboardInterrupt);
+  };
+  if (raised && !may_be_kept()) throw std::move(*raised);
   if (failure) std::rethrow_exception(failure);
 }
 

@@ -82,11 +82,15 @@ py::tuple state_of(const PlaneGrid& g) {
 
 PlaneGrid grid_of(const py::tuple& s) {
   const auto frame = s[0].cast<py::tuple>();
+  constexpr std::size_t kMaxCells = std::size_t{1} << 24;  // as in a project file
+  const auto nx = s[3].cast<std::size_t>(), ny = s[4].cast<std::size_t>();
+  if (nx == 0 || ny == 0 || nx > kMaxCells / ny)
+    throw InputError("a damaged pickle of an image", ErrorCause::damaged);
   return {{vector_of(frame[0]), vector_of(frame[1]), vector_of(frame[2]), vector_of(frame[3])},
           s[1].cast<double>(),
           s[2].cast<double>(),
-          s[3].cast<std::size_t>(),
-          s[4].cast<std::size_t>()};
+          nx,
+          ny};
 }
 
 py::tuple state_of(const Estimate& e) { return py::make_tuple(e.mean, e.standard_error); }

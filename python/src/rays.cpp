@@ -201,52 +201,58 @@ py::array_t<float> stacked(const py::object& self, std::vector<float> RayBlock::
   return copied(x, y, z);
 }
 
-/// The columns of an array of shape (n, 3), whatever precision it is in.
-template <class T>
-void unstack(const py::array_t<T, py::array::c_style>& vectors, std::vector<float>& x, std::vector<float>& y,
-             std::vector<float>& z) {
-  const T* v = vectors.data();
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    x[i] = static_cast<float>(v[3 * i]);
-    y[i] = static_cast<float>(v[3 * i + 1]);
-    z[i] = static_cast<float>(v[3 * i + 2]);
-  }
-}
-
-/// Reads an (n, 3) array into three columns without a second copy of float32 data.
-void take_vectors(const py::handle& given, std::string_view name, std::size_t n, std::vector<float>& x,
-                  std::vector<float>& y, std::vector<float>& z) {
+/// Puts vector i of an (n, 3) array into the columns; `put` is called with i and the three numbers, in
+/// whatever precision they are. No second copy of float32 data.
+template <class Put>
+void take_vectors(const py::handle& given, std::string_view name, std::size_t n, const Put& put) {
   const auto check = [&](const py::array& array) {
     if (array.ndim() != 2 || vector_count(array) != n)
       throw InputError(std::string(name) + ": found shape " + shape_text(array) + ", expected (" +
                        std::to_string(n) + ", 3)");
   };
-  const bool single = py::isinstance<py::array_t<float>>(given);
-  if (single) {
-    const auto array = input_vectors<float>(given, name);
+  const auto each = [&](const auto& array) {
     check(array);
-    unstack(array, x, y, z);
+    const auto* v = array.data();
+    for (std::size_t i = 0; i < n; ++i) put(i, v[3 * i], v[3 * i + 1], v[3 * i + 2]);
+  };
+  if (py::isinstance<py::array_t<float>>(given)) {
+    each(input_vectors<float>(given, name));
   } else {
-    const auto array = input_vectors<double>(given, name);
-    check(array);
-    unstack(array, x, y, z);
+    each(input_vectors<double>(given, name));
   }
 }
 
-/// Directions to unit length; those whose square is 1 to 1e-6 keep their bits, by the rule of readers of
-/// files: what this leaves alone, they leave alone.
-void normalise(RayBlock& b) {
-  for (std::size_t i = 0; i < b.size(); ++i) {
-    const Vec3 k{b.kx[i], b.ky[i], b.kz[i]};
-    const double square = dot(k, k), size = std::sqrt(square);
-    if (!(size > 0.0))
-      throw InputError("direction: found a vector of length 0 at index " + std::to_string(i) +
-                       ", expected directions");
-    if (std::abs(square - 1.0) <= 1e-6) continue;
+[[noreturn]] void refuse_vector(std::string_view name, std::size_t i, const std::string& found,
+                                const std::string& expected) {
+  throw InputError(std::string(name) + ": found " + found + " at index " + std::to_string(i) + ", expected " +
+                   expected);
+}
+
+void take_positions(const py::object& given, RayBlock& b) {
+  take_vectors(given, "position_mm", b.size(), [&](std::size_t i, auto x, auto y, auto z) {
+    b.x_mm[i] = static_cast<float>(x), b.y_mm[i] = static_cast<float>(y), b.z_mm[i] = static_cast<float>(z);
+    if (!std::isfinite(b.x_mm[i]) || !std::isfinite(b.y_mm[i]) || !std::isfinite(b.z_mm[i]))
+      refuse_vector("position_mm", i, "a number that float32 cannot hold", "mm below 3.4e38");
+  });
+}
+
+/// Directions of any length to unit length; those whose square is 1 to 1e-6 in float32 keep their bits, by
+/// the rule of readers of files: what this leaves alone, they leave alone.
+void take_directions(const py::object& given, RayBlock& b) {
+  take_vectors(given, "direction", b.size(), [&](std::size_t i, auto x, auto y, auto z) {
+    b.kx[i] = static_cast<float>(x), b.ky[i] = static_cast<float>(y), b.kz[i] = static_cast<float>(z);
+    const Vec3 single{b.kx[i], b.ky[i], b.kz[i]};
+    if (std::abs(dot(single, single) - 1.0) <= 1e-6) return;
+    // Over the largest component first: squares of 1e-200 and 1e200 are no numbers.
+    const auto dx = static_cast<double>(x), dy = static_cast<double>(y), dz = static_cast<double>(z);
+    const double most = std::max({std::abs(dx), std::abs(dy), std::abs(dz)});
+    if (!(most > 0.0)) refuse_vector("direction", i, "a vector of length 0", "directions");
+    const Vec3 k{dx / most, dy / most, dz / most};
+    const double size = std::sqrt(dot(k, k));
     b.kx[i] = static_cast<float>(k.x / size);
     b.ky[i] = static_cast<float>(k.y / size);
     b.kz[i] = static_cast<float>(k.z / size);
-  }
+  });
 }
 
 void take_weights(const py::object& weight, RayBlock& b) {
@@ -282,9 +288,8 @@ Rays from_arrays(const py::object& position_mm, const py::object& direction, con
   }
   RayBlock& b = set->rays;
   b.resize(first.ndim() == 2 ? static_cast<std::size_t>(first.shape(0)) : 0, 0);
-  take_vectors(position_mm, "position_mm", b.size(), b.x_mm, b.y_mm, b.z_mm);
-  take_vectors(direction, "direction", b.size(), b.kx, b.ky, b.kz);
-  normalise(b);
+  take_positions(position_mm, b);
+  take_directions(direction, b);
   take_weights(weight, b);
   if (!wavelength_nm.is_none()) {
     auto nm = input_row<float>(wavelength_nm, "wavelength_nm");
@@ -383,6 +388,20 @@ py::tuple state(const py::object& self) {
                         rays.warnings);
 }
 
+[[noreturn]] void refuse_state() { throw InputError("a damaged pickle of rays", ErrorCause::damaged); }
+
+/// What a reader of files would refuse too.
+void check_state(const RaySetHeader& h, const RayBlock& b) {
+  const auto finite = [](const std::vector<float>& column) {
+    return std::ranges::all_of(column, [](float x) { return std::isfinite(x); });
+  };
+  for (const auto* column : {&b.x_mm, &b.y_mm, &b.z_mm, &b.kx, &b.ky, &b.kz, &b.weight})
+    if (!finite(*column)) refuse_state();
+  if (std::ranges::any_of(b.weight, [](float w) { return w < 0.0F; })) refuse_state();
+  for (const SpectralTable& s : h.spectra)
+    if (s.wavelength_nm.size() != s.relative_power.size()) refuse_state();
+}
+
 Rays from_state(const py::tuple& s) {
   if (s.size() != 11) throw InputError("a pickle of another version of lucerna", ErrorCause::damaged);
   auto set = std::make_shared<RaySet>();
@@ -393,8 +412,7 @@ Rays from_state(const py::tuple& s) {
   for (const auto& c : s[3].cast<py::list>()) {
     const auto spec = c.cast<py::tuple>();
     const int kind = spec[0].cast<int>();
-    if (kind < 0 || kind > static_cast<int>(ColumnKind::additional))
-      throw InputError("a damaged pickle of rays", ErrorCause::damaged);
+    if (kind < 0 || kind > static_cast<int>(ColumnKind::additional)) refuse_state();
     h.columns.push_back({static_cast<ColumnKind>(kind), spec[1].cast<std::string>()});
   }
   for (const auto& t : s[4].cast<py::list>()) {
@@ -413,15 +431,16 @@ Rays from_state(const py::tuple& s) {
   b.extra.resize(h.columns.size());
   std::vector<std::vector<float>*> places{&b.x_mm, &b.y_mm, &b.z_mm, &b.kx, &b.ky, &b.kz, &b.weight};
   for (auto& column : b.extra) places.push_back(&column);
-  if (arrays.size() != places.size()) throw InputError("a damaged pickle of rays", ErrorCause::damaged);
+  if (arrays.size() != places.size()) refuse_state();
   if (!arrays.empty()) b.reserve(py::len(arrays[0]));
   for (std::size_t i = 0; i < places.size(); ++i) {
     // Stokes and additional columns may hold what is no number: taken as it is.
     const auto column = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(arrays[i]);
-    if (!column || column.ndim() != 1) throw InputError("a damaged pickle of rays", ErrorCause::damaged);
+    if (!column || column.ndim() != 1) refuse_state();
     places[i]->assign(column.data(), column.data() + column.size());
-    if (places[i]->size() != b.x_mm.size()) throw InputError("a damaged pickle of rays", ErrorCause::damaged);
+    if (places[i]->size() != b.x_mm.size()) refuse_state();
   }
+  check_state(h, b);
   return {set, s[10].cast<Warnings>()};
 }
 

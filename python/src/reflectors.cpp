@@ -134,6 +134,13 @@ Mirror mirror_of(const std::string& toml, const fs::path& folder) {
   });
 }
 
+/// The same mirror, and the same text unless it names a file that is relative to `folder`.
+Mirror mirror_from_text(const std::string& toml, const fs::path& folder) {
+  Mirror read = mirror_of(toml, folder);
+  read.toml = python_name("lucerna._toml", "absolute_reflector")(toml, folder).cast<std::string>();
+  return read;
+}
+
 Mirror make_mirror(const std::string& family, const py::kwargs& keys) {
   const py::object text = python_name("lucerna._toml", "reflector_text")(family, **keys);
   return mirror_of(text.cast<std::string>(), fs::current_path());
@@ -225,7 +232,7 @@ void add_geometry(py::class_<Mirror>& c) {
 void add_reflectors(py::module_& m) {
   auto c = py::class_<Mirror>(m, "Reflector", kReflectorClassDoc);
   c.def(py::init(&make_mirror), "family"_a);
-  c.def_static("from_toml", &mirror_of, "text"_a, "folder"_a = fs::path("."), kFromTomlDoc);
+  c.def_static("from_toml", &mirror_from_text, "text"_a, "folder"_a = fs::path("."), kFromTomlDoc);
   c.def_property_readonly(
       "toml", [](const Mirror& r) { return r.toml; }, "The [[reflector]] table that describes it.");
   c.def_property_readonly("aperture", &aperture,
@@ -237,11 +244,12 @@ void add_reflectors(py::module_& m) {
       "axis", [](const Mirror& r) { return vector(r.placed.world_from_reflector.ez()); },
       "Where the mirror opens to in the luminaire frame, as a unit vector.");
   add_geometry(c);
-  c.def(py::pickle([](const Mirror& r) { return py::make_tuple(r.toml, fs::current_path()); },
+  c.def(py::pickle([](const Mirror& r) { return py::make_tuple(r.toml); },
                    [](const py::tuple& s) {
-                     if (s.size() != 2)
+                     if (s.size() != 1)
                        throw InputError("a pickle of another version of lucerna", ErrorCause::damaged);
-                     return mirror_of(s[0].cast<std::string>(), s[1].cast<fs::path>());
+                     return mirror_of(s[0].cast<std::string>(),
+                                      fs::path("/"));  // its file's name is absolute
                    }));
   c.def(
       "__eq__", [](const Mirror& a, const Mirror& b) { return a.toml == b.toml; }, py::is_operator());

@@ -180,6 +180,12 @@ double positive(const char* name, double value) {
                    ErrorCause::out_of_range);
 }
 
+/// InputError with `message` where the projects differ.
+void check_same_scene(const ScenePointer& a, const ScenePointer& b, const char* message) {
+  if (a != b && project_text(a->project) != project_text(b->project))
+    throw InputError(message, ErrorCause::mismatch);
+}
+
 TracedPointer trace_scene(const SceneHandle& scene, const py::object& rays, double noise, double time_s,
                           std::uint64_t seed, const std::string& sequence, int max_bounces,
                           const std::string& device, const std::string& isa,
@@ -195,7 +201,10 @@ TracedPointer trace_scene(const SceneHandle& scene, const py::object& rays, doub
   goal.max_seconds = positive("time_s", time_s);
   if (!rays.is_none()) set_rays(rays, options);
   std::optional<TraceResult> from;
-  if (resume) from = (*resume)->result();
+  if (resume) {
+    check_same_scene(scene.state, (*resume)->scene(), "the trace cannot be resumed: it is of another scene");
+    from = (*resume)->result();
+  }
   return watched(callback, OnInterrupt::keep, [&](Watch& watch) -> TracedPointer {
     const Scene& s = scene.state->project.scene;
     return std::make_shared<Traced>(scene.state, rays.is_none()
@@ -213,8 +222,8 @@ TracedPointer merge_traces(const std::vector<TracedPointer>& parts) {
     });
     TraceResult sum = ordered.front()->result();
     for (std::size_t i = 1; i < ordered.size(); ++i) {
-      if (project_text(ordered[i]->scene()->project) != project_text(ordered.front()->scene()->project))
-        throw InputError("the traces cannot be added: they are of different scenes", ErrorCause::mismatch);
+      check_same_scene(ordered[i]->scene(), ordered.front()->scene(),
+                       "the traces cannot be added: they are of different scenes");
       sum = merge(sum, ordered[i]->result());
     }
     return std::make_shared<Traced>(ordered.front()->scene(),

@@ -305,3 +305,166 @@ def test_forked_processes_look_but_do_not_compute(rays, model, lamp, traced):
     assert process.exitcode == 0
     assert {found[name] for name, _ in looks} == {"returned"}
     assert {found[name] for name, _ in work} == {"spawn"}
+
+
+# A class of pybind11 that no object of lucerna is of, and classes derived from it.
+BASE = """
+import lucerna as lu
+base = lu.RaySet.__base__
+class Derived(base):
+    pass
+for make in (base, Derived, lambda: base.__new__(base)):
+    try:
+        make()
+    except TypeError:
+        continue
+    raise SystemExit("nothing was raised")
+"""
+
+
+def test_the_base_class_makes_no_objects():
+    assert python(BASE) == ""
+
+
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_every_protocol_pickles(protocol):
+    rays = lu.make_source("disk", 10)
+    scene = lu.Scene([{"kind": "disk"}])
+    for thing in (rays, lu.compress(lu.make_source("disk", 1000, flux_lm=1)), scene, scene.trace(rays=100),
+                  lu.Reflector("revolution", preset="parabola", focal_mm=8, diameter_mm=60)):
+        back = pickle.loads(pickle.dumps(thing, protocol))
+        assert type(back) is type(thing)
+        assert not hasattr(type(thing), "__eq__") or type(thing) is lu.SourceModel or back == thing
+
+
+class Named(lu.RaySet):
+    pass
+
+
+def test_a_subclass_keeps_its_class_and_attributes():
+    rays = lu.make_source("disk", 10)
+    named = Named.__new__(Named)
+    named.__setstate__(rays.__getstate__())
+    named.name = "a lamp"
+    back = pickle.loads(pickle.dumps(named))
+    assert type(back) is Named and back.name == "a lamp" and back == rays
+
+
+def test_no_object_changes_to_or_from_a_class_of_the_extension():
+    rays = lu.make_source("disk", 10)
+    for cls in CLASSES[1:8]:
+        with pytest.raises(TypeError):
+            rays.__class__ = cls
+    with pytest.raises(TypeError):
+        lu.RaySet.flux_lm = 3
+
+
+# A thread that is in a long call at the end of the interpreter, of the kinds that can and cannot be stopped.
+AT_EXIT = """
+import sys, threading, time
+import lucerna as lu
+scene = lu.Scene([{"kind": "disk"}])
+model = lu.compress(lu.make_source("disk", 2000, flux_lm=1))
+def sample():
+    while True:
+        model.sample(1e5)
+work = {"trace": lambda: scene.trace(rays=1e12), "callback": lambda: scene.trace(rays=1e12, callback=lambda s: None),
+        "sample": sample}[sys.argv[1]]
+def run():
+    try:
+        work()
+    except RuntimeError as error:
+        assert "interpreter" in str(error), error
+threading.Thread(target=run, daemon=True).start()
+time.sleep(0.5)
+"""
+
+
+@pytest.mark.parametrize("kind", ["trace", "callback", "sample"])
+def test_the_interpreter_ends_while_a_daemon_thread_works(kind):
+    assert python(AT_EXIT, kind) == ""
+
+
+def state_with(rays, **changes):
+    """The state of a pickle of rays with other columns; names as in RaySet."""
+    state = list(rays.__getstate__())
+    arrays = [np.array(a) for a in state[9]]
+    names = ["x_mm", "y_mm", "z_mm", "kx", "ky", "kz", "weight"]
+    for name, value in changes.items():
+        if name in names:
+            arrays[names.index(name)][:] = value
+    state[9] = arrays
+    if "spectra" in changes:
+        state[4] = changes["spectra"]
+    return tuple(state)
+
+
+@pytest.mark.parametrize("changes", [{"weight": np.inf}, {"weight": np.nan}, {"weight": -1.0}, {"x_mm": np.nan},
+                                     {"kz": np.inf}, {"spectra": [(np.ones(3, "f4"), np.ones(1, "f4"))]}], ids=str)
+def test_damaged_pickles_of_rays_are_refused(changes):
+    rays = lu.make_source("disk", 10)
+    with pytest.raises(lu.InputError, match="damaged pickle"):
+        lu.RaySet.__new__(lu.RaySet).__setstate__(state_with(rays, **changes))
+
+
+@pytest.mark.parametrize("cells", [(0, 3), (3, 0), (1 << 40, 1 << 40)])
+def test_images_without_cells_are_refused(cells):
+    scene = lu.Scene([{"kind": "disk"}], detectors=[
+        lu.Detector("plane", name="wall", position_mm=[0, 0, 5], size_mm=[10, 10], cells=[2, 2])])
+    state = list(scene.trace(rays=1000)["wall"].__getstate__())
+    grid = list(state[1])
+    grid[3], grid[4] = cells
+    state[1], state[3], state[4] = tuple(grid), np.zeros((0,)), np.zeros((0,))
+    with pytest.raises(lu.InputError, match="damaged pickle"):
+        lu.PlaneImage.__new__(lu.PlaneImage).__setstate__(tuple(state))
+
+
+def flux_of(scene):
+    return scene.flux
+
+
+@pytest.mark.filterwarnings("ignore:This process:DeprecationWarning")
+def test_a_forked_pool_raises_and_ends():
+    scene = lu.Scene([{"kind": "disk"}])
+    trace = scene.trace(rays=100)
+    with multiprocessing.get_context("fork").Pool(1) as pool:
+        for thing in (scene, trace):
+            with pytest.raises(RuntimeError, match="spawn"):
+                pool.map_async(flux_of, [thing]).get(timeout=60)
+
+
+def test_numbers_that_float32_cannot_hold():
+    start = [[0, 0, 0.0]]
+    for place in (1e39, -1e300):
+        with pytest.raises(lu.InputError, match="position_mm: .*float32"):
+            lu.RaySet.from_arrays([[0, 0, place]], [[0, 0, 1.0]])
+    for length in (1e39, 1e300, 1e-50, 1e-310):
+        assert lu.RaySet.from_arrays(start, [[0, 0, -length]]).direction.tolist() == [[0, 0, -1]]
+        diagonal = lu.RaySet.from_arrays(start, [[0, length, length]]).direction[0]
+        np.testing.assert_allclose(diagonal, [0, 0.5**0.5, 0.5**0.5], rtol=1e-6)
+    with pytest.raises(lu.InputError, match="length 0"):
+        lu.RaySet.from_arrays(start, [[0, 0, 0.0]])
+
+
+def test_threads_save_to_one_path(tmp_path):
+    sets = [lu.make_source("disk", n, flux_lm=1) for n in (20_000, 30_000)]
+    path = tmp_path / "rays.tm25ray"
+    start = threading.Barrier(len(sets))
+    failures = []
+
+    def save(rays):
+        start.wait()
+        for _ in range(20):
+            try:
+                rays.save(path)
+                if lu.read_rays(path) not in sets:
+                    failures.append("mixed")
+            except Exception as error:
+                failures.append(error)
+
+    threads = [threading.Thread(target=save, args=(rays,)) for rays in sets]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert failures == []

@@ -104,3 +104,21 @@ def test_a_thread_that_is_not_the_main_one_can_trace(lamp, traced):
     thread.start()
     thread.join()
     assert found[0] == traced
+
+
+def test_what_is_pressed_at_the_end_of_a_call_is_not_lost():
+    scene = lu.Scene([{"kind": "disk"}])
+    for _ in range(5):  # the work is over before the callback is called
+        with pytest.raises(KeyboardInterrupt):
+            scene.trace(rays=10, callback=lambda step: signal.raise_signal(signal.SIGINT))
+            for _ in range(1000):  # where Python looks at signals
+                pass
+
+
+def test_a_callback_may_press_it(lamp):
+    def press(step):
+        if step.done > 2**24:
+            raise KeyboardInterrupt
+
+    part = lamp.trace(rays=1e10, callback=press)
+    assert part.interrupted

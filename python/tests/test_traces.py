@@ -214,3 +214,28 @@ def test_figures_are_those_of_the_program(lamp, traced):
         text = json.dumps(json.load(file))
     for figure in (traced["far"].metrics().peak_cd.value, traced["floor"].max.value, traced["far"].flux.value):
         assert repr(figure) in text
+
+
+def test_a_trace_of_another_scene_is_not_resumed():
+    def lamp(radius_mm):
+        return lu.Scene([{"kind": "disk", "radius_mm": radius_mm}])
+
+    part = lamp(1).trace(rays=1000)
+    with pytest.raises(lu.InputError, match="another scene"):
+        lamp(3).trace(rays=2000, resume=part)
+    assert lamp(1).trace(rays=2000, resume=part) == lamp(1).trace(rays=2000)
+
+
+def test_a_mirror_of_a_file_is_the_same_from_any_folder(tmp_path, monkeypatch):
+    for name, height in (("a", 4), ("b", 8)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "p.csv").write_text(f"0,0\n10,{height}\n20,{4 * height}\n")
+    monkeypatch.chdir(tmp_path / "a")
+    mirror = lu.Reflector.from_toml("[[reflector]]\nfamily = 'revolution'\nfile = 'p.csv'\n")
+    height = float(mirror.height_mm(10, 0))
+    monkeypatch.chdir(tmp_path / "b")
+    for same in (pickle.loads(pickle.dumps(mirror)), mirror.replace(),
+                 lu.Scene([{"kind": "disk"}], reflectors=[mirror]).reflectors[0]):
+        assert float(same.height_mm(10, 0)) == height
+    other = lu.Reflector.from_toml("[[reflector]]\nfamily = 'revolution'\nfile = 'p.csv'\n", folder=tmp_path / "b")
+    assert float(other.height_mm(10, 0)) != height and other != mirror

@@ -39,8 +39,9 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
     throw InputError(fmt::format("{}: cannot write: it is a directory", path_.string()),
                      ErrorCause::unwritable);
   }
+  // A name of this thread's own: several may write to one path at once, and what was committed last stays.
   temporary_ = path_;
-  temporary_ += fmt::format(".tmp{}", ::getpid());
+  temporary_ += fmt::format(".tmp{}-{}", ::getpid(), ::gettid());
   file_ = std::fopen(temporary_.c_str(), "wb");
   if (file_ == nullptr) throw_cannot_write(path_, errno);
 }

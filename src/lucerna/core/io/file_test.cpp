@@ -6,9 +6,13 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <set>
+#include <thread>
+#include <vector>
 
 #include "lucerna/core/io/error.h"
+#include "tests/support/run_program.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {
@@ -65,9 +69,34 @@ TEST(OutputFile, AnUnwritablePlaceIsOneClearLine) {
 
 TEST(OutputFile, AFullDiskIsToldApart) {
   const test::TempDir dir;
-  std::filesystem::create_symlink("/dev/full", dir / fmt::format("a.tmp{}", ::getpid()));
+  std::filesystem::create_symlink("/dev/full", dir / fmt::format("a.tmp{}-{}", ::getpid(), ::gettid()));
   EXPECT_EQ(cause_of([&] { write_file(dir / "a", "text"); }), ErrorCause::no_space);
   EXPECT_FALSE(std::filesystem::exists(dir / "a"));
+}
+
+/// Each file is one thread's, whole.
+TEST(OutputFile, ThreadsMayWriteToOnePathAtOnce) {
+  const test::TempDir dir;
+  constexpr int kThreads = 4, kFiles = 50;
+  std::atomic<int> failures{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < kThreads; ++t) {
+    threads.emplace_back([&, t] {
+      for (int i = 0; i < kFiles; ++i) {
+        try {
+          write_file(dir / "a",
+                     std::string(100'000 + 1000 * static_cast<std::size_t>(t), static_cast<char>('a' + t)));
+          const std::string read = test::slurp(dir / "a");
+          const std::size_t owner = static_cast<std::size_t>(read.at(0) - 'a');
+          if (read != std::string(100'000 + 1000 * owner, read[0])) ++failures;
+        } catch (const std::exception&) {
+          ++failures;
+        }
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(failures, 0);
 }
 
 TEST(ErrorCauses, HaveNamesOfTheirOwn) {
