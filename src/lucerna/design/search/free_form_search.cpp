@@ -73,6 +73,9 @@ constexpr double kSmoothing = 0.03;
 constexpr double kMaxDerivativeNoise = 0.3;
 /// Least share of a level's bins, along each side.
 constexpr double kMinBins = 0.6;
+/// What roughness costs there, of what it does elsewhere, where it weighs as much as the error. With a tenth
+/// ripples hide in the coarser bins.
+constexpr double kWideSmoothing = 0.3;
 /// Light that a start is made for, in rays.
 constexpr std::uint64_t kStartRays = std::uint64_t{1} << 19;
 constexpr int kStartBins = 36;
@@ -85,6 +88,13 @@ const std::array<FreeFormLevel, kLevels> kLevel{{
     {.bins = 108, .rays = 1 << 22, .max_steps = 25, .min_gain = 0.015},
     {.bins = 120, .rays = 1 << 23, .max_steps = 40, .min_gain = 0.005},
 }};
+
+/// The level with so many bins, of which a wide source has fewer.
+FreeFormLevel with_bins(FreeFormLevel level, int bins) {
+  if (bins < level.bins) level.smoothing *= kWideSmoothing;
+  level.bins = bins;
+  return level;
+}
 
 /// Intervals along both sides where the longer has `max`.
 std::pair<int, int> intervals_of(const Aperture& a, int max) {
@@ -259,7 +269,7 @@ bool FreeFormSearch::knots_suffice(const FreeFormSnapshot& snapshot) const {
 
 FreeFormLevel FreeFormSearch::level_after(const FreeFormSnapshot& before, int number,
                                           const DesignShape& shape) const {
-  FreeFormLevel l = level(number);
+  const FreeFormLevel l = level(number);
   if (number == 0) return l;
   // Noise goes with the number of pairs of a bin and a cell of knots that the rays are dealt to.
   const double bins = static_cast<double>(l.bins) / before.bins;
@@ -267,10 +277,8 @@ FreeFormLevel FreeFormSearch::level_after(const FreeFormSnapshot& before, int nu
                        (before.intervals_x * before.intervals_y);
   const double rays = static_cast<double>(l.rays) / static_cast<double>(level(number - 1).rays);
   const double noise = before.derivative_noise * bins * bins * cells / rays;
-  if (noise > kMaxDerivativeNoise)
-    l.bins =
-        static_cast<int>(std::lround(l.bins * std::max(kMinBins, std::sqrt(kMaxDerivativeNoise / noise))));
-  return l;
+  const double share = std::clamp(std::sqrt(kMaxDerivativeNoise / std::max(noise, 1e-12)), kMinBins, 1.0);
+  return with_bins(l, static_cast<int>(std::lround(l.bins * share)));
 }
 
 void FreeFormSearch::begin(const DesignShape& shape, const FreeFormSnapshot& snapshot, Progress& progress) {
@@ -361,9 +369,7 @@ std::optional<FitRecord> FreeFormSearch::step(Progress& progress) {
     if (!point_) return std::nullopt;
   } else {
     if (!point_) {  // taken up again in the middle of a level
-      FreeFormLevel l = level(state_.now.level);
-      l.bins = state_.now.bins;
-      fit_.emplace(problem_, l, progress);
+      fit_.emplace(problem_, with_bins(level(state_.now.level), state_.now.bins), progress);
       point_.emplace(fit_->at(shape_of(state_.now)));
     }
     record.accepted = fit_->step(*point_, state_.lambda);

@@ -117,8 +117,8 @@ class FreeFormSearch {
   void choose(Progress& progress);
   /// `snapshot`: the candidate, its transport, and the level that begins.
   void begin(const DesignShape& shape, const FreeFormSnapshot& snapshot, Progress& progress);
-  /// A level for a shape of that many knots: with fewer bins where derivatives would be noise, as the
-  /// snapshot's were.
+  /// A level for a shape of that many knots: with fewer bins and less smoothing where derivatives would be
+  /// noise, as the snapshot's were.
   FreeFormLevel level_after(const FreeFormSnapshot& before, int number, const DesignShape& shape) const;
   void finish();
   bool level_ended() const;
