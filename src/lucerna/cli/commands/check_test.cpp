@@ -23,7 +23,7 @@ class CheckCli : public testing::Test {
   void SetUp() override {
     std::filesystem::create_directories(dir / "good/sub");
     ASSERT_EQ(run_lucerna(dir / "good", "make-source disk -n 5000 -o s.tm25ray").exit_code, 0);
-    ASSERT_EQ(run_lucerna(dir / "good", "compress s.tm25ray -o s.nfl").exit_code, 0);
+    ASSERT_EQ(run_lucerna(dir / "good", "compress s.tm25ray -o s.nfl --held-out 0").exit_code, 0);
     IntensityDistribution even = uniform_distribution(30.0, 10.0);
     std::fill(even.cd.begin(), even.cd.end(), 10.0);
     PhotometricFile file{even, {}};

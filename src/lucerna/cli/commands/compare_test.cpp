@@ -85,7 +85,7 @@ TEST(CompareCli, WrongWordsAreOneClearLine) {
 TEST(InfoCli, AnAdaptiveModelSaysWhatWasChosenAndWhy) {
   const TempDir dir;
   run_well(dir, "make-source disk -n 30000 --surface sphere --surface-mm 3 -o a.tm25ray");
-  run_well(dir, "compress a.tm25ray -o a.nfl");
+  run_well(dir, "compress a.tm25ray -o a.nfl --held-out 0");
   const Json file = json_of(dir, "info a.nfl")["files"][0];
   EXPECT_EQ(file["starting_surface"], "sphere");
   ASSERT_EQ(file["chosen"].size(), file["layers"].get<std::size_t>());
@@ -108,7 +108,7 @@ TEST(InfoCli, AnAdaptiveModelSaysWhatWasChosenAndWhy) {
 TEST(InfoCli, AModelOfClustersSaysItsMesh) {
   const TempDir dir;
   run_well(dir, "make-source disk -n 20000 --surface sphere --surface-mm 3 -o a.tm25ray");
-  run_well(dir, "compress a.tm25ray -o a.nfl --method clusters");
+  run_well(dir, "compress a.tm25ray -o a.nfl --method clusters --held-out 0");
   const Json file = json_of(dir, "info a.nfl")["files"][0];
   EXPECT_EQ(file["starting_surface"], "sphere");
   EXPECT_GE(file["clusters"].get<int>(), 32);

@@ -22,7 +22,7 @@ class InfoFilesCli : public testing::Test {
  protected:
   void SetUp() override {
     ASSERT_EQ(run_lucerna(dir.path(), "make-source disk -n 5000 -o s.tm25ray").exit_code, 0);
-    ASSERT_EQ(run_lucerna(dir.path(), "compress s.tm25ray -o s.nfl").exit_code, 0);
+    ASSERT_EQ(run_lucerna(dir.path(), "compress s.tm25ray -o s.nfl --held-out 0").exit_code, 0);
     IntensityDistribution even = uniform_distribution(30.0, 10.0);
     std::fill(even.cd.begin(), even.cd.end(), 10.0);
     write_file(dir / "s.ldt", ldt_text({even, {}}));

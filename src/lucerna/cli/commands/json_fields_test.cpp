@@ -51,9 +51,9 @@ class JsonFieldsCli : public testing::Test {
 TEST_F(JsonFieldsCli, Info) {
   run("make-source disk -n 5000 --surface sphere --surface-mm 3 -o disk.tm25ray");
   run("make-source cylinder --flux-w 2 -n 10000 -o rod.tm25ray");
-  run("compress disk.tm25ray -o disk.nfl");
-  run("compress rod.tm25ray -o rod.nfl");
-  run("compress disk.tm25ray --method clusters -o clusters.nfl");
+  run("compress disk.tm25ray -o disk.nfl --held-out 0");
+  run("compress rod.tm25ray -o rod.nfl --held-out 0");
+  run("compress disk.tm25ray --method clusters -o clusters.nfl --held-out 0");
   write_file(dir / "lamp.toml", "[[source]]\nkind = \"disk\"\n");
   run("trace lamp.toml -o lamp --rays 5000");
   // A file of lines names no unit; a comma for a point is repaired.

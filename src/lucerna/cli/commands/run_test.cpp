@@ -164,7 +164,7 @@ TEST(ProgramCli, AModelIsMadeSampledComparedAndTraced) {
 TEST(ProgramCli, DamagedModelsAreOneClearLine) {
   const TempDir dir;
   make_source(dir, "disk -n 5000");
-  ASSERT_EQ(run_lucerna(dir.path(), "compress s.tm25ray -o s.nfl").exit_code, 0);
+  ASSERT_EQ(run_lucerna(dir.path(), "compress s.tm25ray -o s.nfl --held-out 0").exit_code, 0);
   const std::string whole = slurp(dir / "s.nfl");
   std::string flipped = whole;
   flipped[flipped.size() / 2] = static_cast<char>(flipped[flipped.size() / 2] ^ 0x10);
@@ -357,7 +357,7 @@ TEST(ProgramCli, AReportThatCannotBeWrittenIsFoundBeforeTheWork) {
   make_source(dir, "disk -n 1000");
   write_file(dir / "p.toml", kProject);
   write_file(dir / "old.html", "old");
-  for (const char* work : {"trace p.toml -o out --rays 1000", "compress s.tm25ray -o s.nfl"}) {
+  for (const char* work : {"trace p.toml -o out --rays 1000", "compress s.tm25ray -o s.nfl --held-out 0"}) {
     const auto run = run_lucerna(dir.path(), std::string(work) + " --report missing/r.html");
     EXPECT_EQ(run.exit_code, 1) << work;
     EXPECT_EQ(lines(run.err), 1u) << run.err;
@@ -378,7 +378,7 @@ TEST(ProgramCli, FilesOfOtherKindsAreNamed) {
   const TempDir dir;
   make_source(dir, "disk -n 5000");
   write_file(dir / "p.toml", kProject);
-  ASSERT_EQ(run_lucerna(dir.path(), "compress s.tm25ray -o s.nfl").exit_code, 0);
+  ASSERT_EQ(run_lucerna(dir.path(), "compress s.tm25ray -o s.nfl --held-out 0").exit_code, 0);
   ASSERT_EQ(run_lucerna(dir.path(), "trace p.toml -o out --rays 2000").exit_code, 0);
   expect_refusal(dir, "compress s.nfl -o t.nfl",
                  "s.nfl: rays expected, this is a source model; lucerna sample");
