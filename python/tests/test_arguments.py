@@ -151,7 +151,8 @@ def test_one_vector_goes_with_many_without_a_copy(model):
     whole = model.luminance(points, ways)
     assert np.array_equal(model.luminance(points, ways[0], copy=False), whole)
     assert np.array_equal(model.luminance(points[1], ways, copy=False), np.full(4, whole[1]))
-    assert model.luminance(np.zeros((0, 3)), ways[0]).shape == model.luminance(points[0], np.zeros((0, 3))).shape == (0,)
+    none = np.zeros((0, 3))
+    assert model.luminance(none, ways[0]).shape == model.luminance(points[0], none).shape == (0,)
     with pytest.raises(lu.InputError, match="copy"):
         model.luminance(points[:, None], ways[:2], copy=False)
     assert model.luminance(points[:, None], ways[:2]).shape == (4, 2)

@@ -192,7 +192,8 @@ def test_values_of_objectives_are_the_callers(objective):
         assert array.flags.writeable
         array[:] = 0
     np.testing.assert_array_equal(objective.residuals(objective.x0), expected)
-    scipy.optimize.least_squares(objective.residuals, objective.x0, jac=objective.jacobian, loss="soft_l1", max_nfev=2)
+    scipy.optimize.least_squares(objective.residuals, objective.x0,
+                                 jac=objective.jacobian, loss="soft_l1", max_nfev=2)
 
 
 @quick
