@@ -16,8 +16,8 @@ when it is not what the package has.
 
 Lengths are in mm, angles in degrees, flux in lm or W. Options are given by name. A path is text or
 any `os.PathLike`. `array_like` is what `numpy.asarray` takes; it is copied only where its type or
-order asks for it. Arrays that are returned are read-only and keep alive what they belong to.
-Numbers of rays may be written as `1e6`. Nothing prints.
+order asks for it. Arrays that are returned are read-only and keep alive what they belong to; the
+values of an `Objective` may be written. Numbers of rays may be written as `1e6`. Nothing prints.
 
 Objects may be shared between threads. Calls that compute release the interpreter's lock; what only
 copies arrays, compares or pickles holds it. Ctrl-C stops a call that takes a callback, and is

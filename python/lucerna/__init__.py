@@ -6,10 +6,10 @@ Lengths are in mm, angles in degrees, flux in lm or W, intensity in cd or W/sr. 
 """
 from . import _core, _methods
 from ._core import (DesignResult, IntensityDistribution, PlaneImage, RaySet, Reflector, Scene, SourceModel,
-                    TraceResult, __version__, build_info, compress, make_source, merge, read_intensity,
-                    read_model, read_rays, read_trace, write_report)
+                    TraceResult, __version__)
 from ._design import Objective, design
-from ._methods import compare
+from ._methods import (build_info, compare, compress, make_source, merge, read_intensity, read_model, read_rays,
+                       read_trace, write_report)
 from ._toml import Body, Detector, Source
 from ._types import Estimate, InputError, Record
 

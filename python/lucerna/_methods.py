@@ -2,6 +2,9 @@
 """Methods of the extension's classes that need nothing but Python."""
 from __future__ import annotations
 
+import functools
+import html
+import inspect
 import os
 import tempfile
 from collections.abc import Callable
@@ -20,6 +23,44 @@ def _method(cls: type, name: str | None = None) -> Callable[[Any], Any]:
         return function
 
     return attach
+
+
+def _pickled_by_name(function: Any, name: str) -> Any:
+    """A function of the extension as one of Python, which pickles; the extension's do not."""
+
+    @functools.wraps(function)
+    def call(*arguments: Any, **keys: Any) -> Any:
+        return function(*arguments, **keys)
+
+    call.__module__, call.__qualname__ = "lucerna", name
+    return call
+
+
+build_info, compress, make_source, merge, read_intensity, read_model, read_rays, read_trace, write_report = (
+    _pickled_by_name(_function, _function.__name__)
+    for _function in (_core.build_info, _core.compress, _core.make_source, _core.merge, _core.read_intensity,
+                      _core.read_model, _core.read_rays, _core.read_trace, _core.write_report))
+
+for _class, _name in ((_core.RaySet, "from_arrays"), (_core.Reflector, "from_toml"), (_core.Scene, "from_toml"),
+                      (_core.Scene, "load")):
+    _class_name = f"{_class.__name__}.{_name}"
+    setattr(_class, _name, staticmethod(_pickled_by_name(getattr(_class, _name), _class_name)))
+
+
+def _scene(sources: Any, *, reflectors: Any = (), bodies: Any = (), detectors: Any = (), target: Any = None,
+           design: Any = None) -> None: ...
+
+
+def _light(c_deg: Any, gamma_deg: Any, cd: Any, *, unit: str = "cd", standard_error: Any = None,
+           luminaire: Any = None) -> None: ...
+
+
+def _mirror(family: str, **keys: Any) -> None: ...
+
+
+# What `inspect` and editors say of a call of the class.
+for _class, _made_by in ((_core.Scene, _scene), (_core.IntensityDistribution, _light), (_core.Reflector, _mirror)):
+    _class.__signature__ = inspect.signature(_made_by)
 
 
 def compare(reference: Any, test: Any, *, rays: float = 4e6, seed: int = 1, callback: Any = None) -> Any:
@@ -210,7 +251,7 @@ def _trace_html(self: Any) -> str:
     fields = [self[name] for name in self.detectors]
     polar = [field.polar_svg(title=name) for name, field in zip(self.detectors, fields)
              if isinstance(field, _core.IntensityDistribution)]
-    return "\n".join([*polar, "<pre>", *self.summary(), "</pre>"])
+    return "\n".join([*polar, "<pre>", *map(html.escape, self.summary()), "</pre>"])
 
 
 @_method(_core.DesignResult, "_repr_html_")

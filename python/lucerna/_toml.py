@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from . import _core
+from ._types import InputError
 
 
 class Table:
@@ -39,7 +41,7 @@ class Source(Table):
 
     name = "source"
 
-    def __init__(self, of: Any = None, /, **keys: Any) -> None:
+    def __init__(self, of: Any = None, **keys: Any) -> None:
         super().__init__(file=of, **keys) if of is not None else super().__init__(**keys)
 
 
@@ -56,7 +58,7 @@ class Body(Table):
 
     name = "body"
 
-    def __init__(self, role: str = "absorber", /, **keys: Any) -> None:
+    def __init__(self, role: str = "absorber", **keys: Any) -> None:
         super().__init__(role=role, **keys)
 
 
@@ -73,7 +75,7 @@ class Detector(Table):
 
     name = "detector"
 
-    def __init__(self, kind: str = "far-field", /, **keys: Any) -> None:
+    def __init__(self, kind: str = "far-field", **keys: Any) -> None:
         super().__init__(kind=kind, **keys)
 
 
@@ -82,22 +84,36 @@ def _value(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (str, os.PathLike)):
-        # The strings of JSON are strings of TOML but for DEL.
-        return json.dumps(os.fspath(value), ensure_ascii=False).replace("\x7f", "\\u007F")
+        return _text(os.fspath(value))
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items()) + "}"
     if hasattr(value, "tolist"):  # numpy's arrays and numbers
         return _value(value.tolist())
-    if isinstance(value, (int, float)):
-        return repr(value)
+    if isinstance(value, int):
+        return int.__repr__(value)  # not the name of an enumeration's member
+    if isinstance(value, float):
+        return float.__repr__(value)
     if isinstance(value, Iterable):
         return "[" + ", ".join(_value(item) for item in value) + "]"
     raise TypeError(f"expected a number, text, path, sequence or mapping, found {type(value).__name__}")
 
 
-def _key(key: str) -> str:
+def _text(text: str) -> str:
+    """A text as TOML."""
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise InputError(f"found the name {text!a}, expected text that is UTF-8, as project files are",
+                         found=ascii(text), expected="text that is UTF-8") from None
+    # The strings of JSON are strings of TOML but for DEL.
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007F")
+
+
+def _key(key: Any) -> str:
+    if not isinstance(key, str):
+        raise TypeError(f"expected keys that are text, found {key!r}")
     bare = key.isascii() and key.replace("_", "a").replace("-", "a").isalnum()
-    return key if bare else json.dumps(key)
+    return key if bare else _text(key)
 
 
 def _lines(keys: Mapping[str, Any]) -> str:
@@ -133,6 +149,12 @@ def _keys_of(table: Any, kind: type[Table]) -> dict[str, Any]:
     raise TypeError(f"expected a {kind.__name__} or a mapping, found {type(table).__name__}")
 
 
+_FOLDER = "/in-memory/"
+_FORMS = {_core.SourceModel: "model-{}.nfl", _core.RaySet: "rays-{}.tm25ray",
+          _core.IntensityDistribution: "target-{}.ldt"}
+_NUMBER = re.compile(f"{_FOLDER}[a-z]+-([0-9]+)[.]")
+
+
 class _Memory:
     """Objects that a scene names as files."""
 
@@ -144,22 +166,33 @@ class _Memory:
             if known is thing:
                 return name
         # The same from any folder, so that a design can be resumed from any.
-        form = {_core.SourceModel: "model-{}.nfl", _core.RaySet: "rays-{}.tm25ray",
-                _core.IntensityDistribution: "target-{}.ldt"}[type(thing)]
-        name = "/in-memory/" + form.format(len(self.objects) + 1)
+        form = next(form for cls, form in _FORMS.items() if isinstance(thing, cls))
+        # Above all that are there, as some may have gone: another object never gets the name of one that has.
+        numbers = [int(found[1]) for found in map(_NUMBER.search, self.objects) if found]
+        name = _FOLDER + form.format(max([len(self.objects), *numbers]) + 1)
         self.objects[name] = thing
         return name
 
     def keys(self, keys: Mapping[str, Any]) -> dict[str, Any]:
         """Keys whose file may be an object."""
         keys = dict(keys)
-        if isinstance(keys.get("file"), (_core.SourceModel, _core.RaySet, _core.IntensityDistribution)):
+        if isinstance(keys.get("file"), tuple(_FORMS)):
             keys["file"] = self.name(keys["file"])
         return _with_absolute_file(keys)
 
 
 def _target_keys(target: Any) -> dict[str, Any]:
-    return dict(target) if isinstance(target, Mapping) else {"file": target}
+    keys = dict(target) if isinstance(target, Mapping) else {"file": target}
+    if not isinstance(keys.get("file", ""), (_core.IntensityDistribution, str, os.PathLike)):
+        raise TypeError("target: expected an IntensityDistribution, a path or a mapping, found "
+                        f"{type(keys['file']).__name__}")
+    return keys
+
+
+def _design_lines(design: Any) -> str:
+    if not isinstance(design, Mapping):
+        raise TypeError(f"design: expected a mapping, found {type(design).__name__}")
+    return "[design]\n" + _lines(design)
 
 
 def scene_text(sources: Iterable[Any], reflectors: Iterable[Any], bodies: Iterable[Any],
@@ -180,7 +213,7 @@ def scene_text(sources: Iterable[Any], reflectors: Iterable[Any], bodies: Iterab
     if target is not None:
         parts.append("[target]\n" + _lines(memory.keys(_target_keys(target))))
     if design is not None:
-        parts.append("[design]\n" + _lines(design))
+        parts.append(_design_lines(design))
     return "\n".join(parts), memory.objects
 
 
@@ -203,11 +236,15 @@ def replaced(scene: _core.Scene, **changes: Any) -> _core.Scene:
         text += [f"[[{name}]]\n" + _lines(keys) for keys in given.get(name, ())]
     memory = _Memory()
     memory.objects.update(scene.memory)
-    for name in ("target", "design"):
-        keys = changes.get(name, given.get(name))
-        if keys is not None:
-            text.append(f"[{name}]\n" + _lines(memory.keys(keys)))
-    return _core.Scene.from_toml("\n".join(text), memory=memory.objects)
+    target, design = (changes.get(name, given.get(name)) for name in ("target", "design"))
+    if target is not None:
+        target = memory.keys(target)
+        text.append("[target]\n" + _lines(target))
+    if design is not None:
+        text.append(_design_lines(design))
+    named = {keys.get("file") for keys in [*given.get("source", ()), target or {}]}
+    kept = {name: thing for name, thing in memory.objects.items() if name in named}
+    return _core.Scene.from_toml("\n".join(text), memory=kept)
 
 
 def reflectors(scene: _core.Scene) -> list[_core.Reflector]:

@@ -50,7 +50,7 @@ class Estimate(NamedTuple):
     standard_error: float
 
     def __float__(self) -> float:
-        return self.value
+        return float(self.value)
 
     def __str__(self) -> str:
         from . import _core
@@ -96,7 +96,7 @@ def byte_count(size: int | str) -> int:
         count = float(match[1]) * _BYTES[match[2]]  # type: ignore[index]
     except (TypeError, KeyError, ValueError):
         count = -1.0
-    if count != int(count) or count < 0:
+    if not 0 <= count < 2**63 or count != int(count):
         raise InputError(f"max_bytes: found {size!r}, expected bytes, as 64000, '64k' or '64KiB'",
                          found=repr(size), expected="bytes, as 64000, '64k' or '64KiB'")
     return int(count)

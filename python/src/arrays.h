@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -55,13 +56,24 @@ std::optional<py::array_t<T>> stacked_view(const std::vector<T>& x, const std::v
   return array;
 }
 
-/// A read-only array that takes the memory of `values`. No copy.
+/// An array that takes the memory of `values` and may be written. No copy.
 template <class T>
-py::array_t<T> owned(std::vector<T> values, const Shape& shape) {
+py::array_t<T> fresh(std::vector<T> values, const Shape& shape) {
   auto kept = std::make_unique<std::vector<T>>(std::move(values));
   const T* data = kept->data();
   const py::capsule owner(kept.release(), [](void* p) { delete static_cast<std::vector<T>*>(p); });
-  py::array_t<T> array(shape, data, owner);
+  return py::array_t<T>(shape, data, owner);
+}
+template <class T>
+py::array_t<T> fresh(std::vector<T> values) {
+  const Shape shape = row(values.size());
+  return fresh(std::move(values), shape);
+}
+
+/// The same, read-only.
+template <class T>
+py::array_t<T> owned(std::vector<T> values, const Shape& shape) {
+  py::array_t<T> array = fresh(std::move(values), shape);
   array.attr("setflags")(py::arg("write") = false);
   return array;
 }
@@ -79,16 +91,23 @@ inline py::array_t<double> owned(const std::vector<Vec3>& points) {
 }
 inline py::tuple vector(const Vec3& v) { return py::make_tuple(v.x, v.y, v.z); }
 
+/// What `np.asarray` makes of an argument. TypeError for what it takes for no array; other exceptions, as
+/// KeyboardInterrupt within `__array__`, pass.
+inline py::array as_array(const py::handle& given, std::string_view name) {
+  try {
+    return py::module_::import("numpy").attr("asarray")(given);
+  } catch (py::error_already_set& error) {
+    if (!error.matches(PyExc_TypeError) && !error.matches(PyExc_ValueError)) throw;
+  }
+  throw py::type_error(std::string(name) + ": expected an array of numbers");
+}
+
 /// What `np.asarray` makes of an argument, as finite numbers of type T in C order. Copies only where type or
 /// order ask for it, and raises there if `copy` is false. TypeError for what is no array of numbers.
 template <class T>
 py::array_t<T, py::array::c_style> input(const py::handle& given, std::string_view name, bool copy = true) {
   const std::string what(name);
-  const py::array array = py::array::ensure(given);
-  if (!array) {
-    PyErr_Clear();
-    throw py::type_error(what + ": expected an array of numbers");
-  }
+  const py::array array = as_array(given, name);
   const char kind = array.dtype().kind();
   if (std::string_view("fiub").find(kind) == std::string_view::npos)
     throw py::type_error(what + ": expected an array of numbers, found dtype " +
@@ -101,7 +120,7 @@ py::array_t<T, py::array::c_style> input(const py::handle& given, std::string_vi
                      std::string(py::str(py::dtype::of<T>())) + " where copy=False");
   }
   auto out = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(array);
-  if (!out) throw py::error_already_set();
+  if (!out) throw std::bad_alloc();
   const T* values = out.data();
   for (py::ssize_t i = 0; i < out.size(); ++i) {
     if (!std::isfinite(values[i]))

@@ -97,7 +97,7 @@ py::object compare_intensities(const Intensity& reference, const Intensity& test
   return distributions_record(found, with_errors);
 }
 
-py::object compare_files(const fs::path& reference, const fs::path& test, double rays, std::uint64_t seed,
+py::object compare_files(const fs::path& reference, const fs::path& test, double rays, Seed seed,
                          const py::object& callback) {
   FileComparisonOptions options;
   options.rays = ray_count(rays);

@@ -179,8 +179,8 @@ Designed run_design(const SceneHandle& scene, const DesignSettings& settings, co
   });
 }
 
-Designed design_scene(const SceneHandle& scene, std::uint64_t seed, std::optional<double> time_s,
-                      double max_rays, const std::string& device, bool tolerances, bool pareto, bool advise,
+Designed design_scene(const SceneHandle& scene, Seed seed, std::optional<double> time_s, double max_rays,
+                      const std::string& device, bool tolerances, bool pareto, bool advise,
                       const py::bytes& checkpoint, const py::object& callback) {
   DesignSettings settings;
   settings.seed = seed;

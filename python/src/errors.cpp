@@ -26,22 +26,29 @@ int file_error(ErrorCause cause, const fs::path& path) {
       return ENOSPC;
     case ErrorCause::unreadable:
       if (fs::is_directory(path, none)) return EISDIR;
-      return ::access(path.c_str(), R_OK) == 0 ? EIO : EACCES;
+      return ::access(path.c_str(), R_OK) == 0 ? EIO : errno;
     case ErrorCause::unwritable: {
       if (fs::is_directory(path, none)) return EISDIR;
       const fs::path folder = fs::absolute(path, none).parent_path();
-      if (!fs::exists(folder, none)) return ENOENT;
+      if (::access(folder.c_str(), F_OK) != 0) return errno;
       if (!fs::is_directory(folder, none)) return ENOTDIR;
-      return ::access(folder.c_str(), W_OK) == 0 ? EIO : EACCES;
+      if (::access(folder.c_str(), W_OK) != 0) return errno;
+      // A name that is too long, a loop of links.
+      return ::access(path.c_str(), F_OK) == 0 || errno == ENOENT ? EIO : errno;
     }
     default:
       return 0;
   }
 }
 
-py::object or_none(const std::string& text) {
-  return text.empty() ? py::object(py::none()) : py::object(py::str(text));
+/// Text that may name a file: bytes that are no UTF-8 become what `os.fsdecode` makes of them.
+py::object decoded(const std::string& text) {
+  const auto size = static_cast<Py_ssize_t>(text.size());
+  auto out = py::reinterpret_steal<py::object>(PyUnicode_DecodeFSDefaultAndSize(text.data(), size));
+  if (!out) throw py::error_already_set();
+  return out;
 }
+py::object or_none(const std::string& text) { return text.empty() ? py::object(py::none()) : decoded(text); }
 
 void set_error(const Error& error) {
   const ErrorParts parts = error_parts(error);
@@ -49,15 +56,16 @@ void set_error(const Error& error) {
   if (const int number = file_error(error.cause(), parts.path); number != 0) {
     const std::string without_path = parts.path.empty() ? text : text.substr(parts.path.size() + 2);
     const py::object made =
-        py::reinterpret_borrow<py::object>(PyExc_OSError)(number, without_path, parts.path);
+        py::reinterpret_borrow<py::object>(PyExc_OSError)(number, decoded(without_path), decoded(parts.path));
     PyErr_SetObject(py::type::of(made).ptr(), made.ptr());
     return;
   }
   using namespace py::literals;
   const py::object type = python_name("lucerna._types", "InputError");
-  const py::object made = type(text, "path"_a = or_none(parts.path), "place"_a = or_none(parts.place),
-                               "found"_a = or_none(parts.found), "expected"_a = or_none(parts.expected),
-                               "cause"_a = std::string(to_string(error.cause())));
+  const py::object made =
+      type(decoded(text), "path"_a = or_none(parts.path), "place"_a = or_none(parts.place),
+           "found"_a = or_none(parts.found), "expected"_a = or_none(parts.expected),
+           "cause"_a = std::string(to_string(error.cause())));
   PyErr_SetObject(type.ptr(), made.ptr());
 }
 
@@ -75,8 +83,9 @@ void translate_errors() {
     } catch (const py::cast_error&) {
       PyErr_SetString(PyExc_TypeError, "found a value of a wrong type within an argument");
     } catch (const fs::filesystem_error& error) {
-      PyErr_SetObject(PyExc_OSError,
-                      py::make_tuple(error.code().value(), error.what(), error.path1().string()).ptr());
+      PyErr_SetObject(
+          PyExc_OSError,
+          py::make_tuple(error.code().value(), decoded(error.what()), decoded(error.path1().string())).ptr());
     }
   });
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "call.h"
 #include "lucerna/diagram.h"
@@ -193,17 +195,28 @@ py::object luminaire_record(const LuminaireData& luminaire) {
 
 LuminaireData luminaire_of(const py::dict& given) {
   LuminaireData out;
-  const auto read = [](const py::dict& from) {
+  // Takes what it reads away from `from`, so that unknown keys are left.
+  const auto read = [](py::dict& from) {
     return [&from](const char* name, auto& value) {
-      if (from.contains(name)) value = from[name].cast<std::remove_reference_t<decltype(value)>>();
+      if (from.contains(name))
+        value = from.attr("pop")(name).template cast<std::remove_reference_t<decltype(value)>>();
     };
   };
-  visit_luminaire(out, read(given));
-  if (!given.contains("lamps")) return out;
-  for (const auto& item : given["lamps"].cast<py::list>()) {
-    const auto lamp = item.cast<py::dict>();
-    visit_lamp(out.lamps.emplace_back(), read(lamp));
+  const auto check = [](const py::dict& left, const std::string& where) {
+    for (const auto& [key, value] : left)
+      throw InputError(where + ": found the unknown key " + std::string(py::repr(key)),
+                       ErrorCause::unknown_key);
+  };
+  py::dict keys(given.attr("copy")());
+  visit_luminaire(out, read(keys));
+  if (keys.contains("lamps")) {
+    for (const auto& item : py::list(keys.attr("pop")("lamps"))) {
+      py::dict lamp(mapping(py::reinterpret_borrow<py::object>(item), "luminaire: lamps").attr("copy")());
+      visit_lamp(out.lamps.emplace_back(), read(lamp));
+      check(lamp, "luminaire: lamps");
+    }
   }
+  check(keys, "luminaire");
   return out;
 }
 
@@ -228,7 +241,7 @@ Intensity make_intensity(const py::object& c_deg, const py::object& gamma_deg, c
   if (const std::string fault = grid_fault(d); !fault.empty()) throw InputError(fault);
   Intensity out{file};
   if (!standard_error.is_none()) out.standard_error = values(standard_error, "standard_error");
-  if (!luminaire.is_none()) file->luminaire = luminaire_of(luminaire.cast<py::dict>());
+  if (!luminaire.is_none()) file->luminaire = luminaire_of(mapping(luminaire, "luminaire"));
   return out;
 }
 
@@ -377,6 +390,12 @@ Intensity scaled(const Intensity& intensity, double factor) {
   scale(file->distribution, factor);
   Intensity out{file, intensity.standard_error};
   for (double& e : out.standard_error) e *= factor;
+  const auto is_finite = [](double value) { return std::isfinite(value); };
+  for (const auto* values : {&file->distribution.cd, &out.standard_error}) {
+    if (!std::all_of(values->begin(), values->end(), is_finite))
+      throw InputError("factor: found " + std::to_string(factor) + ", which makes values infinite",
+                       ErrorCause::out_of_range);
+  }
   return out;
 }
 

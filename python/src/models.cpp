@@ -113,7 +113,10 @@ constexpr const char* kSampleFileDoc =
     R"(sample_file(path, rays, *, seed=1, sequence='random', format=None, callback=None)
 --
 
-Draws rays into a file, in memory that does not grow with it: the file that `lucerna sample` writes.
+Draws rays into a file, in memory that does not grow with it.
+
+They are the rays that `lucerna sample` writes. Where the format's header says what they were sampled from, it
+is the file's name there, and 'a model' here.
 
 Parameters
 ----------
@@ -235,7 +238,7 @@ std::optional<std::uint64_t> byte_count(const py::object& given) {
 using RaysOrFiles = std::variant<Rays, fs::path, std::vector<fs::path>>;
 
 Model compress_any(const RaysOrFiles& rays, const std::string& method, const py::object& max_bytes,
-                   std::optional<double> flux_lm, std::optional<double> flux_w, std::uint64_t seed,
+                   std::optional<double> flux_lm, std::optional<double> flux_w, Seed seed,
                    const py::object& callback) {
   CompressOptions options;
   options.method = compress_method(method);
@@ -262,7 +265,7 @@ Model compress_any(const RaysOrFiles& rays, const std::string& method, const py:
   });
 }
 
-Rays sample_model(const Model& model, double rays, std::uint64_t seed, const std::string& sequence) {
+Rays sample_model(const Model& model, double rays, Seed seed, const std::string& sequence) {
   const std::uint64_t n = ray_count(rays);
   if (n == 0) throw InputError("rays: found 0, expected at least one", ErrorCause::out_of_range);
   const Sequence numbers(sequence_kind(sequence), seed);
@@ -285,7 +288,7 @@ Rays sample_model(const Model& model, double rays, std::uint64_t seed, const std
   });
 }
 
-Warnings sample_file(const Model& model, const fs::path& path, double rays, std::uint64_t seed,
+Warnings sample_file(const Model& model, const fs::path& path, double rays, Seed seed,
                      const std::string& sequence, const std::optional<std::string>& format,
                      const py::object& callback) {
   SampleOptions options;
@@ -303,23 +306,35 @@ py::array_t<double> for_each_ray(const py::object& points_mm, const py::object& 
                                  const Value& value) {
   auto points = input_vectors<double>(points_mm, "points_mm", copy);
   auto ways = input_vectors<double>(directions, "directions", copy);
+  // One vector goes with all of the other array without being repeated in memory.
+  std::size_t point_step = 1, way_step = 1;
   if (shape_of(points) != shape_of(ways)) {
-    const py::tuple both = py::module_::import("numpy").attr("broadcast_arrays")(points, ways);
-    points = input_vectors<double>(both[0], "points_mm");
-    ways = input_vectors<double>(both[1], "directions");
+    if (points.ndim() == 1) {
+      point_step = 0;
+    } else if (ways.ndim() == 1) {
+      way_step = 0;
+    } else {
+      if (!copy)
+        throw InputError("points_mm and directions: found shapes " + shape_text(points) + " and " +
+                         shape_text(ways) + ", which have to be copied, expected one where copy=False");
+      const py::tuple both = py::module_::import("numpy").attr("broadcast_arrays")(points, ways);
+      points = input_vectors<double>(both[0], "points_mm");
+      ways = input_vectors<double>(both[1], "directions");
+    }
   }
-  std::vector<double> out(vector_count(points));
+  const py::array& all = point_step == 0 ? ways : points;
+  std::vector<double> out(vector_count(all));
   const double *p = points.data(), *k = ways.data();
   released([&] {
     for (std::size_t i = 0; i < out.size(); ++i) {
-      const Vec3 way = vector_at(k, i);
+      const Vec3 way = vector_at(k, way_step * i);
       if (!(length(way) > 0.0))
         throw InputError("directions: found a vector of length 0, expected directions");
-      out[i] = value(vector_at(p, i), Direction::from(way));
+      out[i] = value(vector_at(p, point_step * i), Direction::from(way));
     }
     return 0;
   });
-  return owned(std::move(out), shape_of_vectors(points));
+  return owned(std::move(out), shape_of_vectors(all));
 }
 
 py::array_t<double> pdf_area(const Model& model, const py::object& points_mm, bool copy) {
@@ -363,10 +378,10 @@ void add_densities(py::class_<Model>& c) {
       "points_mm"_a, "directions"_a, py::kw_only(), "copy"_a = true, kLuminanceDoc);
 }
 
-py::array_t<double> model_etendue(const Model& model, const py::object& shares, double rays,
-                                  std::uint64_t seed) {
+py::array_t<double> model_etendue(const Model& model, const py::object& shares, double rays, Seed seed) {
   const std::vector<double> given = input_row<double>(shares, "shares");
   const std::uint64_t n = ray_count(rays);
+  if (n == 0) throw InputError("rays: found 0, expected at least one", ErrorCause::out_of_range);
   return owned(released([&] { return etendue_mm2sr(*model.model, given, n, seed); }));
 }
 

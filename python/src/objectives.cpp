@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kCallDoc = R"(__call__(x)
 --
 
-Residuals and their exact Jacobian.
+Residuals and their exact Jacobian, new arrays that may be written.
 
 Parameters
 ----------
@@ -31,7 +31,7 @@ jacobian : numpy.ndarray (m, n)
 constexpr const char* kResidualsDoc = R"(residuals(x)
 --
 
-Residuals alone, in half the time.
+Residuals alone, in half the time; a new array that may be written.
 
 Parameters
 ----------
@@ -46,7 +46,7 @@ numpy.ndarray (m,)
 constexpr const char* kJacobianDoc = R"(jacobian(x)
 --
 
-The exact Jacobian of the residuals.
+The exact Jacobian of the residuals; a new array that may be written.
 
 Parameters
 ----------
@@ -92,8 +92,8 @@ Scene)";
 
 namespace {
 
-ObjectiveHandle make_objective(const SceneHandle& scene, double rays, std::uint64_t seed,
-                               std::optional<double> rim_mm, const py::object& callback) {
+ObjectiveHandle make_objective(const SceneHandle& scene, double rays, Seed seed, std::optional<double> rim_mm,
+                               const py::object& callback) {
   const ObjectiveOptions options{ray_count(rays), seed, rim_mm};
   return watched(callback, OnInterrupt::raise, [&](Watch& watch) {
     const SceneState& s = *scene.state;
@@ -110,7 +110,7 @@ ObjectiveValue evaluate(const ObjectiveHandle& f, const py::object& x, bool jaco
 }
 
 py::array_t<double> jacobian_of(const ObjectiveHandle& f, ObjectiveValue& value) {
-  return owned(std::move(value.jacobian),
+  return fresh(std::move(value.jacobian),
                grid(f.objective->residual_count(), f.objective->parameter_count()));
 }
 
@@ -147,13 +147,13 @@ void add_objective(py::module_& m) {
       "__call__",
       [](const ObjectiveHandle& f, const py::object& x) {
         ObjectiveValue value = evaluate(f, x, true);
-        return py::make_tuple(owned(std::move(value.residuals)), jacobian_of(f, value));
+        return py::make_tuple(fresh(std::move(value.residuals)), jacobian_of(f, value));
       },
       "x"_a, kCallDoc);
   c.def(
       "residuals",
       [](const ObjectiveHandle& f, const py::object& x) {
-        return owned(std::move(evaluate(f, x, false).residuals));
+        return fresh(std::move(evaluate(f, x, false).residuals));
       },
       "x"_a, kResidualsDoc);
   c.def(
@@ -171,7 +171,7 @@ void add_objective(py::module_& m) {
       },
       [](const py::tuple& s) {
         if (s.size() != 4) throw InputError("a pickle of another version of lucerna", ErrorCause::damaged);
-        return make_objective(s[0].cast<SceneHandle>(), s[1].cast<double>(), s[2].cast<std::uint64_t>(),
+        return make_objective(s[0].cast<SceneHandle>(), s[1].cast<double>(), Seed{s[2].cast<std::uint64_t>()},
                               s[3].cast<std::optional<double>>(), py::none());
       }));
 }

@@ -462,7 +462,7 @@ Warnings save_rays(const Rays& rays, const std::filesystem::path& path,
   });
 }
 
-Rays make_source(const std::string& kind, double rays, std::uint64_t seed, const std::string& sequence,
+Rays make_source(const std::string& kind, double rays, Seed seed, const std::string& sequence,
                  std::optional<double> flux_lm, std::optional<double> flux_w, std::optional<double> radius_mm,
                  std::optional<double> length_mm, const std::array<double, 2>& size_mm, double ghost_share,
                  const std::optional<std::string>& surface, const std::vector<double>& surface_mm) {

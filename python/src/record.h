@@ -21,6 +21,15 @@ inline py::object python_name(const char* module, const char* name) {
 /// lucerna.Record: named figures.
 inline py::object record(const py::dict& fields) { return python_name("lucerna._types", "Record")(fields); }
 
+/// The items of any mapping; TypeError for other things.
+inline py::dict mapping(const py::object& given, const std::string& name) {
+  if (py::isinstance<py::dict>(given)) return py::reinterpret_borrow<py::dict>(given);
+  if (!py::isinstance(given, python_name("collections.abc", "Mapping")))
+    throw py::type_error(name + ": expected a mapping, found " +
+                         std::string(py::str(py::type::of(given).attr("__name__"))));
+  return py::dict(given);
+}
+
 /// A Python object kept as the bytes of its pickle, so that nobody can change it and any thread may drop it.
 class Kept {
  public:

@@ -183,7 +183,7 @@ void add_facts(py::class_<SceneHandle>& c) {
       "warnings", [](const SceneHandle& s) { return s.state->project.warnings; },
       "What was odd about the files but could be read, one sentence each.");
   c.def_property_readonly(
-      "memory", [](const SceneHandle& s) { return objects_of(s.state->memory); },
+      "memory", [](const SceneHandle& s) { return objects_of(s.state->project.memory); },
       "Models, ray sets and targets that are in no file, by the names that `to_toml` has for them.");
   c.def_property_readonly(
       "default_rays", [](const SceneHandle& s) { return default_ray_count(s.state->project.scene); },
@@ -212,8 +212,8 @@ void add_scenes(py::module_& m) {
   c.def_static("load", &load_scene, "path"_a, py::kw_only(), "callback"_a = py::none(), kLoadDoc);
   c.def_static(
       "from_toml",
-      [](const std::string& text, const fs::path& folder, const py::dict& memory) {
-        return read_scene(text, fs::absolute(folder) / "scene", memory_of(memory));
+      [](const std::string& text, const fs::path& folder, const py::object& memory) {
+        return read_scene(text, fs::absolute(folder) / "scene", memory_of(mapping(memory, "memory")));
       },
       "text"_a, py::kw_only(), "folder"_a = fs::path("."), "memory"_a = py::dict(), kFromTomlDoc);
   c.def(

@@ -163,7 +163,10 @@ namespace {
 namespace fs = std::filesystem;
 /// A number of rays, or a pair of ray numbers.
 void set_rays(const py::object& rays, TraceOptions& options) {
-  if (py::isinstance<py::sequence>(rays) && !py::isinstance<py::str>(rays)) {
+  const auto is = [&](PyTypeObject& type) { return PyObject_TypeCheck(rays.ptr(), &type) != 0; };
+  const bool is_text = is(PyUnicode_Type) || is(PyBytes_Type) || is(PyByteArray_Type);
+  const bool is_number = py::isinstance<py::array>(rays) && rays.cast<py::array>().ndim() == 0;
+  if (py::isinstance<py::sequence>(rays) && !is_text && !is_number) {
     const auto range = rays.cast<py::sequence>();
     if (range.size() != 2)
       throw InputError("rays: found " + std::to_string(range.size()) + " numbers, expected (first, last)");
@@ -187,9 +190,9 @@ void check_same_scene(const ScenePointer& a, const ScenePointer& b, const char* 
 }
 
 TracedPointer trace_scene(const SceneHandle& scene, const py::object& rays, double noise, double time_s,
-                          std::uint64_t seed, const std::string& sequence, int max_bounces,
-                          const std::string& device, const std::string& isa,
-                          const std::optional<TracedPointer>& resume, const py::object& callback) {
+                          Seed seed, const std::string& sequence, int max_bounces, const std::string& device,
+                          const std::string& isa, const std::optional<TracedPointer>& resume,
+                          const py::object& callback) {
   TraceOptions options;
   options.seed = seed;
   options.sequence = sequence_kind(sequence);

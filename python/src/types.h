@@ -175,6 +175,12 @@ struct GivenFlux {
   FluxUnit unit;
 };
 std::optional<GivenFlux> given_flux(std::optional<double> flux_lm, std::optional<double> flux_w);
+/// The seed of random numbers, as an argument: InputError for a whole number that is none.
+struct Seed {
+  std::uint64_t value;
+  // Stands for the number wherever the library wants it. NOLINTNEXTLINE(google-explicit-constructor)
+  operator std::uint64_t() const { return value; }
+};
 /// A number of rays, which may be written as 1e6.
 std::uint64_t ray_count(double rays);
 /// What is quoted of a light distribution: with standard errors where it comes from rays.
@@ -182,6 +188,25 @@ py::object intensity_metrics(const Intensity& intensity);
 py::object design_error(const DesignError& error);
 
 }  // namespace lucerna::python
+
+template <>
+class pybind11::detail::type_caster<lucerna::python::Seed> {
+ public:
+  PYBIND11_TYPE_CASTER(lucerna::python::Seed, const_name("int"));
+  bool load(handle given, bool convert) {
+    make_caster<std::uint64_t> number;
+    if (number.load(given, convert)) {
+      value = {cast_op<std::uint64_t>(number)};
+      return true;
+    }
+    const auto whole = reinterpret_steal<object>(PyNumber_Index(given.ptr()));
+    PyErr_Clear();
+    if (!whole) return false;
+    throw lucerna::InputError(
+        "seed: found " + std::string(str(whole)) + ", expected a whole number from 0 to 2^64 - 1",
+        lucerna::ErrorCause::out_of_range);
+  }
+};
 
 // An object whose __init__ did not run holds nothing: TypeError instead of what pybind11 makes of it.
 LUCERNA_PYTHON_CLASS(lucerna::python::Rays)

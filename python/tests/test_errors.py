@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of every kind: types, parts, damaged files, pickles."""
+import errno
 import pickle
 import random
 
@@ -48,6 +49,45 @@ def test_places_that_cannot_be_written(tmp_path, rays, model, traced):
         traced.save(tmp_path / "file" / "folder")
     assert (tmp_path / "file").read_text() == "x"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["file"], "nothing half-written is left"
+
+
+@pytest.mark.parametrize("read", READERS)
+def test_errors_of_names_of_any_bytes(read, tmp_path):
+    path = str(tmp_path / "\udcff.file")
+    with pytest.raises(FileNotFoundError) as caught:
+        read(path)
+    assert caught.value.filename == path
+    with open(path, "wb") as file:
+        file.write(b"what is this")
+    with pytest.raises(lu.InputError) as caught:
+        read(path)
+    assert caught.value.path in (path, None) and path in str(caught.value)
+
+
+def test_saving_and_scenes_with_names_of_any_bytes(tmp_path, rays):
+    with pytest.raises(FileNotFoundError) as caught:
+        rays.save(tmp_path / "\udcff" / "a.tm25ray")
+    assert caught.value.filename == str(tmp_path / "\udcff" / "a.tm25ray")
+    for scene in (lambda p: lu.Scene([p]), lambda p: lu.Scene([{"kind": "disk"}], target=p)):
+        with pytest.raises(lu.InputError, match="UTF-8"):
+            scene(tmp_path / "\udcff.tm25ray")
+
+
+def test_names_that_no_file_can_have(tmp_path, rays, model):
+    """The error number is that of `open`."""
+    (tmp_path / "loop").symlink_to("loop")
+    for path, number in ((tmp_path / ("n" * 300), errno.ENAMETOOLONG), (tmp_path / "loop", errno.ELOOP)):
+        for read in READERS:
+            with pytest.raises(OSError) as caught:
+                read(path)
+            assert caught.value.errno == number, read
+    for save in (lambda p: rays.save(p, format="tm25"), model.save):
+        with pytest.raises(OSError) as caught:
+            save(tmp_path / ("n" * 300))
+        assert caught.value.errno == errno.ENAMETOOLONG
+        with pytest.raises(OSError) as caught:
+            save(tmp_path / "loop" / "file")
+        assert caught.value.errno == errno.ELOOP
 
 
 def test_parts_of_an_error(tmp_path):

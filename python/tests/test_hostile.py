@@ -13,6 +13,7 @@ import threading
 import lucerna as lu
 import numpy as np
 import pytest
+import scipy.optimize
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
@@ -181,6 +182,18 @@ def objective():
     return lu.Objective(lu.Scene([{"kind": "disk", "radius_mm": 1}], reflectors=[lu.Reflector(
         "revolution", preset="parabola", focal_mm=8, diameter_mm=60, position_mm=[0, 0, 8], axis="-z")],
         target=spot, design=dict(intervals=4)), rays=8192)
+
+
+def test_values_of_objectives_are_the_callers(objective):
+    """scipy's losses write into them."""
+    residuals, jacobian = objective(objective.x0)
+    expected = residuals.copy()
+    for array in (residuals, jacobian, objective.residuals(objective.x0), objective.jacobian(objective.x0)):
+        assert array.flags.writeable
+        array[:] = 0
+    np.testing.assert_array_equal(objective.residuals(objective.x0), expected)
+    scipy.optimize.least_squares(objective.residuals, objective.x0,
+                                 jac=objective.jacobian, loss="soft_l1", max_nfev=2)
 
 
 @quick

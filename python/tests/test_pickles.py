@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every result goes to another process and back without loss."""
 import concurrent.futures
+import inspect
 import multiprocessing
 import pickle
 
@@ -40,6 +41,21 @@ def evaluate(objective, x):
 def report(found, path):
     found.report(path)
     return found.relative_rms, found.traced["far-field"].cd, len(found.history.rays)
+
+
+FUNCTIONS = [*(getattr(lu, name) for name in lu.__all__ if inspect.isroutine(getattr(lu, name))),
+             lu.RaySet.from_arrays, lu.Reflector.from_toml, lu.Scene.from_toml, lu.Scene.load]
+
+
+@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda function: function.__qualname__)
+def test_functions_go_by_their_names(function):
+    assert pickle.loads(pickle.dumps(function)) is function and function.__module__ == "lucerna"
+
+
+def test_pools_map_functions(pool, rays, tmp_path):
+    rays.save(tmp_path / "a.tm25ray")
+    (back,) = pool.map(lu.read_rays, [tmp_path / "a.tm25ray"])
+    np.testing.assert_array_equal(back.position_mm, rays.position_mm)
 
 
 def test_a_design_keeps_its_figures_and_files(found, pool, tmp_path):

@@ -30,6 +30,13 @@ def test_make_source_compress_and_sample(tmp_path, program):
     program("sample", "a.nfl", "-n", "20000", "-o", "a.speos", "--to", "speos", "--seed", "9")
     model.sample_file("b.speos", 20_000, seed=9, format="speos")
     assert digest(tmp_path / "a.speos") == digest(tmp_path / "b.speos")
+    program("sample", "a.nfl", "-n", "1000", "-o", "a.tm25ray", "--seed", "9")
+    model.sample_file("b.tm25ray", 1000, seed=9)
+    theirs, mine = lu.read_rays("a.tm25ray"), lu.read_rays("b.tm25ray")
+    assert (theirs.texts.pop("light_source"), mine.texts.light_source) == ("sampled from a.nfl", "sampled from a model")
+    for name in ("position_mm", "direction", "weight"):
+        np.testing.assert_array_equal(getattr(theirs, name), getattr(mine, name))
+    assert "'a model' here" in lu.SourceModel.sample_file.__doc__
 
 
 def test_trace_and_merge(tmp_path, lamp, traced, program):

@@ -19,6 +19,15 @@ def test_ranges_merge_to_the_bits_of_one_trace(lamp, traced):
     assert parts[0] != traced
 
 
+def test_names_are_no_html():
+    """A notebook shows names as they are."""
+    name = "<img src=x onerror=alert(1)>"
+    scene = lu.Scene([{"kind": "disk"}], detectors=[lu.Detector(name=name), lu.Detector("plane", name=name + "2",
+                                                    position_mm=[0, 0, 50], size_mm=[9, 9], cells=[2, 2])])
+    html = scene.trace(rays=2000)._repr_html_()
+    assert "<img" not in html and html.count("&lt;img src=x onerror=alert(1)&gt;") >= 2
+
+
 def test_what_does_not_belong_together_is_refused(lamp, model):
     a = lamp.trace(rays=(0, 1000))
     other = lu.Scene([model], detectors=[lu.Detector("far-field", name="far", c_step_deg=15, gamma_step_deg=2.5)])
