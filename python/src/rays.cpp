@@ -281,11 +281,7 @@ Rays from_arrays(const py::object& position_mm, const py::object& direction, con
     set->header.flux_unit = flux->unit;
     set->header.set_flux(flux->flux);
   }
-  const py::array first = py::array::ensure(position_mm);
-  if (!first) {
-    PyErr_Clear();
-    throw py::type_error("position_mm: expected an array of numbers");
-  }
+  const py::array first = as_array(position_mm, "position_mm");
   RayBlock& b = set->rays;
   b.resize(first.ndim() == 2 ? static_cast<std::size_t>(first.shape(0)) : 0, 0);
   take_positions(position_mm, b);
