@@ -57,7 +57,8 @@ std::vector<OutlineSample> samples_of(const LensShape& shape, int points, bool d
           const PieceBasis basis = piece_basis(u);
           for (int i = 0; face.is_free && i < 4; ++i) {
             const auto b = static_cast<std::size_t>(i);
-            const auto r = jacobian.row(first + 2 * i), z = jacobian.row(first + 2 * i + 1);
+            const Eigen::Index of_r = first + 2 * Eigen::Index{i};
+            const auto r = jacobian.row(of_r), z = jacobian.row(of_r + 1);
             s.by_r += basis.at[b] * r;
             s.by_z += basis.at[b] * z;
             s.by_nz -= basis.first[b] * s.nr / speed * (s.nr * r + s.nz * z);

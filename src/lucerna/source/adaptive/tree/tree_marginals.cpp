@@ -201,7 +201,7 @@ std::vector<double> shrunken_shares(const TreeMarginals::Cells& rays, double tot
       const auto cells = places(order, k * (side / 8 + 5), bits);
       const Hierarchy h = hierarchy(cells, rays, total_weight, total_squares, shares);
       std::vector<double> level{h.model.front().front()};
-      for (std::size_t l = 0; l < 2 * bits; ++l) level = divided(h, l, level);
+      for (std::size_t l = 0; l < std::size_t{2} * bits; ++l) level = divided(h, l, level);
       for (std::size_t i = 0; i < cells.size(); ++i) shares[cells[i]] = level[i];
     }
     for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += shares[i] / static_cast<double>(kShifts);
