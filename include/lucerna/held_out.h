@@ -26,10 +26,9 @@ struct HeldOutComparison {
 };
 
 /// Deals `rays` out by chance to two halves, makes a model of one by `options`, and compares it with the
-/// other. A model of all the rays by the same options is no farther from the source than this one, but for
-/// chance. Absent where a half has fewer than 100 rays or no flux. The same rays and options give the same
-/// for any number of threads. Throws as `compress`. Cost: that of `compress` for half of the rays, 1 us a ray
-/// and thread for the views, and 0.5 s.
+/// other. A model of all the rays has twice as many to learn from. Absent where a half has fewer than 100
+/// rays or no flux. The same rays and options give the same for any number of threads. Throws as `compress`.
+/// Cost: that of `compress` for half of the rays, 1 us a ray and thread for the views, and 0.5 s.
 [[nodiscard]] std::optional<HeldOutComparison> compare_held_out(const RaySet& rays,
                                                                 const CompressOptions& options = {},
                                                                 Progress& progress = no_progress());

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import html
-import inspect
 import os
 import tempfile
 from collections.abc import Callable
@@ -45,22 +44,6 @@ for _class, _name in ((_core.RaySet, "from_arrays"), (_core.Reflector, "from_tom
                       (_core.Scene, "load")):
     _class_name = f"{_class.__name__}.{_name}"
     setattr(_class, _name, staticmethod(_pickled_by_name(getattr(_class, _name), _class_name)))
-
-
-def _scene(sources: Any, *, reflectors: Any = (), bodies: Any = (), detectors: Any = (), target: Any = None,
-           design: Any = None) -> None: ...
-
-
-def _light(c_deg: Any, gamma_deg: Any, cd: Any, *, unit: str = "cd", standard_error: Any = None,
-           luminaire: Any = None) -> None: ...
-
-
-def _mirror(family: str, **keys: Any) -> None: ...
-
-
-# What `inspect` and editors say of a call of the class.
-for _class, _made_by in ((_core.Scene, _scene), (_core.IntensityDistribution, _light), (_core.Reflector, _mirror)):
-    _class.__signature__ = inspect.signature(_made_by)
 
 
 def compare(reference: Any, test: Any, *, rays: float = 4e6, seed: int = 1, callback: Any = None) -> Any:
@@ -304,13 +287,8 @@ def _design_repr(self: Any) -> str:
 class _NotHere:
     """What an object becomes that was sent to a process in which it cannot be made: raises when it is used."""
 
-    def __init__(self, name: str) -> None:
-        self.__dict__["_name"] = name
-
     def __getattr__(self, name: str) -> Any:
-        raise RuntimeError(
-            f"{self.__dict__['_name']}: lucerna was used before this process was forked, and its threads are not in "
-            "it; expected a process started by the method 'spawn' or 'forkserver' (multiprocessing.get_context)")
+        _core._check_call()  # which says why
 
 
 # Their objects are read anew from what a pickle has, by parallel loops.
@@ -320,7 +298,7 @@ _PARSED = (_core.Scene, _core.Reflector, _core.TraceResult, _core.DesignResult, 
 def _restored(cls: type, state: Any, attributes: dict[str, Any] | None) -> Any:
     """The object of a pickle. An exception here would make a pool start its workers again for ever."""
     if issubclass(cls, _PARSED) and _core._is_forked():
-        return _NotHere(cls.__name__)
+        return _NotHere()
     made = cls.__new__(cls)
     made.__setstate__(state)
     if attributes:

@@ -472,7 +472,8 @@ Intensity with_figures(const Intensity& values, const std::array<double, 2>& flu
 void add_intensity(py::module_& m) {
   auto c = py::class_<Intensity>(m, "IntensityDistribution", kIntensityDistributionClassDoc);
   c.def(py::init(&make_intensity), "c_deg"_a, "gamma_deg"_a, "cd"_a, py::kw_only(), "unit"_a = "cd",
-        "standard_error"_a = py::none(), "luminaire"_a = py::none());
+        "standard_error"_a = py::none(), "luminaire"_a = py::none(),
+        "__init__(self, c_deg, gamma_deg, cd, *, unit='cd', standard_error=None, luminaire=None)\n--\n\n");
   add_values(c);
   c.def("at", &at, "c_deg"_a, "gamma_deg"_a, kAtDoc);
   c.def("metrics", &intensity_metrics, kMetricsDoc);

@@ -13,7 +13,7 @@ namespace {
 /// or of one that is derived from nothing else.
 PyObject* new_instance(PyTypeObject* type, PyObject* /*arguments*/, PyObject* /*keys*/) {
   if (!py::detail::all_type_info(type).empty()) return py::detail::make_new_instance(type);
-  PyErr_Format(PyExc_TypeError, "%s: no class of lucerna", type->tp_name);
+  PyErr_Format(PyExc_TypeError, "cannot create '%s' instances", type->tp_name);
   return nullptr;
 }
 
@@ -51,5 +51,6 @@ PYBIND11_MODULE(_core, m) {
   add_comparison(m);
   m.def("_seal", [m] { seal(m); });
   m.def("_is_forked", &is_forked);
+  m.def("_check_call", [] { const Call call; });
   end_calls_at_exit();
 }

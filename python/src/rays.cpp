@@ -201,8 +201,8 @@ py::array_t<float> stacked(const py::object& self, std::vector<float> RayBlock::
   return copied(x, y, z);
 }
 
-/// Puts vector i of an (n, 3) array into the columns; `put` is called with i and the three numbers, in
-/// whatever precision they are. No second copy of float32 data.
+/// Calls `put` with i and the three numbers of vector i of an (n, 3) array, in whatever precision they are,
+/// without a second copy of float32 data.
 template <class Put>
 void take_vectors(const py::handle& given, std::string_view name, std::size_t n, const Put& put) {
   const auto check = [&](const py::array& array) {

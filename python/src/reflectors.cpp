@@ -231,7 +231,7 @@ void add_geometry(py::class_<Mirror>& c) {
 
 void add_reflectors(py::module_& m) {
   auto c = py::class_<Mirror>(m, "Reflector", kReflectorClassDoc);
-  c.def(py::init(&make_mirror), "family"_a);
+  c.def(py::init(&make_mirror), "family"_a, "__init__(self, family, **keys)\n--\n\n");
   c.def_static("from_toml", &mirror_from_text, "text"_a, "folder"_a = fs::path("."), kFromTomlDoc);
   c.def_property_readonly(
       "toml", [](const Mirror& r) { return r.toml; }, "The [[reflector]] table that describes it.");

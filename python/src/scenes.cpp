@@ -206,9 +206,10 @@ SceneHandle read_scene(const std::string& text, const fs::path& path, const Proj
 
 void add_scenes(py::module_& m) {
   auto c = py::class_<SceneHandle>(m, "Scene", kSceneClassDoc);
-  c.def(py::init(&make_scene), "sources"_a, py::kw_only(), "reflectors"_a = py::tuple(),
-        "bodies"_a = py::tuple(), "detectors"_a = py::tuple(), "target"_a = py::none(),
-        "design"_a = py::none());
+  c.def(
+      py::init(&make_scene), "sources"_a, py::kw_only(), "reflectors"_a = py::tuple(),
+      "bodies"_a = py::tuple(), "detectors"_a = py::tuple(), "target"_a = py::none(), "design"_a = py::none(),
+      "__init__(self, sources, *, reflectors=(), bodies=(), detectors=(), target=None, design=None)\n--\n\n");
   c.def_static("load", &load_scene, "path"_a, py::kw_only(), "callback"_a = py::none(), kLoadDoc);
   c.def_static(
       "from_toml",

@@ -73,8 +73,8 @@ constexpr double kSmoothing = 0.03;
 constexpr double kMaxDerivativeNoise = 0.3;
 /// Least share of a level's bins, along each side.
 constexpr double kMinBins = 0.6;
-/// What roughness costs there, of what it does elsewhere, where it weighs as much as the error. With a tenth
-/// ripples hide in the coarser bins.
+/// Share of its weight that roughness has on such a level: all of it costs as much there as an error of two
+/// per cent, and with a tenth ripples hide in the coarser bins.
 constexpr double kWideSmoothing = 0.3;
 /// Light that a start is made for, in rays.
 constexpr std::uint64_t kStartRays = std::uint64_t{1} << 19;
@@ -277,7 +277,8 @@ FreeFormLevel FreeFormSearch::level_after(const FreeFormSnapshot& before, int nu
                        (before.intervals_x * before.intervals_y);
   const double rays = static_cast<double>(l.rays) / static_cast<double>(level(number - 1).rays);
   const double noise = before.derivative_noise * bins * bins * cells / rays;
-  const double share = std::clamp(std::sqrt(kMaxDerivativeNoise / std::max(noise, 1e-12)), kMinBins, 1.0);
+  // 1 without noise.
+  const double share = std::clamp(std::sqrt(kMaxDerivativeNoise / noise), kMinBins, 1.0);
   return with_bins(l, static_cast<int>(std::lround(l.bins * share)));
 }
 

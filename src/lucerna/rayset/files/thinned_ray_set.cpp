@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "lucerna/ray_file.h"
 #include "lucerna/rayset/data/merge_ray_sets.h"
@@ -25,23 +26,27 @@ RaySet thinned(RayReader& reader, std::uint64_t wanted, std::uint64_t seed, Prog
 
 }  // namespace
 
-RaySet thinned_ray_set(const std::vector<std::filesystem::path>& files, std::uint64_t max_rays,
-                       std::uint64_t seed, Progress& progress) {
+ThinnedRaySet thinned_ray_set(const std::vector<std::filesystem::path>& files, std::uint64_t max_rays,
+                              std::uint64_t seed, Progress& progress) {
   std::vector<std::unique_ptr<RayReader>> readers;
-  std::uint64_t count = 0;
+  ThinnedRaySet out;
   for (const std::filesystem::path& file : files) {
     readers.push_back(open_ray_file(file));
-    count += readers.back()->ray_count();
+    out.of += readers.back()->ray_count();
   }
-  const double part = count > max_rays ? static_cast<double>(max_rays) / static_cast<double>(count) : 1.0;
-  RaySet all;
+  const double part = out.of > max_rays ? static_cast<double>(max_rays) / static_cast<double>(out.of) : 1.0;
   for (std::size_t k = 0; k < files.size(); ++k) {
-    const auto wanted = static_cast<std::uint64_t>(part * static_cast<double>(readers[k]->ray_count()));
+    const std::uint64_t count = readers[k]->ray_count(), one = count > 0 ? 1 : 0;
+    // A file without a ray would lose its flux.
+    const std::uint64_t wanted = std::max(one, static_cast<std::uint64_t>(part * static_cast<double>(count)));
     RaySet set = thinned(*readers[k], wanted, seed, progress);
-    if (files.size() == 1) return set;
-    merge_ray_sets(all, std::move(set), files[k].string());
+    if (files.size() == 1) {
+      out.set = std::move(set);
+    } else {
+      merge_ray_sets(out.set, std::move(set), files[k].string());
+    }
   }
-  return all;
+  return out;
 }
 
 }  // namespace lucerna

@@ -20,13 +20,11 @@ constexpr std::uint64_t kMaxReportRays = std::uint64_t{1} << 22;
 void write_model_report(const SourceModel& model, const std::filesystem::path& model_path,
                         const std::vector<std::filesystem::path>& ray_files, nlohmann::ordered_json json,
                         const std::filesystem::path& html, Progress& progress) {
-  std::uint64_t all = 0;
-  for (const std::filesystem::path& path : ray_files) all += open_ray_file(path)->ray_count();
-  const RayBlock rays = thinned_ray_set(ray_files, kMaxReportRays, 1, progress).rays;
+  const ThinnedRaySet rays = thinned_ray_set(ray_files, kMaxReportRays, 1, progress);
   ModelReportOptions options;
   options.title = model_path.filename().string();
-  options.rays = ray_files.empty() ? nullptr : &rays;
-  options.rays_in_files = all;
+  options.rays = ray_files.empty() ? nullptr : &rays.set.rays;
+  options.rays_in_files = rays.of;
   write_file(html, model_report_html(model, std::move(json), options, progress));
 }
 
