@@ -26,6 +26,16 @@ DesignRays disk_rays() {
   return DesignRays({source}, Frame(), 3);
 }
 
+/// A cylinder of 16 mm across the axis of the same mirror.
+DesignRays cylinder_rays() {
+  EmitterOptions options;
+  options.kind = EmitterKind::cylinder;
+  options.radius_mm = 0.5;
+  options.length_mm = 16.0;
+  return DesignRays({{make_emitter(options), Frame({0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {0, 0, 15}), {}}},
+                    Frame(), 3);
+}
+
 /// A smooth oval beam along +z of the mirror's frame.
 FitProblem oval_problem(DesignRays& rays) {
   rays.grow(std::uint64_t{1} << 14);
@@ -122,14 +132,30 @@ TEST(FreeFormSearch, EndsAtTheSameBitsHoweverOftenItWasStopped) {
   EXPECT_EQ(checkpoint_text(state, "key"), whole);
 }
 
+// Its levels have fewer bins, and what follows from that.
+TEST(FreeFormSearch, OfALongSourceALevelGoesOnToTheSameBits) {
+  DesignRays rays = cylinder_rays();
+  const FitProblem problem = oval_problem(rays);
+  FreeFormSearch whole(problem, plain(), 16, kSearchRays);
+  constexpr int kFineBins = 84;
+  const auto is_there = [&] {
+    const FreeFormState& s = whole.state();
+    return s.now.level == 1 && s.now.bins < kFineBins && s.step == 1;
+  };
+  for (int i = 0; i < 300 && !is_there(); ++i) whole.step();
+  ASSERT_TRUE(is_there());
+  FreeFormSearch again(problem, plain(), 16, kSearchRays,
+                       parse_search_checkpoint(checkpoint_text(whole.state(), "key"), "key"));
+  for (int i = 0; i < 3; ++i) {
+    whole.step();
+    again.step();
+  }
+  EXPECT_EQ(checkpoint_text(again.state(), "key"), checkpoint_text(whole.state(), "key"));
+}
+
 // The mirror of a point source is no guide for a long one: the given mirror is brought near it instead.
 TEST(FreeFormSearch, OfALongSourceTheGivenMirrorIsBroughtNear) {
-  EmitterOptions options;
-  options.kind = EmitterKind::cylinder;
-  options.radius_mm = 0.5;
-  options.length_mm = 16.0;
-  DesignRays rays({{make_emitter(options), Frame({0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {0, 0, 15}), {}}}, Frame(),
-                  3);
+  DesignRays rays = cylinder_rays();
   const FitProblem problem = oval_problem(rays);
   FreeFormState state = run(problem, plain(), 50).state();
   const auto cost = [&](bool approach) {
