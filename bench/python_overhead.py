@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What Python costs: the same calls in Python and in C++, in turns; medians, and the median of the ratios.
 
-Usage: bench/python_overhead.py [--build build/release] [--pairs 15] [--rays 1e7]
+Usage: bench/python_overhead.py [--build build/release] [--pairs 101] [--rays 1e7]
 Needs the targets python_package and bench_python_overhead. Both sides must have the same bits.
 """
 import argparse
@@ -92,7 +92,7 @@ def objectives(lu, np, other, folder, options):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "release")
-    parser.add_argument("--pairs", type=int, default=15)
+    parser.add_argument("--pairs", type=int, default=101)
     parser.add_argument("--rays", type=float, default=1e7)
     options = parser.parse_args()
     sys.path.insert(0, str(options.build / "python"))
