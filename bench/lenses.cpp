@@ -75,7 +75,7 @@ std::string project_of(const LensShape& lens, double seconds) {
   return "[[source]]\nkind = \"disk\"\nradius_mm = 0.5\n[[body]]\nrole = \"solid\"\nrefractive_index = "
          "1.49\n" +
          outline_text(lens.corners()) +
-         "[[detector]]\nname = \"far\"\nkind = \"far-field\"\nc_step_deg = 360\ngamma_step_deg = 0.5\n"
+         "[[detector]]\nname = \"far\"\nkind = \"far-field\"\nc_step_deg = 360\ngamma_step_deg = 0.1\n"
          "[target]\nfile = \"hidden.ldt\"\n[design]\n" +
          fmt::format("free_sides = {}\ntime_s = {}\n", side, seconds);
 }

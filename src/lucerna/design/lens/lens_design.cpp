@@ -17,7 +17,7 @@ namespace {
 
 /// Rays that the given lens is validated with, at most, and the share of the time that validation may take.
 constexpr std::uint64_t kGivenRays = std::uint64_t{1} << 20;
-constexpr double kValidationShare = 0.25;
+constexpr double kValidationShare = 0.15;
 
 /// Against the target, as often as it is asked for.
 class LensCheck {

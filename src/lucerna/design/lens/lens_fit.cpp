@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "lucerna/design/constraints/limits.h"
 #include "lucerna/design/evaluation/window.h"
 #include "lucerna/design/fit/approach.h"
+#include "lucerna/design/lens/cumulative_flux.h"
 #include "lucerna/design/lens/lens_evaluation.h"
+#include "lucerna/design/lens/lens_smoothness.h"
 #include "lucerna/design/lens/lens_start.h"
 #include "lucerna/design/solver/levenberg_marquardt.h"
 #include "lucerna/random.h"
@@ -19,20 +23,35 @@ namespace lucerna {
 
 namespace {
 
-/// Longest way of a corner in one step, over the lens's radius, and the size of a perturbation.
-constexpr double kLongestCornerMove = 0.05, kPerturbation = 0.01;
+/// Longest way of a corner in one step, over the lens's radius.
+constexpr double kLongestCornerMove = 0.05;
+/// Size of the waves that make another start, and of those that perturb the best, over the radius.
+constexpr double kOtherStart = 0.03, kPerturbation = 0.004;
+/// Starts of the coarse stages; how many of them the next one takes on, and how much more squared error than
+/// the best's they may have; and how often the best is perturbed before the fine stages.
+constexpr int kStarts = 14, kTakenOn = 3, kEarlyRestarts = 10;
+constexpr double kHopeful = 9.0;
+/// A start is given up where a stage leaves so much more squared error than with the best.
+constexpr double kHopeless = 100.0;
 /// A stage ends after two steps that gained less than this share each, or so many refused in a row.
-constexpr double kLittleGain = 0.02;
-constexpr int kMostRefused = 5, kMostSteps = 40;
+constexpr double kLittleGain = 0.02, kLittleCoarseGain = 0.05;
+constexpr int kMostRefused = 5, kMostSteps = 40, kMostCoarseSteps = 20;
+/// What light within each ring weighs in the first stage, and what the rings themselves weigh there.
+constexpr double kCumulativeWeight = 100.0, kRingsWeight = 0.01;
+/// Weight of roughness (`lens_roughness`): a wave of 3 % of the radius with three half periods counts as an
+/// error of 0.16 %.
+constexpr double kRoughnessWeight = 8e-9;
 /// What of the source may be within the lens beyond what the given one holds.
 constexpr double kMaxWithin = 1e-3;
 constexpr std::uint64_t kWithinRays = 4096;
-/// A restart goes on only if its coarse stages end this much below the best's, squared error.
-constexpr double kBetter = 0.95;
+/// A restart goes on to more rays only if this much of the best's squared error is left.
+constexpr double kBetter = 0.97;
 
 struct LensStage {
   int bins;
   std::uint64_t rays;
+  /// Of coarse stages, which many starts go through; and the very first, where cumulative light leads.
+  bool is_coarse = false, is_cumulative = false;
 };
 
 struct LensPoint {
@@ -41,18 +60,27 @@ struct LensPoint {
   NormalEquations equations;
 };
 
+/// The target in the bins of stages.
+struct BinnedTarget {
+  TentBins bins;
+  Eigen::VectorXd flux;
+};
+
 /// The problem in the bins and rays of one stage.
 class LensStageObjective {
  public:
-  LensStageObjective(const LensProblem& problem, const LensStage& stage, DesignRays& rays,
-                     const std::vector<double>& signs, double flux_reference, double given_within)
+  LensStageObjective(const LensProblem& problem, const LensStage& stage, const BinnedTarget& target,
+                     DesignRays& rays, const std::vector<double>& signs, double flux_reference,
+                     double given_within)
       : problem_(problem),
         rays_(rays),
         signs_(signs),
-        bins_(rebinned(lens_window(problem), 1.0, stage.bins)),
-        target_(target_flux(problem.target, problem.world_from_lens, rays.flux())(bins_)),
+        bins_(target.bins),
+        target_(target.flux),
         flux_reference_(flux_reference),
-        given_within_(given_within) {
+        given_within_(given_within),
+        is_cumulative_(stage.is_cumulative),
+        roughness_(kRoughnessWeight * lens_roughness(problem.start)) {
     rays.grow(stage.rays);
     options_.rays = stage.rays;
     options_.edge_mm = kEdgeShare * problem.start.radius_mm();
@@ -64,7 +92,11 @@ class LensStageObjective {
     if (!shape.is_valid()) return out;
     if (share_within(shape, rays_, kWithinRays) > given_within_ + kMaxWithin) return out;
     out.light = evaluate_lens(shape, problem_.medium, rays_, bins_, options_);
-    out.equations = normal_equations(out.light, target_, bins_, problem_.target.mode);
+    out.equations = equations(out.light);
+    const Eigen::VectorXd rough = roughness_ * shape.parameters();
+    out.equations.cost += shape.parameters().dot(rough);
+    out.equations.gradient += rough;
+    out.equations.hessian += roughness_;
     ResidualRows rows;
     out.equations.cost += lens_limits_cost(problem_.limits, shape, signs_, rows);
     rows.add_to(out.equations);
@@ -79,12 +111,24 @@ class LensStageObjective {
   std::uint64_t rays() const { return options_.rays; }
 
  private:
+  NormalEquations equations(const Evaluation& light) const {
+    NormalEquations out = normal_equations(light, target_, bins_, problem_.target.mode);
+    if (!is_cumulative_) return out;
+    out.cost *= kRingsWeight;
+    out.gradient *= kRingsWeight;
+    out.hessian *= kRingsWeight;
+    add_cumulative_flux(light, target_, problem_.target.mode, kCumulativeWeight, out);
+    return out;
+  }
+
   const LensProblem& problem_;
   DesignRays& rays_;
   const std::vector<double>& signs_;
-  TentBins bins_;
-  Eigen::VectorXd target_;
+  const TentBins& bins_;
+  const Eigen::VectorXd& target_;
   double flux_reference_, given_within_;
+  bool is_cumulative_;
+  Eigen::MatrixXd roughness_;
   LensEvaluationOptions options_;
 };
 
@@ -98,77 +142,133 @@ class LensFit {
         rays_(rays),
         watch_(watch),
         signs_(draft_signs(problem.start)),
+        window_(lens_window(problem)),
         result_(problem.start) {
     rays_.grow(std::uint64_t{1} << 16);
     given_within_ = share_within(problem.start, rays_, kWithinRays);
     LensEvaluationOptions plain;
     plain.derivatives = false;
-    const Evaluation start = evaluate_lens(problem.start, problem.medium, rays_, lens_window(problem), plain);
+    const Evaluation start = evaluate_lens(problem.start, problem.medium, rays_, window_, plain);
     flux_reference_ = start.reflected + start.direct;
-    const int least = static_cast<int>(problem.start.parameter_count()) + 6;
-    const bool rings = lens_window(problem).is_rings();
-    const auto rays_of = [&](int log2) { return std::min(options.max_rays, std::uint64_t{1} << log2); };
-    const int coarse = rings ? std::max(24, std::min(least, 48)) : 24;
-    stages_ = {{coarse, rays_of(15)}, {48, rays_of(17)}, {48, rays_of(20)}, {48, rays_of(22)}};
-    while (stages_.size() > 1 && stages_[stages_.size() - 2].rays == stages_.back().rays &&
-           stages_[stages_.size() - 2].bins == stages_.back().bins)
-      stages_.pop_back();
+    stages_ = stages_of(window_, static_cast<int>(problem.start.parameter_count()), options.max_rays);
+    const auto coarse =
+        std::count_if(stages_.begin(), stages_.end(), [](const auto& s) { return s.is_coarse; });
+    coarse_ = static_cast<std::size_t>(coarse);
   }
 
   LensFitResult run() {
-    std::vector<LensShape> guesses{problem_.start};
-    for (LensShape& s : zero_etendue_lenses(problem_.start, problem_.medium, rays_,
-                                            target_flux(problem_.target, problem_.world_from_lens, 1.0)))
-      guesses.push_back(std::move(s));
-    const std::size_t coarse = std::min<std::size_t>(2, stages_.size());
-    std::vector<std::pair<double, LensShape>> begun;
-    for (const LensShape& guess : guesses) {
-      LensShape shape = guess;
-      const double cost = through(shape, 0, coarse);
-      begun.emplace_back(cost, shape);
-      if (stopped_) break;
+    std::vector<Candidate> begun;
+    const auto first = starts();
+    for (std::size_t k = 0; k < first.size() && !stopped_; ++k) begun.push_back(coarsely(first[k], 0));
+    for (int k = 0; k < kEarlyRestarts && !stopped_; ++k) {
+      sort_by_cost(begun);
+      begun.push_back(coarsely(perturbed(begun.front().shape, k), coarse_ - 1));
     }
-    const auto best = std::min_element(begun.begin(), begun.end(),
-                                       [](const auto& a, const auto& b) { return a.first < b.first; });
-    coarse_cost_ = best->first;
-    keep(best->second, best->first);
-    finish(best->second, coarse);
+    sort_by_cost(begun);
+    result_.shape = begun.front().shape;
+    coarse_cost_ = begun.front().cost;
+    for (std::size_t k = 0; k < std::min<std::size_t>(kTakenOn, begun.size()); ++k) {
+      if (begun[k].cost <= kHopeful * coarse_cost_) take_on(begun[k].shape);
+    }
+    finish();
     for (int failed = 0, k = 0; !stopped_ && !result_.at_noise; ++k) {
       if (failed >= problem_.max_failed_restarts) break;
-      failed = restart(k, coarse) ? 0 : failed + 1;
+      failed = restart(k) ? 0 : failed + 1;
     }
     return std::move(result_);
   }
 
  private:
-  /// Fine stages from a shape; keeps it where it is the best.
-  bool finish(LensShape shape, std::size_t first) {
+  struct Candidate {
+    double cost;
+    LensShape shape;
+  };
+
+  /// Coarse ones, one of middling size at which restarts are compared, and fine ones.
+  static std::vector<LensStage> stages_of(const TentBins& window, int parameters, std::uint64_t max_rays) {
+    const auto rays = [&](int log2) { return std::min(max_rays, std::uint64_t{1} << log2); };
+    if (!window.is_rings()) return {{24, rays(15), true}, {48, rays(17)}, {48, rays(20)}, {48, rays(22)}};
+    const int least = parameters + 6;
+    const int rings = std::max(window.count(), least), coarse = std::max(window.count() / 3, least);
+    return {{coarse, rays(14), true, true},
+            {coarse, rays(14), true},
+            {rings, rays(14), true},
+            {rings, rays(16)},
+            {rings, rays(18)},
+            {rings, rays(20)}};
+  }
+
+  /// The given lens, those of a point source, and the given one perturbed.
+  std::vector<LensShape> starts() const {
+    std::vector<LensShape> out{problem_.start};
+    for (LensShape& s : zero_etendue_lenses(problem_.start, problem_.medium, rays_,
+                                            target_flux(problem_.target, problem_.world_from_lens, 1.0)))
+      out.push_back(std::move(s));
+    for (int k = 0; static_cast<int>(out.size()) < kStarts; ++k) out.push_back(other_start(k));
+    return out;
+  }
+  LensShape other_start(int k) const {
+    return perturbed_smoothly(problem_.start, kOtherStart * problem_.start.radius_mm(),
+                              Rng(options_.seed ^ 0x4C454E53ull, static_cast<std::uint64_t>(k)));
+  }
+
+  /// Takes a shape through the middling stage; keeps it where it is the best there.
+  bool take_on(LensShape shape) {
+    if (stopped_) return false;
+    const double cost = through(shape, coarse_, coarse_ + 1);
+    if (!(cost < middle_cost_)) return false;
+    const bool gained = cost < kBetter * middle_cost_;
+    middle_cost_ = cost;
+    middle_ = std::move(shape);
+    if (!std::isfinite(fine_cost_)) result_.shape = *middle_;
+    return gained;
+  }
+
+  /// The fine stages from the best of the middling one; keeps what comes of it where it is the best.
+  bool finish() {
+    if (stopped_ || !middle_) return false;
     bool noise = false;
-    const double cost = through(shape, first, stages_.size(), &noise);
+    LensShape shape = *middle_;
+    const double cost = through(shape, coarse_ + 1, stages_.size(), &noise);
     if (!(cost < fine_cost_)) return false;
-    const bool gained = cost < 0.97 * fine_cost_;
+    const bool gained = cost < kBetter * fine_cost_;
     fine_cost_ = cost;
     result_.shape = std::move(shape);
     result_.at_noise = noise;
     return gained;
   }
 
-  bool restart(int k, std::size_t coarse) {
-    Rng rng(options_.seed ^ 0x4C454E53ull, static_cast<std::uint64_t>(k));
-    const double size = kPerturbation * problem_.start.radius_mm() * (k % 3 == 2 ? 3.0 : 1.0);
-    Eigen::VectorXd p = result_.shape.parameters();
-    for (double& x : p) x += size * (2.0 * rng.uniform() - 1.0);
-    LensShape shape = problem_.start.with(p);
-    if (!shape.is_valid()) return false;
-    const double cost = through(shape, 0, coarse);
-    if (stopped_ || !(cost < kBetter * coarse_cost_)) return false;
-    coarse_cost_ = cost;
-    return finish(shape, coarse);
+  /// Two times of three from the best, a little perturbed; else from another start.
+  bool restart(int k) {
+    const Candidate found = k % 3 == 2 ? coarsely(other_start(kStarts + k), 0)
+                                       : coarsely(perturbed(result_.shape, kEarlyRestarts + k), coarse_ - 1);
+    if (stopped_ || !(found.cost <= kHopeful * coarse_cost_)) return false;
+    coarse_cost_ = std::min(found.cost, coarse_cost_);
+    return take_on(found.shape) && finish();
   }
 
-  /// The best so far before any shape has been through the fine stages.
-  void keep(const LensShape& shape, double cost) {
-    if (cost < std::numeric_limits<double>::infinity()) result_.shape = shape;
+  /// A shape after the coarse stages from `stage` on; given up where it stays far behind the best.
+  Candidate coarsely(LensShape shape, std::size_t stage) {
+    double cost = std::numeric_limits<double>::infinity();
+    best_of_stage_.resize(coarse_, cost);
+    for (; stage < coarse_ && !stopped_; ++stage) {
+      cost = through(shape, stage, stage + 1);
+      best_of_stage_[stage] = std::min(cost, best_of_stage_[stage]);
+      if (!(cost <= kHopeless * best_of_stage_[stage])) break;
+    }
+    if (stage < coarse_) cost = std::numeric_limits<double>::infinity();
+    return {cost, std::move(shape)};
+  }
+
+  static void sort_by_cost(std::vector<Candidate>& all) {
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+  }
+
+  /// Every third time by more.
+  LensShape perturbed(const LensShape& shape, int k) const {
+    const double size = kPerturbation * problem_.start.radius_mm() * (k % 3 == 2 ? 3.0 : 1.0);
+    return perturbed_smoothly(shape, size, Rng(options_.seed ^ 0x4B49434Bull, static_cast<std::uint64_t>(k)));
   }
 
   /// Takes `shape` through stages; returns the cost at the end of the last.
@@ -189,20 +289,32 @@ class LensFit {
     return cost;
   }
 
-  /// Made when it is first asked for: the target in bins takes as long as an evaluation.
   const LensStageObjective& objective_of(std::size_t stage) {
     objectives_.resize(stages_.size());
     if (objectives_[stage] == nullptr) {
-      objectives_[stage] = std::make_unique<LensStageObjective>(problem_, stages_[stage], rays_, signs_,
-                                                                flux_reference_, given_within_);
+      objectives_[stage] =
+          std::make_unique<LensStageObjective>(problem_, stages_[stage], binned(stages_[stage].bins), rays_,
+                                               signs_, flux_reference_, given_within_);
     }
     return *objectives_[stage];
+  }
+
+  /// Made when it is first asked for: a target in bins takes as long as an evaluation.
+  const BinnedTarget& binned(int count) {
+    const auto found = targets_.find(count);
+    if (found != targets_.end()) return found->second;
+    TentBins bins = rebinned(window_, 1.0, count);
+    Eigen::VectorXd flux = target_flux(problem_.target, problem_.world_from_lens, rays_.flux())(bins);
+    return targets_.emplace(count, BinnedTarget{std::move(bins), std::move(flux)}).first->second;
   }
 
   void steps(const LensStageObjective& objective, LensPoint& now, int stage) {
     double lambda = 1e-3;
     const double longest = kLongestCornerMove * problem_.start.radius_mm();
-    for (int step = 1, small = 0, refused = 0; step <= kMostSteps && !stopped_; ++step) {
+    const bool coarse = stages_[static_cast<std::size_t>(stage)].is_coarse;
+    const int most = coarse ? kMostCoarseSteps : kMostSteps;
+    const double little = coarse ? kLittleCoarseGain : kLittleGain;
+    for (int step = 1, small = 0, refused = 0; step <= most && !stopped_; ++step) {
       const double before = now.equations.cost;
       const Eigen::VectorXd diagonal = now.equations.hessian.diagonal();
       const Eigen::VectorXd metric = diagonal.array() + 1e-2 * diagonal.mean() + 1e-300;
@@ -215,7 +327,7 @@ class LensFit {
       refused = made.accepted ? 0 : refused + 1;
       if (refused >= kMostRefused || lambda >= kMaxLambda) return;
       if (!made.accepted) continue;
-      small = before - now.equations.cost < kLittleGain * before ? small + 1 : 0;
+      small = before - now.equations.cost < little * before ? small + 1 : 0;
       if (small == 2) return;
     }
   }
@@ -250,11 +362,17 @@ class LensFit {
   DesignRays& rays_;
   const LensFitWatcher& watch_;
   std::vector<double> signs_;
+  TentBins window_;
+  std::map<int, BinnedTarget> targets_;
   std::vector<LensStage> stages_;
   std::vector<std::unique_ptr<LensStageObjective>> objectives_;
   double flux_reference_ = 1.0, given_within_ = 0.0;
+  /// How many of the stages are coarse; the next is the middling one.
+  std::size_t coarse_ = 0;
+  std::vector<double> best_of_stage_;
   double coarse_cost_ = std::numeric_limits<double>::infinity();
-  double fine_cost_ = std::numeric_limits<double>::infinity();
+  double middle_cost_ = coarse_cost_, fine_cost_ = coarse_cost_;
+  std::optional<LensShape> middle_;
   bool stopped_ = false;
   LensFitResult result_;
 };

@@ -36,9 +36,10 @@ struct LensFitResult {
 using LensFitWatcher = std::function<bool(const FitRecord& step, const LensShape& best)>;
 
 /// Shapes the lens by Levenberg-Marquardt on stages from coarse bins and few rays to fine ones and many
-/// (docs/theory/design.md). It begins with the given lens and the zero-étendue ones, takes the best of them
-/// on, and then perturbs the best, until only noise is left or `max_failed_restarts` of these in a row gained
-/// nothing. Decisions depend on counts alone. `rays`: in the lens's frame; grows.
+/// (docs/theory/lens-design.md). The given lens, the zero-étendue ones and smoothly perturbed copies go
+/// through the coarse stages, the best of them on. Then the best is perturbed, until only noise is left or
+/// `max_failed_restarts` of these in a row gained nothing. Decisions depend on counts alone. `rays`: in the
+/// lens's frame; grows.
 LensFitResult fit_lens(const LensProblem& problem, const LensFitOptions& options, DesignRays& rays,
                        const LensFitWatcher& watch);
 

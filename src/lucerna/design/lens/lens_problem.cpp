@@ -7,7 +7,10 @@
 #include <vector>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/design/evaluation/window.h"
 #include "lucerna/design/problem/design_detectors.h"
+#include "lucerna/design/problem/target_rectangle.h"
+#include "lucerna/design/validation/error_boxes.h"
 #include "lucerna/project/schema/project_tables.h"
 #include "lucerna/project/schema/toml_reader.h"
 
@@ -121,9 +124,13 @@ LensProblem lens_problem(Project project, const std::filesystem::path& path) {
 
 TentBins lens_window(const LensProblem& problem) {
   constexpr double kAligned = 1.0 - 1e-12;
+  constexpr int kRingsOfBox = 2;
   const bool rotational = !problem.target.plane && problem.target.distribution.c_deg.size() == 1 &&
                           std::abs(problem.world_from_lens.ez().z) > kAligned;
-  return target_bins(problem.target, problem.world_from_lens, rotational);
+  const TentBins bins = target_bins(problem.target, problem.world_from_lens, rotational);
+  if (!rotational) return bins;
+  const double box = target_rectangle(problem.target).width() / kErrorBoxes;
+  return rebinned(bins, 1.0, static_cast<int>(std::ceil(kRingsOfBox * bins.extent() / box)));
 }
 
 Solid with_outline(const LensProblem& problem, const LensShape& shape) {

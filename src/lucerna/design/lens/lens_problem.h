@@ -33,7 +33,8 @@ bool is_lens_design(const Project& project);
 /// detectors of every design (add_design_detectors).
 LensProblem lens_problem(Project project, const std::filesystem::path& path);
 
-/// The bins of the last stages: 48 rings where the target turns about the lens's axis, else 48 x 48.
+/// The bins of the last stages: rings half as wide as the boxes of the error where the target turns about the
+/// lens's axis, else 48 x 48.
 TentBins lens_window(const LensProblem& problem);
 
 /// The project's solid with another outline.

@@ -25,7 +25,9 @@ std::vector<std::string> write_lens_files(const std::filesystem::path& folder, c
                                           const nlohmann::ordered_json& json) {
   write_lens_progress(folder, problem, result.shape, history);
   const Solid solid = with_outline(problem, result.shape);
-  const auto mesh = surface_mesh(solid);
+  // Fine enough for another program's trace: sides of half a degree of a curve's turn.
+  constexpr double kMeshTolerance = 5e-6;
+  const auto mesh = surface_mesh(solid, kMeshTolerance);
   const auto profile = solid_profile(solid.outline_mm, solid.smooth_below_deg);
   write_file(folder / "lens.step", solid_step_text(solid.outline_mm, solid.smooth_below_deg));
   write_file(folder / "lens.stl", stl_bytes(*mesh));

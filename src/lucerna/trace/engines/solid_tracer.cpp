@@ -93,10 +93,10 @@ void check(const Solid& solid) {
   }
 }
 
-std::shared_ptr<const Mesh> surface_mesh(const Solid& solid) {
+std::shared_ptr<const Mesh> surface_mesh(const Solid& solid, double tolerance) {
   if (solid.mesh != nullptr) return solid.mesh;
   std::vector<OutlinePoint> corners;
-  for (const OutlineSide& side : sides_of(solid, kMeshTolerance)) {
+  for (const OutlineSide& side : sides_of(solid, tolerance)) {
     if (corners.empty() || corners.back() != side.from) corners.push_back(side.from);
     corners.push_back(side.to);
   }
