@@ -32,7 +32,7 @@ constexpr double kOtherStart = 0.03, kPerturbation = 0.004;
 constexpr int kStarts = 14, kTakenOn = 3, kEarlyRestarts = 10;
 constexpr double kHopeful = 9.0;
 /// A start is given up where a stage leaves so much more squared error than with the best.
-constexpr double kHopeless = 100.0;
+constexpr double kFarBehind = 100.0;
 /// A stage ends after two steps that gained less than this share each, or so many refused in a row.
 constexpr double kLittleGain = 0.02, kLittleCoarseGain = 0.05;
 constexpr int kMostRefused = 5, kMostSteps = 40, kMostCoarseSteps = 20;
@@ -254,7 +254,7 @@ class LensFit {
     for (; stage < coarse_ && !stopped_; ++stage) {
       cost = through(shape, stage, stage + 1);
       best_of_stage_[stage] = std::min(cost, best_of_stage_[stage]);
-      if (!(cost <= kHopeless * best_of_stage_[stage])) break;
+      if (!(cost <= kFarBehind * best_of_stage_[stage])) break;
     }
     if (stage < coarse_) cost = std::numeric_limits<double>::infinity();
     return {cost, std::move(shape)};
