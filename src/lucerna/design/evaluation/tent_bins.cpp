@@ -95,7 +95,7 @@ std::vector<double> TentBins::flux_of(const std::function<double(const Direction
   };
   constexpr int kFineParts = 8;
   if (view_.kind != TentKind::square) {
-    const int fine = is_rings() ? 2 * kFineParts : kFineParts,
+    const int fine = is_rings() ? 64 : kFineParts,
               around = is_rings() ? 360 : std::max(360, kFineParts * view_.sectors);
     const double step = view_.cell / fine, turn = 2.0 * std::numbers::pi / around;
     for (int g = 0; g < (view_.count + 1) * fine; ++g) {

@@ -52,7 +52,7 @@ class TentBins {
   /// beyond the horizon.
   const std::vector<double>& measure() const { return measure_; }
 
-  /// Integral of intensity * tent over solid angle for every bin (8 x 8 points per cell; 16 per ring and 360
+  /// Integral of intensity * tent over solid angle for every bin (8 x 8 points per cell; 64 per ring and 360
   /// around): the flux that an intensity function puts into the bins. Not for planes.
   std::vector<double> flux_of(const std::function<double(const Direction&)>& intensity) const;
   /// Integral of a density over (x, y) in mm * tent over the plane's area in mm2 (8 x 8 points per cell).

@@ -164,6 +164,17 @@ TEST(LensStart, PointSourceMakesItsTarget) {
   EXPECT_LT(best, 0.15);
 }
 
+TEST(LensProblem, RingsAreHalfAsWideAsTheBoxesOfTheError) {
+  const auto rings = [](double half_width_deg) {
+    return lens_window(problem_of("", memory_of(beam_up(half_width_deg))));
+  };
+  const TentBins wide = rings(25.0);
+  const double box = target_rectangle(problem_of().target).width() / kErrorBoxes;
+  EXPECT_LE(wide.extent() / wide.count(), 0.5 * box);
+  EXPECT_GT(wide.extent() / (wide.count() - 1), 0.5 * box);
+  EXPECT_LT(rings(5.0).extent() / rings(5.0).count(), 0.3 * wide.extent() / wide.count());
+}
+
 TEST(LensProblem, SaysWhatItDoesNotTake) {
   const auto refused = [](const std::string& more) {
     try {

@@ -125,12 +125,15 @@ LensProblem lens_problem(Project project, const std::filesystem::path& path) {
 TentBins lens_window(const LensProblem& problem) {
   constexpr double kAligned = 1.0 - 1e-12;
   constexpr int kRingsOfBox = 2;
+  /// The window of a narrow beam is wide all the same, where there is light behind.
+  constexpr double kMostRings = 1024.0;
   const bool rotational = !problem.target.plane && problem.target.distribution.c_deg.size() == 1 &&
                           std::abs(problem.world_from_lens.ez().z) > kAligned;
   const TentBins bins = target_bins(problem.target, problem.world_from_lens, rotational);
   if (!rotational) return bins;
   const double box = target_rectangle(problem.target).width() / kErrorBoxes;
-  return rebinned(bins, 1.0, static_cast<int>(std::ceil(kRingsOfBox * bins.extent() / box)));
+  const double rings = std::clamp(std::ceil(kRingsOfBox * bins.extent() / box), 48.0, kMostRings);
+  return rebinned(bins, 1.0, static_cast<int>(rings));
 }
 
 Solid with_outline(const LensProblem& problem, const LensShape& shape) {
