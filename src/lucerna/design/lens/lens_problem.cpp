@@ -129,7 +129,7 @@ TentBins lens_window(const LensProblem& problem) {
   constexpr double kMostRings = 1024.0;
   const bool rotational = !problem.target.plane && problem.target.distribution.c_deg.size() == 1 &&
                           std::abs(problem.world_from_lens.ez().z) > kAligned;
-  const TentBins bins = target_bins(problem.target, problem.world_from_lens, rotational);
+  TentBins bins = target_bins(problem.target, problem.world_from_lens, rotational);
   if (!rotational) return bins;
   const double box = target_rectangle(problem.target).width() / kErrorBoxes;
   const double rings = std::clamp(std::ceil(kRingsOfBox * bins.extent() / box), 48.0, kMostRings);
