@@ -169,9 +169,13 @@ struct Solid {
 /// outline as solid_of_revolution refuses it, or whose curve crosses itself. O(triangles log triangles +
 /// corners^2).
 void check(const Solid& solid);
-/// Its surface as triangles, in its own frame: `mesh`, or what stands for its outline within `tolerance` (>
-/// 0) of its size. Throws InputError as `check` does for the outline. O(corners^2 + triangles).
-[[nodiscard]] std::shared_ptr<const Mesh> surface_mesh(const Solid& solid, double tolerance = 1e-4);
+/// How far the triangles of an outline may leave it, over its size, where they are only shown.
+inline constexpr double kSurfaceTolerance = 1e-4;
+/// Its surface as triangles, in its own frame: `mesh`, or what stands for its outline within `tolerance` of
+/// its size. Throws InputError as `check` does for the outline, and for a tolerance that is not between 1e-8
+/// and 1. O(corners^2 + triangles).
+[[nodiscard]] std::shared_ptr<const Mesh> surface_mesh(const Solid& solid,
+                                                       double tolerance = kSurfaceTolerance);
 
 /// What a plate returns, lets through and keeps of unpolarised light; they sum to 1. `cos_incidence` in
 /// [0, 1], outside the glass.

@@ -90,10 +90,10 @@ TEST(LensDesignSlow, IsTheSameForAnyNumberOfThreads) {
 }
 
 // The light of a lens with waves, found again from the lens without: other starts and small perturbations
-// lead there, where the given start alone ends far off.
+// lead within 1.2 %, where the given start alone ends 22 % off.
 TEST(LensDesignSlow, FindsAHiddenLens) {
   const LensProblem plain = problem_of();
-  const LensShape hidden = perturbed_smoothly(plain.start, 0.25, Rng(11, 0));
+  const LensShape hidden = perturbed_smoothly(plain.start, 0.45, Rng(11, 0));
   TraceOptions options;
   options.last_ray = 1 << 22;
   const Scene exact = with_lens(plain, hidden).scene;
@@ -173,6 +173,16 @@ TEST(LensProblem, RingsAreHalfAsWideAsTheBoxesOfTheError) {
   EXPECT_LE(wide.extent() / wide.count(), 0.5 * box);
   EXPECT_GT(wide.extent() / (wide.count() - 1), 0.5 * box);
   EXPECT_LT(rings(5.0).extent() / rings(5.0).count(), 0.3 * wide.extent() / wide.count());
+}
+
+// With light behind, the window of a narrow beam reaches there.
+TEST(LensProblem, NarrowBeamsHaveAThousandRings) {
+  IntensityDistribution beam = *beam_up(1.0);
+  for (std::size_t g = 0; beam.gamma_deg[g] < 80.0; ++g) beam.cd[g] = 2e-5;
+  const TentBins bins =
+      lens_window(problem_of("", memory_of(std::make_shared<const IntensityDistribution>(beam))));
+  EXPECT_GT(degrees(bins.extent()), 90.0);
+  EXPECT_EQ(bins.count(), 1024);
 }
 
 TEST(LensProblem, SaysWhatItDoesNotTake) {

@@ -154,6 +154,12 @@ class LensFit {
     const auto coarse =
         std::count_if(stages_.begin(), stages_.end(), [](const auto& s) { return s.is_coarse; });
     coarse_ = static_cast<std::size_t>(coarse);
+    // A cap on the rays can make the last stages one.
+    const auto same = [](const LensStage& a, const LensStage& b) {
+      return a.rays == b.rays && a.bins == b.bins;
+    };
+    while (stages_.size() > coarse_ + 2 && same(stages_.back(), stages_[stages_.size() - 2]))
+      stages_.pop_back();
   }
 
   LensFitResult run() {

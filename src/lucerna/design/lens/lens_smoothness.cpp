@@ -56,7 +56,7 @@ Eigen::MatrixXd lens_roughness(const LensShape& shape) {
 LensShape perturbed_smoothly(const LensShape& shape, double size_mm, Rng rng) {
   constexpr double kSmaller = 0.8;
   const auto faces = free_moves(shape.form());
-  for (double size = size_mm;; size *= kSmaller) {
+  for (double size = size_mm; size > 1e-6 * size_mm; size *= kSmaller) {
     Eigen::VectorXd p = shape.parameters();
     for (const Eigen::MatrixXd& moves : faces) {
       Eigen::VectorXd height = Eigen::VectorXd::Zero(moves.rows());
@@ -69,8 +69,9 @@ LensShape perturbed_smoothly(const LensShape& shape, double size_mm, Rng rng) {
       p += moves.transpose() * height;
     }
     LensShape out = shape.with(p);
-    if (out.is_valid() || size < 1e-6 * size_mm) return out.is_valid() ? out : shape;
+    if (out.is_valid()) return out;
   }
+  return shape;
 }
 
 }  // namespace lucerna

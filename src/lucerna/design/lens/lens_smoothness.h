@@ -14,7 +14,8 @@ namespace lucerna {
 Eigen::MatrixXd lens_roughness(const LensShape& shape);
 
 /// The lens with each free face moved along its normals by a sum of cosine waves of up to `size_mm` each, the
-/// shorter the smaller; an invalid one is drawn again, smaller each time. Depends on the arguments alone.
+/// shorter the smaller; an invalid one is drawn again, smaller each
+/// time, and `shape` is the last resort. Depends on the arguments alone.
 LensShape perturbed_smoothly(const LensShape& shape, double size_mm, Rng rng);
 
 }  // namespace lucerna

@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint64_t kFirstRays = std::uint64_t{1} << 18;
 /// Times that a ray may meet solids from outside.
 constexpr int kMostPassages = 100;
-/// Of the mesh, over the lens's size: ten times as much makes an error of half a per cent of its own.
+/// Of the mesh, over the lens's size: with ten times as much exact lenses had an error of 0.7 %, not 0.4.
 constexpr double kMeshTolerance = 1e-5;
 constexpr double kNoLimitMm = std::numeric_limits<double>::max();
 

@@ -61,8 +61,6 @@ void check_mesh(const Solid& solid) {
 
 /// Straight pieces leave the curve of an outline by at most this share of its size.
 constexpr double kCurveTolerance = 1e-7;
-/// So do those of its mesh, by which what touches what is seen and which is shown.
-constexpr double kMeshTolerance = 1e-4;
 
 std::vector<OutlineSide> sides_of(const Solid& solid, double tolerance) {
   return outline_sides(solid.outline_mm, solid.smooth_below_deg,
@@ -89,11 +87,13 @@ void check(const Solid& solid) {
   if (solid.mesh != nullptr) {
     check_mesh(solid);
   } else {
-    (void)sides_of(solid, kMeshTolerance);
+    (void)sides_of(solid, kSurfaceTolerance);
   }
 }
 
 std::shared_ptr<const Mesh> surface_mesh(const Solid& solid, double tolerance) {
+  if (!(tolerance >= 1e-8 && tolerance <= 1.0))
+    throw InputError(fmt::format("tolerance of a mesh: found {}, expected 1e-8 to 1", tolerance));
   if (solid.mesh != nullptr) return solid.mesh;
   std::vector<OutlinePoint> corners;
   for (const OutlineSide& side : sides_of(solid, tolerance)) {

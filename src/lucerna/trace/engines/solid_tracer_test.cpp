@@ -374,6 +374,17 @@ TEST(SolidTracerStatistical, AnOutlineAndItsMeshSendTheSameLight) {
   EXPECT_EQ(a.all_lost.mean, 0.0);
 }
 
+TEST(SolidTracer, AMeshIsAsFineAsItsTolerance) {
+  const Solid lens = turned(collimator(1.49, 6.0, 5.0), 1.49);
+  const std::size_t coarse = surface_mesh(lens)->triangles.size();
+  EXPECT_EQ(surface_mesh(lens, kSurfaceTolerance)->triangles.size(), coarse);
+  EXPECT_GT(surface_mesh(lens, 0.01 * kSurfaceTolerance)->triangles.size(), coarse);
+  for (const double wrong : {0.0, -1e-4, 2.0, std::nan("")}) {
+    EXPECT_EQ(test::message_of<InputError>([&] { (void)surface_mesh(lens, wrong); }),
+              fmt::format("tolerance of a mesh: found {}, expected 1e-8 to 1", wrong));
+  }
+}
+
 TEST(SolidTracer, HasEitherAMeshOrAnOutline) {
   Solid both = plate(5.0), none = plate(5.0);
   both.mesh = surface_mesh(both);
