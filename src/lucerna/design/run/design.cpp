@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/core/io/sha256.h"
 #include "lucerna/design/constraints/light_limits.h"
 #include "lucerna/design/constraints/limits.h"
 #include "lucerna/design/evaluation/body_shadows.h"
@@ -16,6 +17,7 @@
 #include "lucerna/design/run/search_mirror.h"
 #include "lucerna/design/run/time_budget.h"
 #include "lucerna/project/schema/project_tables.h"
+#include "lucerna/project/sections/project_content.h"
 #include "lucerna/trace/device/accelerator.h"
 
 namespace lucerna {
@@ -42,7 +44,7 @@ std::function<double(const DesignShape&, std::uint64_t, ResidualRows*)> limits_c
   };
 }
 
-/// FNV-1a: tells checkpoints of different problems apart.
+/// Tells checkpoints of different problems apart, also where a file behind a name has changed.
 std::string problem_key(const DesignProblem& problem, const DesignOptions& options) {
   toml::table table = toml_tables(problem.project);
   if (auto* design = table["design"].as_table()) {
@@ -50,12 +52,10 @@ std::string problem_key(const DesignProblem& problem, const DesignOptions& optio
     design->erase("tolerances");  // a sweep after the fit
   }
   std::ostringstream text;
-  text << table << options.seed << ' ' << options.max_rays;
+  text << content_tables(std::move(table), problem.project.memory) << options.seed << ' ' << options.max_rays;
   // Sums on a device are rounded otherwise: taken up elsewhere, a design would not end at the same bits.
   if (options.accelerator) text << ' ' << options.accelerator->isa();
-  std::uint64_t hash = 0xcbf29ce484222325ull;
-  for (const char c : text.str()) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
-  return fmt::format("{:016x}", hash);
+  return sha256_of_text(text.str()).substr(0, 16);
 }
 
 /// Validates what a search came to, by fewer rays and a shorter time where that was over first.

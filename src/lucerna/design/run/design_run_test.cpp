@@ -85,6 +85,11 @@ TEST_F(DesignRuns, AreWatchedAndGoOnToTheSameBits) {
   EXPECT_LT(resumed.history.size(), whole.history.size());
   settings.seed = 2;
   EXPECT_THROW(design(project, "lamp", settings), InputError) << "a checkpoint of another problem";
+  settings.seed = DesignSettings().seed;
+  PhotometricFile target = read_photometric_file(dir_ / "spot.ldt");
+  for (double& cd : target.distribution.cd) cd *= cd;
+  write_photometric_file(dir_ / "spot.ldt", target, PhotometricFormat::ldt);
+  EXPECT_THROW(design(project, "lamp", settings), InputError) << "the same name, another target";
 }
 
 TEST_F(DesignRuns, LeaveAProjectThatMakesTheSameLight) {

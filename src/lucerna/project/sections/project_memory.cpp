@@ -2,6 +2,7 @@
 #include "lucerna/project/sections/project_memory.h"
 
 #include "lucerna/photometric_file.h"
+#include "lucerna/project/schema/project_files.h"
 #include "lucerna/project/schema/project_tables.h"
 #include "lucerna/ray_file.h"
 
@@ -17,21 +18,6 @@ std::map<std::string, Object> absolute_keys(const std::map<std::string, Object>&
   std::map<std::string, Object> out;
   for (const auto& [name, object] : objects) out[(folder / name).lexically_normal().string()] = object;
   return out;
-}
-
-/// Replaces the names of files in every table.
-void rename_files(toml::table& table, const std::map<std::string, std::string>& new_names) {
-  for (auto&& [key, node] : table) {
-    if (auto* inner = node.as_table()) rename_files(*inner, new_names);
-    if (auto* array = node.as_array()) {
-      for (auto&& item : *array) {
-        if (auto* inner = item.as_table()) rename_files(*inner, new_names);
-      }
-    }
-    if (key.str() != "file" || !node.is_string()) continue;
-    const auto found = new_names.find(node.as_string()->get());
-    if (found != new_names.end()) node.as_string()->get() = found->second;
-  }
 }
 
 /// A name of its own in `folder`: that of the object with another ending.
@@ -72,7 +58,10 @@ Project save_memory(const Project& project, const fs::path& folder) {
                            {.digits = 17});
     add(name, file);
   }
-  rename_files(toml_tables(saved), new_names);
+  for_each_file(toml_tables(saved), [&](std::string& name) {
+    const auto found = new_names.find(name);
+    if (found != new_names.end()) name = found->second;
+  });
   return saved;
 }
 

@@ -3,31 +3,16 @@
 
 #include <cmath>
 #include <sstream>
+#include <utility>
 
-#include "lucerna/core/io/file.h"
 #include "lucerna/core/io/sha256.h"
 #include "lucerna/project/schema/project_tables.h"
+#include "lucerna/project/sections/project_content.h"
 #include "lucerna/version.h"
 
 namespace lucerna {
 
 namespace {
-
-/// Puts the hash of its bytes in place of every file's name.
-void hash_files(toml::table& table) {
-  for (auto&& [key, node] : table) {
-    if (auto* inner = node.as_table()) hash_files(*inner);
-    if (auto* array = node.as_array()) {
-      for (auto&& item : *array) {
-        if (auto* inner = item.as_table()) hash_files(*inner);
-      }
-    }
-    if (key.str() == "file" && node.is_string()) {
-      auto& value = node.as_string()->get();
-      value = sha256_of_file(value);
-    }
-  }
-}
 
 void set_luminous_size(const Scene& scene, TraceOrigin& origin) {
   if (scene.reflectors.empty()) return;
@@ -45,9 +30,8 @@ TraceOrigin trace_origin(const Project& project) {
   toml::table table = toml_tables(project);
   table.erase("target");
   table.erase("design");
-  hash_files(table);
   std::ostringstream text;
-  text << table;
+  text << content_tables(std::move(table), project.memory);
   origin.scene_id = sha256_of_text(text.str());
   origin.program_version = version();
   origin.project = project_text(project);
