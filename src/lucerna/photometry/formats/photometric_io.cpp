@@ -130,7 +130,9 @@ PhotometricFile read_photometric_file(const std::filesystem::path& path,
                                       const PhotometricReadOptions& options) {
   const std::string bytes = read_file(path, kMaxBytes);
   const auto format = detect_photometric_format(bytes);
-  if (!format) throw InputError(fmt::format("{}: neither an IES LM-63 nor a EULUMDAT file", path.string()));
+  if (!format)
+    throw InputError(fmt::format("{}: neither an IES LM-63 nor a EULUMDAT file", path.string()),
+                     ErrorCause::damaged);
   return *format == PhotometricFormat::ldt ? read_ldt(bytes, path.string(), options)
                                            : read_ies(bytes, path.string(), options);
 }
