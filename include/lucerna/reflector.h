@@ -42,6 +42,10 @@ class HeightSurface {
   /// A range that holds the height at every point of `region`; as tight as is cheap. What hierarchies are
   /// built from.
   virtual HeightRange range(const Rectangle& region) const = 0;
+
+  /// True only where the height is known to be a convex function over `region`, as a bowl is: a line crosses
+  /// it there twice at most. False costs time, not accuracy.
+  virtual bool convex_over(const Rectangle& region) const;
 };
 
 /// The outlines that an aperture can have.

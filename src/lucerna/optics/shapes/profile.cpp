@@ -116,6 +116,14 @@ SplineProfile::SplineProfile(const std::vector<ProfileKnot>& knots) {
   r_max_mm_ = knots[m].r_mm;
   formula_from_mm_ = r_min_mm_ / kGoesOn;
   formula_to_mm_ = r_max_mm_ * kGoesOn;
+  convex_ = at(formula_from_mm_).slope >= 0.0;
+  // The second derivative is linear in each piece.
+  for (std::size_t i = 0; i < m; ++i) {
+    const Piece& p = pieces_[i];
+    const double begin = i == 0 ? formula_from_mm_ : p.r_mm,
+                 end = i + 1 < m ? knots[i + 1].r_mm : formula_to_mm_;
+    for (const double r : {begin, end}) convex_ = convex_ && p.c + 3.0 * p.d * (r - p.r_mm) >= 0.0;
+  }
 }
 
 const SplineProfile::Piece& SplineProfile::piece(double r_mm) const {

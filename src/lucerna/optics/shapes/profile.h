@@ -22,6 +22,8 @@ class Profile {
   virtual ProfilePoint at(double r_mm) const = 0;
   /// Exact range of heights over [r0, r1], 0 <= r0 <= r1.
   virtual HeightRange range(double r0_mm, double r1_mm) const = 0;
+  /// True if the slope, for all r >= 0, is never negative and never falls: what it sweeps is convex.
+  virtual bool convex() const = 0;
   double r_min_mm() const { return r_min_mm_; }
   double r_max_mm() const { return r_max_mm_; }
 
@@ -44,6 +46,7 @@ class ConicProfile final : public Profile {
 
   ProfilePoint at(double r_mm) const override;
   HeightRange range(double r0_mm, double r1_mm) const override;
+  bool convex() const override { return curvature_ >= 0.0; }
 
   double curvature_per_mm() const { return curvature_; }
   double conic_constant() const { return conic_; }
@@ -65,6 +68,7 @@ class SplineProfile final : public Profile {
   /// O(log knots).
   ProfilePoint at(double r_mm) const override;
   HeightRange range(double r0_mm, double r1_mm) const override;
+  bool convex() const override { return convex_; }
 
  private:
   /// z = z + t (b + t (c + t d)) with t = r - r_mm.
@@ -75,6 +79,7 @@ class SplineProfile final : public Profile {
   std::vector<Piece> pieces_;
   /// Tangents begin below and above these.
   double formula_from_mm_ = 0.0, formula_to_mm_ = 0.0;
+  bool convex_ = false;
 };
 
 /// The surface that a profile sweeps about the z axis.
@@ -83,6 +88,7 @@ class RevolutionSurface final : public HeightSurface {
   explicit RevolutionSurface(std::shared_ptr<const Profile> profile);
   SurfacePoint at(double x_mm, double y_mm) const override;
   HeightRange range(const Rectangle& region) const override;
+  bool convex_over(const Rectangle&) const override { return profile_->convex(); }
   const Profile& profile() const { return *profile_; }
 
  private:

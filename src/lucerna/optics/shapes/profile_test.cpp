@@ -96,5 +96,15 @@ TEST(SplineProfile, RefusesBadPoints) {
   EXPECT_THROW(SplineProfile({{0.0, 0.0}, {1.0, std::nan("")}}), InputError);
 }
 
+TEST(Profile, IsConvexWhereItsSlopeNeverFalls) {
+  EXPECT_TRUE(ConicProfile::parabola(15.0, 50.0).convex());
+  EXPECT_TRUE(ConicProfile::ellipse(10.0, 90.0, 29.0).convex());
+  EXPECT_TRUE(SplineProfile({{0.0, 0.0}, {5.0, 0.5}, {10.0, 2.2}, {20.0, 9.0}}).convex());
+  EXPECT_TRUE(SplineProfile({{5.0, 0.5}, {10.0, 2.2}, {20.0, 9.0}}).convex());
+  EXPECT_FALSE(SplineProfile({{0.0, 0.0}, {5.0, 0.6}, {9.0, 1.0}, {20.0, 8.0}, {31.0, 12.0}}).convex());
+  EXPECT_FALSE(SplineProfile({{5.0, 9.0}, {10.0, 2.2}, {20.0, 0.5}}).convex())
+      << "falls: a dome about the axis";
+}
+
 }  // namespace
 }  // namespace lucerna

@@ -31,6 +31,8 @@ ConicProfile conic_profile(ConicPreset preset, double focal_mm, double focal2_mm
 
 }  // namespace
 
+bool HeightSurface::convex_over(const Rectangle&) const { return false; }
+
 Reflector conic_reflector(ConicPreset preset, double focal_mm, double focal2_mm, const Aperture& aperture) {
   auto profile =
       std::make_shared<ConicProfile>(conic_profile(preset, focal_mm, focal2_mm, aperture.outer_radius_mm()));

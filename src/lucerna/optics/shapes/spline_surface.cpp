@@ -172,4 +172,40 @@ HeightRange SplineSurface::range(const Rectangle& r) const {
   return {base.low_mm + m.z_mm + low - tilt, base.high_mm + m.z_mm + high + tilt};
 }
 
+bool SplineSurface::convex_over(const Rectangle& r) const {
+  // Beyond its rectangle the spline goes on by another rule.
+  if (r.x0_mm < region_.x0_mm || r.x1_mm > region_.x1_mm || r.y0_mm < region_.y0_mm ||
+      r.y1_mm > region_.y1_mm)
+    return false;
+  if (base_ && !base_->convex_over(r)) return false;
+  const std::size_t x0 = place(r.x0_mm, region_.x0_mm, step_x_, nx_ - 3).patch,
+                    x1 = place(r.x1_mm, region_.x0_mm, step_x_, nx_ - 3).patch;
+  const std::size_t y0 = place(r.y0_mm, region_.y0_mm, step_y_, ny_ - 3).patch,
+                    y1 = place(r.y1_mm, region_.y0_mm, step_y_, ny_ - 3).patch;
+  for (std::size_t py = y0; py <= y1; ++py) {
+    for (std::size_t px = x0; px <= x1; ++px) {
+      if (!convex_patch(px, py)) return false;
+    }
+  }
+  return true;
+}
+
+/// A derivative of a B-spline is one of lower degree, whose coefficients are differences of the coefficients.
+bool SplineSurface::convex_patch(std::size_t px, std::size_t py) const {
+  const auto c = [&](std::size_t i, std::size_t j) { return coefficients_[(py + j) * nx_ + px + i]; };
+  double min_xx = 1e300, min_yy = 1e300, max_xy = 0.0;
+  for (std::size_t j = 0; j < 4; ++j) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      min_xx = std::min(min_xx, c(i, j) - 2.0 * c(i + 1, j) + c(i + 2, j));
+      min_yy = std::min(min_yy, c(j, i) - 2.0 * c(j, i + 1) + c(j, i + 2));
+    }
+  }
+  for (std::size_t j = 0; j < 3; ++j) {
+    for (std::size_t i = 0; i < 3; ++i)
+      max_xy = std::max(max_xy, std::abs(c(i + 1, j + 1) - c(i + 1, j) - c(i, j + 1) + c(i, j)));
+  }
+  // The steps cancel in the determinant.
+  return min_xx >= 0.0 && min_yy >= 0.0 && min_xx * min_yy >= max_xy * max_xy;
+}
+
 }  // namespace lucerna

@@ -29,12 +29,17 @@ class SplineSurface final : public HeightSurface {
   SurfacePoint at(double x_mm, double y_mm) const override;
   /// From the coefficients: a spline stays between the minimum and maximum that reach into a patch.
   HeightRange range(const Rectangle& region) const override;
+  /// From the coefficients, too: second derivatives of each patch lie between minima and maxima of second
+  /// differences, which may leave a convex patch undecided. O(patches of the region).
+  bool convex_over(const Rectangle& region) const override;
 
   std::size_t nx() const { return nx_; }
   std::size_t ny() const { return ny_; }
   const std::vector<double>& coefficients() const { return coefficients_; }
 
  private:
+  bool convex_patch(std::size_t px, std::size_t py) const;
+
   Rectangle region_;
   std::size_t nx_, ny_;
   double step_x_, step_y_;

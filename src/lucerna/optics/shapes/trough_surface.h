@@ -13,6 +13,7 @@ class TroughSurface final : public HeightSurface {
   explicit TroughSurface(std::shared_ptr<const Profile> profile);
   SurfacePoint at(double x_mm, double y_mm) const override;
   HeightRange range(const Rectangle& region) const override;
+  bool convex_over(const Rectangle&) const override { return profile_->convex(); }
   const Profile& profile() const { return *profile_; }
 
  private:

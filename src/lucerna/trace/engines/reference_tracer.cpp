@@ -62,7 +62,8 @@ class Walk {
     const HeightRange& heights = mipmap_.cell(level, ix, iy);
     const double z0 = o_.z + t0 * d_.z, z1 = o_.z + t1 * d_.z;
     if (std::min(z0, z1) > heights.high_mm || std::max(z0, z1) < heights.low_mm) return false;
-    if (level == mipmap_.levels()) return leaf(t0, t1);
+    // Along a line f is concave where the surface is convex: the two ends tell all of its crossings.
+    if (level == mipmap_.levels() || mipmap_.convex(level, ix, iy)) return leaf(t0, t1);
     // The two middle lines cut the interval into at most three, each in one child, in the order of the ray.
     const double mx = mipmap_.line_x_mm(level + 1, 2 * ix + 1), my = mipmap_.line_y_mm(level + 1, 2 * iy + 1);
     constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -82,7 +83,7 @@ class Walk {
   bool leaf(double t0, double t1) {
     const Value a = value(t0), b = value(t1);
     const bool above0 = a.f >= 0.0, above1 = b.f >= 0.0;
-    if (above0 != above1) return crossing(t0, t1, above0);
+    if (above0 != above1) return crossing(t0, a, t1, b);
     // Same side at both ends: it may still dip to the other side and back.
     const double s = above0 ? 1.0 : -1.0;
     if (!(s * a.df < 0.0 && s * b.df > 0.0)) return false;
@@ -90,16 +91,28 @@ class Walk {
     for (int i = 0; i < 60 && high - low > 1e-15 * (1.0 + high); ++i) {
       const double middle = 0.5 * (low + high);
       const Value v = value(middle);
-      if ((v.f >= 0.0) != above0) return crossing(t0, middle, above0) || crossing(middle, t1, !above0);
+      if ((v.f >= 0.0) != above0) return crossing(t0, a, middle, v) || crossing(middle, v, t1, b);
       (s * v.df < 0.0 ? low : high) = middle;
     }
     return false;
   }
 
+  /// Where the parabola through both values, with the slope of the first, is zero between them: the root
+  /// itself on a paraboloid.
+  static double root_guess(double t0, const Value& a, double t1, const Value& b) {
+    const double h = t1 - t0, bend = (b.f - a.f - a.df * h) / (h * h);
+    const double w = -0.5 * (a.df + std::copysign(std::sqrt(a.df * a.df - 4.0 * bend * a.f), a.df));
+    for (const double s : {a.f / w, w / bend}) {
+      if (s > 0.0 && s < h) return t0 + s;
+    }
+    return 0.5 * (t0 + t1);
+  }
+
   /// Finds the root between t0 and t1, where f changes sign, by Newton's method held inside a shrinking
   /// bracket.
-  bool crossing(double t0, double t1, bool from_above) {
-    double low = t0, high = t1, t = 0.5 * (t0 + t1);
+  bool crossing(double t0, const Value& a, double t1, const Value& b) {
+    const bool from_above = a.f >= 0.0;
+    double low = t0, high = t1, t = root_guess(t0, a, t1, b);
     for (int i = 0; i < 200; ++i) {
       const Value v = value(t);
       ((v.f >= 0.0) == from_above ? low : high) = t;

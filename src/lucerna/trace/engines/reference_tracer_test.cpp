@@ -4,7 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
 
+#include "lucerna/optics/shapes/spline_surface.h"
 #include "lucerna/random.h"
 #include "tests/support/random_direction.h"
 
@@ -107,6 +111,66 @@ TEST(ReferenceTracer, NoSelfHits) {
     }
   }
   EXPECT_GT(reflected, 5000);
+}
+
+/// The same surface, of which nothing is said.
+class OfUnknownShape final : public HeightSurface {
+ public:
+  explicit OfUnknownShape(std::shared_ptr<const HeightSurface> surface) : surface_(std::move(surface)) {}
+  SurfacePoint at(double x_mm, double y_mm) const override { return surface_->at(x_mm, y_mm); }
+  HeightRange range(const Rectangle& region) const override { return surface_->range(region); }
+
+ private:
+  std::shared_ptr<const HeightSurface> surface_;
+};
+
+/// A bowl with a bump of `bump_mm` beside its middle; convex all over if there is none.
+SplineSurface bowl(double bump_mm) {
+  std::vector<double> z;
+  for (int j = 0; j < 12; ++j) {
+    for (int i = 0; i < 12; ++i) {
+      const double x = 80.0 * i / 11.0 - 40.0, y = 80.0 * j / 11.0 - 40.0;
+      z.push_back((x * x + 1.3 * y * y) / 60.0 + bump_mm * std::exp(-std::hypot(x - 18.0, y - 9.0) / 6.0));
+    }
+  }
+  return SplineSurface::through({-40.0, 40.0, -40.0, 40.0}, 12, 12, z);
+}
+
+TEST(ReferenceTracer, ConvexSurfacesAreHitWhereTheWholeTreeIsWalked) {
+  const Aperture round = Aperture::circle(80.0, 12.0);
+  const auto spline = [&](double bump_mm) {
+    return Reflector{std::make_shared<SplineSurface>(bowl(bump_mm)), Aperture::rectangle(80.0, 70.0)};
+  };
+  const std::vector<std::pair<Reflector, bool>> mirrors{
+      {conic_reflector(ConicPreset::ellipse, 15.0, 300.0, round), true},
+      {conic_trough(ConicPreset::parabola, 12.0, 0.0, Aperture::rectangle(70.0, 90.0)), true},
+      {profile_reflector({{0.0, 0.0}, {12.0, 2.0}, {25.0, 9.5}, {40.0, 26.0}}, round), true},
+      {profile_reflector({{0.0, 0.0}, {12.0, 5.0}, {25.0, 9.5}, {40.0, 26.0}}, round), false},
+      {spline(0.0), true},
+      {spline(6.0), false}};
+  for (const auto& [mirror, convex] : mirrors) {
+    EXPECT_EQ(mirror.surface->convex_over(mirror.aperture.bounds()), convex);
+    const ReferenceTracer tracer(mirror, 6);
+    const ReferenceTracer whole({std::make_shared<OfUnknownShape>(mirror.surface), mirror.aperture}, 6);
+    Rng rng(4, 0);
+    int hits = 0;
+    for (int i = 0; i < 10'000; ++i) {
+      const Vec3 from{100.0 * rng.uniform() - 50.0, 100.0 * rng.uniform() - 50.0,
+                      60.0 * rng.uniform() - 20.0};
+      Ray ray{from, random_direction(rng)};
+      // As light goes: from a lamp, then from the mirror.
+      for (int bounce = 0; bounce < 3; ++bounce) {
+        const auto hit = tracer.first_hit(ray), expected = whole.first_hit(ray);
+        ASSERT_EQ(hit.has_value(), expected.has_value()) << i << ", bounce " << bounce;
+        if (!hit) break;
+        ++hits;
+        ASSERT_NEAR(hit->t_mm, expected->t_mm, 1e-9);
+        ASSERT_EQ(hit->front, expected->front);
+        ray = {hit->point_mm, reflect(ray.direction, hit->normal)};
+      }
+    }
+    EXPECT_GT(hits, 2000);
+  }
 }
 
 }  // namespace
