@@ -29,7 +29,7 @@ forked, scenes, mirrors, traces and designs raise when they are used.
 Errors are `lucerna.InputError` for bad input, `OSError` for files and `TypeError` for arguments of
 a wrong type.
 """
-FUNCTIONS = ["read_rays", "make_source", "compress", "read_model", "read_intensity", "compare", "merge", "read_trace",
+FUNCTIONS = ["read_rays", "make_source", "compress", "read_model", "read_intensity", "compare", "compare_held_out", "merge", "read_trace",
              "design", "write_report", "build_info"]
 CLASSES = ["RaySet", "SourceModel", "IntensityDistribution", "PlaneImage", "Reflector", "Source", "Body", "Detector",
            "Scene", "TraceResult", "DesignResult", "Objective", "Estimate", "Record", "InputError"]

@@ -8,13 +8,13 @@ from . import _core, _methods
 from ._core import (DesignResult, IntensityDistribution, PlaneImage, RaySet, Reflector, Scene, SourceModel,
                     TraceResult, __version__)
 from ._design import Objective, design
-from ._methods import (build_info, compare, compress, make_source, merge, read_intensity, read_model, read_rays,
-                       read_trace, write_report)
+from ._methods import (build_info, compare, compare_held_out, compress, make_source, merge, read_intensity,
+                       read_model, read_rays, read_trace, write_report)
 from ._toml import Body, Detector, Source
 from ._types import Estimate, InputError, Record
 
 for _name in (DesignResult, IntensityDistribution, PlaneImage, RaySet, Reflector, Scene, SourceModel, TraceResult,
-              build_info, compress, make_source, merge, read_intensity, read_model, read_rays, read_trace,
+              build_info, compare_held_out, compress, make_source, merge, read_intensity, read_model, read_rays, read_trace,
               write_report, Objective, design, compare, Body, Detector, Source, Estimate, InputError, Record):
     if isinstance(_name, type) or hasattr(_name, "__dict__"):
         _name.__module__ = "lucerna"
@@ -23,5 +23,5 @@ _core._seal()
 
 __all__ = ["Body", "DesignResult", "Detector", "Estimate", "InputError", "IntensityDistribution", "Objective",
            "PlaneImage", "RaySet", "Record", "Reflector", "Scene", "Source", "SourceModel", "TraceResult",
-           "__version__", "build_info", "compare", "compress", "design", "make_source", "merge",
+           "__version__", "build_info", "compare", "compare_held_out", "compress", "design", "make_source", "merge",
            "read_intensity", "read_model", "read_rays", "read_trace", "write_report"]

@@ -35,10 +35,12 @@ def _pickled_by_name(function: Any, name: str) -> Any:
     return call
 
 
-build_info, compress, make_source, merge, read_intensity, read_model, read_rays, read_trace, write_report = (
+(build_info, compare_held_out, compress, make_source, merge, read_intensity, read_model, read_rays, read_trace,
+ write_report) = (
     _pickled_by_name(_function, _function.__name__)
-    for _function in (_core.build_info, _core.compress, _core.make_source, _core.merge, _core.read_intensity,
-                      _core.read_model, _core.read_rays, _core.read_trace, _core.write_report))
+    for _function in (_core.build_info, _core.compare_held_out, _core.compress, _core.make_source, _core.merge,
+                      _core.read_intensity, _core.read_model, _core.read_rays, _core.read_trace,
+                      _core.write_report))
 
 for _class, _name in ((_core.RaySet, "from_arrays"), (_core.Reflector, "from_toml"), (_core.Scene, "from_toml"),
                       (_core.Scene, "load")):

@@ -48,23 +48,24 @@ Record
 
 }  // namespace
 
-namespace {
-
-namespace fs = std::filesystem;
+py::object view_record(const ViewDifference& v) {
+  py::dict out;
+  out["error"] = v.error;
+  out["floor"] = v.floor;
+  out["excess"] = estimate(Estimate{v.excess, v.standard_error});
+  out["raw"] = v.raw;
+  return record(out);
+}
 
 py::object views_record(const RaySetComparison& all) {
   py::dict out;
-  for (const ViewKind kind : kViewKinds) {
-    const ViewDifference& v = all[kind];
-    py::dict view;
-    view["error"] = v.error;
-    view["floor"] = v.floor;
-    view["excess"] = estimate(Estimate{v.excess, v.standard_error});
-    view["raw"] = v.raw;
-    out[py::str(std::string(to_string(kind)))] = record(view);
-  }
+  for (const ViewKind kind : kViewKinds) out[py::str(std::string(to_string(kind)))] = view_record(all[kind]);
   return record(out);
 }
+
+namespace {
+
+namespace fs = std::filesystem;
 
 py::object distributions_record(const DistributionComparison& d, bool with_errors) {
   py::dict out;

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "call.h"
+#include "lucerna/held_out.h"
 #include "record.h"
 #include "types.h"
 
@@ -200,6 +201,39 @@ InputError
 KeyboardInterrupt
     On Ctrl-C.)";
 
+constexpr const char* kCompareHeldOutDoc =
+    R"(compare_held_out(rays, *, max_rays=2000000.0, method='adaptive', max_bytes=None, seed=1, callback=None)
+--
+
+Deals rays out by chance to two halves, makes a model of one and compares it with the other.
+
+Says how good a model of such rays is. A model of all of them has twice as many to learn from.
+
+Parameters
+----------
+rays : RaySet, path_like or list of path_like
+    Several files are superposed.
+max_rays : int
+    Of more rays in files so many are taken, spread over the files. A RaySet is taken whole.
+method, max_bytes, seed
+    As of compress.
+callback : callable, optional
+    Gets a Record with phase, done and total, ten times a second at most.
+
+Returns
+-------
+Record or None
+    training_rays; held_out_rays; views (as of compare; raw is the noise of the training half); scales: five
+    Records of illuminance on the plane through the virtual focus, with cell_mm (edge of the cells, smallest
+    first), error, floor, excess and raw. None where a half has fewer than 100 rays or no flux.
+
+Raises
+------
+InputError
+    Without rays, or where max_bytes is too little.
+KeyboardInterrupt
+    On Ctrl-C.)";
+
 constexpr const char* kReadModelDoc = R"(read_model(path)
 --
 
@@ -237,13 +271,24 @@ std::optional<std::uint64_t> byte_count(const py::object& given) {
 
 using RaysOrFiles = std::variant<Rays, fs::path, std::vector<fs::path>>;
 
-Model compress_any(const RaysOrFiles& rays, const std::string& method, const py::object& max_bytes,
-                   std::optional<double> flux_lm, std::optional<double> flux_w, Seed seed,
-                   const py::object& callback) {
+/// Of rays that are no set.
+std::vector<fs::path> files_of(const RaysOrFiles& rays) {
+  const auto* file = std::get_if<fs::path>(&rays);
+  return file != nullptr ? std::vector<fs::path>{*file} : std::get<std::vector<fs::path>>(rays);
+}
+
+CompressOptions compress_options(const std::string& method, const py::object& max_bytes, Seed seed) {
   CompressOptions options;
   options.method = compress_method(method);
   options.max_bytes = byte_count(max_bytes);
   options.seed = seed;
+  return options;
+}
+
+Model compress_any(const RaysOrFiles& rays, const std::string& method, const py::object& max_bytes,
+                   std::optional<double> flux_lm, std::optional<double> flux_w, Seed seed,
+                   const py::object& callback) {
+  CompressOptions options = compress_options(method, max_bytes, seed);
   const std::optional<GivenFlux> flux = given_flux(flux_lm, flux_w);
   if (flux) options.flux = flux->flux;
   return watched(callback, OnInterrupt::raise, [&](Watch& watch) -> Model {
@@ -251,10 +296,7 @@ Model compress_any(const RaysOrFiles& rays, const std::string& method, const py:
     if (const auto* set = std::get_if<Rays>(&rays)) {
       made = {compress(*set->set, options, watch), {}};
     } else {
-      const auto* file = std::get_if<fs::path>(&rays);
-      const auto files =
-          file != nullptr ? std::vector<fs::path>{*file} : std::get<std::vector<fs::path>>(rays);
-      CompressedFiles found = compress(files, options, watch);
+      CompressedFiles found = compress(files_of(rays), options, watch);
       made = {std::move(found.model), std::move(found.warnings)};
       made.warnings.insert(made.warnings.end(), found.notes.begin(), found.notes.end());
     }
@@ -263,6 +305,29 @@ Model compress_any(const RaysOrFiles& rays, const std::string& method, const py:
                        std::string(symbol(made.model->flux_unit())) + ", the unit of the rays");
     return made;
   });
+}
+
+py::object held_out(const RaysOrFiles& rays, double max_rays, const std::string& method,
+                    const py::object& max_bytes, Seed seed, const py::object& callback) {
+  const CompressOptions options = compress_options(method, max_bytes, seed);
+  const std::uint64_t most = ray_count(max_rays);
+  const auto found = watched(callback, OnInterrupt::raise, [&](Watch& watch) {
+    if (const auto* set = std::get_if<Rays>(&rays)) return compare_held_out(*set->set, options, watch);
+    return compare_held_out(files_of(rays), most, options, watch);
+  });
+  if (!found) return py::none();
+  py::list scales;
+  for (const ScaleDifference& scale : found->scales) {
+    py::dict fields(view_record(scale.difference));
+    fields["cell_mm"] = scale.cell_mm;
+    scales.append(record(fields));
+  }
+  py::dict out;
+  out["training_rays"] = found->training_rays;
+  out["held_out_rays"] = found->held_out_rays;
+  out["views"] = views_record(found->views);
+  out["scales"] = py::tuple(scales);
+  return record(out);
 }
 
 Rays sample_model(const Model& model, double rays, Seed seed, const std::string& sequence) {
@@ -454,6 +519,8 @@ void add_models(py::module_& m) {
   m.def("compress", &compress_any, "rays"_a, py::kw_only(), "method"_a = "adaptive",
         "max_bytes"_a = py::none(), "flux_lm"_a = py::none(), "flux_w"_a = py::none(), "seed"_a = 1,
         "callback"_a = py::none(), kCompressDoc);
+  m.def("compare_held_out", &held_out, "rays"_a, py::kw_only(), "max_rays"_a = 2e6, "method"_a = "adaptive",
+        "max_bytes"_a = py::none(), "seed"_a = 1, "callback"_a = py::none(), kCompareHeldOutDoc);
   m.def("read_model", &load, "path"_a, kReadModelDoc);
 }
 

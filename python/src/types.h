@@ -14,6 +14,7 @@
 #include "lucerna/objective.h"
 #include "lucerna/photometric_file.h"
 #include "lucerna/project.h"
+#include "lucerna/ray_comparison.h"
 #include "lucerna/rays.h"
 #include "lucerna/source_model.h"
 #include "lucerna/trace.h"
@@ -186,6 +187,9 @@ std::uint64_t ray_count(double rays);
 /// What is quoted of a light distribution: with standard errors where it comes from rays.
 py::object intensity_metrics(const Intensity& intensity);
 py::object design_error(const DesignError& error);
+py::object view_record(const ViewDifference& view);
+/// By view: far, near, focus, beam, four_d.
+py::object views_record(const RaySetComparison& views);
 
 }  // namespace lucerna::python
 

@@ -16,6 +16,24 @@ def test_a_model_has_its_flux_and_is_near_its_source(rays, model):
     assert found.far.excess.value < 0.05
 
 
+def test_a_model_is_judged_by_rays_that_it_has_not_seen(tmp_path, rays):
+    found = lu.compare_held_out(rays, max_bytes="16k")
+    assert found.training_rays + found.held_out_rays == len(rays)
+    assert [scale.cell_mm for scale in found.scales] == sorted(scale.cell_mm for scale in found.scales)
+    # A model of one half is nearer to the other half than the half's rays are; in 4-D by far.
+    assert found.views.four_d.excess.value < 0.7 * found.views.four_d.raw
+    assert all(isinstance(scale.excess, lu.Estimate) and scale.floor > 0 for scale in found.scales)
+    assert lu.compare_held_out(rays, max_bytes="16k", seed=2).views.far.error != found.views.far.error
+    rays.save(tmp_path / "a.tm25ray")
+    from_file = lu.compare_held_out([tmp_path / "a.tm25ray"], max_rays=1e4)
+    assert from_file.training_rays + from_file.held_out_rays == 10_000
+    assert lu.compare_held_out(lu.make_source("disk", 150)) is None
+    with pytest.raises(lu.InputError):
+        lu.compare_held_out(rays, max_bytes=10)
+    with pytest.raises(lu.InputError):
+        lu.compare_held_out([])
+
+
 def test_same_seed_same_bits(rays, model):
     assert lu.compress(rays, max_bytes=16_000) == model
     assert model.sample(1000, seed=4) == model.sample(1000, seed=4)
