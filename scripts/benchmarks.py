@@ -11,7 +11,9 @@ A page has blocks between two comments:
 
 The commands are run from build/release/bench (those that end in .py from bench), one after another. The rows that they print as a Markdown
 table, with commit and date, become the block. A plot draws the named columns of the table as bars, with
-that unit. `measured: by hand` is a table that no program writes; only its plot is drawn.
+that unit. `measured: by hand` is a table that no program writes; only its plot is drawn. An argument that
+begins with DATA/ stands for the files of that pattern in the folder of real files (LUCERNA_DATA_DIR of the
+build); where it is missing, the block stays as it is.
 
 Usage: scripts/benchmarks.py [--list | --plots | --check] [--build FOLDER] [--only TEXT] [PAGE...]
   --list   the blocks, one a line        --plots  draws the plots of the tables as they are
@@ -114,11 +116,34 @@ def draw(page, block, body):
     (page.parent / file).write_text(bars(rows_of(body), unit, columns))
 
 
+def data_folder(build):
+    found = re.search(r"^LUCERNA_DATA_DIR:\w+=(.*)$", (build / "CMakeCache.txt").read_text(), re.M)
+    return pathlib.Path(found[1] if found else "")
+
+
+def expanded(arguments, build):
+    """The arguments with the names of files for patterns; nothing where a pattern has no file."""
+    out = []
+    for argument in arguments:
+        if not argument.startswith("DATA/"):
+            out.append(argument)
+            continue
+        files = sorted(data_folder(build).glob(argument.removeprefix("DATA/")))
+        if not files:
+            return None
+        out += files
+    return out
+
+
 def measured(block, build):
     printed = ""
     for command in block.commands:
         print(f"{command} ...", flush=True)
         program, *arguments = command.split()
+        arguments = expanded(arguments, build)
+        if arguments is None:
+            print("  not measured: its files are not here")
+            return block.body
         script = [sys.executable, ROOT / "bench" / program, "--build", build]
         called = script if program.endswith(".py") else [build / "bench" / program]
         printed += subprocess.run([*called, *arguments], cwd=ROOT, stdout=subprocess.PIPE, text=True,

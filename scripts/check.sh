@@ -13,7 +13,9 @@
 #   api           the API pages are made, and no public type or function is without a comment (needs doxygen)
 #   site          the site of the documentation is made without a warning (needs sphinx and doxygen)
 #   deb           Debian packages, by lintian, and installed, used and removed in a bare Debian 12 (needs root and debootstrap)
-#   clang asan tsan   the same tests under those presets
+#   clang asan    the same tests under those presets
+#   tsan          under that preset, those of label unit and cli: statistical tests judge numbers of the same threads, corpora and real
+#                 files are read by one
 #   asan-python   the Python module with the address sanitizer, and its quick tests (needs scripts/packages-python.txt)
 set -u
 cd "$(dirname "$0")/.."
@@ -89,7 +91,7 @@ needs() {  # PROGRAM...
 packages() {
   needs dpkg-shlibdeps file || return
   rm -rf build/deb/packages
-  cmake --preset deb >/dev/null && cmake --build --preset deb -j "$jobs" && cpack --config build/deb/CPackConfig.cmake || return 1
+  cmake --preset deb -DLUCERNA_UNITY=ON >/dev/null && cmake --build --preset deb -j "$jobs" && cpack --config build/deb/CPackConfig.cmake || return 1
   if command -v lintian >/dev/null; then
     lintian --allow-root --fail-on error,warning --suppress-tags-from-file packaging/debian/lintian-suppressed \
       build/deb/packages/*.deb || return 1
@@ -106,7 +108,7 @@ foreign_headers() {
 within_sources() {
   place=build/check/add_subdirectory
   ! foreign_headers || return 1
-  cmake -S tests/consumers/add_subdirectory -B "$place" -DCMAKE_BUILD_TYPE=Release -DLUCERNA_CUDA=OFF &&
+  cmake -S tests/consumers/add_subdirectory -B "$place" -DCMAKE_BUILD_TYPE=Release -DLUCERNA_CUDA=OFF -DLUCERNA_UNITY=ON &&
     cmake --build "$place" -j "$jobs" --target ray_file_to_ldt && build/release/lucerna make-source disk -n 20000 -o "$place/disk.tm25ray" &&
     consume "$place/ray_file_to_ldt" "$place"
 }
