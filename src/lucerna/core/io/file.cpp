@@ -82,14 +82,18 @@ void write_file(const std::filesystem::path& path, std::string_view text) {
 }
 
 InputFile::InputFile(const std::filesystem::path& path) : name_(path.string()) {
+  const auto check_kind = [this](const struct stat& status) {
+    if (!S_ISREG(status.st_mode))
+      throw InputError(fmt::format("{}: cannot read: not a regular file", name_), ErrorCause::unreadable);
+  };
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) throw_cannot_read(name_, errno);
-  if (!S_ISREG(status.st_mode)) {
-    throw InputError(fmt::format("{}: cannot read: not a regular file", name_), ErrorCause::unreadable);
-  }
-  size_ = static_cast<std::uint64_t>(status.st_size);
+  check_kind(status);  // before it is opened: a pipe would be waited for
   file_.reset(std::fopen(path.c_str(), "rb"));
-  if (!file_) throw_cannot_read(name_, errno);
+  // Another file may have taken the name in between: the size is that of the file which was opened.
+  if (!file_ || ::fstat(::fileno(file_.get()), &status) != 0) throw_cannot_read(name_, errno);
+  check_kind(status);
+  size_ = static_cast<std::uint64_t>(status.st_size);
 }
 
 void InputFile::read_at(std::uint64_t offset, std::span<std::byte> out) const {

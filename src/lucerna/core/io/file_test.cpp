@@ -5,9 +5,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <filesystem>
 #include <set>
+#include <span>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -136,6 +140,39 @@ TEST(Check, PrintsConditionAndValues) {
   } catch (const std::logic_error& e) {
     EXPECT_NE(std::string(e.what()).find("i < n (i = 5, n = 3)"), std::string::npos) << e.what();
   }
+}
+
+// Whoever reads a path while others save to it gets one file or the other, never the size of one and the
+// bytes of the other.
+TEST(InputFile, HasTheSizeOfTheFileThatItOpened) {
+  namespace fs = std::filesystem;
+  const test::TempDir dir;
+  const std::vector<std::string> contents{std::string(1000, 'a'), std::string(3000, 'b')};
+  for (const std::string& text : contents) write_file(dir / text.substr(0, 1), text);
+  const fs::path path = dir / "path", next = dir / "next";
+  write_file(path, contents[0]);
+  std::atomic<bool> done = false;
+  std::thread saving([&] {
+    for (std::size_t k = 0; !done; ++k) {
+      fs::create_hard_link(dir / contents[k % 2].substr(0, 1), next);
+      fs::rename(next, path);
+      fs::remove(next);  // a rename to another name of the same file leaves both
+    }
+  });
+  int mixed = 0;
+  for (int k = 0; k < 20'000; ++k) {
+    const InputFile file(path);
+    std::string text(file.size(), '?');
+    try {
+      file.read_at(0, std::as_writable_bytes(std::span(text)));
+    } catch (const InputError&) {
+      text.clear();
+    }
+    mixed += std::find(contents.begin(), contents.end(), text) == contents.end();
+  }
+  done = true;
+  saving.join();
+  EXPECT_EQ(mixed, 0);
 }
 
 }  // namespace
