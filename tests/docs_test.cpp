@@ -37,6 +37,8 @@ TEST(Docs, LinesAndSentencesAreShort) {
       ADD_FAILURE() << page << ":" << line << ": more than " << kMaxColumns << " columns";
     for (const std::string& sentence : long_sentences(text, kMaxWords))
       ADD_FAILURE() << page << ": more than " << kMaxWords << " words: " << sentence;
+    for (const std::size_t line : lines_taken_for_marks(text))
+      ADD_FAILURE() << page << ":" << line << ": begins like a comment or an item within a sentence";
   }
 }
 
@@ -110,6 +112,18 @@ TEST(Docs, CheckSeesLongSentences) {
   EXPECT_EQ(count("```sh\none two three four five\n```\n    one two three four five\n"), 0u) << "code";
   EXPECT_EQ(count("One = two - three (four) +- five six.\n"), 1u);
   EXPECT_EQ(count("One = two - three + (four) +-.\n"), 0u) << "signs are no words";
+}
+
+TEST(Docs, CheckSeesSentencesThatBeginLikeMarks) {
+  using Lines = std::vector<std::size_t>;
+  EXPECT_EQ(lines_taken_for_marks("It is within 2\n% of that.\n"), Lines{2});
+  EXPECT_EQ(lines_taken_for_marks("- above 3\n  %.\n"), Lines{2});
+  EXPECT_EQ(lines_taken_for_marks("With seed\n1. The rest.\n"), Lines{2});
+  EXPECT_EQ(lines_taken_for_marks("Times a\n- b.\n"), Lines{2});
+  EXPECT_EQ(lines_taken_for_marks("- times a\n  - b.\n"), Lines{2});
+  EXPECT_EQ(lines_taken_for_marks("All of these:\n- one\n- two\n\n1. three\n2. four\n"), Lines{});
+  EXPECT_EQ(lines_taken_for_marks("# Heading\n- one\n  more\n- two\n"), Lines{});
+  EXPECT_EQ(lines_taken_for_marks("```\n% a\nb\n- c\n```\n"), Lines{});
 }
 
 }  // namespace

@@ -111,4 +111,26 @@ std::vector<std::string> long_sentences(std::string_view page, std::size_t max_w
   return found;
 }
 
+std::vector<std::size_t> lines_taken_for_marks(std::string_view page) {
+  std::vector<std::size_t> taken;
+  std::istringstream in{std::string(page)};
+  bool code = false, in_item = false;
+  std::string before;
+  std::size_t number = 0;
+  for (std::string raw; std::getline(in, raw); ++number) {
+    const std::string line = trimmed(raw);
+    if (line.starts_with("```")) code = !code;
+    const bool item = begins_item(line);
+    // What follows an item is the next one, or its own text, which is indented.
+    const bool prose = !before.empty() && before[0] != '#' && before[0] != '|' &&
+                       !before.starts_with("```") && !before.starts_with("<!--") && !before.ends_with("-->");
+    const bool open = prose && std::string_view(".:;!?)").find(before.back()) == std::string_view::npos;
+    const bool next_item = in_item && begins_item(trimmed(raw)) && !raw.starts_with("  ");
+    if (!code && (line.starts_with('%') || (item && open && !next_item))) taken.push_back(number + 1);
+    in_item = item || (in_item && !line.empty());
+    before = line;
+  }
+  return taken;
+}
+
 }  // namespace lucerna::test

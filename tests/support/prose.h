@@ -18,4 +18,8 @@ std::vector<std::size_t> long_lines(std::string_view page, std::size_t max_colum
 /// letter, digit or mark. A word has a letter or a digit.
 std::vector<std::string> long_sentences(std::string_view page, std::size_t max_words);
 
+/// Numbers (from 1) of the lines within a sentence that begin as something else does in Markdown, so that the
+/// page loses or breaks them: '%' (a comment), "3. " or "- " (an item) behind a line that ends no clause.
+std::vector<std::size_t> lines_taken_for_marks(std::string_view page);
+
 }  // namespace lucerna::test
