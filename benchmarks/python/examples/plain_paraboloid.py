@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Enters the plain paraboloid in a task of LB-6: a baseline with one parameter, its focal length, which is found
+by golden section with the scorer itself.
+
+    python3 plain_paraboloid.py --scorer ../../build/lucerna-bench-score --task ../../tasks/LB-6-led-spot10.json \
+        --out entry --rays 200000
+"""
+import argparse
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from lucerna_bench import Entry, height_field, placed  # noqa: E402
+
+DIAMETER_MM = 100.0
+
+
+def surfaces_of(parameters):
+    """The mirror above the source, opening towards -z, its focus in the source."""
+    focal_mm = float(parameters[0])
+    half = 0.5 * DIAMETER_MM
+    mirror = height_field(lambda x, y: (x * x + y * y) / (4.0 * focal_mm), half, half, intervals=(1, 1), degree=2,
+                          trim={"kind": "circle", "diameter_mm": DIAMETER_MM})
+    return [{"name": "mirror", "role": "mirror", "bspline": mirror,
+             "place": placed((0.0, 0.0, focal_mm), z_axis=(0.0, 0.0, -1.0))}]
+
+
+def golden_section(cost, low, high, steps):
+    """The best place of a function with one minimum, to 0.618^steps of the range."""
+    share = 0.5 * (5.0**0.5 - 1.0)
+    a, b = high - share * (high - low), low + share * (high - low)
+    at_a, at_b = cost(a), cost(b)
+    for _ in range(steps):
+        if at_a < at_b:
+            high, b, at_b = b, a, at_a
+            a = high - share * (high - low)
+            at_a = cost(a)
+        else:
+            low, a, at_a = a, b, at_b
+            b = low + share * (high - low)
+            at_b = cost(b)
+    return a if at_a < at_b else b
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scorer", required=True, help="the program lucerna-bench-score")
+    parser.add_argument("--task", required=True, help="a task file of LB-6")
+    parser.add_argument("--out", required=True, help="folder for submission.json")
+    parser.add_argument("--rays", type=float, default=200_000, help="rays of each trial")
+    parser.add_argument("--steps", type=int, default=10, help="trials after the first two")
+    parser.add_argument("--threads", type=int, default=None)
+    options = parser.parse_args()
+    entry = Entry(options.task, surfaces_of, options.scorer, threads=options.threads)
+    # 18 to 40 mm: the mirror stays within the task's cylinder, z from -20 to 40 mm.
+    focal_mm = golden_section(lambda f: entry.cost([f], rays=options.rays), 18.0, 40.0, options.steps)
+    file = entry.write(options.out, [focal_mm], name=f"plain paraboloid, focal length {focal_mm:.2f} mm",
+                       author="Lucerna", program="examples/plain_paraboloid.py",
+                       method=f"golden section, {options.steps + 2} trials of {options.rays:g} rays")
+    print(f"{file}: focal length {focal_mm:.3f} mm")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Surfaces of submissions: functions become B-spline surfaces (see "Surfaces" in benchmarks/README.md)."""
+import numpy as np
+
+
+def _knots(low, high, intervals, degree):
+    inner = np.linspace(low, high, intervals + 1)
+    return np.concatenate([np.full(degree, low), inner, np.full(degree, high)])
+
+
+def _basis(knots, degree, x):
+    """Row k has the values of all B-splines at x[k] (Cox and de Boor)."""
+    x = np.clip(np.asarray(x, float), knots[degree], knots[-degree - 1])
+    count = len(knots) - degree - 1
+    span = np.clip(np.searchsorted(knots, x, side="right") - 1, degree, count - 1)
+    rows = np.zeros((len(x), len(knots) - 1))
+    rows[np.arange(len(x)), span] = 1.0
+    for q in range(1, degree + 1):
+        raised = np.zeros_like(rows)
+        for i in range(len(knots) - q - 1):
+            left, right = knots[i + q] - knots[i], knots[i + q + 1] - knots[i + 1]
+            if left > 0.0:
+                raised[:, i] += (x - knots[i]) / left * rows[:, i]
+            if right > 0.0:
+                raised[:, i] += (knots[i + q + 1] - x) / right * rows[:, i + 1]
+        rows = raised
+    return rows[:, :count]
+
+
+def _greville(knots, degree):
+    count = len(knots) - degree - 1
+    return np.array([knots[i + 1 : i + degree + 1].mean() for i in range(count)])
+
+
+def _surface(degrees, knots_u, knots_v, points, **more):
+    return {"format": "lucerna-bench-surface", "version": 1, "degree": list(degrees),
+            "knots_u": [float(k) for k in knots_u], "knots_v": [float(k) for k in knots_v],
+            "points_mm": np.asarray(points, float).tolist(), **more}
+
+
+def height_field(height_mm, half_x_mm, half_y_mm, intervals=(16, 16), degree=3, trim=None):
+    """The surface z = height_mm(x, y) over |x| <= half_x_mm, |y| <= half_y_mm, as a B-spline that goes through
+    the function at its Greville points. `height_mm` takes numpy arrays. Its normal looks towards +z. `trim` is
+    what is kept of it: {"kind": "circle", "diameter_mm": 100, "hole_diameter_mm": 8} or {"kind": "rectangle",
+    "size_mm": [80, 60]}; without it all is. Polynomials of the degree in x and y come out exactly."""
+    ku, kv = _knots(-half_x_mm, half_x_mm, intervals[0], degree), _knots(-half_y_mm, half_y_mm, intervals[1], degree)
+    gx, gy = _greville(ku, degree), _greville(kv, degree)
+    x, y = np.meshgrid(gx, gy, indexing="ij")
+    z = np.asarray(height_mm(x, y), float) + np.zeros_like(x)
+    if not np.all(np.isfinite(z)):
+        raise ValueError("height_mm: found a height that is not finite, expected finite heights over the rectangle")
+    over_x = np.linalg.solve(_basis(ku, degree, gx), z)
+    heights = np.linalg.solve(_basis(kv, degree, gy), over_x.T).T
+    # x and y themselves are splines whose coefficients are the Greville points.
+    points = np.stack([x, y, heights], axis=-1)
+    return _surface((degree, degree), ku, kv, points, **({"trim": trim} if trim else {}))
+
+
+def extruded_profile(height_mm, half_x_mm, half_y_mm=1.0, intervals=32, degree=3):
+    """The trough z = height_mm(x) over |x| <= half_x_mm, straight along y: two-dimensional tasks (LB-1)."""
+    ku = _knots(-half_x_mm, half_x_mm, intervals, degree)
+    gx = _greville(ku, degree)
+    z = np.linalg.solve(_basis(ku, degree, gx), np.asarray(height_mm(gx), float) + np.zeros_like(gx))
+    rows = [[[x, y, h] for y in (-half_y_mm, half_y_mm)] for x, h in zip(gx, z)]
+    return _surface((degree, 1), ku, _knots(-half_y_mm, half_y_mm, 1, 1), rows)
+
+
+def cylinder_wall(radius_mm, low_mm, high_mm):
+    """The wall of a round solid about z from low_mm to high_mm: an exact circle as a rational B-spline of degree
+    2 in four quarters. Its normal looks outwards."""
+    turn = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
+    weight = [1.0 if k % 2 == 0 else np.sqrt(0.5) for k in range(9)]
+    points = [[[radius_mm * x, radius_mm * y, z] for z in (low_mm, high_mm)] for x, y in turn]
+    knots_u = [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
+    return _surface((2, 1), knots_u, [0, 0, 1, 1], points, weights=[[w, w] for w in weight])
+
+
+def placed(origin_mm=(0.0, 0.0, 0.0), z_axis=(0.0, 0.0, 1.0), x_axis=(1.0, 0.0, 0.0)):
+    """Where a surface's own frame is in that of the task."""
+    return {"origin_mm": list(origin_mm), "x_axis": list(x_axis), "z_axis": list(z_axis)}

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "json_node.h"
+#include "vec.h"
+
+namespace bench {
+
+/// Largest degree of a B-spline.
+inline constexpr int kMaxDegree = 7;
+
+/// Point and first derivatives of a surface.
+struct SurfaceJet {
+  Vec3 point, by_u, by_v;
+};
+
+/// A tensor-product B-spline, rational where it has weights (L. Piegl and W. Tiller, "The NURBS Book",
+/// chapters 2 to 4). Immutable; thread safe.
+class Bspline {
+ public:
+  /// `degree`, `knots_u`, `knots_v`, `points_mm`, `weights` of a surface. Throws InputError for anything that
+  /// is no such surface.
+  explicit Bspline(const JsonNode& surface);
+
+  SurfaceJet at(double u, double v) const;
+  /// The domain along an axis (0: u, 1: v).
+  double low(std::size_t axis) const {
+    return axes_[axis].knots[static_cast<std::size_t>(axes_[axis].degree)];
+  }
+  double high(std::size_t axis) const { return axes_[axis].knots[axes_[axis].count]; }
+  int degree(std::size_t axis) const { return axes_[axis].degree; }
+  /// Ascending ends of the pieces of the domain along an axis.
+  std::vector<double> breaks(std::size_t axis) const;
+
+ private:
+  struct Axis {
+    int degree = 0;
+    std::size_t count = 0;
+    std::vector<double> knots;
+  };
+  using Basis = std::array<double, kMaxDegree + 1>;
+  static void read_axis(const JsonNode& knots, Axis& axis);
+  /// Values and derivatives of the functions that are not 0 at x; the number of the first of them.
+  static std::size_t basis(const Axis& axis, double x, Basis& value, Basis& slope);
+
+  std::array<Axis, 2> axes_;
+  std::vector<Vec3> points_;
+  std::vector<double> weights_;
+};
+
+}  // namespace bench

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "bspline.h"
+#include "surface.h"
+
+namespace bench {
+
+namespace {
+
+/// Pieces into which knot intervals are cut, until flat ones are as near as this, or there are so many.
+constexpr double kChordMm = 1e-3;
+constexpr std::size_t kMaxQuads = 300'000;
+/// Newton's method ends at this distance between ray and surface.
+constexpr double kExactMm = 1e-10;
+
+/// The part of a surface that is there, by x and y of its own frame.
+struct Trim {
+  bool circle = false, rectangle = false;
+  double radius = 0.0, hole_radius = 0.0, half_x = 0.0, half_y = 0.0;
+
+  explicit Trim(const JsonNode& s) {
+    if (!s.has("trim")) return;
+    const JsonNode t = s.at("trim");
+    t.only({"kind", "diameter_mm", "size_mm", "hole_diameter_mm"});
+    circle = t.at("kind").one_of({"circle", "rectangle"}) == "circle";
+    rectangle = !circle;
+    if (circle) radius = 0.5 * t.at("diameter_mm").positive();
+    if (rectangle) {
+      const auto size = t.at("size_mm").numbers(2);
+      half_x = 0.5 * size[0];
+      half_y = 0.5 * size[1];
+    }
+    if (t.has("hole_diameter_mm")) hole_radius = 0.5 * t.at("hole_diameter_mm").number_in(0.0, 1e6);
+  }
+  bool keeps(const Vec3& p) const {
+    const double r2 = p.x * p.x + p.y * p.y;
+    if (r2 < hole_radius * hole_radius) return false;
+    if (circle) return r2 <= radius * radius;
+    return !rectangle || (std::abs(p.x) <= half_x && std::abs(p.y) <= half_y);
+  }
+};
+
+class SplineSurface final : public Surface {
+ public:
+  SplineSurface(const JsonNode& s, const Frame& place) : spline_(s), trim_(s), place_(place) {
+    cut(s);
+    for (const Vec3& p : mesh_.corners) size_ = std::max(size_, length(p - mesh_.corners[0]));
+  }
+
+  const Triangles& triangles() const override { return mesh_; }
+  std::vector<Vec3> extent() const override {
+    std::vector<Vec3> out;
+    for (const Vec3& p : mesh_.corners) {
+      if (trim_.keeps(place_.local_point(p))) out.push_back(p);
+    }
+    return out;
+  }
+
+  bool refine(const Vec3& origin, const Vec3& direction, const FlatHit& flat, Hit& hit) const override {
+    const auto& c = mesh_.triangles[flat.triangle];
+    const double b0 = 1.0 - flat.b1 - flat.b2;
+    double u = b0 * u_[c[0]] + flat.b1 * u_[c[1]] + flat.b2 * u_[c[2]];
+    double v = b0 * v_[c[0]] + flat.b1 * v_[c[1]] + flat.b2 * v_[c[2]];
+    double t = flat.t;
+    const Vec3 o = place_.local_point(origin), d = place_.local_vector(direction);
+    SurfaceJet jet;
+    for (int step = 0;; ++step) {
+      jet = spline_.at(std::clamp(u, spline_.low(0), spline_.high(0)),
+                       std::clamp(v, spline_.low(1), spline_.high(1)));
+      const Vec3 off = jet.point - o - t * d;
+      if (length(off) < kExactMm) break;
+      const Vec3 n = cross(jet.by_u, jet.by_v);
+      const double across = dot(n, d);
+      if (step == 12 || across == 0.0) return false;
+      // off + du Pu + dv Pv = dt d, solved by triple products.
+      const double dt = dot(off, n) / across;
+      const Vec3 rest = dt * d - off;
+      const double nn = dot(n, n);
+      u = std::clamp(u, spline_.low(0), spline_.high(0)) + dot(cross(rest, jet.by_v), n) / nn;
+      v = std::clamp(v, spline_.low(1), spline_.high(1)) + dot(cross(jet.by_u, rest), n) / nn;
+      t += dt;
+    }
+    if (std::abs(t - flat.t) > 0.01 * size_ || !trim_.keeps(jet.point)) return false;
+    hit.t = t;
+    hit.normal = hit.geometric = place_.vector(unit(cross(jet.by_u, jet.by_v)));
+    return true;
+  }
+
+ private:
+  std::vector<double> grid(std::size_t axis, std::size_t pieces) const {
+    const auto ends = spline_.breaks(axis);
+    std::vector<double> out{ends.front()};
+    for (std::size_t k = 1; k < ends.size(); ++k) {
+      for (std::size_t i = 1; i <= pieces; ++i)
+        out.push_back(ends[k - 1] +
+                      (ends[k] - ends[k - 1]) * static_cast<double>(i) / static_cast<double>(pieces));
+    }
+    out.back() = ends.back();
+    return out;
+  }
+  /// Largest distance of the middle of an edge along an axis from the surface.
+  double chord(const std::vector<double>& along, const std::vector<double>& across, std::size_t axis) const {
+    double worst = 0.0;
+    for (std::size_t k = 1; k < along.size(); ++k) {
+      for (const double w : across) {
+        const auto at = [&](double x) { return (axis == 0 ? spline_.at(x, w) : spline_.at(w, x)).point; };
+        const Vec3 flat = 0.5 * (at(along[k - 1]) + at(along[k]));
+        worst = std::max(worst, length(at(0.5 * (along[k - 1] + along[k])) - flat));
+      }
+    }
+    return worst;
+  }
+  void cut(const JsonNode& s) {
+    std::array<std::size_t, 2> pieces{1, 1};
+    std::array<std::vector<double>, 2> at{grid(0, 1), grid(1, 1)};
+    if (at[0].size() * at[1].size() > kMaxQuads)
+      s.at("points_mm").fail("too many pieces", "at most " + std::to_string(kMaxQuads));
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      while (spline_.degree(axis) > 1 && chord(at[axis], grid(1 - axis, 2), axis) > kChordMm) {
+        if (2 * at[axis].size() * at[1 - axis].size() > kMaxQuads) break;
+        at[axis] = grid(axis, pieces[axis] *= 2);
+      }
+    }
+    for (const double u : at[0]) {
+      for (const double v : at[1]) {
+        u_.push_back(u);
+        v_.push_back(v);
+        mesh_.corners.push_back(place_.point(spline_.at(u, v).point));
+      }
+    }
+    const auto row = static_cast<std::uint32_t>(at[1].size());
+    for (std::uint32_t i = 0; i + 1 < at[0].size(); ++i) {
+      for (std::uint32_t j = 0; j + 1 < row; ++j) {
+        const std::uint32_t k = i * row + j;
+        mesh_.triangles.push_back({k, k + row, k + row + 1});
+        mesh_.triangles.push_back({k, k + row + 1, k + 1});
+      }
+    }
+  }
+
+  Bspline spline_;
+  Trim trim_;
+  Frame place_;
+  double size_ = 0.0;
+  Triangles mesh_;
+  std::vector<double> u_, v_;
+};
+
+}  // namespace
+
+std::unique_ptr<Surface> read_bspline(const JsonNode& surface, const Frame& place) {
+  return std::make_unique<SplineSurface>(surface, place);
+}
+
+}  // namespace bench

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "submission.h"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace bench {
+
+namespace {
+
+/// Files are named from the folder of the submission, and stay in it.
+std::string beside(const JsonNode& name) {
+  const std::filesystem::path given = name.text();
+  const bool climbs = std::find(given.begin(), given.end(), "..") != given.end();
+  if (given.empty() || given.is_absolute() || climbs) name.fail("a file in the folder of the submission");
+  return (std::filesystem::path(name.file()).parent_path() / given).string();
+}
+
+std::shared_ptr<const Surface> read_surface(const JsonNode& s) {
+  const Frame place = s.has("place") ? s.at("place").frame() : Frame();
+  if (s.has("stl") == s.has("bspline")) s.fail("one of the keys stl and bspline");
+  if (s.has("stl")) {
+    const bool flat = s.at("normals").one_of({"facet", "interpolated"}) == "facet";
+    const double crease = s.has("crease_deg") ? s.at("crease_deg").number_in(0.1, 90.0) : 30.0;
+    return read_stl(beside(s.at("stl")), place, flat ? 0.0 : crease);
+  }
+  const JsonNode b = s.at("bspline");
+  const JsonNode surface = b.json().is_string() ? JsonNode::read(beside(b)) : b;
+  surface.only({"format", "version", "degree", "knots_u", "knots_v", "points_mm", "weights", "trim", "note"});
+  surface.at("format").one_of({"lucerna-bench-surface"});
+  surface.at("version").whole(1, 1);
+  return read_bspline(surface, place);
+}
+
+Part read_part(const JsonNode& s, const Task& task) {
+  s.only({"name", "role", "stl", "normals", "crease_deg", "bspline", "place", "flip", "refractive_index"});
+  Part part;
+  part.name = s.at("name").text();
+  const std::string role = s.at("role").one_of(task.optics.roles);
+  part.role = role == "mirror" ? Role::mirror : role == "absorber" ? Role::absorber : Role::interface;
+  if (part.role == Role::interface)
+    part.refractive_index = s.at("refractive_index").number_in(task.optics.min_index, task.optics.max_index);
+  part.flip = s.has("flip") && s.at("flip").boolean();
+  part.surface = read_surface(s);
+  return part;
+}
+
+Stated read_stated(const JsonNode& s) {
+  s.only({"free_parameters", "wall_s", "cpu_s", "machine", "program", "method"});
+  Stated out;
+  out.free_parameters = s.at("free_parameters").whole(0, 1'000'000'000);
+  out.wall_s = s.at("wall_s").number_in(0.0, 1e9);
+  if (s.has("cpu_s")) out.cpu_s = s.at("cpu_s").number_in(0.0, 1e12);
+  out.machine = s.at("machine").text();
+  out.program = s.at("program").text();
+  out.method = s.at("method").text();
+  return out;
+}
+
+}  // namespace
+
+Submission::Submission(const std::string& path, const Task& task) : file(path) {
+  const JsonNode s = JsonNode::read(path);
+  s.only({"format", "version", "task", "name", "author", "surfaces", "target_place", "stated", "note"});
+  s.at("format").one_of({"lucerna-bench-submission"});
+  s.at("version").whole(1, 1);
+  s.at("task").one_of({task.id});
+  name = s.at("name").text();
+  author = s.at("author").text();
+  for (const JsonNode& part : s.at("surfaces").items()) parts.push_back(read_part(part, task));
+  if (parts.empty()) s.at("surfaces").fail("one surface or more");
+  if (parts.size() > 1000) s.at("surfaces").fail("1000 surfaces at most");
+  for (const Part& p : parts) {
+    if (p.role == Role::interface && p.refractive_index != parts.front().refractive_index)
+      s.at("surfaces").fail("two refractive indices", "one index for all interfaces");
+  }
+  if (s.has("target_place")) {
+    if (!task.free_target) s.at("target_place").fail("no target_place: this task fixes it");
+    target_place = s.at("target_place").frame();
+  }
+  stated = read_stated(s.at("stated"));
+  std::vector<Vec3> corners;
+  for (const Part& p : parts) {
+    const auto more = p.surface->extent();
+    corners.insert(corners.end(), more.begin(), more.end());
+  }
+  for (const Limit& l : task.limits) limits.push_back(check_limit(l, corners));
+}
+
+bool Submission::limits_held() const {
+  return std::all_of(limits.begin(), limits.end(), [](const LimitCheck& c) { return c.held; });
+}
+
+}  // namespace bench
