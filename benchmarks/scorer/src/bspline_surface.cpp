@@ -11,7 +11,7 @@ namespace {
 
 /// Pieces into which knot intervals are cut, until flat ones are as near as this, or there are so many.
 constexpr double kChordMm = 1e-3;
-constexpr std::size_t kMaxQuads = 300'000;
+constexpr std::size_t kMaxQuads = 300'000, kMinSteps = 128;
 /// Newton's method ends at this distance between ray and surface.
 constexpr double kExactMm = 1e-10;
 
@@ -34,6 +34,7 @@ struct Trim {
     }
     if (t.has("hole_diameter_mm")) hole_radius = 0.5 * t.at("hole_diameter_mm").number_in(0.0, 1e6);
   }
+  bool any() const { return circle || rectangle || hole_radius > 0.0; }
   bool keeps(const Vec3& p) const {
     const double r2 = p.x * p.x + p.y * p.y;
     if (r2 < hole_radius * hole_radius) return false;
@@ -50,10 +51,20 @@ class SplineSurface final : public Surface {
   }
 
   const Triangles& triangles() const override { return mesh_; }
+  bool whole(const std::array<std::uint32_t, 3>& t) const override {
+    return kept(u_[t[0]], v_[t[0]]) && kept(u_[t[1]], v_[t[1]]) && kept(u_[t[2]], v_[t[2]]);
+  }
   std::vector<Vec3> extent() const override {
+    if (!trim_.any()) return mesh_.corners;
     std::vector<Vec3> out;
-    for (const Vec3& p : mesh_.corners) {
-      if (trim_.keeps(place_.local_point(p))) out.push_back(p);
+    for (std::size_t k = 0; k < mesh_.corners.size(); ++k) {
+      if (kept(u_[k], v_[k])) out.push_back(mesh_.corners[k]);
+    }
+    for (const auto& t : mesh_.triangles) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t a = t[i], b = t[(i + 1) % 3];
+        if (kept(u_[a], v_[a]) && !kept(u_[b], v_[b])) out.push_back(rim(a, b));
+      }
     }
     return out;
   }
@@ -89,6 +100,20 @@ class SplineSurface final : public Surface {
   }
 
  private:
+  bool kept(double u, double v) const { return trim_.keeps(spline_.at(u, v).point); }
+  /// Where the rim crosses the edge from a corner that is kept to one that is not.
+  Vec3 rim(std::uint32_t kept_corner, std::uint32_t other) const {
+    double in = 0.0, out = 1.0;
+    const auto at = [&](double x) {
+      return std::array{(1.0 - x) * u_[kept_corner] + x * u_[other],
+                        (1.0 - x) * v_[kept_corner] + x * v_[other]};
+    };
+    for (int step = 0; step < 40; ++step) {
+      const double x = 0.5 * (in + out);
+      (kept(at(x)[0], at(x)[1]) ? in : out) = x;
+    }
+    return place_.point(spline_.at(at(in)[0], at(in)[1]).point);
+  }
   std::vector<double> grid(std::size_t axis, std::size_t pieces) const {
     const auto ends = spline_.breaks(axis);
     std::vector<double> out{ends.front()};
@@ -118,7 +143,12 @@ class SplineSurface final : public Surface {
     if (at[0].size() * at[1].size() > kMaxQuads)
       s.at("points_mm").fail("too many pieces", "at most " + std::to_string(kMaxQuads));
     for (std::size_t axis = 0; axis < 2; ++axis) {
-      while (spline_.degree(axis) > 1 && chord(at[axis], grid(1 - axis, 2), axis) > kChordMm) {
+      const auto coarse = [&] {
+        // Trimmed surfaces have steps that their rims can be found between.
+        if (trim_.any() && at[axis].size() < kMinSteps) return true;
+        return spline_.degree(axis) > 1 && chord(at[axis], grid(1 - axis, 2), axis) > kChordMm;
+      };
+      while (coarse()) {
         if (2 * at[axis].size() * at[1 - axis].size() > kMaxQuads) break;
         at[axis] = grid(axis, pieces[axis] *= 2);
       }

@@ -79,12 +79,9 @@ Submission::Submission(const std::string& path, const Task& task) : file(path) {
     target_place = s.at("target_place").frame();
   }
   stated = read_stated(s.at("stated"));
-  std::vector<Vec3> corners;
-  for (const Part& p : parts) {
-    const auto more = p.surface->extent();
-    corners.insert(corners.end(), more.begin(), more.end());
-  }
-  for (const Limit& l : task.limits) limits.push_back(check_limit(l, corners));
+  std::vector<const Surface*> surfaces;
+  for (const Part& p : parts) surfaces.push_back(p.surface.get());
+  for (const Limit& l : task.limits) limits.push_back(check_limit(l, surfaces));
 }
 
 bool Submission::limits_held() const {

@@ -38,11 +38,17 @@ class Surface {
  public:
   virtual ~Surface() = default;
   virtual const Triangles& triangles() const = 0;
-  /// Corners of `triangles` that belong to the surface, for limits.
+  /// Points that bound it, for limits: corners of its triangles, and of a trimmed surface those that are left
+  /// and where its rim cuts their edges.
   virtual std::vector<Vec3> extent() const { return triangles().corners; }
+  /// Is a triangle there as a whole, not trimmed?
+  virtual bool whole(const std::array<std::uint32_t, 3>&) const { return true; }
   /// The hit of a ray near a flat one; false where the surface itself is missed.
   virtual bool refine(const Vec3& origin, const Vec3& direction, const FlatHit& flat, Hit& hit) const = 0;
 };
+
+/// Distance of a point from a surface, by its triangles and the points of `extent`.
+double distance(const Surface& surface, const Vec3& from);
 
 /// An STL file, binary or text (3D Systems 1989). The corners' order gives the normals, stored ones must not
 /// point against it. With `crease_deg` > 0 normals are interpolated between corners: those of the facets that

@@ -80,7 +80,16 @@ Target::Target(const JsonNode& t, const Frame* place) {
   }
   set_rectangle(t);
   set_boxes();
-  set_cells(t);
+  if (kind_ == Kind::plane) {
+    set_plane_cells(t);
+  } else if (is_angle()) {
+    set_tents();
+  } else {  // the boxes are the cells
+    window_low_ = low_;
+    window_high_ = high_;
+    cell_target_ = box_target_;
+    cell_steady_.assign(box_target_.size(), 1);
+  }
 }
 
 void Target::read_function(const JsonNode& t) {
@@ -104,7 +113,8 @@ void Target::read_function(const JsonNode& t) {
   } else if (name == "gaussian_beam") {
     const double bx = degrees("beam_x_deg"), by = degrees("beam_y_deg");
     density_ = [=](double u, double v) {
-      return gaussian(angles(u, v).x, bx) * gaussian(angles(u, v).y, by);
+      const Angles a = angles(u, v);
+      return gaussian(a.x, bx) * gaussian(a.y, by);
     };
   } else if (name == "round_gaussian_beam") {
     const double beam = degrees("beam_deg");
@@ -156,13 +166,12 @@ std::array<double, 2> Target::integral(const Rectangle& r, int points) const {
 }
 
 void Target::set_rectangle(const JsonNode& t) {
-  constexpr int kFine = 2048;
-  std::vector<double> by_u(kFine, 0.0), by_v(kFine, 0.0);
-  const int across = is_angle() ? 1 : kFine;
-  const double du = 2.0 * half_[0] / kFine, dv = is_angle() ? 0.0 : 2.0 * half_[1] / kFine;
+  const int fine = is_angle() ? 1 << 17 : 2048, across = is_angle() ? 1 : fine;
+  std::vector<double> by_u(static_cast<std::size_t>(fine), 0.0), by_v(static_cast<std::size_t>(across), 0.0);
+  const double du = 2.0 * half_[0] / fine, dv = is_angle() ? 0.0 : 2.0 * half_[1] / fine;
   double total = 0.0;
   for (int j = 0; j < across; ++j) {
-    for (int i = 0; i < kFine; ++i) {
+    for (int i = 0; i < fine; ++i) {
       const double u = (i + 0.5) * du - half_[0], v = is_angle() ? 0.0 : (j + 0.5) * dv - half_[1];
       const double w2 = kind_ == Kind::plane ? 1.0 : 1.0 - u * u - v * v;
       if (w2 <= 0.0) continue;
@@ -196,31 +205,26 @@ void Target::set_boxes() {
   }
 }
 
-void Target::set_cells(const JsonNode& t) {
-  if (is_angle()) {
-    for (int k = 0; k < kTents; ++k) {
-      // A tent's own integral of the target, by midpoints of a thousandth of a degree.
-      double sum = 0.0;
-      for (int i = 0; i < 2000; ++i) {
-        const double off = (i + 0.5) / 1000.0 - 1.0, phi = k - 90.0 + off;
-        if (std::abs(phi) < 90.0) sum += (1.0 - std::abs(off)) * density_(std::sin(kDegree * phi), 0.0);
-      }
-      cell_target_.push_back(sum);
-      cell_steady_.push_back(std::abs(k - 90.0) + 1.0 <= 0.95 * edge_deg_ ? 1 : 0);
+void Target::set_tents() {
+  for (int k = 0; k < kTents; ++k) {
+    // A tent's own integral of the target, by midpoints of a thousandth of a degree.
+    double sum = 0.0;
+    for (int i = 0; i < 2000; ++i) {
+      const double off = (i + 0.5) / 1000.0 - 1.0, phi = k - 90.0 + off;
+      if (std::abs(phi) < 90.0) sum += (1.0 - std::abs(off)) * density_(std::sin(kDegree * phi), 0.0);
     }
-    return;
+    cell_target_.push_back(sum);
+    cell_steady_.push_back(std::abs(k - 90.0) + 1.0 <= 0.95 * edge_deg_ ? 1 : 0);
   }
-  window_low_ = low_;
-  window_high_ = high_;
-  if (kind_ == Kind::plane) {
-    const auto n = t.at("cells").items();
-    if (n.size() != 2) t.at("cells").fail("two whole numbers");
-    cells_ = {static_cast<int>(n[0].whole(1, 1000)), static_cast<int>(n[1].whole(1, 1000))};
-    window_low_ = {-half_[0], -half_[1]};
-    window_high_ = half_;
-  }
-  const double su = (window_high_[0] - window_low_[0]) / cells_[0];
-  const double sv = (window_high_[1] - window_low_[1]) / cells_[1];
+}
+
+void Target::set_plane_cells(const JsonNode& t) {
+  const auto n = t.at("cells").items();
+  if (n.size() != 2) t.at("cells").fail("two whole numbers");
+  cells_ = {static_cast<int>(n[0].whole(1, 1000)), static_cast<int>(n[1].whole(1, 1000))};
+  window_low_ = {-half_[0], -half_[1]};
+  window_high_ = half_;
+  const double su = 2.0 * half_[0] / cells_[0], sv = 2.0 * half_[1] / cells_[1];
   for (int j = 0; j < cells_[1]; ++j) {
     for (int i = 0; i < cells_[0]; ++i) {
       const double u = window_low_[0] + i * su, v = window_low_[1] + j * sv;

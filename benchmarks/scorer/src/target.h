@@ -49,7 +49,8 @@ class Target {
   /// By box (row * 48 + column): the measure and the target's integral over it (any unit).
   const std::vector<double>& box_measure() const { return box_measure_; }
   const std::vector<double>& box_target() const { return box_target_; }
-  /// By cell; `steady` marks those that count for RSD: in the window less 5 % of its size.
+  /// By cell of NMAE and RSD: of the plane's window, tents, or the boxes (far_field). `steady` marks those
+  /// that count for RSD: in the window less 5 % of its size.
   const std::vector<double>& cell_target() const { return cell_target_; }
   const std::vector<char>& cell_steady() const { return cell_steady_; }
   /// Is the target one value all over its window, so that RSD has a meaning?
@@ -67,7 +68,8 @@ class Target {
   void read_plane_function(const JsonNode& t);
   void set_rectangle(const JsonNode& t);
   void set_boxes();
-  void set_cells(const JsonNode& t);
+  void set_tents();
+  void set_plane_cells(const JsonNode& t);
   /// Sums of measure and of the target's integral over a rectangle.
   std::array<double, 2> integral(const Rectangle& r, int points) const;
   bool in_shape(double u, double v, double shrunk) const;

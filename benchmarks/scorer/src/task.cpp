@@ -80,37 +80,38 @@ Task::Task(const std::string& file) : definition(JsonNode::read(file)) {
   for (const JsonNode& l : definition.at("limits").items()) limits.push_back(read_limit(l));
   if (definition.has("target_place"))
     free_target = definition.at("target_place").one_of({"free", "fixed"}) == "free";
-  const Target check(definition.at("target"));
+  definition.at("target");
 }
 
-LimitCheck check_limit(const Limit& l, const std::vector<Vec3>& corners) {
+LimitCheck check_limit(const Limit& l, const std::vector<const Surface*>& surfaces) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
   Vec3 low{kInf, kInf, kInf}, high{-kInf, -kInf, -kInf};
   double radius = 0.0, nearest = kInf;
-  const Vec3 centre = l.kind == "outside_sphere" ? Vec3{l.values[0], l.values[1], l.values[2]} : Vec3{};
-  for (const Vec3& p : corners) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    radius = std::max(radius, std::hypot(p.x, p.y));
-    nearest = std::min(nearest, length(p - centre));
+  const bool sphere = l.kind == "outside_sphere";
+  for (const Surface* s : surfaces) {
+    if (sphere) nearest = std::min(nearest, distance(*s, {l.values[0], l.values[1], l.values[2]}));
+    for (const Vec3& p : s->extent()) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+      radius = std::max(radius, std::hypot(p.x, p.y));
+    }
   }
   LimitCheck out{l.kind, "", "", false};
+  const auto& v = l.values;
   const auto within = [](double x, double a, double b) { return x >= a - kTolerance && x <= b + kTolerance; };
   if (l.kind == "inside_cylinder") {
     out.found = "radius " + shown({radius}) + ", z " + shown({low.z, high.z}) + " mm";
-    out.allowed = "radius " + shown({l.values[2]}) + ", z " + shown({l.values[0], l.values[1]}) + " mm";
-    out.held = radius <= l.values[2] + kTolerance && within(low.z, l.values[0], l.values[1]) &&
-               within(high.z, l.values[0], l.values[1]);
+    out.allowed = "radius " + shown({v[2]}) + ", z " + shown({v[0], v[1]}) + " mm";
+    out.held = radius <= v[2] + kTolerance && within(low.z, v[0], v[1]) && within(high.z, v[0], v[1]);
   } else if (l.kind == "inside_box") {
-    const auto& v = l.values;
     out.found = shown({low.x, low.y, low.z}) + " to " + shown({high.x, high.y, high.z}) + " mm";
     out.allowed = shown({v[0], v[1], v[2]}) + " to " + shown({v[3], v[4], v[5]}) + " mm";
     out.held = within(low.x, v[0], v[3]) && within(low.y, v[1], v[4]) && within(low.z, v[2], v[5]) &&
                within(high.x, v[0], v[3]) && within(high.y, v[1], v[4]) && within(high.z, v[2], v[5]);
   } else {
-    out.found = "a corner at " + shown({nearest}) + " mm from the centre";
-    out.allowed = shown({l.values[3]}) + " mm or more";
-    out.held = nearest >= l.values[3] - kTolerance;
+    out.found = shown({nearest}) + " mm from the centre";
+    out.allowed = shown({v[3]}) + " mm or more";
+    out.held = nearest >= v[3] - kTolerance;
   }
   return out;
 }

@@ -7,6 +7,7 @@
 
 #include "emitter.h"
 #include "json_node.h"
+#include "surface.h"
 #include "target.h"
 
 namespace bench {
@@ -48,6 +49,7 @@ struct LimitCheck {
   std::string limit, found, allowed;
   bool held = false;
 };
-LimitCheck check_limit(const Limit& limit, const std::vector<Vec3>& corners);
+/// `surfaces`: those of a submission.
+LimitCheck check_limit(const Limit& limit, const std::vector<const Surface*>& surfaces);
 
 }  // namespace bench

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bspline.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support.h"
+#include "surface.h"
+
+namespace bench::test {
+namespace {
+
+/// A bicubic surface with uneven knots and coefficients that no symmetry helps.
+Json uneven() {
+  Json points = Json::array();
+  for (int i = 0; i < 6; ++i) {
+    Json row = Json::array();
+    for (int j = 0; j < 5; ++j)
+      row.push_back({i + 0.1 * std::sin(j), j + 0.2 * std::cos(3 * i), std::sin(i * j + 1.0)});
+    points.push_back(row);
+  }
+  Json s = bowl_json(1.0, 1.0);
+  s["degree"] = {3, 2};
+  s["knots_u"] = {0, 0, 0, 0, 0.3, 1.1, 2, 2, 2, 2};
+  s["knots_v"] = {0, 0, 0, 0.5, 0.5, 1, 1, 1};
+  s["points_mm"] = points;
+  return s;
+}
+
+TEST(Bspline, BowlIsExact) {
+  const Bspline s(JsonNode("s.json", bowl_json(0.02, 50.0)));
+  for (const double u : {-50.0, -31.0, 0.0, 12.5, 50.0}) {
+    for (const double v : {-50.0, -7.0, 50.0}) {
+      const SurfaceJet j = s.at(u, v);
+      EXPECT_NEAR(j.point.x, u, 1e-12);
+      EXPECT_NEAR(j.point.y, v, 1e-12);
+      EXPECT_NEAR(j.point.z, 0.02 * (u * u + v * v), 1e-12);
+      EXPECT_NEAR(j.by_u.z, 0.04 * u, 1e-12);
+      EXPECT_NEAR(j.by_v.z, 0.04 * v, 1e-12);
+    }
+  }
+}
+
+void expect_derivatives(const Bspline& s) {
+  constexpr double h = 1e-6;
+  for (const double u : {0.1, 0.299, 0.7, 1.5}) {
+    for (const double v : {0.2, 0.51, 0.9}) {
+      const Vec3 du = (0.5 / h) * (s.at(u + h, v).point - s.at(u - h, v).point);
+      const Vec3 dv = (0.5 / h) * (s.at(u, v + h).point - s.at(u, v - h).point);
+      EXPECT_LT(length(du - s.at(u, v).by_u), 1e-7);
+      EXPECT_LT(length(dv - s.at(u, v).by_v), 1e-7);
+    }
+  }
+}
+
+TEST(Bspline, DerivativesAreThoseOfThePoints) {
+  Json s = uneven();
+  expect_derivatives(Bspline(JsonNode("s.json", s)));
+  Json weights = Json::array();
+  for (int i = 0; i < 6; ++i) weights.push_back({1.0, 2.0, 0.5, 1.0 + 0.1 * i, 1.0});
+  s["weights"] = weights;
+  expect_derivatives(Bspline(JsonNode("s.json", s)));
+}
+
+// A quarter of a circle of radius 2, which polynomials cannot be.
+TEST(Bspline, RationalArcIsRound) {
+  const double w = std::sqrt(0.5);
+  const Json arc{{"degree", {2, 1}},
+                 {"knots_u", {0, 0, 0, 1, 1, 1}},
+                 {"knots_v", {0, 0, 1, 1}},
+                 {"points_mm", {{{2, 0, 0}, {2, 0, 1}}, {{2, 2, 0}, {2, 2, 1}}, {{0, 2, 0}, {0, 2, 1}}}},
+                 {"weights", {{1, 1}, {w, w}, {1, 1}}}};
+  const Bspline s(JsonNode("s.json", arc));
+  for (double u = 0.0; u <= 1.0; u += 0.125) {
+    EXPECT_NEAR(std::hypot(s.at(u, 0.3).point.x, s.at(u, 0.3).point.y), 2.0, 1e-12);
+  }
+}
+
+TEST(Bspline, RefusesWhatIsNoSurface) {
+  const auto message = [](const char* key, const Json& value) {
+    Json s = uneven();
+    s[key] = value;
+    return refusal([&] { Bspline(JsonNode("s.json", s)); });
+  };
+  EXPECT_EQ(message("degree", {3, 2}), "");
+  EXPECT_EQ(message("degree", {9, 2}), "s.json: /degree/0: found 9, expected a whole number from 1 to 7");
+  EXPECT_EQ(message("knots_v", {0, 0, 0, 1, 1, 1}),
+            "s.json: /knots_v: found 6 knots, expected 8 (points + degree + 1)");
+  EXPECT_NE(message("knots_v", {0, 0, 0, 0.7, 0.5, 1, 1, 1}).find("ascending order"), std::string::npos);
+  Json torn = uneven();
+  torn["degree"] = {1, 2};
+  torn["knots_u"] = {0, 0, 0.5, 0.5, 1, 1.5, 2, 2};
+  EXPECT_NE(refusal([&] { Bspline(JsonNode("s.json", torn)); }).find("expected at most the degree"),
+            std::string::npos);
+  EXPECT_NE(message("points_mm", {{{0, 0, 0}}, {{0, 0, 0}, {1, 1, 1}}}).find("/points_mm/1: found 2 points"),
+            std::string::npos);
+  EXPECT_NE(message("weights", {{1, 1}}).find("found 2 weights, expected 30"), std::string::npos);
+}
+
+// Hits are those of the surface, not of the triangles: a line meets z = c r^2 where the quadratic says.
+TEST(BsplineSurface, HitsAreExact) {
+  const auto surface = read_bspline(JsonNode("s.json", bowl_json(0.0125, 50.0)), Frame());
+  const auto& mesh = surface->triangles();
+  const auto middle = [&](std::uint32_t k) {
+    const auto& t = mesh.triangles[k];
+    return (1.0 / 3.0) * (mesh.corners[t[0]] + mesh.corners[t[1]] + mesh.corners[t[2]]);
+  };
+  const Vec3 from{3, -2, 60};
+  for (std::uint32_t k = 0; k < mesh.triangles.size(); k += 997) {
+    const Vec3 d = unit(middle(k) - from);
+    Hit hit;
+    ASSERT_TRUE(surface->refine(from, d, {k, length(middle(k) - from), 1.0 / 3.0, 1.0 / 3.0}, hit));
+    const Vec3 p = from + hit.t * d;
+    EXPECT_NEAR(p.z, 0.0125 * (p.x * p.x + p.y * p.y), 1e-9);
+    EXPECT_LT(length(hit.normal - unit({-0.025 * p.x, -0.025 * p.y, 1.0})), 1e-9);
+  }
+}
+
+TEST(BsplineSurface, TrimTakesAway) {
+  Json bowl = bowl_json(0.0125, 50.0);
+  bowl["trim"] = {{"kind", "circle"}, {"diameter_mm", 80.0}, {"hole_diameter_mm", 10.0}};
+  const Json there = submission_json({mirror_json(bowl, place(0.0))});
+  const TestFolder folder;
+  const Task task(folder.write(
+      "t.json", task_json({{"emitter", "point"}},
+                          {{"kind", "far_field"}, {"axis", "-z"}, {"function", "wall_washer"}})));
+  const Submission s(folder.write("s.json", there), task);
+  const SurfaceScene scene(s.parts);
+  const auto hits = [&](double x) { return scene.first_hit({x, 0, 60}, {0, 0, -1}).part != nullptr; };
+  EXPECT_FALSE(hits(4.99));
+  EXPECT_TRUE(hits(5.01));
+  EXPECT_TRUE(hits(39.99));
+  EXPECT_FALSE(hits(40.01));
+  // Its extent ends at the rims, although no corner of a triangle lies there; the vertex is in the hole.
+  double radius = 0.0, low = 1e9;
+  for (const Vec3& p : s.parts[0].surface->extent()) {
+    radius = std::max(radius, std::hypot(p.x, p.y));
+    low = std::min(low, p.z);
+  }
+  EXPECT_NEAR(radius, 40.0, 1e-3);
+  EXPECT_NEAR(low, 0.0125 * 25.0, 1e-2);
+  EXPECT_NEAR(distance(*s.parts[0].surface, {0, 0, -10}), std::hypot(5.0, 10.0 + 0.0125 * 25.0), 0.02);
+}
+
+}  // namespace
+}  // namespace bench::test

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "support.h"
+#include "surface.h"
+
+namespace bench::test {
+namespace {
+
+using Facets = std::vector<std::array<Vec3, 4>>;
+
+std::string binary(const Facets& facets, std::uint32_t count) {
+  std::string out(80, ' ');
+  out.append(reinterpret_cast<const char*>(&count), 4);
+  for (const auto& f : facets) {
+    for (const Vec3& v : f) {
+      const float x[3] = {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+      out.append(reinterpret_cast<const char*>(x), sizeof x);
+    }
+    out.append(2, '\0');
+  }
+  return out;
+}
+
+const Facets kOne{{Vec3{0, 0, 1}, Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}}};
+
+TEST(Stl, BothFormsAreRead) {
+  const TestFolder folder;
+  const auto a = read_stl(folder.write("a.stl", binary(kOne, 1)), Frame(), 0.0);
+  ASSERT_EQ(a->triangles().triangles.size(), 1u);
+  const auto b = read_stl(folder.write("b.stl", std::string("solid x y\nfacet normal 0 0 0\nouter loop\n"
+                                                            "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                                                            "endloop\nendfacet\nendsolid x y\n")),
+                          Frame{{0, 0, 7}}, 0.0);
+  EXPECT_EQ(b->triangles().corners[1].x, 1.0);
+  EXPECT_EQ(b->triangles().corners[1].z, 7.0);
+  Hit hit;
+  ASSERT_TRUE(b->refine({0.2, 0.2, 9}, {0, 0, -1}, {0, 1.9, 0.2, 0.2}, hit));
+  EXPECT_DOUBLE_EQ(hit.t, 2.0);
+  EXPECT_EQ(hit.normal.z, 1.0);
+}
+
+TEST(Stl, BrokenFilesAreRefusedWithTheirPlace) {
+  const TestFolder folder;
+  const auto message = [&](const std::string& bytes) {
+    return refusal([&] { read_stl(folder.write("a.stl", bytes), Frame(), 0.0); });
+  };
+  EXPECT_NE(refusal([&] { read_stl("none.stl", Frame(), 0.0); }).find("none.stl: file: found nothing"),
+            std::string::npos);
+  EXPECT_NE(message(binary(kOne, 2)).find("byte 80: found 2 facets in 134 bytes, expected 184 bytes"),
+            std::string::npos);
+  EXPECT_NE(message("x").find("byte 0: found 1 bytes"), std::string::npos);
+  Facets turned = kOne;
+  turned[0][0].z = -1.0;
+  EXPECT_NE(message(binary(turned, 1)).find("facet 1: found a stored normal against"), std::string::npos);
+  Facets wild = kOne;
+  wild[0][2].x = std::nan("");
+  EXPECT_NE(message(binary(wild, 1)).find("facet 1: found a corner that is not finite"), std::string::npos);
+  EXPECT_NE(message("solid\nfacet normal 0 0 one\n").find("line 2: found one, expected a number"),
+            std::string::npos);
+  EXPECT_NE(message("solid\nfacet normal 0 0 1\nouter loop\n").find("line 3: found the end of the file"),
+            std::string::npos);
+  Facets flat = kOne;
+  flat[0][3] = flat[0][2];
+  EXPECT_NE(message(binary(flat, 1)).find("no facet with an area"), std::string::npos);
+}
+
+/// A roof of two facets that meet along y at `angle_deg` to each other.
+Facets roof(double angle_deg) {
+  const double a = 0.5 * angle_deg * std::acos(-1.0) / 180.0, x = std::cos(a), z = -std::sin(a);
+  return {{Vec3{}, Vec3{0, 0, 0}, Vec3{x, 0, z}, Vec3{0, 1, 0}},
+          {Vec3{}, Vec3{0, 0, 0}, Vec3{0, 1, 0}, Vec3{-x, 0, z}}};
+}
+
+// At the ridge the interpolated normal is the mean of both; beyond the crease angle it is the facet's.
+TEST(Stl, NormalsAreInterpolatedBelowTheCrease) {
+  const TestFolder folder;
+  const std::string file = folder.write("roof.stl", binary(roof(20.0), 2));
+  const auto tilt = [&](double crease) {
+    Hit hit;
+    const auto s = read_stl(file, Frame(), crease);
+    EXPECT_TRUE(s->refine({0, 0.2, 5}, {0, 0, -1}, {0, 5.0, 0.0, 0.2}, hit));
+    return hit.normal.x;
+  };
+  EXPECT_NEAR(tilt(30.0), 0.0, 1e-12);
+  EXPECT_NEAR(tilt(10.0), std::sin(10.0 * std::acos(-1.0) / 180.0), 1e-6);
+  EXPECT_NEAR(tilt(0.0), std::sin(10.0 * std::acos(-1.0) / 180.0), 1e-6);
+}
+
+}  // namespace
+}  // namespace bench::test

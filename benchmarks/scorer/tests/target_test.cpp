@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "target.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support.h"
+
+namespace bench::test {
+namespace {
+
+JsonNode node(const Json& json) { return {"task.json", json}; }
+
+const Json kPlane{{"kind", "plane"},
+                  {"place", place(1000.0, -1.0)},
+                  {"function", "uniform_rectangle"},
+                  {"size_mm", {200, 100}},
+                  {"cells", {20, 10}}};
+
+TEST(Target, PlaneHasItsRectangleAndCells) {
+  const Target t(node(kPlane));
+  EXPECT_NEAR(t.low()[0], -99.5, 1e-9);
+  EXPECT_NEAR(t.high()[1], 49.75, 1e-9);
+  EXPECT_TRUE(t.is_uniform());
+  EXPECT_EQ(t.cell_target().size(), 200u);
+  EXPECT_NEAR(t.cell_target()[0], 100.0, 1e-6);
+  // The window less 5 %: half sides 95 and 47.5 mm, cells of 10 mm: 18 x 8 are wholly inside.
+  EXPECT_EQ(std::count(t.cell_steady().begin(), t.cell_steady().end(), 1), 18 * 8);
+}
+
+TEST(Target, LightLandsOnThePlane) {
+  const Target t(node(kPlane));
+  const Landing a = t.land({0, 0, 0}, unit({0.0905, 0, 1}));  // x = 90.5 mm, y = 0
+  EXPECT_TRUE(a.in_window);
+  EXPECT_EQ(a.cell[0], 5 * 20 + 19);
+  EXPECT_EQ(a.box % 48, static_cast<int>((90.5 + 99.5) / 199.0 * 48));
+  const Landing rim = t.land({0, 0, 0}, unit({0.0998, 0, 1}));  // in the window, not in the rectangle
+  EXPECT_TRUE(rim.in_window);
+  EXPECT_EQ(rim.box, -1);
+  EXPECT_FALSE(t.land({0, 0, 0}, unit({0.11, 0, 1})).in_window);
+  EXPECT_FALSE(t.land({0, 0, 0}, {0, 0, -1}).in_window);
+  EXPECT_FALSE(t.land({0, 0, 1500}, {0, 0, 1}).in_window);  // from behind
+}
+
+TEST(Target, SteepLightDoesNotCountWhereAnglesAreLimited) {
+  Json limited = kPlane;
+  limited["max_angle_deg"] = 30;
+  const Target t(node(limited));
+  EXPECT_TRUE(t.land({-500, 0, 0}, unit({0.5, 0, 1})).in_window);
+  EXPECT_FALSE(t.land({-600, 0, 0}, unit({0.6, 0, 1})).in_window);
+}
+
+// A Lambertian intensity is even in direction cosines: its marginal is a half circle.
+TEST(Target, CosineHasItsRectangle) {
+  const Target t(node(
+      {{"kind", "far_field"}, {"axis", "+z"}, {"function", "cosine_power"}, {"power", 1}, {"edge_deg", 90}}));
+  const double u = t.high()[0];
+  const double above = (std::acos(u) - u * std::sqrt(1.0 - u * u)) / std::numbers::pi;
+  EXPECT_NEAR(above, 0.0025, 2e-5);
+  double sum = 0.0;
+  for (const double f : t.box_target()) sum += f;
+  EXPECT_NEAR(sum, 0.99 * std::numbers::pi, 0.01);
+}
+
+// Half of the peak at half the beam angle; the rectangle of 99.5 % is symmetric.
+TEST(Target, GaussianBeamIsAsWideAsItSays) {
+  const Target t(node({{"kind", "far_field"},
+                       {"axis", "-z"},
+                       {"function", "gaussian_beam"},
+                       {"beam_x_deg", 4},
+                       {"beam_y_deg", 2}}));
+  EXPECT_NEAR(t.low()[0], -t.high()[0], 1e-6);
+  EXPECT_NEAR(t.high()[0] / t.high()[1], 2.0, 0.05);
+  // 2^-(x/1 deg)^2 is a Gaussian of sigma 1 / sqrt(2 ln 2) degrees; 0.25 % lie above 2.807 sigma.
+  const double degrees = std::asin(t.high()[1]) * 180.0 / std::numbers::pi;
+  EXPECT_NEAR(degrees, 2.807 / std::sqrt(2.0 * std::log(2.0)), 0.005);
+}
+
+TEST(Target, AngleHasTentsAndBoxesOfTheSine) {
+  const Target t(node(
+      {{"kind", "angle"}, {"axis", "-z"}, {"function", "cosine_power"}, {"power", 0}, {"edge_deg", 20}}));
+  EXPECT_EQ(t.box_measure().size(), 48u);
+  double radians = 0.0;
+  for (const double m : t.box_measure()) radians += m;
+  EXPECT_NEAR(radians, 0.995 * 40.0 * std::numbers::pi / 180.0, 1e-4);
+  EXPECT_EQ(t.cell_target().size(), 181u);
+  EXPECT_NEAR(t.cell_target()[90] / t.cell_target()[80], 1.0, 1e-9);
+  EXPECT_NEAR(t.cell_target()[70] / t.cell_target()[80], 0.5, 1e-3);
+  EXPECT_EQ(t.cell_target()[68], 0.0);
+  const double phi = 10.25 * std::numbers::pi / 180.0;
+  const Landing at = t.land({}, {std::sin(phi), 0, -std::cos(phi)});
+  EXPECT_EQ(at.cell[0], 100);
+  EXPECT_EQ(at.cell[1], 101);
+  EXPECT_NEAR(at.share_of_first, 0.75, 1e-9);
+  EXPECT_TRUE(at.in_window);
+  EXPECT_EQ(t.land({}, {0, 0, 1}).cell[0], -1);
+}
+
+TEST(Target, RefusesWhatItDoesNotKnow) {
+  Json t = kPlane;
+  t["function"] = "star";
+  EXPECT_EQ(refusal([&] { Target target(node(t)); }),
+            "task.json: /function: found \"star\", expected one of uniform_rectangle, uniform_disk");
+  t = kPlane;
+  t["cells"] = {0, 4};
+  EXPECT_EQ(refusal([&] { Target target(node(t)); }),
+            "task.json: /cells/0: found 0, expected a whole number from 1 to 1000");
+  t = kPlane;
+  t["place"]["z_axis"] = {0, 1, 1};
+  EXPECT_NE(refusal([&] { Target target(node(t)); }).find("/place: found"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace bench::test
