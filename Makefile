@@ -3,7 +3,7 @@
 # but for check-quick and format.
 # CUDA=1 compiles the CUDA back end too (needs nvcc).
 .PHONY: reference demo test check check-quick fuzz bench benchmarks test-report test-site test-slow gallery docs program packages \
-        install deb api format clean python test-python test-mpi
+        install deb api format clean python test-python test-mpi test-bench
 
 BUILD := build/release
 
@@ -62,6 +62,15 @@ benchmarks: program
 	scripts/packages.sh scripts/packages-benchmarks.txt
 	cmake --build --preset release --target benchmarks
 	scripts/benchmarks.py --build $(BUILD)
+
+# Lucerna Bench (benchmarks/): builds its scorer, which needs nothing of Lucerna; its tests, and those against the program.
+test-bench: program
+	scripts/packages.sh scripts/packages-bench.txt
+	cmake -S benchmarks/scorer -B build/bench-scorer
+	cmake --build build/bench-scorer
+	ctest --test-dir build/bench-scorer --output-on-failure --no-tests=error
+	LUCERNA=$(abspath $(BUILD)/lucerna) LUCERNA_BENCH_SCORER=$(abspath build/bench-scorer)/lucerna-bench-score \
+	  /usr/bin/python3 -m pytest -q benchmarks/python/tests
 
 test-slow: program
 	cmake --build --preset release --target tests

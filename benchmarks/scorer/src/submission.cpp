@@ -2,6 +2,7 @@
 #include "submission.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 namespace bench {
@@ -32,6 +33,16 @@ std::shared_ptr<const Surface> read_surface(const JsonNode& s) {
   return read_bspline(surface, place);
 }
 
+/// Farther coordinates are no optic, and too large for float32 with a use.
+constexpr double kFarthestMm = 1e6;
+
+void check_extent(const Surface& surface, const JsonNode& s) {
+  for (const Vec3& p : surface.triangles().corners) {
+    if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kFarthestMm))
+      s.fail("a surface that reaches beyond 1e6 mm", "one within 1e6 mm of the origin");
+  }
+}
+
 Part read_part(const JsonNode& s, const Task& task) {
   s.only({"name", "role", "stl", "normals", "crease_deg", "bspline", "place", "flip", "refractive_index"});
   Part part;
@@ -42,6 +53,7 @@ Part read_part(const JsonNode& s, const Task& task) {
     part.refractive_index = s.at("refractive_index").number_in(task.optics.min_index, task.optics.max_index);
   part.flip = s.has("flip") && s.at("flip").boolean();
   part.surface = read_surface(s);
+  check_extent(*part.surface, s);
   return part;
 }
 
