@@ -2,8 +2,16 @@
 #include "bspline.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace bench {
+
+namespace {
+
+/// Farther points are no optic, and too large for float32 to be of use.
+constexpr double kFarthestMm = 1e6;
+
+}  // namespace
 
 void Bspline::read_axis(const JsonNode& knots, Axis& axis) {
   axis.knots = knots.numbers();
@@ -33,7 +41,12 @@ Bspline::Bspline(const JsonNode& s) {
     if (axes_[1].count == 0) axes_[1].count = points.size();
     if (points.empty() || points.size() != axes_[1].count)
       row.fail(std::to_string(points.size()) + " points", "the same number > 0 in every row");
-    for (const JsonNode& p : points) points_.push_back(p.vector());
+    for (const JsonNode& p : points) {
+      points_.push_back(p.vector());
+      const Vec3& x = points_.back();
+      if (std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}) > kFarthestMm)
+        p.fail("coordinates within 1e6 mm");
+    }
   }
   for (std::size_t a = 0; a < 2; ++a) {
     axes_[a].degree = static_cast<int>(degrees[a].whole(1, kMaxDegree));

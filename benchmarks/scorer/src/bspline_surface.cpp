@@ -142,16 +142,19 @@ class SplineSurface final : public Surface {
     std::array<std::vector<double>, 2> at{grid(0, 1), grid(1, 1)};
     if (at[0].size() * at[1].size() > kMaxQuads)
       s.at("points_mm").fail("too many pieces", "at most " + std::to_string(kMaxQuads));
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      const auto coarse = [&] {
-        // Trimmed surfaces have steps that their rims can be found between.
-        if (trim_.any() && at[axis].size() < kMinSteps) return true;
-        return spline_.degree(axis) > 1 && chord(at[axis], grid(1 - axis, 2), axis) > kChordMm;
-      };
-      while (coarse()) {
-        if (2 * at[axis].size() * at[1 - axis].size() > kMaxQuads) break;
-        at[axis] = grid(axis, pieces[axis] *= 2);
-      }
+    const auto coarse = [&](std::size_t axis) {
+      // Trimmed surfaces have steps that their rims can be found between.
+      if (trim_.any() && at[axis].size() < kMinSteps) return true;
+      return spline_.degree(axis) > 1 && chord(at[axis], grid(1 - axis, 2), axis) > kChordMm;
+    };
+    std::array<bool, 2> cut_more{true, true};
+    while (2 * at[0].size() * at[1].size() <= kMaxQuads) {
+      for (std::size_t axis = 0; axis < 2; ++axis) cut_more[axis] = cut_more[axis] && coarse(axis);
+      if (!cut_more[0] && !cut_more[1]) break;
+      // Where there is room for one of both, the one with fewer pieces: long thin triangles are poor guesses.
+      const bool both = cut_more[0] && cut_more[1];
+      const std::size_t axis = both ? (at[0].size() <= at[1].size() ? 0 : 1) : cut_more[0] ? 0 : 1;
+      at[axis] = grid(axis, pieces[axis] *= 2);
     }
     for (const double u : at[0]) {
       for (const double v : at[1]) {

@@ -33,7 +33,7 @@ std::shared_ptr<const Surface> read_surface(const JsonNode& s) {
   return read_bspline(surface, place);
 }
 
-/// Farther coordinates are no optic, and too large for float32 with a use.
+/// Farther coordinates are no optic, and too large for float32 to be of use.
 constexpr double kFarthestMm = 1e6;
 
 void check_extent(const Surface& surface, const JsonNode& s) {

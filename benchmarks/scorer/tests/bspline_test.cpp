@@ -117,6 +117,19 @@ TEST(BsplineSurface, HitsAreExact) {
   }
 }
 
+// Steeper than the triangles can follow within their number: both axes get their part of it.
+TEST(BsplineSurface, TrianglesOfDeepSurfacesAreNotThin) {
+  const auto surface = read_bspline(JsonNode("s.json", bowl_json(1.0, 50.0)), Frame());
+  const auto& c = surface->triangles().corners;
+  double along_x = 0.0, along_y = 0.0;
+  for (const auto& t : surface->triangles().triangles) {
+    along_x = std::max({along_x, std::abs(c[t[0]].x - c[t[1]].x), std::abs(c[t[1]].x - c[t[2]].x)});
+    along_y = std::max({along_y, std::abs(c[t[0]].y - c[t[1]].y), std::abs(c[t[1]].y - c[t[2]].y)});
+  }
+  EXPECT_LT(along_x, 0.5);
+  EXPECT_LT(along_y, 0.5);
+}
+
 TEST(BsplineSurface, TrimTakesAway) {
   Json bowl = bowl_json(0.0125, 50.0);
   bowl["trim"] = {{"kind", "circle"}, {"diameter_mm", 80.0}, {"hole_diameter_mm", 10.0}};
