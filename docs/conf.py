@@ -16,7 +16,7 @@ version = release = re.search(r"^project\(\s*[Ll]ucerna\s+VERSION\s+([\d.]+)",
 extensions = ["myst_parser"]
 source_suffix = {".md": "markdown"}
 root_doc = "docs/index"
-include_patterns = ["docs/**", "examples/*.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md"]
+include_patterns = ["docs/**", "examples/*.md", "benchmarks/*.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md"]
 exclude_patterns = ["build*", "demo", "third_party", "tests", "src", "fuzz", "bench", ".*", "README.md"]
 
 myst_heading_anchors = 4
