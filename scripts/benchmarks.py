@@ -11,8 +11,7 @@ A page has blocks between two comments:
 
 The commands are run from build/release/bench (those that end in .py from bench), one after another. The rows that they print as a Markdown
 table, with commit and date, become the block. A plot draws the named columns of the table as bars, with
-that unit. `measured: by hand` is a table that no program writes; only its plot is drawn. An argument that
-begins with DATA/ stands for the files of that pattern in the folder of real files (LUCERNA_DATA_DIR of the
+that unit. An argument that begins with DATA/ stands for the files of that pattern in the folder of real files (LUCERNA_DATA_DIR of the
 build); where it is missing, the block stays as it is.
 
 Usage: scripts/benchmarks.py [--list | --plots | --check] [--build FOLDER] [--only TEXT] [PAGE...]
@@ -41,7 +40,6 @@ class Block:
         says, _, plot = " ".join(found["says"].split()).partition("; plot: ")
         self.commands = says.split(" && ")
         self.plot = [part.strip() for part in plot.split(",")] if plot else []
-        self.by_hand = self.commands == ["by hand"]
         self.body, self.start, self.end = found["body"], found.start("body"), found.end("body")
 
     def __str__(self):
@@ -155,7 +153,7 @@ def measured(block, build):
 
 
 def faults(page, block):
-    for command in [] if block.by_hand else block.commands:
+    for command in block.commands:
         program = command.split()[0]
         source = ROOT / "bench" / (program if program.endswith(".py") else program.removeprefix("bench_") + ".cpp")
         if not source.exists():
@@ -190,7 +188,7 @@ def main():
             elif options.check:
                 found += faults(page, block)
             else:
-                body = block.body if options.plots or block.by_hand else measured(block, options.build)
+                body = block.body if options.plots else measured(block, options.build)
                 draw(page, block, body)
                 text = text[:block.start] + body + text[block.end:]
         if not (options.list or options.check or options.plots):
