@@ -11,8 +11,8 @@ A page has blocks between two comments:
 
 The commands are run from build/release/bench (those that end in .py from bench), one after another. The rows that they print as a Markdown
 table, with commit and date, become the block. A plot draws the named columns of the table as bars, with
-that unit. An argument that begins with DATA/ stands for the files of that pattern in the folder of real files (LUCERNA_DATA_DIR of the
-build); where it is missing, the block stays as it is.
+that unit. An argument that begins with DATA/ stands for the files of that pattern in the folder of real
+files (LUCERNA_DATA_DIR of the build); where it is missing, the block stays as it is.
 
 Usage: scripts/benchmarks.py [--list | --plots | --check] [--build FOLDER] [--only TEXT] [PAGE...]
   --list   the blocks, one a line        --plots  draws the plots of the tables as they are

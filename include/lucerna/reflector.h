@@ -43,8 +43,8 @@ class HeightSurface {
   /// built from.
   virtual HeightRange range(const Rectangle& region) const = 0;
 
-  /// True only where the height is known to be a convex function over `region`, as a bowl is: a line crosses
-  /// it there twice at most. False costs time, not accuracy.
+  /// True only where the height is known to be convex, with a gradient that is continuous up to the next
+  /// region: a line crosses a bowl twice at most. False, as here, costs time and not accuracy.
   virtual bool convex_over(const Rectangle& region) const;
 };
 

@@ -14,8 +14,8 @@ from ._toml import Body, Detector, Source
 from ._types import Estimate, InputError, Record
 
 for _name in (DesignResult, IntensityDistribution, PlaneImage, RaySet, Reflector, Scene, SourceModel, TraceResult,
-              build_info, compare_held_out, compress, make_source, merge, read_intensity, read_model, read_rays, read_trace,
-              write_report, Objective, design, compare, Body, Detector, Source, Estimate, InputError, Record):
+              build_info, compare_held_out, compress, make_source, merge, read_intensity, read_model, read_rays,
+              read_trace, write_report, Objective, design, compare, Body, Detector, Source, Estimate, InputError, Record):
     if isinstance(_name, type) or hasattr(_name, "__dict__"):
         _name.__module__ = "lucerna"
 del _name

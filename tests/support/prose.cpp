@@ -125,7 +125,7 @@ std::vector<std::size_t> lines_taken_for_marks(std::string_view page) {
     const bool prose = !before.empty() && before[0] != '#' && before[0] != '|' &&
                        !before.starts_with("```") && !before.starts_with("<!--") && !before.ends_with("-->");
     const bool open = prose && std::string_view(".:;!?)").find(before.back()) == std::string_view::npos;
-    const bool next_item = in_item && begins_item(trimmed(raw)) && !raw.starts_with("  ");
+    const bool next_item = in_item && item && !raw.starts_with("  ");
     if (!code && (line.starts_with('%') || (item && open && !next_item))) taken.push_back(number + 1);
     in_item = item || (in_item && !line.empty());
     before = line;

@@ -39,10 +39,12 @@ struct Arguments {
   TraceSettings settings;
 };
 
-std::uint64_t count_of(const std::string& option, const std::string& text, double low, double high) {
+std::uint64_t count_of(const std::string& option, const std::string& text, std::uint64_t low,
+                       std::uint64_t high) {
   char* end = nullptr;
   const double x = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !(x >= low && x <= high) || x != std::floor(x))
+  if (text.empty() || *end != '\0' || !(x >= static_cast<double>(low) && x <= static_cast<double>(high)) ||
+      x != std::floor(x))
     throw UsageError(option + ": found " + text + ", expected a whole number from " + std::to_string(low) +
                      " to " + std::to_string(high));
   return static_cast<std::uint64_t>(x);
@@ -60,9 +62,9 @@ Arguments parse(const std::vector<std::string>& words) {
     if (i + 1 == words.size()) throw UsageError(words[i] + ": found no value, expected one");
     const std::string &option = words[i], &value = words[++i];
     if (option == "--rays") {
-      a.settings.rays = count_of(option, value, 1, 8e9);
+      a.settings.rays = count_of(option, value, 1, 8'000'000'000);
     } else if (option == "--seed") {
-      a.settings.seed = count_of(option, value, 0, 9e15);
+      a.settings.seed = count_of(option, value, 0, 9'000'000'000'000'000);
     } else if (option == "--threads") {
       a.settings.threads = static_cast<unsigned>(count_of(option, value, 1, 4096));
     } else if (option == "--rays-from") {

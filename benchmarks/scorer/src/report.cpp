@@ -61,10 +61,10 @@ std::string share_line(const char* name, const Json& e) {
 }
 
 std::string stated_text(const Json& s) {
-  const std::string cpu = s["cpu_s"].is_null() ? "not stated" : line("%.6g", s["cpu_s"].get<double>());
   std::string out = line("  stated, not checked: %lld free parameters, %.6g s of wall time,",
                          s["free_parameters"].get<long long>(), s["wall_s"].get<double>());
-  out += "    processor seconds: " + cpu + (cpu.back() == '\n' ? "" : "\n");
+  out += s["cpu_s"].is_null() ? line("    processor seconds: not stated")
+                              : line("    processor seconds: %.6g", s["cpu_s"].get<double>());
   return out + "    " + s["machine"].get<std::string>() + "; " + s["program"].get<std::string>() + "; " +
          s["method"].get<std::string>() + "\n";
 }

@@ -29,7 +29,7 @@ struct Limit {
   std::string note;
 };
 
-/// A task file (benchmarks/README.md, "Task files"). Throws InputError with the place of what is wrong.
+/// A task file (benchmarks/README.md, "Tasks"). Throws InputError with the place of what is wrong.
 struct Task {
   explicit Task(const std::string& file);
 
