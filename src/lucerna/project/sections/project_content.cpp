@@ -29,6 +29,10 @@ std::string hash_of(const RaySet& set) {
   for (const auto* column : {&rays.x_mm, &rays.y_mm, &rays.z_mm, &rays.kx, &rays.ky, &rays.kz, &rays.weight})
     all += hash_of_numbers(*column);
   for (const auto& column : rays.extra) all += hash_of_numbers(column);
+  for (const ColumnSpec& column : set.header.columns)
+    all += fmt::format(" {}", static_cast<int>(column.kind));
+  for (const SpectralTable& s : set.header.spectra)
+    all += hash_of_numbers(s.wavelength_nm) + hash_of_numbers(s.relative_power);
   return sha256_of_text(all);
 }
 

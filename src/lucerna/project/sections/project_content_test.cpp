@@ -62,6 +62,11 @@ TEST(ProjectContent, IsThatOfRaysInMemory) {
   dimmed.header.set_flux(99.0);
   EXPECT_NE(whole, content_of(moved));
   EXPECT_NE(whole, content_of(dimmed));
+  RaySet coloured = rays, numbered = rays;
+  for (RaySet* set : {&coloured, &numbered}) set->rays.extra = {std::vector<float>(2000, 550.0f)};
+  coloured.header.columns = {{ColumnKind::wavelength_nm, ""}};
+  numbered.header.columns = {{ColumnKind::additional, ""}};
+  EXPECT_NE(content_of(coloured), content_of(numbered)) << "the same numbers, another meaning";
 }
 
 TEST(ProjectContent, IsThatOfModelsAndTargetsInMemory) {
