@@ -27,8 +27,11 @@ void print_comparison(const DesignError& boxes, const DistributionComparison& c,
   const auto percent = [](const Estimate& e) {
     return estimate_text({100.0 * e.mean, 100.0 * e.standard_error}, "%");
   };
-  session.print_line(fmt::format("  relative RMS        {} (noise floor {:.4g} %, excess {:.4g} %)",
-                                 percent(c.rms()), 100.0 * c.noise_floor, 100.0 * c.excess));
+  const std::string noise =
+      c.noise_floor > 0.0
+          ? fmt::format("noise floor {:.4g} %, excess {:.4g} %", 100.0 * c.noise_floor, 100.0 * c.excess)
+          : std::string("intensities as they are; the files state no noise");
+  session.print_line(fmt::format("  relative RMS        {} ({})", percent(c.rms()), noise));
   session.print_line(fmt::format("  Bergen fit          {} (100 = equal; by solid angle), {} unweighted",
                                  estimate_text(c.bergen()), estimate_text(c.bergen_unweighted())));
   session.print_line(

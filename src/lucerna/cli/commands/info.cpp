@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <exception>
+
 #include "lucerna/cli/commands/commands.h"
 #include "lucerna/cli/output/describe.h"
 #include "lucerna/cli/parse/input_kind.h"
@@ -27,23 +29,39 @@ Description describe(const std::string& path, const InfoArguments& a, Session& s
   return describe_rays(path, a.format, session);
 }
 
+Json say(const std::string& path, const InfoArguments& a, Session& session) {
+  const Description d = session.timed("read", [&] { return describe(path, a, session); });
+  if (session.strict && !d.warnings.empty())
+    throw InputError(fmt::format("{}: {}", path, d.warnings.front()));
+  session.add_input(path);
+  session.print_line(path);
+  for (const std::string& line : d.lines) session.print_line(line);
+  for (const std::string& warning : d.warnings) session.print_line("  warning: " + warning);
+  return d.json;
+}
+
+/// A file that cannot be read does not hide the others: they are told of first, then its error.
 void info(const InfoArguments& a, Session& session) {
   session.start();
   Json list = Json::array();
+  std::exception_ptr first_error;
   for (const std::string& path : a.files) {
-    const Description d = session.timed("read", [&] { return describe(path, a, session); });
-    if (session.strict && !d.warnings.empty())
-      throw InputError(fmt::format("{}: {}", path, d.warnings.front()));
-    session.add_input(path);
-    list.push_back(d.json);
-    session.print_line(path);
-    for (const std::string& line : d.lines) session.print_line(line);
-    for (const std::string& warning : d.warnings) session.print_line("  warning: " + warning);
+    try {
+      list.push_back(say(path, a, session));
+    } catch (const InputError& e) {
+      if (first_error) {
+        session.note(e.what());
+      } else {
+        first_error = std::current_exception();
+      }
+    }
   }
-  if (!session.json) return;
-  Json result = session.json_head(std::nullopt);
-  result["files"] = std::move(list);
-  session.print_json(result);
+  if (session.json && !list.empty()) {
+    Json result = session.json_head(std::nullopt);
+    result["files"] = std::move(list);
+    session.print_json(result);
+  }
+  if (first_error) std::rethrow_exception(first_error);
 }
 
 }  // namespace

@@ -64,6 +64,19 @@ TEST_F(InfoFilesCli, AWarningIsAnErrorWhenStrict) {
   EXPECT_TRUE(has(strict.err, "s.txt: ")) << strict.err;
 }
 
+TEST_F(InfoFilesCli, ABadFileDoesNotHideTheOthers) {
+  write_file(dir / "note.md", "no light here\n");
+  const auto run = run_lucerna(dir.path(), "info note.md s.nfl missing s.ldt");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_TRUE(has(run.out, "s.nfl\n  ")) << run.out;
+  EXPECT_TRUE(has(run.out, "\ns.ldt\n  ")) << run.out;
+  EXPECT_TRUE(has(run.err, "note.md")) << run.err;
+  EXPECT_TRUE(has(run.err, "missing")) << run.err;
+  const auto json = run_lucerna(dir.path(), "info note.md s.nfl --json");
+  EXPECT_EQ(json.exit_code, 1);
+  EXPECT_EQ(Json::parse(json.out)["files"].size(), 1u);
+}
+
 TEST_F(InfoFilesCli, RefusesWhatItCannotRead) {
   write_file(dir / "note.md", "no light here\n");
   for (const char* name : {"note.md", "missing"}) {
@@ -71,6 +84,10 @@ TEST_F(InfoFilesCli, RefusesWhatItCannotRead) {
     EXPECT_EQ(run.exit_code, 1) << name;
     EXPECT_TRUE(has(run.err, name)) << run.err;
   }
+  write_file(dir / "cut.LDT", "A company\n1\n1\n");
+  const auto cut = run_lucerna(dir.path(), "info cut.LDT");
+  EXPECT_EQ(cut.exit_code, 1);
+  EXPECT_TRUE(has(cut.err, "cut.LDT: neither rays nor the IES or EULUMDAT file")) << cut.err;
   EXPECT_EQ(run_lucerna(dir.path(), "info s.tm25ray --format floppy").exit_code, 2);
   EXPECT_EQ(run_lucerna(dir.path(), "info s.tm25ray --format speos").exit_code, 1) << "it is no SPEOS file";
 }

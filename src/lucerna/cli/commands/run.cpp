@@ -35,6 +35,19 @@ std::string hint(const Error& error, const CLI::App& app, ExitCode code) {
   return error.option() == "salvage" ? "; see lucerna convert --salvage" : "";
 }
 
+/// "--rays: " where the text begins with a quoted word that this option was given; else nothing.
+std::string given_to(const std::string& text, const CLI::App& app) {
+  if (!text.starts_with('\'') || app.get_subcommands().empty()) return "";
+  const std::string word = text.substr(1, text.find('\'', 1) - 1);
+  for (const CLI::Option* option : app.get_subcommands().front()->get_options()) {
+    for (const std::string& given : option->results()) {
+      if (word.empty() ? given.empty() : given.find(word) != std::string::npos)
+        return option->get_name() + ": ";
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 void set_up(CLI::App& app, Session& session, int& exit_code) {
@@ -57,7 +70,7 @@ int parse_and_run(CLI::App& app, int argc, char** argv, const int& exit_code, bo
     if (tell) app.exit(e);  // --help, --version
     return kDone;
   } catch (const UsageError& e) {
-    return failed(e.what() + hint(e, app, kUsage), kUsage);
+    return failed(given_to(e.what(), app) + e.what() + hint(e, app, kUsage), kUsage);
   } catch (const Interrupted&) {
     return failed("interrupted", kInterrupted);
   } catch (const Error& e) {

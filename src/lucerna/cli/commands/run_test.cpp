@@ -330,6 +330,8 @@ TEST(ProgramCli, UsageErrorsSayWhatWasMeant) {
   expect("trace p.toml", "--output is required; see lucerna trace --help");
   expect("trace p.toml -o out --threads 0",
          "--threads: Value 0 not in range 1 to 4096; see lucerna trace --help");
+  expect("trace p.toml -o out --rays ten", "--rays: 'ten' is not a whole number (such as 250000 or 1e6)");
+  expect("trace p.toml -o out --rays 5:x", "--rays: 'x' is not a whole number (such as 250000 or 1e6)");
   EXPECT_EQ(entries(dir.path()), 0u);
 }
 
@@ -366,6 +368,8 @@ TEST(ProgramCli, AReportThatCannotBeWrittenIsFoundBeforeTheWork) {
   }
   EXPECT_FALSE(std::filesystem::exists(dir / "out" / "result.json"));
   EXPECT_FALSE(std::filesystem::exists(dir / "s.nfl"));
+  // Nobody may make files there, not even root.
+  expect_refusal(dir, "trace p.toml -o /proc --force --rays 1000", "/proc/result.json: cannot write");
   // What is there stays as it is while nothing replaces it.
   EXPECT_EQ(run_lucerna(dir.path(), "compress none.tm25ray -o s.nfl --report old.html").exit_code, 1);
   EXPECT_EQ(slurp(dir / "old.html"), "old");

@@ -53,7 +53,6 @@ int write_design_output(const DesignOutput& output, const FinishedDesign& design
   Json json = session.json_head(output.seed, design.run.trace.result.isa);
   json.update(finished_design_json(output.device, design.target, result, design.form, figures, design.scene));
   for (const auto& warning : json["warnings"]) session.note(warning.get<std::string>());
-  const auto names = session.timed("files", [&] { return write(json); });
   session.print_json(json);
   session.print_line(
       fmt::format("{}: {}{} parameters, {} evaluations, {:.3g} M rays in {:.3g} s ({})", output.folder,
@@ -61,7 +60,8 @@ int write_design_output(const DesignOutput& output, const FinishedDesign& design
                   1e-6 * static_cast<double>(result.rays), session.seconds("design"), to_string(result.end)));
   for (const std::string& line : design_summary(design.target, result, design.form, figures))
     session.print_line(line);
-  session.print_line(fmt::format("  written: {}", fmt::join(names, " ")));
+  // Last: a full disk must not hide what was found.
+  session.print_line(fmt::format("  written: {}", fmt::join(write(json), " ")));
   if (!output.report.empty()) {
     write_design_report(output.folder, output.report);
     session.print_line(fmt::format("  report: {}", output.report));

@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
+
 #include "lucerna/core/io/error.h"
 #include "lucerna/photometric_file.h"
+#include "lucerna/ray_file.h"
 #include "lucerna/source_model.h"
 
 namespace lucerna::cli {
@@ -26,11 +29,25 @@ std::string other_kind(const std::filesystem::path& path) {
   return "";
 }
 
+/// By its ending, of a file whose content is neither light nor rays.
+bool is_damaged_photometry(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::error_code ignored;
+  return (ending == ".ies" || ending == ".ldt") && std::filesystem::is_regular_file(path, ignored) &&
+         !detect_ray_format(path);
+}
+
 }  // namespace
 
 void require_ray_file(const std::filesystem::path& path) {
   const std::string kind = other_kind(path);
   if (!kind.empty()) throw InputError(fmt::format("{}: rays expected, this is {}", path.string(), kind));
+  if (is_damaged_photometry(path)) {
+    throw InputError(
+        fmt::format("{}: neither rays nor the IES or EULUMDAT file that its name says", path.string()),
+        ErrorCause::damaged);
+  }
 }
 
 }  // namespace lucerna::cli

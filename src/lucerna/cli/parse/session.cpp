@@ -192,6 +192,7 @@ void prepare_folder(const std::filesystem::path& folder, bool force) {
     throw InputError(
         fmt::format("{}: the folder is not empty; choose another or give --force", folder.string()));
   }
+  require_writable(folder / "result.json");  // before the work whose result would be lost
 }
 
 void require_writable(const std::filesystem::path& file) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <type_traits>
@@ -227,24 +228,27 @@ DesignShape DesignShape::through(const std::function<double(double, double)>& he
 }
 
 double DesignShape::height_mm() const {
-  double low = at(0.0, 0.0).z_mm, high = low;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
   const auto look = [&](double x, double y) {
     if (!aperture_.contains(x, y)) return;
     const double z = at(x, y).z_mm;
     low = std::min(low, z);
     high = std::max(high, z);
   };
+  const auto look_around = [&](double radius) {
+    for (int i = 0; i < 360; ++i) {
+      const double angle = i * std::numbers::pi / 180.0;
+      look(radius * std::cos(angle), radius * std::sin(angle));
+    }
+  };
   const double a = aperture_.half_x_mm(), b = aperture_.half_y_mm();
   constexpr int kSteps = 50;
   for (int j = -kSteps; j <= kSteps; ++j) {
     for (int i = -kSteps; i <= kSteps; ++i) look(a * i / kSteps, b * j / kSteps);
   }
-  if (aperture_.shape() == ApertureShape::circle) {
-    for (int i = 0; i < 360; ++i) {
-      const double c = (1.0 - 1e-12) * a;
-      look(c * std::cos(i * std::numbers::pi / 180.0), c * std::sin(i * std::numbers::pi / 180.0));
-    }
-  }
+  // Rounding must not move a rim's points off the mirror.
+  if (aperture_.hole_radius_mm() > 0.0) look_around((1.0 + 1e-12) * aperture_.hole_radius_mm());
+  if (aperture_.shape() == ApertureShape::circle) look_around((1.0 - 1e-12) * a);
   return high - low;
 }
 

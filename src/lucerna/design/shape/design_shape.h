@@ -55,7 +55,7 @@ class DesignShape {
   /// The same family through other heights (mm over the mirror's frame), agreeing with them at the knots'
   /// averages (Greville points, one step beyond the edges too).
   DesignShape through(const std::function<double(double x, double y)>& height_mm) const;
-  /// Maximum minus minimum height over the aperture, sampled on 101 x 101 points and the outline.
+  /// Maximum minus minimum height over the aperture, sampled on 101 x 101 points and the rims.
   double height_mm() const;
 
   /// The same surface on other knots. Exact (to rounding) where the new knots contain the old ones, as when

@@ -93,6 +93,15 @@ TEST(DesignShape, ATroughIsTheSameAlongY) {
   EXPECT_NEAR(wave.at(11, 20).z_mm, 0.02 * 121 + 1.1, 1e-10);
 }
 
+TEST(DesignShape, HeightIsThatOfWhatIsThere) {
+  // z = r^2 / 40 from the hole's rim to the outer one.
+  const double whole = 25.0 * 25.0 / 40.0, hole = 4.0 * 4.0 / 40.0, corner = 2.0 * whole;
+  EXPECT_NEAR(DesignShape::revolution(10, Aperture::circle(50), 5).height_mm(), whole, 1e-9);
+  EXPECT_NEAR(DesignShape::revolution(10, Aperture::circle(50, 8), 5).height_mm(), whole - hole, 1e-9);
+  EXPECT_NEAR(DesignShape::bspline(10, Aperture::rectangle(50, 50, 8), 4, 4).height_mm(), corner - hole,
+              1e-9);
+}
+
 TEST(DesignShape, RefusesWhatCannotBe) {
   EXPECT_THROW(DesignShape::revolution(0, Aperture::circle(50), 8), InputError);
   EXPECT_THROW(DesignShape::revolution(10, Aperture::rectangle(50, 50), 8), InputError);

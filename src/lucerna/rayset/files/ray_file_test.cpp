@@ -171,6 +171,29 @@ TEST(RayFileFuzz, EveryTruncationIsAnErrorOrASpeosFileOfFewerRays) {
   }
 }
 
+/// A SPEOS file does not say how long its records are.
+TEST(RayFile, ACutSpeosFileIsNotTakenForOneWithPolarisation) {
+  const TempDir dir;
+  write_ray_set(dir / "a", radiant_set(40), "speos");
+  const std::string good = bytes_of(dir / "a");
+  for (const std::size_t records : {13U, 21U}) {
+    put_bytes(dir / "b", std::string_view(good).substr(0, 28 + 52 * records));
+    const std::string message = message_of<InputError>([&] { read_ray_set(dir / "b"); });
+    EXPECT_THAT(message, HasSubstr("whole rays of 32 bytes expected")) << message;
+    EXPECT_EQ(read_ray_set(dir / "b", {.salvage = true}).rays.size(), 52 * records / 32);
+  }
+  // The same rays with five numbers more each; the last one cut.
+  std::string polarised = good.substr(0, 28);
+  for (std::size_t ray = 0; ray < 40; ++ray)
+    polarised += good.substr(28 + 32 * ray, 32) + std::string(20, '\0');
+  put_bytes(dir / "c", polarised);
+  const RaySet set = read_ray_set(dir / "a"), more = read_ray_set(dir / "c");
+  EXPECT_EQ(more.rays.kx, set.rays.kx);
+  EXPECT_EQ(more.rays.extra.size(), set.rays.extra.size() + 5);
+  put_bytes(dir / "c", std::string_view(polarised).substr(0, polarised.size() - 20));
+  EXPECT_THAT(message_of<InputError>([&] { read_ray_set(dir / "c"); }), HasSubstr("whole rays of 52 bytes"));
+}
+
 TEST(RayFileFuzz, MutatedFilesAreReadOrRefused) {
   const TempDir dir;
   for (const std::string_view format : ray_formats()) {

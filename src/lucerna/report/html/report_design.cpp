@@ -90,8 +90,25 @@ std::string summary(const ResultFigures& result) {
   return out;
 }
 
+/// The error that no mirror of this aperture and height can fall below, and why; nothing for lenses.
+std::string bound_html(const ResultFigures& result) {
+  if (!result.has("/bound")) return {};
+  if (!(result.number("/bound/error") > 0.0))
+    return "<p>Bound: neither étendue nor direct light forbids the target.</p>\n";
+  const bool direct = result.number("/bound/direct_error") >= result.number("/bound/etendue_error");
+  const std::string why =
+      direct ? std::string("because of the light that passes the mirror unreflected")
+             : fmt::format(
+                   "because the {} % of the target's light in its brightest boxes have {} mm² sr of "
+                   "this aperture and height, which hold at most {} % of the sources' light",
+                   result.percent("/bound/target_share", 0), result.figure("/bound/etendue_mm2sr"),
+                   result.percent("/bound/max_share", 0));
+  return fmt::format("<p>Bound: no mirror of this aperture and height has an error below {} %, {}.</p>\n",
+                     result.percent("/bound/error"), why);
+}
+
 /// Remarks, and what result.json says of limits, whatever its shape.
-std::string limits_html(const ResultFigures& result) {
+std::string project_limits_html(const ResultFigures& result) {
   std::string out = zones_html(result);
   if (result.has("/limits") && !result.at("/limits").empty()) {
     HtmlTable table{"Limits", {"Limit", "Found", "Allowed", "Verdict"}, {}};
@@ -107,7 +124,7 @@ std::string limits_html(const ResultFigures& result) {
     for (std::size_t i = 0; i < result.at("/remarks").size(); ++i)
       out += fmt::format("<p class=\"remark\">{}</p>\n", result.text(fmt::format("/remarks/{}", i)));
   }
-  return out.empty() ? "<p>No limit stood in the way.</p>\n" : out;
+  return out.empty() ? "<p>No limit of the project stood in the way.</p>\n" : out;
 }
 
 std::string convergence(HtmlPage& page, const std::vector<HistoryLine>& history) {
@@ -191,7 +208,7 @@ std::string design_report_html(const TraceFolder& folder, const std::vector<Hist
   const ResultFigures result(folder.result, (folder.path / "result.json").string());
   HtmlPage page(result.has("/lens") ? "Lens design" : "Reflector design", folder_title(folder.path));
   page.section("summary", "Summary", warnings_html(result) + summary(result));
-  page.section("limits", "What limits it", limits_html(result));
+  page.section("limits", "What limits it", bound_html(result) + project_limits_html(result));
   const bool zones_only = options.target != nullptr && options.target->zones_only;
   if (zones_only) {
     page.section("target", "Target and result",

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/rayset/formats/speos/speos.h"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/rayset/formats/common/little_endian.h"
@@ -14,6 +16,8 @@ namespace {
 
 constexpr std::size_t kWatts = 0, kVersion = 4, kVersions = 5, kLumens = 24, kSpeosHeaderSize = 28;
 constexpr std::size_t kPlain = 8, kPolarised = 13;
+/// Rays whose directions say which of the two a file has.
+constexpr std::size_t kRaysLookedAt = 64;
 
 class SpeosWriter final : public RayWriter {
  public:
@@ -58,6 +62,28 @@ class SpeosWriter final : public RayWriter {
   RecordWriter writer_;
 };
 
+/// How many of the first rays have directions of length 1 if a record is so many numbers long.
+std::size_t unit_directions(std::span<const float> numbers, std::size_t record, std::size_t rays) {
+  std::size_t found = 0;
+  for (std::size_t ray = 0; ray < rays; ++ray) {
+    const auto k = numbers.subspan(ray * record + 3, 3);
+    found += std::abs(std::hypot(k[0], k[1], k[2]) - 1.0F) < 0.01F ? 1 : 0;
+  }
+  return found;
+}
+
+/// Nothing in the header says whether rays have a polarisation. Sizes do not decide it of a file that is cut:
+/// the first directions do, and the size only where they fit both.
+std::size_t numbers_per_ray(const InputFile& file, std::uint64_t bytes) {
+  const std::size_t rays = std::min<std::uint64_t>(kRaysLookedAt, bytes / (4 * kPolarised));
+  std::vector<float> numbers(rays * kPolarised);
+  file.read_at(kSpeosHeaderSize, std::as_writable_bytes(std::span(numbers)));
+  const std::size_t plain = unit_directions(numbers, kPlain, rays),
+                    polarised = unit_directions(numbers, kPolarised, rays);
+  if (plain != polarised) return polarised > plain ? kPolarised : kPlain;
+  return bytes % (4 * kPlain) != 0 && bytes % (4 * kPolarised) == 0 ? kPolarised : kPlain;
+}
+
 }  // namespace
 
 bool looks_like_speos(const InputFile& file) {
@@ -95,9 +121,8 @@ std::unique_ptr<RayReader> open_speos(InputFile file, const ReadOptions& options
   layout.main[6].at = 7;
   layout.extra = {{6}};
   const std::uint64_t bytes = file.size() - kSpeosHeaderSize;
-  const bool polarised = bytes % (4 * kPlain) != 0 && bytes % (4 * kPolarised) == 0;
-  layout.floats = polarised ? kPolarised : kPlain;
-  if (polarised) {
+  layout.floats = numbers_per_ray(file, bytes);
+  if (layout.floats == kPolarised) {
     for (const char* label : {"ellipse o", "ellipse p", "ellipse q", "ellipse axis ratio", "handedness"}) {
       layout.extra.push_back({static_cast<int>(kPlain + facts.header.columns.size() - 1)});
       facts.header.columns.push_back({ColumnKind::additional, label});
@@ -105,8 +130,9 @@ std::unique_ptr<RayReader> open_speos(InputFile file, const ReadOptions& options
   }
   facts.ray_count = bytes / layout.record_bytes();
   if (const std::uint64_t over = bytes % layout.record_bytes(); over != 0) {
-    const std::string what = fmt::format(
-        "whole rays of 32 bytes expected; the file ends after {} rays and {} bytes", facts.ray_count, over);
+    const std::string what =
+        fmt::format("whole rays of {} bytes expected; the file ends after {} rays and {} bytes",
+                    layout.record_bytes(), facts.ray_count, over);
     if (!options.salvage)
       throw_input_error_for("salvage", file.name(), fmt::format("byte {}", file.size()), "{}", what);
     facts.warnings.push_back(fmt::format("byte {}: {}: the whole ones are read", file.size(), what));
