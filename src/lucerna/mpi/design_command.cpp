@@ -22,6 +22,7 @@
 #include "lucerna/distributed/rank_peers.h"
 #include "lucerna/mpi/together.h"
 #include "lucerna/project/schema/project_tables.h"
+#include "lucerna/project/sections/project_content.h"
 #include "lucerna/results/folders/design_files.h"
 #include "lucerna/trace/run/empty_trace.h"
 #include "lucerna/version.h"
@@ -40,10 +41,8 @@ constexpr std::chrono::seconds kPatience{2};
 /// What all ranks have to have alike: program, instruction set, project and the bytes of its files.
 std::string identity(const Project& project) {
   std::ostringstream text;
-  text << toml_tables(project);
-  std::string all = text.str();
-  for (const fs::path& input : project.inputs) all += sha256_of_file(input);
-  return fmt::format("{} {} {}", version(), best_isa(), sha256_of_text(all));
+  text << content_tables(toml_tables(project), project.memory);
+  return fmt::format("{} {} {}", version(), best_isa(), sha256_of_text(text.str()));
 }
 
 /// The light of the result, traced by all ranks, on the first.

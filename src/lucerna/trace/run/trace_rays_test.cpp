@@ -3,7 +3,8 @@
 
 #include "lucerna/build_info.h"
 #include "lucerna/source.h"
-#include "lucerna/trace.h"
+#include "lucerna/trace/run/noise_rounds.h"
+#include "lucerna/trace/run/trace_pieces.h"
 #include "lucerna/version.h"
 
 namespace lucerna {
@@ -16,7 +17,8 @@ Scene disk() {
   return scene;
 }
 
-constexpr std::uint64_t kPiece = std::uint64_t{1} << 24;
+/// The program's pieces are longer.
+constexpr std::uint64_t kPiece = std::uint64_t{1} << 18;
 
 /// Asks to stop once a ray beyond `after` was reported.
 class StopAfter final : public Progress {
@@ -37,12 +39,13 @@ class StopAfter final : public Progress {
 TEST(TraceRays, InPiecesHasTheBitsOfOneTrace) {
   TraceOptions options;
   options.first_ray = 1000;
-  options.last_ray = kPiece + 5000;
+  options.last_ray = 3 * kPiece + 5000;
   StopAfter never(~std::uint64_t{0});
-  const NoiseTrace pieces = trace_rays(disk(), options, std::nullopt, never);
+  const NoiseTrace pieces = trace_rays_in_pieces(kPiece, disk(), options, std::nullopt, never);
   EXPECT_EQ(pieces.end, NoiseEnd::rays);
   EXPECT_TRUE(pieces.result == trace(disk(), options));
-  EXPECT_EQ(never.total_, kPiece + 4000);
+  EXPECT_TRUE(pieces.result == trace_rays(disk(), options).result);
+  EXPECT_EQ(never.total_, 3 * kPiece + 4000);
   EXPECT_EQ(never.done_, never.total_);
 }
 
@@ -50,13 +53,13 @@ TEST(TraceRays, ThatAreStoppedReturnWhatWasWholeAndGoOn) {
   TraceOptions options;
   options.last_ray = 2 * kPiece + 1;
   StopAfter stop(kPiece + 1);
-  const NoiseTrace part = trace_rays(disk(), options, std::nullopt, stop);
+  const NoiseTrace part = trace_rays_in_pieces(kPiece, disk(), options, std::nullopt, stop);
   EXPECT_EQ(part.end, NoiseEnd::interrupted);
   EXPECT_EQ(part.result.last_ray, kPiece);
   EXPECT_TRUE(trace_rays(disk(), options, part.result).result == trace(disk(), options));
   StopAfter at_once(0);
   EXPECT_THROW(trace_rays(disk(), options, std::nullopt, at_once), Interrupted);
-  StopAfter later(kPiece + 1);
+  StopAfter later(kFirstRound + 1);
   EXPECT_EQ(trace_until(disk(), {}, {.noise = 1e-9}, std::nullopt, later).end, NoiseEnd::interrupted);
 }
 

@@ -7,6 +7,7 @@
 #include "lucerna/trace.h"
 #include "lucerna/trace/result/node_noise.h"
 #include "lucerna/trace/run/noise_rounds.h"
+#include "lucerna/trace/run/trace_pieces.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
 namespace lucerna {
@@ -15,9 +16,6 @@ namespace {
 
 /// What is traced between two looks at the clock: a fraction of a second on two cores.
 constexpr std::uint64_t kTimedPiece = std::uint64_t{1} << 22;
-/// What is lost at most when a trace without a clock is stopped: a second or so on two cores, beside which
-/// setting up the tracer and adding the bins cost nothing.
-constexpr std::uint64_t kUntimedPiece = std::uint64_t{1} << 24;
 
 /// Reports the rays of a trace in pieces as those of one.
 class PieceProgress final : public Progress {
@@ -132,6 +130,11 @@ NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const No
 
 NoiseTrace trace_rays(const Scene& scene, const TraceOptions& options, std::optional<TraceResult> from,
                       Progress& progress) {
+  return trace_rays_in_pieces(kUntimedPiece, scene, options, std::move(from), progress);
+}
+
+NoiseTrace trace_rays_in_pieces(std::uint64_t piece_rays, const Scene& scene, const TraceOptions& options,
+                                std::optional<TraceResult> from, Progress& progress) {
   TraceOptions run = options;
   const std::uint64_t last = options.last_ray.value_or(default_ray_count(scene));
   if (from) {
@@ -145,7 +148,7 @@ NoiseTrace trace_rays(const Scene& scene, const TraceOptions& options, std::opti
   }
   NoiseTrace out{{}, std::nan(""), NoiseEnd::rays};
   std::optional<TraceResult> sum = std::move(from);
-  if (!trace_on_to(last, kUntimedPiece, scene, run, sum, never, progress)) out.end = NoiseEnd::interrupted;
+  if (!trace_on_to(last, piece_rays, scene, run, sum, never, progress)) out.end = NoiseEnd::interrupted;
   if (!sum) throw UsageError(fmt::format("no rays to trace: {}:{}", run.first_ray, last), "rays");
   out.result = std::move(*sum);
   return out;
