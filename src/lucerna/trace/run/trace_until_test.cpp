@@ -28,17 +28,19 @@ TraceOptions coarse() {
 }
 
 TEST(TraceUntil, TracesUntilTheNoiseIsWhatWasAskedFor) {
-  const double first = node_noise(trace(spot(), [] {
+  Scene lamp = spot();  // whose flat peak is known long before the nodes are
+  lamp.reflectors.clear();
+  const double first = node_noise(trace(lamp, [] {
     TraceOptions o = coarse();
     o.last_ray = 1 << 20;
     return o;
   }()));
   ASSERT_GT(first, 0.0);
   ASSERT_LT(first, 0.1);
-  const NoiseTrace loose = trace_until(spot(), coarse(), {.noise = 0.5, .max_seconds = 1e6});
+  const NoiseTrace loose = trace_until(lamp, coarse(), {.noise = 0.5, .max_seconds = 1e6});
   EXPECT_EQ(loose.result.last_ray, 1u << 20);
   EXPECT_EQ(loose.end, NoiseEnd::reached);
-  const NoiseTrace fine = trace_until(spot(), coarse(), {.noise = 0.7 * first, .max_seconds = 1e6});
+  const NoiseTrace fine = trace_until(lamp, coarse(), {.noise = 0.7 * first, .max_seconds = 1e6});
   EXPECT_EQ(fine.end, NoiseEnd::reached);
   EXPECT_GT(fine.result.last_ray, 1u << 20);
   EXPECT_LE(fine.noise, 0.7 * first);
