@@ -13,10 +13,12 @@
 #   api           the API pages are made, and no public type or function is without a comment (needs doxygen)
 #   site          the site of the documentation is made without a warning (needs sphinx and doxygen)
 #   deb           Debian packages, by lintian, and installed, used and removed in a bare Debian 12 (needs root and debootstrap)
-#   clang asan    the same tests under those presets
+#   clang         the same tests under that preset
+#   asan          under that preset, all but the long ones (tests/LongTests.cmake)
 #   tsan          under that preset, those of label unit and cli: statistical tests judge numbers of the same threads, corpora and real
 #                 files are read by one
 #   asan-python   the Python module with the address sanitizer, and its quick tests (needs scripts/packages-python.txt)
+#   asan-long tsan-long   the long ones: an hour and more each, only where they are asked for
 set -u
 cd "$(dirname "$0")/.."
 stages="${*:-format tidy tree docs release install consumers api site deb clang asan asan-python tsan}"
@@ -64,6 +66,14 @@ build_and_test() {  # PRESET TARGETS...
   preset=$1
   shift
   cmake --preset "$preset" >/dev/null && cmake --build --preset "$preset" -j "$jobs" --target "$@" && ctest --preset "$preset"
+}
+
+# Presets exclude that label, and what a preset excludes the command line cannot ask for.
+long_tests() {  # PRESET
+  cmake --preset "$1" >/dev/null && cmake --build --preset "$1" -j "$jobs" --target all &&
+    TSAN_OPTIONS="suppressions=$PWD/cmake/races_elsewhere.txt:print_suppressions=0" \
+      LSAN_OPTIONS="suppressions=$PWD/cmake/leaks_elsewhere.txt:print_suppressions=0" \
+      ctest --test-dir "build/$1" -L long -j "$jobs" --output-on-failure
 }
 
 tree_tests() {  # FILTER
@@ -136,6 +146,7 @@ stage() {
     consumers) within_sources ;;
     clang) build_and_test clang all benchmarks ;;
     asan | tsan) build_and_test "$1" all ;;
+    asan-long | tsan-long) long_tests "${1%-long}" ;;
     asan-python) module_under_asan ;;
     *)
       echo "no stage $1" >&2

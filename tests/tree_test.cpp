@@ -196,5 +196,33 @@ TEST(Tree, CheckSeesALongFunction) {
   EXPECT_EQ(longest_function(lines), 71u);
 }
 
+/// "Suite.Name" of every test in the sources.
+std::set<std::string> names_of_tests() {
+  std::set<std::string> names;
+  for (const fs::path& file : source_files()) {
+    if (!is_test(file)) continue;
+    for (const std::string& line : lines_of(file)) {
+      const std::size_t open = line.find('('), comma = line.find(", ");
+      if (!line.starts_with("TEST") || comma == std::string::npos) continue;
+      names.insert(line.substr(open + 1, comma - open - 1) + '.' +
+                   line.substr(comma + 2, line.find(')') - comma - 2));
+    }
+  }
+  return names;
+}
+
+// A test that was renamed would come back to the sanitizers, unseen.
+TEST(Tree, LongTestsAreThere) {
+  const std::set<std::string> names = names_of_tests();
+  EXPECT_GT(names.size(), 1000u);
+  std::size_t listed = 0;
+  for (const std::string& line : lines_of(source_dir() / "tests" / "LongTests.cmake")) {
+    if (!line.starts_with("  ")) continue;
+    ++listed;
+    EXPECT_TRUE(names.contains(line.substr(2, line.find(')') - 2))) << line;
+  }
+  EXPECT_GT(listed, 20u);
+}
+
 }  // namespace
 }  // namespace lucerna::test
