@@ -12,6 +12,7 @@ set(lucerna_long_tests
   Design.ShapesAFreeFormMirrorAndKeepsItsSymmetry
   DesignCli.ALimitThatTheLightCannotHoldIsSaidAndExitsWithOne
   DesignCli.ARectangleOnTheFloor
+  DesignCli.KilledAndResumedItEndsWhereAnUndisturbedRunEnds
   DesignCli.LeavesFilesWhoseTraceHasTheStatedError
   DesignCli.LimitsAreHeldInTheExportedStl
   DesignLensCli.LeavesWhatAManufacturerAndATraceNeed
@@ -24,16 +25,26 @@ set(lucerna_long_tests
   DistributedNoiseTest.EndsAtTheRoundAndTheBitsOfOneProcess
   DistributedTraceTest.GoesOnFromAnySplitToTheSameBits
   DistributedTraceTest.IsTheTraceOfOneProcessForAnyRanksAndChunks
+  ExamplesCli.LensForATarget
+  ExamplesCli.MirrorForATarget
+  ExamplesCli.RaysModelAndBeam
+  ExamplesCli.TroughDownlightAndFloodlight
   FreeFormSearch.EndsAtTheSameBitsHoweverOftenItWasStopped
   FreeFormSearch.NeverEndsWorseThanItsStartAndNeverCoarsensIt
   FreeFormSearch.OfALongSourceALevelGoesOnToTheSameBits
   FreeFormSearch.ReachesAFarTargetFromThePlainParaboloid
   LensDesign.KeepsItsLimits
   LensEvaluation.DerivativesAgreeWithCentralDifferences
+  MergeCli.SaysWhatDoesNotFit
   ModelsCli.PointsLinesAndPlanesAreCompressedSampledAndTraced
   PlaneTarget.AMirrorIsShapedForARectangleOnTheFloor
   Report.ADesignsFolderIsWrittenAndReported
   ResultFields.AreThoseOfRealFiles
   SharedDesign.TolerancesAreSharedByCase
+  TraceNoiseCli.ATraceThatWasTooNoisyGoesOnToTheSameBits
+  TutorialsCli.AsALibrary
+  TutorialsCli.DesignAFloodlight
+  TutorialsCli.LedToModel
+  TutorialsCli.ParaboloidToLdt
   WideTrace.TwoLanesGoThroughFiles
   ZoneCost.ASearchEndsWithTheBandsHeld)
