@@ -12,8 +12,6 @@ namespace {
 
 /// Nearer hits than this share of the scene's size are the surface that the ray starts on.
 constexpr double kLift = 1e-6;
-/// Flat hits that are looked at along a ray: those whose surface is missed are passed.
-constexpr int kMaxPassed = 64;
 
 }  // namespace
 
@@ -79,12 +77,12 @@ SurfaceScene::PartHit SurfaceScene::first_hit(const Vec3& o, const Vec3& d) cons
         hit.normal = -hit.normal;
         hit.geometric = -hit.geometric;
       }
-      return {&part, hit};
+      return {&part, hit, false};
     }
     near = std::nextafter(q.ray.tfar + 1e-7F * static_cast<float>(size_),
                           std::numeric_limits<float>::infinity());
   }
-  return {};
+  return {nullptr, {}, true};
 }
 
 }  // namespace bench

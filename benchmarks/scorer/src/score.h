@@ -17,7 +17,7 @@ struct Score {
   std::optional<Unevenness> rsd;
   Estimate efficiency, efficiency_lossless;
   Estimate in_rectangle, outside, outside_direct;
-  Estimate mirror, mirror_back, absorber, bulk, interface, source, wrong_side, too_many_hits;
+  Estimate mirror, mirror_back, absorber, bulk, interface, source, wrong_side, too_many_hits, near_misses;
   std::uint64_t rays = 0;
   CellLight boxes;
 };
@@ -26,7 +26,7 @@ struct Score {
 Score score_of(const Tally& tally, const Target& target, std::uint64_t rays);
 
 /// Why a score does not count; empty where it does: limits that are not held, more than 1e-4 of the light at
-/// the wrong side of an interface or beyond the number of hits.
+/// the wrong side of an interface, beyond the number of hits or of near misses.
 std::vector<std::string> faults(const Score& score, const Submission& submission);
 
 }  // namespace bench

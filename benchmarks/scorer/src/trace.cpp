@@ -52,6 +52,7 @@ class Tracer {
     for (;; ++p.hits) {
       if (p.hits > kMaxHits) return add(sums().too_many_hits, p.weight);
       const SurfaceScene::PartHit found = scene_.first_hit(p.origin, p.direction);
+      if (found.given_up) return add(sums().near_misses, p.weight);
       const double t = found.part != nullptr ? found.hit.t : std::numeric_limits<double>::infinity();
       if (p.hits > 0 && task_.source_body.hit(p.origin, p.direction, t)) return add(sums().source, p.weight);
       if (found.part == nullptr) return leave(p);

@@ -8,6 +8,7 @@
 #include <functional>
 #include <numbers>
 
+#include "scene.h"
 #include "support.h"
 
 namespace bench::test {
@@ -251,6 +252,43 @@ TEST(Score, LimitsThatAreBrokenDoNotCount) {
   EXPECT_FALSE(limits[1]["held"].get<bool>());
   EXPECT_FALSE(limits[2]["held"].get<bool>());
   EXPECT_FALSE(found.json["counts"].get<bool>());
+}
+
+/// One sheet, folded to and fro, so many layers of 4 m above the source, with a hole through all of them:
+/// light through the hole meets only what is trimmed.
+Json folded(int layers) {
+  Json points = Json::array(), knots{0};
+  for (int i = 0; i <= layers; ++i) {
+    const double x = i % 2 == 0 ? -2000.0 : 2000.0, z = 5.0 + i;
+    points.push_back({{x, -2000.0, z}, {x, 2000.0, z}});
+    knots.push_back(i);
+  }
+  knots.push_back(layers);
+  const Json sheet{{"format", "lucerna-bench-surface"},
+                   {"version", 1},
+                   {"degree", {1, 1}},
+                   {"knots_u", knots},
+                   {"knots_v", {0, 0, 1, 1}},
+                   {"points_mm", points},
+                   {"trim", {{"kind", "circle"}, {"diameter_mm", 4000.0}, {"hole_diameter_mm", 3900.0}}}};
+  return submission_json({mirror_json(sheet, place(0.0))});
+}
+
+// Light that the search for a hit gives up is counted, and too much of it does not count as a score.
+TEST(Score, NearMissesAreCounted) {
+  const Json task = task_json(kDisk, cosine(1.0, "+z"));
+  const Scored few = scored(task, folded(SurfaceScene::kMaxPassed - 4), 1 << 14);
+  EXPECT_EQ(few.score.near_misses.mean, 0.0);
+  EXPECT_TRUE(few.json["counts"].get<bool>());
+  const Scored many = scored(task, folded(SurfaceScene::kMaxPassed + 6), 1 << 14);
+  EXPECT_GT(many.score.near_misses.mean, 0.9);
+  EXPECT_FALSE(many.json["counts"].get<bool>());
+  EXPECT_NE(many.json["faults"][0].get<std::string>().find("closely 64 times"), std::string::npos);
+  EXPECT_NE(score_text(many.json).find("taken by near_misses"), std::string::npos);
+  // All light ends somewhere.
+  const Score& s = many.score;
+  EXPECT_NEAR(s.near_misses.mean + s.in_rectangle.mean + s.outside.mean + s.mirror.mean + s.mirror_back.mean,
+              1.0, 1e-9);
 }
 
 // With glass: splitting and chance are in it.
