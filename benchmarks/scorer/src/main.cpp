@@ -6,13 +6,13 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "output.h"
 #include "report.h"
 #include "trace.h"
 
@@ -84,14 +84,6 @@ Arguments parse(const std::vector<std::string>& words) {
   return a;
 }
 
-void write(const std::string& file, const std::string& text) {
-  if (file.empty()) return;
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw InputError(file, "file", "a place that cannot be written", "one that can");
-}
-
 int run(const Arguments& a) {
   const auto begin = std::chrono::steady_clock::now();
   const Task task(a.task);
@@ -110,8 +102,8 @@ int run(const Arguments& a) {
   facts.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const auto json = score_json(task, submission, target, score, facts);
   std::fputs(score_text(json).c_str(), stdout);
-  write(a.json, json.dump(2) + "\n");
-  write(a.boxes, boxes_csv(target, score));
+  if (!a.json.empty()) write_whole(a.json, json.dump(2) + "\n");
+  if (!a.boxes.empty()) write_whole(a.boxes, boxes_csv(target, score));
   return json["counts"].get<bool>() ? 0 : 1;
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <set>
 
+#include "output.h"
 #include "support.h"
 
 namespace bench::test {
@@ -106,6 +107,31 @@ TEST(Tasks, BrokenOnesAreRefused) {
   task.erase("target");
   EXPECT_NE(refusal([&] { Task(folder.write("task.json", task)); }).find("found no key target"),
             std::string::npos);
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(Output, FilesAreWholeOrNotThere) {
+  const TestFolder folder;
+  const fs::path file = folder.write("out.txt", std::string("old"));
+  // A second name of the old file shows that the new one takes its place, and is not written into it.
+  fs::create_hard_link(file, file.parent_path() / "witness.txt");
+  write_whole(file.string(), "new");
+  EXPECT_EQ(text_of(file), "new");
+  EXPECT_EQ(text_of(file.parent_path() / "witness.txt"), "old");
+  const fs::path taken = file.parent_path() / "taken";
+  fs::create_directories(taken / "by a folder");
+  EXPECT_NE(refusal([&] { write_whole(taken.string(), "x"); }).find("a place that cannot be written"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { write_whole((taken / "none" / "x").string(), "x"); }).find("taken/none/x: file:"),
+            std::string::npos);
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(file.parent_path()))
+    names.insert(entry.path().filename().string());
+  EXPECT_EQ(names, (std::set<std::string>{"out.txt", "witness.txt", "taken"}));
 }
 
 }  // namespace
