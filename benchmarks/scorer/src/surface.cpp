@@ -20,7 +20,9 @@ double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
   const auto left_of = [&](const Vec3& from, const Vec3& to) {
     return dot(cross(to - from, p - from), n) >= 0.0;
   };
-  if (left_of(a, b) && left_of(b, c) && left_of(c, a)) return std::abs(dot(p - a, n));
+  // A triangle without area, as at the pole of a surface of revolution, has its sides only.
+  const bool flat = dot(n, n) > 0.0;
+  if (flat && left_of(a, b) && left_of(b, c) && left_of(c, a)) return std::abs(dot(p - a, n));
   return std::min({segment_distance(p, a, b), segment_distance(p, b, c), segment_distance(p, c, a)});
 }
 

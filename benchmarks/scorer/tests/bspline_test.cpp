@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "support.h"
 #include "surface.h"
@@ -154,6 +156,26 @@ TEST(BsplineSurface, TrimTakesAway) {
   EXPECT_NEAR(radius, 40.0, 1e-3);
   EXPECT_NEAR(low, 0.0125 * 25.0, 1e-2);
   EXPECT_NEAR(distance(*s.parts[0].surface, {0, 0, -10}), std::hypot(5.0, 10.0 + 0.0125 * 25.0), 0.02);
+}
+
+// The triangles at the pole of a surface of revolution have no area: a cone of radius 3, 4 high.
+TEST(BsplineSurface, DistanceFromAPoleIsNotZero) {
+  const double w = std::sqrt(0.5);
+  const std::vector<std::array<double, 2>> turn{{1, 0},   {1, 1},  {0, 1},  {-1, 1}, {-1, 0},
+                                                {-1, -1}, {0, -1}, {1, -1}, {1, 0}};
+  Json points = Json::array(), weights = Json::array();
+  for (std::size_t k = 0; k < turn.size(); ++k) {
+    points.push_back({{0, 0, 4}, {3 * turn[k][0], 3 * turn[k][1], 0}});
+    weights.push_back({k % 2 == 0 ? 1.0 : w, k % 2 == 0 ? 1.0 : w});
+  }
+  const Json cone{{"degree", {2, 1}},
+                  {"knots_u", {0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4}},
+                  {"knots_v", {0, 0, 1, 1}},
+                  {"points_mm", points},
+                  {"weights", weights}};
+  const auto surface = read_bspline(JsonNode("s.json", cone), Frame());
+  EXPECT_NEAR(distance(*surface, {0, 0, 7}), 3.0, 1e-9);
+  EXPECT_NEAR(distance(*surface, {0, 0, 0}), 2.4, 1e-3);
 }
 
 }  // namespace
