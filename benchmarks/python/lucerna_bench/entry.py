@@ -24,6 +24,14 @@ class Stated:
         return {k: v for k, v in dataclasses.asdict(self).items() if v is not None}
 
 
+def write_whole(path, text):
+    """Writes a file whole or not at all: under a name of its own beside it, then renamed; its path."""
+    path = pathlib.Path(path)
+    temporary = path.with_name(f"{path.name}.part{os.getpid()}")
+    temporary.write_text(text)
+    return temporary.replace(path)
+
+
 def write_submission(folder, task, name, author, surfaces, stated, target_place=None):
     """Writes submission.json (and the surfaces within it) to `folder`; its path.
 
@@ -36,9 +44,7 @@ def write_submission(folder, task, name, author, surfaces, stated, target_place=
                   "surfaces": surfaces, "stated": stated.as_json()}
     if target_place is not None:
         submission["target_place"] = target_place
-    path = folder / "submission.json"
-    path.write_text(json.dumps(submission, indent=1) + "\n")
-    return path
+    return write_whole(folder / "submission.json", json.dumps(submission, indent=1) + "\n")
 
 
 def score(scorer, task_file, submission_file, rays=100_000_000, seed=1, threads=None, rays_from=None):
@@ -84,12 +90,16 @@ class Entry:
             file = write_submission(folder, self.task["task"], "trial", "", self.surfaces_of(parameters), stated)
             return score(self.scorer, self.task_file, file, rays, self.fitting_seed, self.threads)
 
-    def cost(self, parameters, rays=1_000_000):
-        """The task's headline figure, such that less is better."""
+    def cost(self, parameters, rays=1_000_000, light_weight=0.0):
+        """The task's headline figure, such that less is better. What does not count costs 1 more. Where the headline
+        is an error, `light_weight` times the square of the share of light that is missing in the rectangle is added
+        to its square: without it an optimiser may throw away the light that does not fit."""
         found = self.figures(parameters, rays)
+        fault = 0.0 if found["counts"] else 1.0
         if self.task["headline"] == "error_48":
-            return found["error_48"]["excess"]
-        return 1.0 - found["efficiency_with_losses"]["value"]
+            missing = 1.0 - found["in_rectangle"]["value"]
+            return fault + (found["error_48"]["excess"] ** 2 + light_weight * missing**2) ** 0.5
+        return fault + 1.0 - found["efficiency_with_losses"]["value"]
 
     def write(self, folder, parameters, name, author, program, method, wall_s=None, machine=None):
         """Writes the submission; `wall_s`: seconds of the search, those since this object was made if not given.

@@ -65,14 +65,51 @@ def extruded_profile(height_mm, half_x_mm, half_y_mm=1.0, intervals=32, degree=3
     return _surface((degree, 1), ku, _knots(-half_y_mm, half_y_mm, 1, 1), rows)
 
 
+def spline_through(at, values, flat_start=False, natural_start=False):
+    """Knots and coefficients of the C2 cubic spline through `values` at the ascending places `at`. The end, and the
+    start where nothing else is asked for, is not-a-knot: the second place is no knot (C. de Boor, A Practical
+    Guide to Splines, 1978, chapter IV). `flat_start`: slope 0 there; `natural_start`: no curvature. Three places or
+    more, four where both ends are not-a-knot."""
+    at, values = np.asarray(at, float), np.asarray(values, float)
+    held = flat_start or natural_start
+    if len(at) < (3 if held else 4) or np.any(np.diff(at) <= 0.0):
+        raise ValueError(f"at: found {at.tolist()}, expected {3 if held else 4} ascending numbers or more")
+    inner = at[1:-2] if held else at[2:-2]
+    knots = np.concatenate([np.full(4, at[0]), inner, np.full(4, at[-1])])
+    system, right = _basis(knots, 3, at), values
+    if held:
+        # At a clamped end the slope is 3 (c1 - c0) / (t4 - t1), the curvature the same of the slope's coefficients.
+        first = np.zeros((2, len(at) + 1))
+        for i in range(2):
+            first[i, [i, i + 1]] = np.array([-3.0, 3.0]) / (knots[i + 4] - knots[i + 1])
+        row = first[0] if flat_start else 2.0 * (first[1] - first[0]) / (knots[4] - knots[2])
+        system, right = np.vstack([row, system]), np.concatenate([[0.0], values])
+    return knots, np.linalg.solve(system, right)
+
+
+def revolved(knots, points_rz_mm, degree=3):
+    """The surface that a curve in the half plane (r, z) sweeps about the z axis: exact circles, four rational
+    quarters. The curve is a B-spline of these knots and points. The normal looks to the right of the curve as it
+    goes: outwards where it rises."""
+    turn = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
+    weight = [1.0 if k % 2 == 0 else np.sqrt(0.5) for k in range(9)]
+    points = [[[r * x, r * y, z] for r, z in points_rz_mm] for x, y in turn]
+    weights = [[w] * len(points_rz_mm) for w in weight]
+    return _surface((2, degree), [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4], knots, points, weights=weights)
+
+
+def heights_at(surface, x, y):
+    """Heights of a surface that `height_field` or `extruded_profile` made, or any whose x is u and whose y is v,
+    at the places (x[k], y[k])."""
+    (p, q), z = surface["degree"], np.asarray(surface["points_mm"], float)[:, :, 2]
+    over_x = _basis(np.asarray(surface["knots_u"], float), p, np.ravel(x)) @ z
+    return np.sum(over_x * _basis(np.asarray(surface["knots_v"], float), q, np.ravel(y)), axis=1).reshape(np.shape(x))
+
+
 def cylinder_wall(radius_mm, low_mm, high_mm):
     """The wall of a round solid about z from low_mm to high_mm: an exact circle as a rational B-spline of degree
     2 in four quarters. Its normal looks outwards."""
-    turn = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
-    weight = [1.0 if k % 2 == 0 else np.sqrt(0.5) for k in range(9)]
-    points = [[[radius_mm * x, radius_mm * y, z] for z in (low_mm, high_mm)] for x, y in turn]
-    knots_u = [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
-    return _surface((2, 1), knots_u, [0, 0, 1, 1], points, weights=[[w, w] for w in weight])
+    return revolved([0, 0, 1, 1], [(radius_mm, low_mm), (radius_mm, high_mm)], degree=1)
 
 
 def placed(origin_mm=(0.0, 0.0, 0.0), z_axis=(0.0, 0.0, 1.0), x_axis=(1.0, 0.0, 0.0)):

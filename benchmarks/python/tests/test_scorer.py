@@ -242,6 +242,16 @@ def test_an_optimiser_can_enter(scorer, tasks, tmp_path):
     assert found["error_48"]["excess"] == pytest.approx(flat, abs=5 * found["error_48"]["standard_error"] + 0.01)
 
 
+def test_costs_count_missing_light_and_faults(scorer, tasks):
+    entry = Entry(tasks / "LB-6-led-oval.json", lambda p: paraboloid(focal_mm=p[0]), scorer)
+    found = entry.figures([20.0], 20_000)
+    error, missing = found["error_48"]["excess"], 1.0 - found["in_rectangle"]["value"]
+    assert missing > 0.05
+    assert entry.cost([20.0], 20_000) == error
+    assert entry.cost([20.0], 20_000, light_weight=0.3) == pytest.approx((error**2 + 0.3 * missing**2) ** 0.5, rel=1e-12)
+    assert not entry.figures([45.0], 20_000)["counts"] and entry.cost([45.0], 20_000) > 1.0
+
+
 def test_example_enters_the_plain_paraboloid(scorer, tasks, tmp_path):
     example = pathlib.Path(__file__).resolve().parents[1] / "examples" / "plain_paraboloid.py"
     task = tasks / "LB-6-led-oval.json"
