@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Entries of Lucerna: a task becomes a project, `lucerna design` shapes the optic, and what it wrote becomes the very
+same surface as a B-spline of a submission."""
+import pathlib
+import shutil
+import subprocess
+import tomllib
+
+import numpy as np
+
+from . import photometry
+from .shapes import LENS_INDEX, MARGIN_MM, cap_height, mirror
+from .surfaces import extruded_profile, height_field, revolved, spline_through
+from .tasks import Task
+
+TROUGH_LENGTH_MM = 400.0
+KEPT_FILES = ("project.toml", "reflector.toml", "lens.toml", "result.json", "history.csv")
+
+
+def kind_of(task: Task):
+    """What Lucerna makes for a task ("mirror", "trough" or "lens") and None, or None and why it makes nothing."""
+    roles, target = task.definition["optics"]["roles"], task.target
+    if task.definition.get("target_place") == "free":
+        return None, "Lucerna designs for a target in one place, and not for étendue alone"
+    if target["kind"] == "angle":
+        return "trough", None
+    if target["kind"] == "far_field" and roles == ["mirror"]:
+        return "mirror", None
+    if target["function"] == "uniform_disk" and task.source["emitter"] == "disk":
+        return "lens", None
+    return None, "the light asked for is not round, and Lucerna designs lenses of revolution only"
+
+
+def project(task: Task, folder):
+    """Writes project.toml and its target to a folder; the share by which the target's table is off."""
+    folder = pathlib.Path(folder)
+    kind, why_not = kind_of(task)
+    if kind is None:
+        raise ValueError(f"{task.file}: {task.name}: found a task that Lucerna cannot enter ({why_not})")
+    if kind == "lens":
+        target, off = _plane_target(task, folder), 0.0
+        text = _sources(task) + _lens(task) + target
+    else:
+        table, off = photometry.sampled(task.target, task.is_round)
+        (folder / "target.ies").write_text(table.ies(task.name), newline="")
+        text = (_sources(task) + _reflector(task, kind) + '[target]\nfile = "target.ies"\n[design]\n'
+                + _keep_out(task, kind))
+    (folder / "project.toml").write_text(text)
+    return off
+
+
+def _sources(task):
+    """The task's emitter by Lucerna's of the same definition. A strip is two-dimensional: a Lambertian rectangle in a
+    long trough sends the same light over the angles across it (see `tasks.intensity`)."""
+    s = task.source
+    lines = {"led": 'kind = "led"\n', "disk": f'kind = "disk"\nradius_mm = {s.get("radius_mm")}\n',
+             "filament": f'kind = "filament"\nradius_mm = {s.get("radius_mm")}\nlength_mm = {s.get("length_mm")}\n'
+                         f'ghost_share = {s.get("ghost_share")}\n'}
+    if s["emitter"] in lines:
+        return f'[[source]]\n{lines[s["emitter"]]}surface = "none"\nflux_lm = 1000\naxis = "+z"\n'
+    if s["emitter"] != "strip":
+        raise ValueError(f"{task.file}: /source/emitter: found {s['emitter']}, expected led, disk, filament or strip")
+    half, ratio = s["half_width_mm"], s["right_to_left_luminance"]
+    halves = [(-0.5 * half, 1000.0 / (1.0 + ratio)), (0.5 * half, 1000.0 * ratio / (1.0 + ratio))]
+    return "".join(f'[[source]]\nkind = "rectangle"\nsize_mm = [{half}, 1]\nflux_lm = {flux}\n'
+                   f'position_mm = [{x}, 0, 0]\naxis = "+z"\n' for x, flux in halves)
+
+
+def start_focal_mm(task):
+    """A paraboloid well within the room: a fifth of the way from the shortest focal length to the longest."""
+    low, high = task.room.focal_range_mm()
+    return round(low + 0.2 * (high - low), 3)
+
+
+def _reflector(task, kind):
+    focal, width = start_focal_mm(task), 2.0 * task.room.half_mm
+    shape = (f'family = "bspline"\ndiameter_mm = {width}\n' if kind == "mirror" else
+             f'family = "trough"\npreset = "parabola"\naperture = "rectangle"\n'
+             f"size_mm = [{width}, {TROUGH_LENGTH_MM}]\n")
+    return (f'[[reflector]]\n{shape}focal_mm = {focal}\nposition_mm = [0, 0, {focal}]\naxis = "-z"\n'
+            f'reflectance = {task.definition["optics"]["reflectance"]}\n')
+
+
+def _keep_out(task, kind):
+    """The room as volumes that the mirror keeps out of: above, below, and a ball about the lamp (a speck with a wide
+    clearance)."""
+    r = task.room
+    x, y = r.half_mm + 1.0, (r.half_mm if kind == "mirror" else 0.5 * TROUGH_LENGTH_MM) + 1.0
+    boxes = [(-x, -y, r.high_mm, x, y, r.high_mm + 100.0, MARGIN_MM),
+             (-x, -y, r.low_mm - 100.0, x, y, r.low_mm, MARGIN_MM)]
+    if r.lamp_radius_mm > 0.0:
+        boxes.append((-1e-3, -1e-3, -1e-3, 1e-3, 1e-3, 1e-3, r.lamp_radius_mm + MARGIN_MM))
+    return "".join(f'[[design.limits.keep_out]]\nkind = "box"\nmin_mm = [{a}, {b}, {c}]\nmax_mm = [{d}, {e}, {f}]\n'
+                   f"clearance_mm = {gap}\n" for a, b, c, d, e, f, gap in boxes)
+
+
+def _lens(task, wall_mm=2.0, cap_mm=11.0, corners=12):
+    """A flat face next to the source, a wall, and a spherical cap whose corners are free."""
+    rim, bottom = task.room.half_mm - MARGIN_MM, task.room.low_mm + MARGIN_MM
+    r = np.linspace(rim, 0.0, corners)
+    outer = [[float(a), float(b)] for a, b in zip(r, bottom + wall_mm + cap_height(rim, cap_mm, r))]
+    outline = [[0.0, bottom], [rim, bottom], *outer]
+    return (f'[[body]]\nrole = "solid"\nname = "lens"\nrefractive_index = {LENS_INDEX}\nsmooth_below_deg = 20\n'
+            f"outline_mm = {outline}\naxis = \"+z\"\n")
+
+
+def _plane_target(task, folder, cells=250, widened=1.25):
+    t = task.target
+    half = widened * t["radius_mm"]
+    (folder / "target.csv").write_text(photometry.csv(photometry.disk_cells(t["radius_mm"], half, cells)))
+    return (f'[target]\nkind = "plane"\nfile = "target.csv"\nposition_mm = {t["place"]["origin_mm"]}\nnormal = "-z"\n'
+            f"size_mm = [{2 * half}, {2 * half}]\n[design]\nfree_sides = 2\nintervals = 16\n[design.limits]\n"
+            f"max_diameter_mm = {2 * task.room.half_mm - MARGIN_MM}\n"
+            f"max_height_mm = {task.room.high_mm - task.room.low_mm - 2 * MARGIN_MM}\nmin_thickness_mm = 0.5\n")
+
+
+def design(lucerna, task, folder, time_s, threads=None, seed=1, device="cpu"):
+    """Runs `lucerna design` in a folder; the designed project's text. A mirror that breaks a limit is returned, too:
+    the scorer judges it."""
+    folder = pathlib.Path(folder)
+    command = [str(lucerna), "design", str(folder / "project.toml"), "-o", str(folder / "design"), "--time",
+               str(time_s), "--seed", str(seed), "--device", device, "--quiet", "--force"]
+    if threads is not None:
+        command += ["--threads", str(threads)]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    except OSError as e:
+        raise ValueError(f"{lucerna}: file: found {e.strerror}, expected the program lucerna") from None
+    whole = done.returncode in (0, 1) and (folder / "design" / "result.json").exists()
+    for name in ("lens.toml", "reflector.toml"):
+        if whole and (folder / "design" / name).exists():
+            return (folder / "design" / name).read_text()
+    raise ValueError(f"{' '.join(command)}: found exit {done.returncode} and no result, expected a design: "
+                     f"{done.stderr.strip()}")
+
+
+def keep_files(folder):
+    """Of a design's folder only the project, the result and the history are kept."""
+    folder = pathlib.Path(folder)
+    for name in KEPT_FILES:
+        if (folder / "design" / name).exists():
+            shutil.move(folder / "design" / name, folder / name)
+    shutil.rmtree(folder / "design", ignore_errors=True)
+
+
+def surfaces_of(text, kind):
+    """The surfaces of a designed project (reflector.toml, lens.toml), and the number of its free parameters."""
+    tables = tomllib.loads(text)
+    if kind == "lens":
+        return _lens_surfaces(tables["body"][0])
+    r = tables["reflector"][0]
+    if r["axis"] != "-z" or r["family"] not in ("bspline", "revolution"):
+        raise ValueError(f"reflector: found {r['family']} along {r['axis']}, expected bspline or revolution along -z")
+    vertex_mm = r["position_mm"][2]
+    if r["family"] == "revolution":
+        return _revolution(r, vertex_mm)
+    height = spline_heights(r)
+    nx, ny = r["intervals"]
+    if kind == "trough":
+        # Its spline takes y^2 / (4 f) away again: the profile is the height at y = 0.
+        sheet = extruded_profile(lambda x: height(x, np.zeros_like(x)), 0.5 * r["size_mm"][0], intervals=nx)
+        return [mirror(sheet, vertex_mm)], nx + 3
+    half = 0.5 * r["diameter_mm"]
+    trim = {"kind": "circle", "diameter_mm": r["diameter_mm"]}
+    if r.get("hole_diameter_mm", 0.0) > 0.0:
+        trim["hole_diameter_mm"] = r["hole_diameter_mm"]
+    # Both are bicubic splines on the same knots, so going through the Greville points is exact.
+    sheet = height_field(height, half, half, intervals=(nx, ny), trim=trim)
+    return [mirror(sheet, vertex_mm)], (nx + 3) * (ny + 3)
+
+
+def spline_heights(reflector):
+    """Heights of Lucerna's free form, mm over its vertex: x^2 + y^2 over 4 f plus a bicubic B-spline whose knots are
+    even over the aperture and go on evenly beyond it; coefficients along x first."""
+    nx, ny = reflector["intervals"]
+    half_x, half_y = ([0.5 * s for s in reflector["size_mm"]] if "size_mm" in reflector
+                      else 2 * [0.5 * reflector["diameter_mm"]])
+    c = np.reshape(reflector["coefficients_mm"], (ny + 3, nx + 3))
+
+    def height(x, y):
+        bx, by = _cubic_pieces(x, -half_x, half_x, nx), _cubic_pieces(y, -half_y, half_y, ny)
+        offset = np.einsum("...j,...i,ji->...", by, bx, c)
+        return (x * x + y * y) / (4.0 * reflector["focal_mm"]) + offset
+
+    return height
+
+
+def _cubic_pieces(x, low, high, intervals):
+    """The values of all intervals + 3 even cubic B-splines at x, by the four polynomials of one."""
+    x = np.asarray(x, float)
+    at = (x - low) / (high - low) * intervals
+    i = np.clip(at.astype(int), 0, intervals - 1)
+    t = at - i
+    values = np.zeros(x.shape + (intervals + 3,))
+    pieces = ((1 - t) ** 3 / 6, (3 * t**3 - 6 * t**2 + 4) / 6, (-3 * t**3 + 3 * t**2 + 3 * t + 1) / 6, t**3 / 6)
+    for k, piece in enumerate(pieces):
+        np.put_along_axis(values, (i + k)[..., None], piece[..., None], axis=-1)
+    return values
+
+
+def _revolution(reflector, vertex_mm):
+    r, z = np.array(reflector["profile_mm"]).T
+    knots, height = spline_through(r, z, flat_start=r[0] == 0.0)
+    _, radius = spline_through(r, r, natural_start=r[0] == 0.0)
+    surface = revolved(knots, np.stack([radius, height], axis=-1))
+    # The curve goes outwards, so that its right is the mirror's back.
+    return [{**mirror(surface, vertex_mm), "flip": True}], len(r)
+
+
+def _lens_surfaces(body):
+    """Bottom, wall and outer face of the outline that `project` gave. Between edges and on the axis Lucerna's face is
+    the cubic spline through the corners over the length of the chords, level on the axis."""
+    corners = np.array(body["outline_mm"], float)
+    wall, outer = corners[1:3], corners[2:]
+    if abs(corners[0][0]) > 1e-9 or abs(outer[-1][0]) > 1e-9 or len(outer) < 4:
+        raise ValueError(f"outline_mm: found {corners.tolist()}, expected bottom, wall and an outer face to the axis")
+    # From the axis to the rim, as the spline's start is the one with the condition.
+    r, z = outer[::-1].T
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(r), np.diff(z)))])
+    knots, height = spline_through(way, z, flat_start=True)
+    _, radius = spline_through(way, r, natural_start=True)
+    faces = {"bottom": revolved([0, 0, 1, 1], corners[:2], degree=1), "wall": revolved([0, 0, 1, 1], wall, degree=1),
+             "outer": revolved(way[-1] - knots[::-1], np.stack([radius, height], axis=-1)[::-1])}
+    parts = [{"name": name, "role": "interface", "bspline": face, "refractive_index": body["refractive_index"]}
+             for name, face in faces.items()]
+    return parts, len(outer) - 1

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Entries of Lucerna: projects of tasks, and the surfaces of what it designs."""
+import json
+import subprocess
+import tomllib
+
+import numpy as np
+import pytest
+from lucerna_bench import Stated, lucerna_entry, photometry, placed, score, write_submission
+from lucerna_bench.surfaces import heights_at, revolved, spline_through
+from lucerna_bench.tasks import intensity, read_task
+
+from test_scorer import RAYS, boxes_of, disk_task, lucerna_plane, plane
+from test_surfaces import at, de_boor
+
+ENTERED = {"mirror": {"LB-6"}, "trough": {"LB-1"}, "lens": {"LB-3"}}
+
+
+def reflector_text(**keys):
+    keys = {"family": '"bspline"', "position_mm": [0, 0, 20], "axis": '"-z"', **keys}
+    return "[[reflector]]\n" + "".join(f"{k} = {v}\n" for k, v in keys.items())
+
+
+def free_form(nx, ny, **keys):
+    c = np.random.default_rng(3).normal(size=(nx + 3) * (ny + 3))
+    text = reflector_text(focal_mm=17.0, intervals=[nx, ny], coefficients_mm=c.tolist(), **keys)
+    return c.reshape(ny + 3, nx + 3), text
+
+
+def even_knots(half, intervals):
+    return -half + 2.0 * half / intervals * np.arange(-3, intervals + 4)
+
+
+def places(half_x, half_y, count=300):
+    return (np.random.default_rng(4).uniform(-1.0, 1.0, (2, count)).T * [half_x, half_y]).T
+
+
+def test_free_form_is_the_very_surface():
+    c, text = free_form(7, 5, aperture='"circle"', diameter_mm=100.0, hole_diameter_mm=8.0)
+    (part,), free = lucerna_entry.surfaces_of(text, "mirror")
+    assert free == 80 and part["place"] == placed((0, 0, 20), z_axis=(0, 0, -1))
+    assert part["bspline"]["trim"] == {"kind": "circle", "diameter_mm": 100.0, "hole_diameter_mm": 8.0}
+    x, y = places(50.0, 50.0)
+    kx, ky = even_knots(50.0, 7), even_knots(50.0, 5)
+    expected = [(a * a + b * b) / 68.0 + de_boor(ky, 3, [de_boor(kx, 3, row, a) for row in c], b) for a, b in zip(x, y)]
+    assert np.abs(heights_at(part["bspline"], x, y) - expected).max() < 1e-11
+    # The order of the coefficients matters.
+    assert np.abs(heights_at(part["bspline"], y, x) - expected).max() > 0.1
+
+
+def test_lucerna_itself_says_the_same_heights():
+    lucerna = pytest.importorskip("lucerna")
+    _, text = free_form(6, 9, aperture='"circle"', diameter_mm=100.0)
+    (part,), _ = lucerna_entry.surfaces_of(text, "mirror")
+    x, y = places(35.0, 35.0)
+    assert np.abs(heights_at(part["bspline"], x, y) - lucerna.Reflector.from_toml(text).height_mm(x, y)).max() < 1e-11
+    profile = [[0, 0], [5, 1], [11, 3], [18, 9], [25, 17], [31, 30]]
+    text = reflector_text(family='"revolution"', profile_mm=profile)
+    (part,), _ = lucerna_entry.surfaces_of(text, "mirror")
+    mirror = lucerna.Reflector.from_toml(text)
+    for v in np.linspace(0.0, 31.0, 41):
+        x, y, z = at(part["bspline"], 0.7, v)
+        assert z == pytest.approx(float(mirror.height_mm(x, y)), abs=1e-10)
+
+
+def test_trough_is_its_profile():
+    """Lucerna's troughs take the y^2 / (4 f) of their paraboloid away."""
+    c, text = free_form(6, 4, aperture='"rectangle"', size_mm=[40.0, 400.0])
+    (part,), free = lucerna_entry.surfaces_of(text, "trough")
+    x = np.linspace(-20.0, 20.0, 101)
+    kx, ky = even_knots(20.0, 6), even_knots(200.0, 4)
+    expected = [a * a / 68.0 + de_boor(ky, 3, [de_boor(kx, 3, row, a) for row in c], 0.0) for a in x]
+    assert free == 9
+    assert np.abs(heights_at(part["bspline"], x, 0.0 * x) - expected).max() < 1e-11
+
+
+def test_other_reflectors_are_refused():
+    with pytest.raises(ValueError, match="reflector: found faceted along -z, expected bspline or revolution along -z"):
+        lucerna_entry.surfaces_of(reflector_text(family='"faceted"'), "mirror")
+
+
+@pytest.mark.parametrize("flat,natural", [(True, False), (False, True), (False, False)])
+def test_splines_hold_their_conditions(flat, natural):
+    x, y = np.array([0.0, 1.0, 2.5, 3.0, 4.5, 5.0]), np.array([0.0, 2.0, -1.0, 0.5, 3.0, 1.0])
+    knots, c = spline_through(x, y, flat_start=flat, natural_start=natural)
+    value = lambda a: de_boor(knots, 3, c, a)
+    assert np.allclose([value(a) for a in x], y, atol=1e-12)
+    h = 1e-3
+    slope = (-3 * value(0) + 4 * value(h) - value(2 * h)) / (2 * h)
+    bend = (2 * value(0) - 5 * value(h) + 4 * value(2 * h) - value(3 * h)) / h**2
+    assert (abs(slope) < 1e-4) == flat and (abs(bend) < 1e-2) == natural
+    # Not-a-knot: one cubic goes through the last two intervals.
+    cubic = np.polynomial.Polynomial.fit(np.linspace(3.0, 5.0, 9), [value(a) for a in np.linspace(3.0, 5.0, 9)], 3)
+    assert np.abs([cubic(a) - value(a) for a in np.linspace(3.0, 5.0, 50)]).max() < 1e-10
+    with pytest.raises(ValueError, match="ascending numbers or more"):
+        spline_through([0.0, 0.0, 1.0, 2.0], [0.0, 0.0, 1.0, 2.0])
+
+
+def test_swept_curves_are_round_and_look_to_the_right():
+    surface = revolved([0, 0, 1, 1], [(2.0, 0.0), (3.0, 1.0)], degree=1)
+    for u in np.linspace(0.0, 4.0, 17):
+        x, y, z = at(surface, u, 0.5)
+        assert np.hypot(x, y) == pytest.approx(2.5, abs=1e-12) and z == 0.5
+    p, du, dv = at(surface, 0.0, 0.5), at(surface, 1e-5, 0.5), at(surface, 0.0, 0.5 + 1e-5)
+    normal = np.cross(du - p, dv - p)
+    assert normal[0] > 0.0 and normal[2] < 0.0
+
+
+def lens_body():
+    r = np.linspace(8.0, 0.0, 7)
+    outline = [[0.0, 2.0], [8.0, 2.0], *([float(a), 7.0 - a * a / 20.0 + 1e-3 * a**3] for a in r)]
+    return outline, f'[[body]]\nrole = "solid"\nrefractive_index = 1.5\nsmooth_below_deg = 25\noutline_mm = {outline}\n'
+
+
+def test_lens_is_the_one_that_lucerna_traces(scorer, lucerna, tmp_path):
+    outline, text = lens_body()
+    surfaces, free = lucerna_entry.surfaces_of(text, "lens")
+    assert free == 6 and [s["name"] for s in surfaces] == ["bottom", "wall", "outer"]
+    curve = np.array(surfaces[2]["bspline"]["points_mm"])[0][:, [0, 2]]
+    assert np.allclose(curve[0], outline[2]) and np.allclose(curve[-1], outline[-1])
+    glass = {"roles": ["interface"], "interface": {"model": "fresnel", "refractive_index": [1.5, 1.5],
+                                                   "absorption_per_mm": 0.0}}
+    ours, _, found = boxes_of(scorer, tmp_path / "a", disk_task(glass, plane(100, -1, 300)), surfaces)
+    assert found["counts"], found["faults"]
+    side = found["rectangle"]["high"][0] - found["rectangle"]["low"][0]
+    theirs, _ = lucerna_plane(lucerna, tmp_path / "l", text, side, 100, "-z")
+    centre = (np.arange(48) - 23.5) / 24.0
+    ring = (24 * np.hypot(*np.meshgrid(centre, centre))).astype(int).ravel()
+
+    def off(a, b):
+        a, b = (np.bincount(ring, weights=x) for x in (a, b))
+        return np.max(np.abs(a - b) / np.sqrt((a + b) / RAYS + 1e-12))
+
+    assert ours.sum() > 0.4 and off(ours, theirs) < 5.0
+    # A tenth of a millimetre in the middle of the lens is seen.
+    other = [json.loads(json.dumps(s)) for s in surfaces]
+    for row in other[2]["bspline"]["points_mm"]:
+        for p in row[-3:]:
+            p[2] += 0.1
+    moved, _, _ = boxes_of(scorer, tmp_path / "b", disk_task(glass, plane(100, -1, 300)), other)
+    assert off(moved, theirs) > 10.0
+
+
+def test_tasks_that_are_entered(tasks):
+    kinds, refused = {}, {}
+    for file in sorted(tasks.glob("*.json")):
+        task = read_task(file)
+        kind, why = lucerna_entry.kind_of(task)
+        (kinds if kind else refused).setdefault(kind or task.name, set()).add(task.family if kind else why)
+    assert kinds == ENTERED
+    assert set(refused) == {"LB-2a", "LB-2b", "LB-3-rectangle", "LB-4-2x2", "LB-4-3x3", "LB-5a"}
+    assert all(len(why) == 1 and "Lucerna designs" in next(iter(why)) for why in refused.values())
+
+
+@pytest.mark.parametrize("name,goal", [("LB-6-led-spot10", 5e-4), ("LB-6-led-wallwasher", 5e-4),
+                                       ("LB-1a-cos4-free", 0.01)])
+def test_tables_are_the_targets(tasks, name, goal):
+    task = read_task(tasks / f"{name}.json")
+    table, error = photometry.sampled(task.target, task.is_round)
+    assert error < goal
+    coarse = photometry.Table(task.target, 0.0 if task.is_round else 10.0, 5.0)
+    assert photometry.sampling_error(task.target, coarse) > 5.0 * goal
+    # Independent of the error's own sums: values between the nodes. The wall washer tells +x from -x.
+    u, v = np.array([0.03, 0.3, -0.3, 0.1]), np.array([0.01, -0.2, 0.1, 0.4])
+    wanted = intensity(task.target, u, v)
+    assert np.allclose(table.at(u, v) / table.at(u, v)[0], wanted / wanted[0], atol=2e-3)
+
+
+def test_projects_are_read(lucerna, tasks, tmp_path):
+    """lucerna traces what a project says; keys that it does not know would be errors."""
+    for name in ("LB-6-filament-batwing", "LB-1b-flat-h12", "LB-3-disk"):
+        folder = tmp_path / name
+        folder.mkdir()
+        task = read_task(tasks / f"{name}.json")
+        lucerna_entry.project(task, folder)
+        tables = tomllib.loads((folder / "project.toml").read_text())
+        assert sum(s["flux_lm"] for s in tables["source"]) == pytest.approx(1000.0)
+        done = subprocess.run([lucerna, "trace", str(folder / "project.toml"), "-o", str(folder / "out"), "--rays",
+                               "20000", "--quiet"], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+    with pytest.raises(ValueError, match="LB-2a.json: LB-2a: found a task that Lucerna cannot enter"):
+        lucerna_entry.project(read_task(tasks / "LB-2a.json"), tmp_path)
+
+
+def test_lucerna_designs_a_trough_that_scores(scorer, lucerna, tasks, tmp_path):
+    """The whole way, in seconds: its light is nearer to the target than that of the parabola it began with."""
+    task = read_task(tasks / "LB-1a-cos4-free.json")
+    lucerna_entry.project(task, tmp_path)
+    text = lucerna_entry.design(lucerna, task, tmp_path, 6)
+    surfaces, free = lucerna_entry.surfaces_of(text, "trough")
+    stated = Stated(free_parameters=free, wall_s=6, program="p", method="m")
+    found = score(scorer, task.file, write_submission(tmp_path / "s", task.name, "n", "a", surfaces, stated), 200_000)
+    assert found["counts"], found["faults"]
+    assert found["error_48"]["excess"] < 0.2
+
+
+def test_a_program_that_fails_is_named(tasks, tmp_path):
+    task = read_task(tasks / "LB-6-led-oval.json")
+    with pytest.raises(ValueError, match="none/lucerna: file: found No such file"):
+        lucerna_entry.design(tmp_path / "none" / "lucerna", task, tmp_path, 1)
+    with pytest.raises(ValueError, match="found exit 1 and no result, expected a design"):
+        lucerna_entry.design("/bin/false", task, tmp_path, 1)
