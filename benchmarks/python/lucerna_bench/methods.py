@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The ways to an entry that are compared at equal time: Lucerna, and baselines (benchmarks/README.md)."""
+import dataclasses
+import pathlib
+import time
+
+from . import cma_es, lucerna_entry, point_source, tree_search
+from .entry import Entry
+from .shapes import Lens, Mirror, Trough
+from .tasks import Task
+
+# What missing light costs beside the error, as in a design of Lucerna: a tenth of it as an error of 3.2 %.
+LIGHT_WEIGHT = 0.1
+TRIALS_OF_PLAIN = 12
+
+
+@dataclasses.dataclass
+class Means:
+    """With what entries are made."""
+    scorer: str
+    lucerna: str
+    time_s: float
+    fit_rays: int = 200_000
+    threads: int | None = None
+    seed: int = 1
+
+
+@dataclasses.dataclass
+class Made:
+    """An optic that a method found."""
+    surfaces: list
+    free_parameters: int
+    name: str
+    method: str
+    notes: dict = dataclasses.field(default_factory=dict)
+
+
+class Search:
+    """The trials of one method within its time: every cost is asked for here."""
+
+    def __init__(self, task: Task, means: Means, surfaces_of):
+        self.means, self.trials, self.start = means, 0, time.monotonic()
+        self.entry = Entry(task.file, surfaces_of, means.scorer, threads=means.threads)
+
+    def cost(self, parameters):
+        self.trials += 1
+        return self.entry.cost(parameters, self.means.fit_rays, LIGHT_WEIGHT)
+
+    def over(self, share=1.0):
+        """Is there no time for one more trial within this share of all?"""
+        spent = time.monotonic() - self.start
+        return spent + spent / max(1, self.trials) > share * self.means.time_s
+
+    def told(self, what):
+        return f"{what}, {self.trials} trials of {self.means.fit_rays:g} rays"
+
+
+def lucerna(task, kind, means, folder):
+    """`lucerna design`, its seconds and threads given; everything else is its own choice."""
+    off = lucerna_entry.project(task, folder)
+    text = lucerna_entry.design(means.lucerna, task, folder, means.time_s, means.threads, means.seed)
+    lucerna_entry.keep_files(folder)
+    surfaces, free = lucerna_entry.surfaces_of(text, kind)
+    return Made(surfaces, free, f"Lucerna, {free} free parameters", f"lucerna design --time {means.time_s:g}",
+                {"target_sampling_error": off})
+
+
+def _plain_shape(task, kind, number):
+    """The optic of one number: a focal length, or the height of a lens's cap."""
+    return {"mirror": Mirror, "trough": Trough, "lens": Lens}[kind](task, float(number))
+
+
+def _best_plain(search, task, kind, share):
+    """Golden section over the one number, until its trials or its share of the time are used up."""
+    low, high = (0.5, task.room.half_mm - 4.0) if kind == "lens" else task.room.focal_range_mm()
+    # A hundredth within, so that what rounding adds stays in the room.
+    low, high = low + 0.01 * (high - low), high - 0.01 * (high - low)
+    golden = 0.5 * (5.0**0.5 - 1.0)
+    tried = {}
+
+    def cost(x):
+        tried[x] = search.cost([x])
+        return tried[x]
+
+    a, b = high - golden * (high - low), low + golden * (high - low)
+    at_a, at_b = cost(a), cost(b)
+    while len(tried) < TRIALS_OF_PLAIN and not search.over(share):
+        if at_a < at_b:
+            high, b, at_b = b, a, at_a
+            a = high - golden * (high - low)
+            at_a = cost(a)
+        else:
+            low, a, at_a = a, b, at_b
+            b = low + golden * (high - low)
+            at_b = cost(b)
+    return min(tried, key=tried.get)
+
+
+def plain(task, kind, means, _folder):
+    """The plain optic of one number: a paraboloid, a parabolic trough or a spherical cap; golden section."""
+    search = Search(task, means, lambda p: _plain_shape(task, kind, p[0]).surfaces())
+    number = _best_plain(search, task, kind, 1.0)
+    what = {"mirror": "paraboloid, focal length", "trough": "parabolic trough, focal length",
+            "lens": "spherical cap, height"}[kind]
+    return Made(_plain_shape(task, kind, number).surfaces(), 1, f"plain {what} {number:.3f} mm",
+                search.told("golden section"))
+
+
+def point_source_alone(task, kind, means, _folder):
+    """Zero-étendue solutions with the real source: the best of some variants and vertex distances."""
+    make, variants, distances = point_source.candidates(task, kind)
+    made, best = {}, None
+    search = Search(task, means, lambda p: made[tuple(p)])
+    for vertex_mm in distances:
+        for variant in range(variants):
+            key = (variant, vertex_mm)
+            try:
+                made[key] = make(task, variant, vertex_mm)
+            except point_source.NoSolution:
+                continue
+            found = search.cost(key)
+            if best is None or found < best[0]:
+                best = (found, key)
+            if search.over():
+                break
+        if best is not None and search.over():
+            break
+    if best is None:
+        raise ValueError(f"{task.file}: found no point-source solution that fits the room, expected one")
+    variant, vertex_mm = best[1]
+    return Made(made[best[1]], 1, f"point-source solution {variant}, vertex {vertex_mm:.2f} mm",
+                search.told(f"{make.__name__} of a point source, best of {len(made)} vertex distances and variants"))
+
+
+def _spline_search(task, kind, means, minimise, what):
+    """A search among splines over the best plain optic, which takes a tenth of the time at most."""
+    search = Search(task, means, lambda p: _plain_shape(task, kind, p[0]).surfaces())
+    number = _best_plain(search, task, kind, 0.1)
+    shape = _plain_shape(task, kind, number)
+    # The same clock goes on with other parameters.
+    search.entry.surfaces_of = shape.surfaces
+    found = minimise(search.cost, [0.0] * shape.size, shape, lambda *_: search.over())
+    return Made(shape.surfaces(found.parameters), shape.size + 1, f"{what}, {shape.size + 1} parameters",
+                search.told(f"{what} over the plain optic of {number:.3f} mm"),
+                {"cost": found.cost})
+
+
+def cma(task, kind, means, _folder):
+    """CMA-ES on spline heights over the best plain optic."""
+    return _spline_search(task, kind, means, lambda cost, start, shape, stop: cma_es.minimise(
+        cost, start, 0.5 * shape.scale_mm, stop, means.seed), "CMA-ES")
+
+
+def tree(task, kind, means, _folder):
+    """The search tree with pattern search on the same spline heights."""
+    return _spline_search(task, kind, means, lambda cost, start, shape, stop: tree_search.minimise(
+        cost, start, 3.0 * shape.scale_mm, stop, means.seed), "search tree")
+
+
+METHODS = {"lucerna": lucerna, "plain": plain, "point-source": point_source_alone, "cma-es": cma, "tree": tree}
+
+
+def make(name, task: Task, means: Means, folder: pathlib.Path):
+    kind, why_not = lucerna_entry.kind_of(task)
+    if kind is None:
+        raise ValueError(f"{task.file}: {task.name}: found a task that is not entered ({why_not})")
+    return METHODS[name](task, kind, means, folder)

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tables and plots of scores: one Markdown table and one SVG picture for each family of tasks."""
+import html
+import json
+import math
+import pathlib
+
+from .entry import write_whole
+from .tasks import family_of
+
+COLUMNS = ["task", "entry", "error +- standard error, n = 48", "noise", "NMAE", "efficiency with losses",
+           "without losses", "light outside", "free parameters", "wall s", "processor s", "made on", "program, commit"]
+COLOURS = {"lucerna": "#c0392b", "plain": "#7f8c8d", "point-source": "#2980b9", "cma-es": "#27ae60", "tree": "#8e44ad"}
+
+
+def read_scores(out):
+    """All scores below a folder of results, as (task, method, score.json), sorted."""
+    found = []
+    for file in sorted(pathlib.Path(out).glob("*/*/score.json")):
+        found.append((file.parent.parent.name, file.parent.name, json.loads(file.read_text())))
+    return found
+
+
+def percent(x, digits=2):
+    return f"{100.0 * x:.{digits}f} %"
+
+
+def row(task, method, s):
+    """The cells of one entry: what its score.json says, and no more."""
+    error, stated = s["error_48"], s["stated"]
+    cpu = "not stated" if stated["cpu_s"] is None else f"{stated['cpu_s']:.1f}"
+    return [task, method if s["counts"] else f"{method} (does not count: {'; '.join(s['faults'])})",
+            f"{percent(error['excess'])} +- {percent(error['standard_error'])}", percent(error["floor"]),
+            percent(s["nmae"]["value"]), percent(s["efficiency_with_losses"]["value"]),
+            percent(s["efficiency_without_losses"]["value"]), percent(s["outside_rectangle"]["value"]),
+            str(stated["free_parameters"]), f"{stated['wall_s']:.1f}", cpu, stated["machine"], stated["program"]]
+
+
+def table(scores, not_entered=()):
+    """The Markdown page of a family. `not_entered`: pairs of a task and why."""
+    scored = sorted({(f"{s['rays']:,} rays", f"seed {s['seed']}", s["run"]["machine"]) for _, _, s in scores})
+    lines = ["<!-- written by benchmarks/run_entries.py -->", "",
+             "Errors have their noise taken out. NMAE has it in. Light counts as shares of the source's flux.", "",
+             "| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
+    best = {}
+    for task, _, s in scores:
+        if s["counts"]:
+            best[task] = min(best.get(task, math.inf), s["error_48"]["excess"])
+    for task, method, s in scores:
+        cells = row(task, method, s)
+        if s["counts"] and s["error_48"]["excess"] == best[task]:
+            cells[2] = f"**{cells[2]}**"
+        lines.append("| " + " | ".join(c.replace("|", "\\|") for c in cells) + " |")
+    lines += ["", "Scored with " + "; ".join(", ".join(x) for x in scored) + "."] if scored else []
+    if not_entered:
+        lines += ["", "Not entered:", "", *(f"- {task}: {why}." for task, why in not_entered)]
+    return "\n".join(lines) + "\n"
+
+
+def plot(scores, title):
+    """Errors on a logarithmic axis, a line a task, with their standard errors; one that does not count is hollow."""
+    tasks = sorted({task for task, _, _ in scores})
+    methods = [m for m in COLOURS if any(m == method for _, method, _ in scores)]
+    errors = [max(1e-5, s["error_48"]["excess"]) for _, _, s in scores]
+    low = math.floor(math.log10(min(errors)))
+    high = max(low + 1, math.ceil(math.log10(max(errors))))
+    left, width, high_px, top = 16 + 7 * max(map(len, tasks)), 420, 26, 40
+    x = lambda e: left + width * (math.log10(max(10.0**low, e)) - low) / (high - low)
+    bottom = top + high_px * len(tasks)
+    shapes = []
+    for k in range(low, high + 1):
+        at = x(10.0**k)
+        shapes += [f'<line x1="{at:.1f}" y1="{top - 4}" x2="{at:.1f}" y2="{bottom}" stroke="#dddddd"/>',
+                   f'<text x="{at:.1f}" y="{bottom + 14}" text-anchor="middle">{100 * 10.0**k:g} %</text>']
+    for i, task in enumerate(tasks):
+        y = top + high_px * (i + 0.5)
+        shapes.append(f'<text x="{left - 8}" y="{y + 4:.1f}" text-anchor="end">{html.escape(task)}</text>')
+        for name, method, s in scores:
+            if name == task:
+                shapes.append(_mark(s, x, y, COLOURS.get(method, "#000000"), method))
+    keys, at = [], left
+    for m in methods:
+        keys.append(f'<circle cx="{at}" cy="14" r="5" fill="{COLOURS[m]}"/><text x="{at + 9}" y="18">{m}</text>')
+        at += 34 + 7 * len(m)
+    across, down = max(left + width + 40, at), bottom + 24
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {across} {down}" width="{across}" height="{down}" '
+            f'font-family="sans-serif" font-size="12" role="img"><title>{html.escape(title)}</title>\n'
+            f'<rect width="{across}" height="{down}" fill="#ffffff"/>\n' + "\n".join(keys + shapes) + "\n</svg>\n")
+
+
+def _mark(s, x, y, colour, method):
+    error, spread = s["error_48"]["excess"], s["error_48"]["standard_error"]
+    label = f"{method}: {percent(error)} +- {percent(spread)}"
+    fill = colour if s["counts"] else "#ffffff"
+    return (f'<line x1="{x(error - spread):.1f}" y1="{y}" x2="{x(error + spread):.1f}" y2="{y}" stroke="{colour}"/>'
+            f'<circle cx="{x(error):.1f}" cy="{y}" r="5" fill="{fill}" stroke="{colour}">'
+            f"<title>{html.escape(label)}</title></circle>")
+
+
+def write_all(out, not_entered=()):
+    """Writes FAMILY.md and FAMILY.svg of all that is scored below `out`; the files."""
+    out, scores, files = pathlib.Path(out), read_scores(out), []
+    for family in sorted({family_of(task) for task, _, _ in scores} | {family_of(task) for task, _ in not_entered}):
+        ours = [s for s in scores if family_of(s[0]) == family]
+        missing = [pair for pair in not_entered if family_of(pair[0]) == family]
+        picture = f"\n![Errors by entry]({family}.svg)\n" if ours else ""
+        files.append(write_whole(out / f"{family}.md", f"# {family}\n{picture}\n" + table(ours, missing)))
+        if ours:
+            title = f"{family}: error at 48 boxes a side, noise taken out"
+            files.append(write_whole(out / f"{family}.svg", plot(ours, title)))
+    return files
