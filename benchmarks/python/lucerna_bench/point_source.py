@@ -6,8 +6,8 @@
   Reflectors" (1980); R. Winston, J. C. Minano, P. Benitez, "Nonimaging Optics" (2005), chapter 7.
 - Free mirrors: the lower or upper hull of paraboloids, an optimal transport with the cost -log(1 - d.e) between the
   directions d of the source and e of the target. V. I. Oliker, "Near radially symmetric solutions of an inverse problem
-  in geometric optics", Inverse Problems 3, 743 (1987); X.-J. Wang, "On the design of a reflector antenna II", Calc. Var.
-  20, 329 (2004). Solved with entropy: M. Cuturi, "Sinkhorn Distances", NIPS 2013.
+  in geometric optics", Inverse Problems 3, 743 (1987); X.-J. Wang, "On the design of a reflector antenna II", Calc.
+  Var. 20, 329 (2004). Solved with entropy: M. Cuturi, "Sinkhorn Distances", NIPS 2013.
 - Lenses of revolution with a flat entry: balance of flux and Snell's law, from ray to ray.
 
 What an optic cannot catch or turn is left out of the balance. One number is free, the distance of the vertex, and there

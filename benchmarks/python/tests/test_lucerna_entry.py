@@ -159,7 +159,7 @@ def test_tables_are_the_targets(tasks, name, goal):
     table, error = photometry.sampled(task.target, task.is_round)
     assert error < goal
     coarse = photometry.Table(task.target, 0.0 if task.is_round else 10.0, 5.0)
-    assert photometry.sampling_error(task.target, coarse) > 5.0 * goal
+    assert photometry.sampling_error(task.target, coarse) > 3.0 * goal
     # Independent of the error's own sums: values between the nodes. The wall washer tells +x from -x.
     u, v = np.array([0.03, 0.3, -0.3, 0.1]), np.array([0.01, -0.2, 0.1, 0.4])
     wanted = intensity(task.target, u, v)
