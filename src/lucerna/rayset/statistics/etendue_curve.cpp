@@ -10,6 +10,7 @@
 
 #include "lucerna/geometry.h"
 #include "lucerna/ray_statistics.h"
+#include "lucerna/rayset/data/halves.h"
 
 namespace lucerna {
 
@@ -155,7 +156,7 @@ std::array<std::array<std::vector<Point>, 2>, 2> phase_space(const RayBlock& ray
     const double w = rays.weight[i], k = ray.direction.z();
     if (!(w > 0.0) || std::abs(k) < kGrazing) continue;
     const Vec3 p = ray.at(-ray.origin_mm.z / k);
-    points[k < 0.0][j % 2].push_back({{p.x, p.y, ray.direction.x(), ray.direction.y()}, w});
+    points[k < 0.0][in_second_half(1, j)].push_back({{p.x, p.y, ray.direction.x(), ray.direction.y()}, w});
   }
   return points;
 }

@@ -33,7 +33,7 @@ class EtendueCurve {
 
 /// The curve of a ray set, from the phase space where the lines cross the plane through their virtual focus
 /// across their mean direction; rays less than 0.01 rad from that plane are left out (they have next to no
-/// étendue there). The four-dimensional box of half the rays (every other one) is cut adaptively where a cut
+/// étendue there). The four-dimensional box of half the rays (by chance) is cut adaptively where a cut
 /// explains the rays significantly better than none; the cells' luminance and order come from this half,
 /// their flux from the other half, so that noise does not pass for brightness: trees cut at medians are
 /// biased low. At most 2^20 rays, evenly spread, are used. Cost: about 1 s per million rays.

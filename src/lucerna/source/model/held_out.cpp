@@ -2,10 +2,11 @@
 #include "lucerna/held_out.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "lucerna/error.h"
-#include "lucerna/random.h"
 #include "lucerna/rayset/comparison/scale_counts.h"
+#include "lucerna/rayset/data/halves.h"
 #include "lucerna/rayset/files/thinned_ray_set.h"
 #include "lucerna/source/emitters/draw_rays.h"
 
@@ -27,13 +28,9 @@ bool has_flux(const RayBlock& rays) {
 
 std::optional<HeldOutComparison> compare_held_out(const RaySet& rays, const CompressOptions& options,
                                                   Progress& progress) {
-  RaySet training{rays.header, {}};
-  RayBlock held_out;
-  for (RayBlock* half : {&training.rays, &held_out}) half->resize(0, rays.rays.extra.size());
-  // By chance and not in turns: files may have a pattern, such as the dies of a lamp one after the other.
-  for (std::size_t i = 0; i < rays.rays.size(); ++i)
-    (Rng(options.seed ^ kHalvesSeed, i).uniform() < 0.5 ? training.rays : held_out).append(rays.rays, i);
-  for (const RayBlock* half : {&training.rays, &held_out})
+  auto [first_half, held_out] = ray_halves(rays.rays, options.seed ^ kHalvesSeed);
+  const RaySet training{rays.header, std::move(first_half)};
+  for (const RayBlock* half : {&training.rays, &std::as_const(held_out)})
     if (half->size() < kFewestRays || !has_flux(*half)) return std::nullopt;
 
   const auto model = compress(training, options, progress);

@@ -2,10 +2,12 @@
 #include "lucerna/source/model/model_etendue.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/parallel/parallel.h"
+#include "lucerna/rayset/data/halves.h"
 #include "lucerna/rayset/data/subset.h"
 #include "lucerna/source/adaptive/compression/adaptive_compress.h"
 #include "lucerna/source/emitters/draw_rays.h"
@@ -97,13 +99,13 @@ std::optional<EtendueCurve> known_etendue_curve(const RaySource& source, std::ui
 
 EtendueCurve searched_etendue_curve(const RayBlock& rays) {
   constexpr std::uint64_t kMaxRays = std::uint64_t{1} << 18;
-  RayBlock some, held_out;
+  RayBlock some;
   some.resize(0, rays.extra.size());
   RaySubset(rays.size(), std::min<std::uint64_t>(kMaxRays, rays.size()), 1).select(rays, 0, some);
+  auto [first_half, held_out] = ray_halves(some, 1);
   RaySet train;
   train.header.set_flux(1.0);
-  for (RayBlock* half : {&train.rays, &held_out}) half->resize(0, rays.extra.size());
-  for (std::size_t i = 0; i < some.size(); ++i) (i % 2 == 0 ? train.rays : held_out).append(some, i);
+  train.rays = std::move(first_half);
   AdaptiveOptions options;
   options.trees = 4;
   const auto model = compress_adaptive(train, options);

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "lucerna/random.h"
 #include "lucerna/source.h"
 #include "lucerna/source/adaptive/compression/adaptive_compress.h"
 #include "lucerna/source/clusters/cluster_compress.h"
@@ -37,6 +38,29 @@ TEST(ModelEtendueStatistical, OfADiskIsTheKnownOne) {
   const EtendueCurve clusters = etendue_curve(*compress_clusters(rays), 1024);
   EXPECT_NEAR(clusters.at(0.5) / (0.5 * kWhole), 1.0, 0.3);
   EXPECT_FALSE(clusters.degenerate());
+}
+
+/// Two disks of 1 mm, 6 mm apart: their rays in turns, or by chance.
+RayBlock two_disks(bool in_turns) {
+  RayBlock rays = rays_of_kind(EmitterKind::disk, 40'000).rays;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const bool right = in_turns ? i % 2 == 0 : Rng(5, i).uniform() < 0.5;
+    rays.x_mm[i] += right ? 3.0f : -3.0f;
+  }
+  return rays;
+}
+
+// Halves in turns would be two lamps, of which one says nothing of the other: every share had the étendue of
+// one disk.
+TEST(ModelEtendueStatistical, OfDiesThatTakeTurnsIsThatOfAll) {
+  constexpr double kWhole = 2.0 * std::numbers::pi * std::numbers::pi;
+  for (const bool in_turns : {true, false}) {
+    const RayBlock rays = two_disks(in_turns);
+    for (const double share : {0.5, 0.9}) {
+      EXPECT_NEAR(searched_etendue_curve(rays).at(share) / (share * kWhole), 1.0, 0.1) << in_turns << share;
+      EXPECT_NEAR(etendue_curve(rays).at(share) / (share * kWhole), 1.0, 0.5) << in_turns << share;
+    }
+  }
 }
 
 // A coil's étendue is that of its wire's surface, pi times 17.3 mm^2, less where windings overlap; a tree on

@@ -5,6 +5,7 @@
 
 #include "lucerna/core/parallel/parallel.h"
 #include "lucerna/ray_statistics.h"
+#include "lucerna/rayset/data/halves.h"
 
 namespace lucerna {
 
@@ -41,8 +42,7 @@ std::vector<double> densities(const RayBlock& rays, const Density& density) {
 }
 
 SplitHalves halves_of(const RayBlock& rays, const Vec3& focus_mm, double tolerance_mm) {
-  SplitHalves h;
-  for (std::size_t i = 0; i < rays.size(); ++i) h.rays[i % 2].append(rays, i);
+  SplitHalves h{ray_halves(rays, 1), {}};
   for (std::size_t k = 0; k < 2; ++k) {
     const RayBlock& other = h.rays[1 - k];
     h.plain[k] = densities(h.rays[k], BackgroundDensity(other, other.weight, focus_mm, tolerance_mm));
