@@ -1,13 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-# Tests of ten seconds and more on two cores, label long: whole designs and traces by many ranks, whose code other tests run in
-# smaller pieces. The sanitizers take ten times as long for them, half of all, and leave them out (scripts/check.sh asan-long
-# tsan-long runs them). A name that is no test fails Tree.LongTestsAreThere.
+# Tests of ten seconds and more on two cores, or of forty under the thread sanitizer, label long: whole designs, traces by many
+# ranks, models of many rays, whose code other tests run in smaller pieces. They are most of a sanitizer's time, and left
+# out there (scripts/check.sh asan-long tsan-long runs them). A name that is no test fails Tree.LongTestsAreThere.
 set(lucerna_long_tests
   Advice.SaysWhatHelps
   BackwardIntensity.FiguresThatAreStoppedAreThoseOfTheCountedRays
+  BackwardLight.IsFollowedForWhatWantsIt
+  BenchCli.HasAnEntryForEachSceneAndSize
   BodyShadows.ADesignThatKnowsTheBodyIsNearerToTheTargetBehindIt
+  CadExport.WhatAMillionTrianglesCannotKeepIsRaisedByLittle
+  CompareCli.TwoSetsOfOneSourceDifferByNoiseInEveryFigure
+  Comparison.OfRayFilesIsThatOfTheirRays
+  CompressCli.ALargestSizeHolds
+  CompressCli.FluxesOfSeveralFilesAdd
+  CompressCli.SaysHowFarAModelIsFromRaysThatItHasNotSeen
+  CompressCli.WarningsNameTheirFile
+  CompressCli.WritesAReportWhereAskedTo
   Design.EveryOptimizerIsSensible
   Design.HoldsTheHeightLimit
+  Design.ReachesTheLightOfAHiddenProfile
   Design.ResumesToTheSameBits
   Design.ShapesAFreeFormMirrorAndKeepsItsSymmetry
   DesignCli.ALimitThatTheLightCannotHoldIsSaidAndExitsWithOne
@@ -17,14 +28,23 @@ set(lucerna_long_tests
   DesignCli.LimitsAreHeldInTheExportedStl
   DesignLensCli.LeavesWhatAManufacturerAndATraceNeed
   DesignRuns.AreWatchedAndGoOnToTheSameBits
+  DesignRuns.GiveTheMirrorItsErrorAndItsLight
   DesignRuns.LeaveAProjectThatMakesTheSameLight
   DesignRuns.TraceTheResultAndTryTolerancesOnlyWhereAsked
+  DeviceTrace.AdaptiveModelsAreSampledOnTheDevice
   DeviceTrace.AgreesRayByRayWithTheFastestInstructionSetOffExactMirrors
   DeviceTrace.BodiesAgreeRayByRayWithEmbree
+  DeviceTrace.CoverGlassesAreTheCpusToTheBit
   DeviceTrace.MirrorsThatAreNoHeightFieldAreTheCpusToTheBit
   DistributedNoiseTest.EndsAtTheRoundAndTheBitsOfOneProcess
+  DistributedTraceTest.APartThatIsThereTwiceCountsOnce
+  DistributedTraceTest.ATornPartIsToldOfAndTracedAgain
+  DistributedTraceTest.GoesOnFromAFinishedTraceToTheBitsOfOneRun
   DistributedTraceTest.GoesOnFromAnySplitToTheSameBits
   DistributedTraceTest.IsTheTraceOfOneProcessForAnyRanksAndChunks
+  DistributedTraceTest.PartsOfOtherRunsAreRefusedOnAllRanks
+  EtendueLimit.ACoilIsNotJudgedByItsFocusPlane
+  Evaluation.DerivativesAgreeWithCentralDifferences
   ExamplesCli.LensForATarget
   ExamplesCli.MirrorForATarget
   ExamplesCli.RaysModelAndBeam
@@ -32,19 +52,35 @@ set(lucerna_long_tests
   FreeFormSearch.EndsAtTheSameBitsHoweverOftenItWasStopped
   FreeFormSearch.NeverEndsWorseThanItsStartAndNeverCoarsensIt
   FreeFormSearch.OfALongSourceALevelGoesOnToTheSameBits
+  FreeFormSearch.OfALongSourceTheGivenMirrorIsBroughtNear
   FreeFormSearch.ReachesAFarTargetFromThePlainParaboloid
+  HeldOut.HalvesFollowNoPatternOfTheFile
+  HeldOut.OfLargeFilesAsManyRaysAsAskedFor
+  JsonFieldsCli.Bench
+  JsonFieldsCli.Compare
+  JsonFieldsCli.Info
   LensDesign.KeepsItsLimits
   LensEvaluation.DerivativesAgreeWithCentralDifferences
   MergeCli.SaysWhatDoesNotFit
+  MergeCli.ShardsAddToTheBitsOfOneMachine
   ModelsCli.PointsLinesAndPlanesAreCompressedSampledAndTraced
   PlaneTarget.AMirrorIsShapedForARectangleOnTheFloor
+  ProgramCli.AModelIsMadeSampledComparedAndTraced
+  ProgramCli.PhotometricFilesAreDescribedCheckedConvertedAndCompared
+  ProjectContent.IsThatOfModelsAndTargetsInMemory
   Report.ADesignsFolderIsWrittenAndReported
+  Report.AModelIsReportedAgainstItsRays
+  ReportModel.IsWellFormedAndItsFiguresAreThoseOfTheJson
   ResultFields.AreThoseOfRealFiles
   SharedDesign.TolerancesAreSharedByCase
+  SourceEtendue.OfOneModelAndOfTwo
+  Tolerances.TheSweepSeesWhatOpticsSays
   TraceNoiseCli.ATraceThatWasTooNoisyGoesOnToTheSameBits
   TutorialsCli.AsALibrary
   TutorialsCli.DesignAFloodlight
   TutorialsCli.LedToModel
   TutorialsCli.ParaboloidToLdt
+  Wavelengths.GoFromFileThroughModelToFile
+  Wavelengths.HangTogetherWithThePlaceWhereTheyDidInTheFile
   WideTrace.TwoLanesGoThroughFiles
   ZoneCost.ASearchEndsWithTheBandsHeld)
