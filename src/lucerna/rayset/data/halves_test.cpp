@@ -35,5 +35,14 @@ TEST(RayHalvesStatistical, FollowNoPattern) {
   }
 }
 
+// Rays of seed 1 are placed by Rng(1, i): halves by the same numbers would each be one side of the source.
+TEST(RayHalvesStatistical, DoNotFollowTheNumbersThatPlaceRays) {
+  constexpr std::size_t kRays = 40'000;
+  std::size_t with = 0;
+  for (std::size_t i = 0; i < kRays; ++i)
+    with += in_second_half(1, i) == (Rng(1, i).uniform() >= 0.5) ? 1 : 0;
+  EXPECT_NEAR(static_cast<double>(with), 0.5 * kRays, 4.0 * std::sqrt(0.25 * kRays));
+}
+
 }  // namespace
 }  // namespace lucerna

@@ -17,8 +17,8 @@ namespace {
 constexpr std::size_t kFewestRays = 100;
 /// Of the model at least so many rays are drawn, so that its own noise does not hide what is to be seen.
 constexpr std::size_t kFewestDrawn = std::size_t{1} << 20;
-/// Streams of random numbers beside those that `compress` uses.
-constexpr std::uint64_t kHalvesSeed = 0x68656c64, kDrawnSeed = 0x6f7574;
+/// Random numbers beside those that `compress` uses.
+constexpr std::uint64_t kDrawnSeed = 0x6f7574;
 
 bool has_flux(const RayBlock& rays) {
   return std::ranges::any_of(rays.weight, [](float w) { return w > 0.0f; });
@@ -28,7 +28,7 @@ bool has_flux(const RayBlock& rays) {
 
 std::optional<HeldOutComparison> compare_held_out(const RaySet& rays, const CompressOptions& options,
                                                   Progress& progress) {
-  auto [first_half, held_out] = ray_halves(rays.rays, options.seed ^ kHalvesSeed);
+  auto [first_half, held_out] = ray_halves(rays.rays, options.seed);
   const RaySet training{rays.header, std::move(first_half)};
   for (const RayBlock* half : {&training.rays, &std::as_const(held_out)})
     if (half->size() < kFewestRays || !has_flux(*half)) return std::nullopt;
