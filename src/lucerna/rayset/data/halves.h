@@ -18,7 +18,10 @@ inline bool in_second_half(std::uint64_t seed, std::uint64_t index) {
   return Rng(seed ^ kHalvesSeed, index).uniform() >= 0.5;
 }
 
-/// Both halves, in the rays' order, with all columns.
+/// Both halves, in the rays' order, with all columns. Of a few rays one may have none.
 std::array<RayBlock, 2> ray_halves(const RayBlock& rays, std::uint64_t seed);
+
+/// Is there a ray whose weight is above 0?
+bool has_flux(const RayBlock& rays);
 
 }  // namespace lucerna

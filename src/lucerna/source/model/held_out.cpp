@@ -20,10 +20,6 @@ constexpr std::size_t kFewestDrawn = std::size_t{1} << 20;
 /// Random numbers beside those that `compress` uses.
 constexpr std::uint64_t kDrawnSeed = 0x6f7574;
 
-bool has_flux(const RayBlock& rays) {
-  return std::ranges::any_of(rays.weight, [](float w) { return w > 0.0f; });
-}
-
 }  // namespace
 
 std::optional<HeldOutComparison> compare_held_out(const RaySet& rays, const CompressOptions& options,

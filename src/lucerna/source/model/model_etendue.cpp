@@ -103,6 +103,8 @@ EtendueCurve searched_etendue_curve(const RayBlock& rays) {
   some.resize(0, rays.extra.size());
   RaySubset(rays.size(), std::min<std::uint64_t>(kMaxRays, rays.size()), 1).select(rays, 0, some);
   auto [first_half, held_out] = ray_halves(some, 1);
+  // Of a few rays a half may have none: then they judge themselves.
+  if (!has_flux(first_half) || !has_flux(held_out)) first_half = held_out = some;
   RaySet train;
   train.header.set_flux(1.0);
   train.rays = std::move(first_half);

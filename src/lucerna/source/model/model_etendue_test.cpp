@@ -91,6 +91,11 @@ TEST(ModelEtendueStatistical, OfEmittersWithALuminanceIsTheKnownOne) {
   EXPECT_FALSE(known_etendue_curve(*make_emitter(filament)).has_value());
 }
 
+TEST(ModelEtendue, OfAnyNumberOfRaysIsSearched) {
+  for (std::size_t n = 1; n < 8; ++n)
+    EXPECT_GE(searched_etendue_curve(rays_of_kind(EmitterKind::disk, n).rays).at(0.5), 0.0) << n;
+}
+
 TEST(ModelEtendue, IsNoneForRaysFromOnePoint) {
   EXPECT_TRUE(etendue_curve(*compress_adaptive(rays_of_kind(EmitterKind::point, 5'000), {})).degenerate());
   EXPECT_TRUE(etendue_curve(*compress_clusters(rays_of_kind(EmitterKind::point, 5'000))).degenerate());

@@ -41,8 +41,10 @@ std::vector<double> densities(const RayBlock& rays, const Density& density) {
   return out;
 }
 
-SplitHalves halves_of(const RayBlock& rays, const Vec3& focus_mm, double tolerance_mm) {
+/// Nothing where a half is dark, as of a few rays.
+std::optional<SplitHalves> halves_of(const RayBlock& rays, const Vec3& focus_mm, double tolerance_mm) {
   SplitHalves h{ray_halves(rays, 1), {}};
+  if (!has_flux(h.rays[0]) || !has_flux(h.rays[1])) return std::nullopt;
   for (std::size_t k = 0; k < 2; ++k) {
     const RayBlock& other = h.rays[1 - k];
     h.plain[k] = densities(h.rays[k], BackgroundDensity(other, other.weight, focus_mm, tolerance_mm));
@@ -219,7 +221,9 @@ std::optional<LayerSplit> split_layers(const RayBlock& rays, const SearchResult&
   const RaySummary summary = summarize(some);
   const Vec3 focus_mm = summary.virtual_focus ? summary.virtual_focus->point_mm : Vec3{};
   const double tolerance_mm = rounding_mm(some, focus_mm);
-  const SplitHalves halves = halves_of(some, focus_mm, tolerance_mm);
+  const std::optional<SplitHalves> both = halves_of(some, focus_mm, tolerance_mm);
+  if (!both) return std::nullopt;
+  const SplitHalves& halves = *both;
   const LayerSplitter splitter(halves, first.best.on, tolerance_mm);
   if (splitter.share < kMinLayerShare) return std::nullopt;
   const RayBlock odd = splitter.odd_rays();
