@@ -18,7 +18,7 @@
 #   tsan          under that preset, those of label unit and cli: statistical tests judge numbers of the same threads, corpora and real
 #                 files are read by one
 #   asan-python   the Python module with the address sanitizer, and its quick tests (needs scripts/packages-python.txt)
-#   asan-long tsan-long   the long ones: an hour and more each, only where they are asked for
+#   asan-long tsan-long   the long ones, only where they are asked for
 set -u
 cd "$(dirname "$0")/.."
 stages="${*:-format tidy tree docs release install consumers api site deb clang asan asan-python tsan}"
@@ -62,18 +62,14 @@ tidy() {  # PRESET
   [ ! -s build/check/findings.once ]
 }
 
-build_and_test() {  # PRESET TARGETS...
+build_preset() {  # PRESET TARGETS...
   preset=$1
   shift
-  cmake --preset "$preset" >/dev/null && cmake --build --preset "$preset" -j "$jobs" --target "$@" && ctest --preset "$preset"
+  cmake --preset "$preset" >/dev/null && cmake --build --preset "$preset" -j "$jobs" --target "$@"
 }
 
-# Presets exclude that label, and what a preset excludes the command line cannot ask for.
-long_tests() {  # PRESET
-  cmake --preset "$1" >/dev/null && cmake --build --preset "$1" -j "$jobs" --target all &&
-    TSAN_OPTIONS="suppressions=$PWD/cmake/races_elsewhere.txt:print_suppressions=0" \
-      LSAN_OPTIONS="suppressions=$PWD/cmake/leaks_elsewhere.txt:print_suppressions=0" \
-      ctest --test-dir "build/$1" -L long -j "$jobs" --output-on-failure
+build_and_test() {  # PRESET TARGETS...
+  build_preset "$@" && ctest --preset "$1"
 }
 
 tree_tests() {  # FILTER
@@ -146,7 +142,7 @@ stage() {
     consumers) within_sources ;;
     clang) build_and_test clang all benchmarks ;;
     asan | tsan) build_and_test "$1" all ;;
-    asan-long | tsan-long) long_tests "${1%-long}" ;;
+    asan-long | tsan-long) build_preset "${1%-long}" all && ctest --preset "$1" ;;
     asan-python) module_under_asan ;;
     *)
       echo "no stage $1" >&2

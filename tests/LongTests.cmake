@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Tests of ten seconds and more on two cores, or of forty under the thread sanitizer, label long: whole designs, traces by many
-# ranks, models of many rays, whose code other tests run in smaller pieces. They are most of a sanitizer's time, and left
+# ranks, models of many rays, whose code other tests run in smaller pieces. They take much of a sanitizer's time, and are left
 # out there (scripts/check.sh asan-long tsan-long runs them). A name that is no test fails Tree.LongTestsAreThere.
 set(lucerna_long_tests
   Advice.SaysWhatHelps

@@ -12,6 +12,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from lucerna_bench import Entry, height_field, placed  # noqa: E402
+from lucerna_bench.golden import golden_section  # noqa: E402
 
 DIAMETER_MM = 100.0
 
@@ -26,23 +27,6 @@ def surfaces_of(parameters):
              "place": placed((0.0, 0.0, focal_mm), z_axis=(0.0, 0.0, -1.0))}]
 
 
-def golden_section(cost, low, high, steps):
-    """The best place of a function with one minimum, to 0.618^steps of the range."""
-    share = 0.5 * (5.0**0.5 - 1.0)
-    a, b = high - share * (high - low), low + share * (high - low)
-    at_a, at_b = cost(a), cost(b)
-    for _ in range(steps):
-        if at_a < at_b:
-            high, b, at_b = b, a, at_a
-            a = high - share * (high - low)
-            at_a = cost(a)
-        else:
-            low, a, at_a = a, b, at_b
-            b = low + share * (high - low)
-            at_b = cost(b)
-    return a if at_a < at_b else b
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scorer", required=True, help="the program lucerna-bench-score")
@@ -54,7 +38,8 @@ def main():
     options = parser.parse_args()
     entry = Entry(options.task, surfaces_of, options.scorer, threads=options.threads)
     # 18 to 40 mm: the mirror stays within the task's cylinder, z from -20 to 40 mm.
-    focal_mm = golden_section(lambda f: entry.cost([f], rays=options.rays), 18.0, 40.0, options.steps)
+    focal_mm = golden_section(lambda f: entry.cost([f], rays=options.rays), 18.0, 40.0,
+                              lambda trials: trials >= options.steps + 2)
     file = entry.write(options.out, [focal_mm], name=f"plain paraboloid, focal length {focal_mm:.2f} mm",
                        author="Lucerna", program="examples/plain_paraboloid.py",
                        method=f"golden section, {options.steps + 2} trials of {options.rays:g} rays")

@@ -6,6 +6,7 @@ import time
 
 from . import cma_es, lucerna_entry, point_source, tree_search
 from .entry import Entry
+from .golden import golden_section
 from .shapes import Lens, Mirror, Trough
 from .tasks import Task
 
@@ -75,25 +76,8 @@ def _best_plain(search, task, kind, share):
     low, high = (0.5, task.room.half_mm - 4.0) if kind == "lens" else task.room.focal_range_mm()
     # A hundredth within, so that what rounding adds stays in the room.
     low, high = low + 0.01 * (high - low), high - 0.01 * (high - low)
-    golden = 0.5 * (5.0**0.5 - 1.0)
-    tried = {}
-
-    def cost(x):
-        tried[x] = search.cost([x])
-        return tried[x]
-
-    a, b = high - golden * (high - low), low + golden * (high - low)
-    at_a, at_b = cost(a), cost(b)
-    while len(tried) < TRIALS_OF_PLAIN and not search.over(share):
-        if at_a < at_b:
-            high, b, at_b = b, a, at_a
-            a = high - golden * (high - low)
-            at_a = cost(a)
-        else:
-            low, a, at_a = a, b, at_b
-            b = low + golden * (high - low)
-            at_b = cost(b)
-    return min(tried, key=tried.get)
+    return golden_section(lambda x: search.cost([x]), low, high,
+                          lambda trials: trials >= TRIALS_OF_PLAIN or search.over(share))
 
 
 def plain(task, kind, means, _folder):

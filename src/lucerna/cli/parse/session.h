@@ -104,7 +104,7 @@ class Session {
 };
 
 /// The folder that a command writes to: made if missing; refused (InputError) when it holds files, unless
-/// `force`.
+/// `force`, and where no file can be written.
 void prepare_folder(const std::filesystem::path& folder, bool force);
 
 /// Throws InputError where a file could not be written there, before the work that ends in it; an empty path
