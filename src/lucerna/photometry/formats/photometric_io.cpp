@@ -107,8 +107,8 @@ void check_isym3(const PhotometricFile& file, std::vector<Diagnostic>& found) {
 
 std::optional<PhotometricFormat> detect_photometric_format(std::string_view head) {
   head = head.substr(0, kHeadBytes);
-  if (head.find('\0') != std::string_view::npos) return std::nullopt;
   const std::string text = decoded_text(head);
+  if (text.find('\0') != std::string::npos) return std::nullopt;
   const std::vector<std::string_view> lines = lines_of(text);
   if (looks_like_ies(lines)) return PhotometricFormat::ies_2019;
   if (looks_like_ldt(lines)) return PhotometricFormat::ldt;

@@ -141,6 +141,18 @@ TEST(PhotometricIo, SidesOfIsym2And3) {
   EXPECT_EQ(none.distribution.c_deg.size(), 4u);
 }
 
+TEST(PhotometricIo, FilesMayBeUtf16) {
+  const test::TempDir dir;
+  for (const char* const name : {"ldt_isym0.ldt", "ies_feet_round_negative_width.ies"}) {
+    std::string wide = "\xFF\xFE";
+    for (const char c : read_file(own(name), 1 << 20)) wide += {c, '\0'};
+    write_file(dir / name, wide);
+    EXPECT_EQ(read_photometric_file(dir / name).distribution.cd,
+              read_photometric_file(own(name)).distribution.cd)
+        << name;
+  }
+}
+
 TEST(PhotometricIo, SizesAndText) {
   const LuminaireData feet = read_photometric_file(own("ies_feet_round_negative_width.ies")).luminaire;
   EXPECT_DOUBLE_EQ(feet.luminous_length_mm, 152.4);

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,6 +10,7 @@
 
 #include "lucerna/core/io/diagnostic_text.h"
 #include "lucerna/core/io/error.h"
+#include "lucerna/core/io/text.h"
 #include "lucerna/photometric_file.h"
 
 namespace lucerna {
@@ -24,21 +24,6 @@ std::string number_text(double value, int decimals);
 
 /// `text` on one line: control characters become blanks, blanks at the ends go.
 std::string one_line(std::string_view text);
-
-/// The file's text as UTF-8: a byte order mark goes, what is not UTF-8 is read as Windows-1252, a ^Z ends the
-/// file.
-std::string decoded_text(std::string_view bytes);
-
-/// Lines of `text` at CR LF, LF or CR, without the ends. They point into `text`. A last line end makes no
-/// empty line.
-std::vector<std::string_view> lines_of(std::string_view text);
-
-/// `text` without blanks, tabs and other control characters at both ends.
-std::string_view trimmed(std::string_view text);
-
-/// The whole of `text` as a finite number: sign, digits, '.', exponent of any length; nothing else ("nan",
-/// "inf", "0x").
-std::optional<double> number_from(std::string_view text);
 
 /// Collects what a reader repairs, and refuses instead when strict.
 class RepairLog {

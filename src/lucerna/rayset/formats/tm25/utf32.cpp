@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/rayset/formats/tm25/utf32.h"
 
+#include "lucerna/core/io/text.h"
+
 namespace lucerna {
 
 namespace {
@@ -9,32 +11,13 @@ constexpr std::uint32_t kReplacement = 0xFFFD;
 
 bool is_scalar_value(std::uint32_t c) { return c < 0xD800 || (c > 0xDFFF && c <= 0x10FFFF); }
 
-void append_utf8(std::string& out, std::uint32_t c) {
-  const auto byte = [&](std::uint32_t b) { out.push_back(static_cast<char>(b)); };
-  if (c < 0x80) {
-    byte(c);
-  } else if (c < 0x800) {
-    byte(0xC0 | (c >> 6));
-    byte(0x80 | (c & 0x3F));
-  } else if (c < 0x10000) {
-    byte(0xE0 | (c >> 12));
-    byte(0x80 | ((c >> 6) & 0x3F));
-    byte(0x80 | (c & 0x3F));
-  } else {
-    byte(0xF0 | (c >> 18));
-    byte(0x80 | ((c >> 12) & 0x3F));
-    byte(0x80 | ((c >> 6) & 0x3F));
-    byte(0x80 | (c & 0x3F));
-  }
-}
-
 }  // namespace
 
 std::string utf8_from_utf32(std::span<const std::uint32_t> code_points) {
   std::string out;
   for (const std::uint32_t c : code_points) {
     if (c == 0) break;
-    append_utf8(out, is_scalar_value(c) ? c : kReplacement);
+    append_utf8(out, c);
   }
   return out;
 }
