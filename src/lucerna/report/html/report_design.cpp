@@ -92,19 +92,12 @@ std::string summary(const ResultFigures& result) {
 
 /// The error that no mirror of this aperture and height can fall below, and why; nothing for lenses.
 std::string bound_html(const ResultFigures& result) {
-  if (!result.has("/bound")) return {};
-  if (!(result.number("/bound/error") > 0.0))
-    return "<p>Bound: neither étendue nor direct light forbids the target.</p>\n";
-  const bool direct = result.number("/bound/direct_error") >= result.number("/bound/etendue_error");
-  const std::string why =
-      direct ? std::string("because of the light that passes the mirror unreflected")
-             : fmt::format(
-                   "because the {} % of the target's light in its brightest boxes have {} mm² sr of "
-                   "this aperture and height, which hold at most {} % of the sources' light",
-                   result.percent("/bound/target_share", 0), result.figure("/bound/etendue_mm2sr"),
-                   result.percent("/bound/max_share", 0));
-  return fmt::format("<p>Bound: no mirror of this aperture and height has an error below {} %, {}.</p>\n",
-                     result.percent("/bound/error"), why);
+  if (!result.has("/bound/reason")) return {};
+  const std::string reason = result.text("/bound/reason");
+  if (!(result.number("/bound/error") > 0.0)) return fmt::format("<p>Bound: {}.</p>\n", reason);
+  return fmt::format(
+      "<p>Bound: no mirror of this aperture and height has an error below {} %, because of {}.</p>\n",
+      result.percent("/bound/error"), reason);
 }
 
 /// Remarks, and what result.json says of limits, whatever its shape.

@@ -138,8 +138,8 @@ std::string bound_text(const DesignBound& bound) {
   if (!(bound.error > 0.0)) return "neither etendue nor direct light forbids the target";
   if (bound.direct_error >= bound.etendue_error) return "the light that passes the mirror unreflected";
   return fmt::format(
-      "the {:.0f} % of the target's light in its brightest boxes have {:.3g} mm2 sr of this aperture "
-      "and height, which hold at most {:.0f} % of the sources' light",
+      "the {:.0f} % of the target's light in its brightest boxes: {:.3g} mm2 sr of this aperture and "
+      "height hold at most {:.0f} % of the sources' light",
       100.0 * bound.target_share, bound.etendue_mm2sr, 100.0 * bound.max_share);
 }
 
@@ -244,7 +244,8 @@ Json error_metrics(const DesignTarget& target, const DesignFindings& result, boo
                     {"direct_error", result.bound.direct_error},
                     {"target_share", result.bound.target_share},
                     {"max_share", result.bound.max_share},
-                    {"etendue_mm2sr", result.bound.etendue_mm2sr}};
+                    {"etendue_mm2sr", result.bound.etendue_mm2sr},
+                    {"reason", bound_text(result.bound)}};
   }
   out["start"] = start;
   return out;

@@ -107,6 +107,7 @@ constexpr std::array kFields{
     ResultField{"bound.target_share", "design", "number", "", "Share of the target's light in its brightest boxes, which decide the bound."},
     ResultField{"bound.max_share", "design", "number", "", "Largest share of the sources' light that their etendue can hold."},
     ResultField{"bound.etendue_mm2sr", "design", "number", "mm2 sr", "That etendue."},
+    ResultField{"bound.reason", "design", "text", "", "What decides the bound, in words."},
     ResultField{"start.**", "design", "group", "", "The same figures of the mirror that was given."},
     ResultField{"zones[].name", "design", "text", "", "A zone of the target."},
     ResultField{"zones[].verdict", "design", "text", "", "`missed` where any bound is, else `undetermined` where any is, else `met`."},
