@@ -194,6 +194,7 @@ const std::map<std::string, std::string> kPublicHeaders{
     {"diagram.h", "results"},
     {"objective.h", "design"},
     {"trace_file.h", "results"},
+    {"glass_catalogue.h", "optics"},
     {"material.h", "optics"},
     {"mesh.h", "optics"},
     {"reflector.h", "optics"},

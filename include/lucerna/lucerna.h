@@ -16,6 +16,7 @@
 #include "lucerna/far_field_metrics.h"
 #include "lucerna/flux_unit.h"
 #include "lucerna/geometry.h"
+#include "lucerna/glass_catalogue.h"
 #include "lucerna/held_out.h"
 #include "lucerna/intensity.h"
 #include "lucerna/intensity_comparison.h"

@@ -53,6 +53,18 @@ TEST_F(InfoFilesCli, PrintsLinesUnderEachName) {
   EXPECT_TRUE(has(run.out, "  rays                5000, all of equal flux\n")) << run.out;
 }
 
+TEST_F(InfoFilesCli, ListsTheGlassesOfACatalogue) {
+  write_file(dir / "made.agf",
+             "NM CLEAR 1 0 1.5\nCD 2.25 0 0 0 0 0\nLD 0.4 0.7\nIT 0.5 0.9 10\nNM BROKEN 1\nLD 0.4 0.7\n");
+  const auto run = run_lucerna(dir.path(), "info made.agf");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(has(run.out, "agf, 2 glasses")) << run.out;
+  EXPECT_TRUE(has(run.out, "CLEAR               index 1.50000  400 to 700 nm, formula 1; transmittance 500"))
+      << run.out;
+  EXPECT_TRUE(has(run.out, "warning: BROKEN: made.agf: line 6: found 0 coefficients")) << run.out;
+  EXPECT_EQ(run_lucerna(dir.path(), "info made.agf --strict").exit_code, 1);
+}
+
 TEST_F(InfoFilesCli, AWarningIsAnErrorWhenStrict) {
   // A file of lines names no unit: lm is assumed, with a warning.
   write_file(dir / "s.txt", "0 0 0 0 0 1 1\n1 0 0 0 0 1 1\n0 1 0 0 0 1 1\n");

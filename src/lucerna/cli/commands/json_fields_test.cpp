@@ -61,6 +61,8 @@ TEST_F(JsonFieldsCli, Info) {
   expect_known("info", "rays.txt --format text");
   expect_known("info", "disk.tm25ray rod.tm25ray disk.nfl rod.nfl clusters.nfl");
   expect_known("info", "lamp/far-field.ldt lamp/far-field.ies");
+  write_file(dir / "made.agf", "NM A 1 0 1.5\nCD 2.25 0 0 0 0 0\nLD 0.4 0.7\nNM B 1\nLD 0.4 0.7\n");
+  expect_known("info", "made.agf");
   // Supports that these sources do not have.
   expect_all_seen("info", {"files[].chosen[].size_mm", "files[].chosen[].twist_rad_per_mm"});
 }

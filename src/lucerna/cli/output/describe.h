@@ -22,6 +22,10 @@ struct Description {
 Description describe_rays(const std::string& path, const std::string& format, Session& session);
 /// A source model.
 Description describe_model(const std::string& path);
+/// Whether the name says that it is a catalogue of glasses (.agf).
+bool is_glass_catalogue(const std::string& path);
+/// A catalogue of glasses; what is wrong with one of them is a warning.
+Description describe_catalogue(const std::string& path);
 /// An IES or EULUMDAT file.
 Description describe_photometry(const std::string& path, const PhotometricReadOptions& options);
 

@@ -3,9 +3,19 @@
 
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <string>
+#include <string_view>
+
+#include "lucerna/project/schema/project_keys.h"
 
 namespace lucerna {
+
+/// Whether a key of that name, in any table, names a file.
+inline bool names_file(std::string_view key) {
+  return std::ranges::any_of(project_keys(),
+                             [&](const ProjectKey& k) { return k.type == KeyType::file && k.key == key; });
+}
 
 /// Calls `change(name)` with the name of every file in the tables, a string that it may replace.
 template <class Change>
@@ -17,7 +27,7 @@ void for_each_file(toml::table& table, const Change& change) {
         if (auto* inner = item.as_table()) for_each_file(*inner, change);
       }
     }
-    if (key.str() == "file" && node.is_string()) change(node.as_string()->get());
+    if (node.is_string() && names_file(key.str())) change(node.as_string()->get());
   }
 }
 

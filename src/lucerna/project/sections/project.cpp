@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/project/schema/project_files.h"
 #include "lucerna/project/schema/project_tables.h"
 #include "lucerna/project/schema/toml_reader.h"
 #include "lucerna/project/schema/toml_text.h"
@@ -16,20 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Makes every `file` of the tables absolute, so that the project can be written to another folder.
+/// Makes every name of a file absolute, so that the project can be written to another folder.
 void make_files_absolute(toml::table& table, const fs::path& folder) {
-  for (auto&& [key, node] : table) {
-    if (auto* inner = node.as_table()) make_files_absolute(*inner, folder);
-    if (auto* array = node.as_array()) {
-      for (auto&& item : *array) {
-        if (auto* inner = item.as_table()) make_files_absolute(*inner, folder);
-      }
-    }
-    if (key.str() == "file" && node.is_string()) {
-      auto& value = node.as_string()->get();
-      value = fs::absolute(folder / value).lexically_normal().string();
-    }
-  }
+  for_each_file(table,
+                [&](std::string& name) { name = fs::absolute(folder / name).lexically_normal().string(); });
 }
 
 /// A source that is partly before and partly behind a mirror reaches through it: nearly always a hole that

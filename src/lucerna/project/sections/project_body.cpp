@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "lucerna/glass_catalogue.h"
 #include "lucerna/material.h"
 #include "lucerna/optics/shapes/outline.h"
 #include "lucerna/project/sections/project_parts.h"
@@ -68,28 +69,59 @@ std::string read_cause(TomlReader& reader, const Scene& scene, const std::string
 
 namespace {
 
-double read_index(TomlReader& reader, double otherwise) {
-  const auto material = reader.word("material");
-  if (!material) {
-    if (reader.has("wavelength_nm"))
-      reader.fail("wavelength_nm", "belongs to `material`, which is not there");
-    return reader.number("refractive_index", otherwise);
-  }
-  if (reader.has("refractive_index"))
-    reader.fail("refractive_index", "found `material` too, which says what it is");
+/// What light meets in a glass or a solid.
+struct ClearMedium {
+  double refractive_index, absorption_per_mm = 0.0;
+};
+
+ClearMedium read_catalogue(TomlReader& reader, const std::filesystem::path& file, Project& project) {
+  const auto name = reader.text("glass");
+  if (!name) reader.missing("glass", "a name of the catalogue");
   const double wavelength_nm = reader.number("wavelength_nm", kWavelengthNm);
-  return at_key(reader, "wavelength_nm", [&] { return refractive_index(*material, wavelength_nm).n; });
+  project.inputs.push_back(file);
+  const CatalogueGlass glass = at_key(reader, "glass", [&] { return read_glass(file, *name); });
+  return at_key(reader, "wavelength_nm", [&] {
+    const double absorption_per_mm =
+        reader.has("absorption_per_mm") ? 0.0 : glass_absorption_per_mm(glass, wavelength_nm);
+    return ClearMedium{glass_index(glass, wavelength_nm), absorption_per_mm};
+  });
 }
 
-CoverGlass read_glass(TomlReader& reader, const Scene& scene) {
+/// The index is a number, or follows from one of `material` and `catalogue`.
+ClearMedium read_medium(TomlReader& reader, double index_otherwise, Project& project) {
+  const auto material = reader.word("material");
+  const auto catalogue = reader.file("catalogue");
+  if (!catalogue && reader.has("glass")) reader.fail("glass", "belongs to `catalogue`, which is not there");
+  if (!material && !catalogue) {
+    if (reader.has("wavelength_nm"))
+      reader.fail("wavelength_nm", "belongs to `material` or `catalogue`, and neither is there");
+    return {reader.number("refractive_index", index_otherwise)};
+  }
+  if (reader.has("refractive_index")) {
+    reader.fail("refractive_index",
+                fmt::format("found `{}` too, which says what it is", material ? "material" : "catalogue"));
+  }
+  if (material && catalogue) reader.fail("catalogue", "found `material` too; expected one of both");
+  if (catalogue) return read_catalogue(reader, *catalogue, project);
+  const double wavelength_nm = reader.number("wavelength_nm", kWavelengthNm);
+  return {at_key(reader, "wavelength_nm", [&] { return refractive_index(*material, wavelength_nm).n; })};
+}
+
+/// The medium's own absorption unless the project has another.
+double read_absorption_per_mm(TomlReader& reader, const ClearMedium& medium) {
+  return reader.number("absorption_per_mm", medium.absorption_per_mm);
+}
+
+CoverGlass read_cover_glass(TomlReader& reader, Project& project) {
   if (reader.has("file")) reader.fail("file", "belongs to bodies of triangles; a glass is flat");
   CoverGlass glass;
-  glass.name = read_cause(reader, scene, glass.name);
+  glass.name = read_cause(reader, project.scene, glass.name);
   glass.world_from_glass = read_placement(reader);
   glass.aperture = read_aperture(reader, std::nullopt);
   glass.thickness_mm = reader.number("thickness_mm", glass.thickness_mm);
-  glass.refractive_index = read_index(reader, glass.refractive_index);
-  glass.absorption_per_mm = reader.number("absorption_per_mm", glass.absorption_per_mm);
+  const ClearMedium medium = read_medium(reader, glass.refractive_index, project);
+  glass.refractive_index = medium.refractive_index;
+  glass.absorption_per_mm = read_absorption_per_mm(reader, medium);
   at_key(reader, "role", [&] { check(glass); });
   return glass;
 }
@@ -105,8 +137,9 @@ Solid read_solid(TomlReader& reader, Project& project) {
   } else {
     solid.mesh = read_mesh_file(reader, project);
   }
-  solid.refractive_index = read_index(reader, solid.refractive_index);
-  solid.absorption_per_mm = reader.number("absorption_per_mm", solid.absorption_per_mm);
+  const ClearMedium medium = read_medium(reader, solid.refractive_index, project);
+  solid.refractive_index = medium.refractive_index;
+  solid.absorption_per_mm = read_absorption_per_mm(reader, medium);
   solid.smooth_below_deg = reader.number("smooth_below_deg", solid.smooth_below_deg);
   at_key(reader, "role", [&] { check(solid); });
   return solid;
@@ -115,7 +148,7 @@ Solid read_solid(TomlReader& reader, Project& project) {
 /// Adds what light passes; false where `role` is nothing of that kind.
 bool read_clear(TomlReader& reader, const std::string& role, Project& project) {
   if (role == "glass") {
-    project.scene.glasses.push_back(read_glass(reader, project.scene));
+    project.scene.glasses.push_back(read_cover_glass(reader, project));
   } else if (role == "solid") {
     project.scene.solids.push_back(read_solid(reader, project));
   } else {

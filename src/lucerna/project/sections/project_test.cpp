@@ -335,6 +335,46 @@ TEST(Project, MetalsAndGlassesHaveTheirMaterials) {
   expect(glass + "metal = 'silver'\n", "body[0].metal: unknown key");
 }
 
+// A made-up catalogue; the dispersion of its glass is that of bk7.
+const char* const kCatalogue =
+    "NM CROWN-7 2 517642 1.5168 64.17\n"
+    "CD 1.03961212 0.00600069867 0.231792344 0.0200179144 1.01046945 103.560653\n"
+    "LD 0.3 2.5\nIT 0.4 0.9 10\nIT 0.8 0.9 10\n";
+
+TEST(Project, GlassesOfACatalogueHaveItsIndexAndAbsorption) {
+  const test::TempDir dir;
+  write_file(dir / "made.agf", kCatalogue);
+  const auto read_from = [&](const std::string& keys) {
+    write_file(dir / "p.toml", kSource + ("[[body]]\nrole = 'glass'\ndiameter_mm = 9\n" + keys));
+    return read_project(dir / "p.toml");
+  };
+  const std::string glass = "catalogue = 'made.agf'\nglass = 'crown-7'\n";
+  const Project project = read_from(glass);
+  EXPECT_NEAR(project.scene.glasses.at(0).refractive_index, refractive_index("bk7", 555.0).n, 1e-9);
+  EXPECT_NEAR(project.scene.glasses.at(0).absorption_per_mm, -std::log(0.9) / 10.0, 1e-12);
+  EXPECT_EQ(project.inputs.back(), dir / "made.agf") << "its bytes are part of what was traced";
+  const Scene other = read_from(glass + "wavelength_nm = 2000\nabsorption_per_mm = 0.001\n").scene;
+  EXPECT_NEAR(other.glasses.at(0).refractive_index, refractive_index("bk7", 2000.0).n, 1e-9);
+  EXPECT_EQ(other.glasses.at(0).absorption_per_mm, 0.001);
+
+  const auto expect = [&](const std::string& keys, const std::string& part) {
+    try {
+      (void)read_from(keys);
+      ADD_FAILURE() << keys;
+    } catch (const InputError& e) {
+      EXPECT_THAT(e.what(), testing::HasSubstr(part)) << keys;
+    }
+  };
+  expect(glass + "wavelength_nm = 900\n", "body[0].wavelength_nm: transmittance of glass 'CROWN-7'");
+  expect(glass + "wavelength_nm = 4000\nabsorption_per_mm = 0\n", "formula of glass 'CROWN-7'");
+  expect(glass + "material = 'bk7'\n", "body[0].catalogue: found `material` too");
+  expect(glass + "refractive_index = 1.5\n", "body[0].refractive_index: found `catalogue` too");
+  expect("catalogue = 'made.agf'\n", "body[0].glass: is missing");
+  expect("glass = 'CROWN-7'\n", "body[0].glass: belongs to `catalogue`");
+  expect("catalogue = 'made.agf'\nglass = 'CROWN-8'\n", "the nearest of 1 is 'CROWN-7'");
+  expect("catalogue = 'absent.agf'\nglass = 'CROWN-7'\n", "absent.agf");
+}
+
 TEST(Project, SolidsAreMeshesOrOutlinesOfAMedium) {
   const std::string lens = std::string(kSource) + "[[body]]\nrole = 'solid'\n";
   const std::string outline = "outline_mm = [[0, 0], [5, 0], [5, 2], [0, 4]]\n";
