@@ -118,8 +118,8 @@ Lucerna makes small models of the ray files of light sources, traces
 light through mirrors, and designs the mirror that gives a wanted light
 distribution.
 
-This package has lucerna-mpi, which traces on many machines with MPI and
-writes the files of one process to the byte.")
+This package has lucerna-mpi, which traces, designs and models sources on
+many machines with MPI and writes the files of one process to the byte.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-lucerna)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

@@ -68,6 +68,10 @@ class RayReader {
   /// Stokes and additional ones.
   [[nodiscard]] virtual std::size_t read(RayBlock& block, std::size_t max_rays) = 0;
 
+  /// Passes over the next `rays` rays, not beyond the end. Binary formats but MCPL take no time for it and do
+  /// not look at what they pass over, so that no fault in it is found; the others read it.
+  virtual void skip(std::uint64_t rays);
+
  protected:
   RaySetHeader header_;
   std::uint64_t ray_count_ = 0, dropped_ = 0;

@@ -109,9 +109,9 @@ struct CompressedFiles {
   std::vector<std::string> notes;
 };
 
-/// Makes a model of ray files; several are superposed, and their fluxes add. One file is read block by block
-/// by the adaptive method, which uses at most 20 M of its rays, so that it may be larger than memory;
-/// otherwise all rays are held (28 bytes each). Throws as above, and what `open_ray_file` throws; UsageError
+/// Makes a model of ray files; several are superposed, and their fluxes add. The adaptive method uses at most
+/// 20 M rays, spread evenly over the files, which are read block by block and may be larger than memory;
+/// clusters hold all rays (28 bytes each). Throws as above, and what `open_ray_file` throws; UsageError
 /// without files.
 [[nodiscard]] CompressedFiles compress(const std::vector<std::filesystem::path>& files,
                                        const CompressOptions& options = {},

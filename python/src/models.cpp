@@ -178,7 +178,7 @@ Makes a source model of rays.
 Parameters
 ----------
 rays : RaySet, path_like or list of path_like
-    One file is read block by block, so that it may be larger than memory; several are superposed.
+    Files are read block by block, so that they may be larger than memory; several are superposed.
 method : str
     'adaptive' or 'clusters'.
 max_bytes : int or str, optional

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "lucerna/cli/commands/run.h"
+#include "lucerna/mpi/compress_command.h"
 #include "lucerna/mpi/design_command.h"
 #include "lucerna/mpi/mpi_ranks.h"
 #include "lucerna/mpi/trace_command.h"
@@ -20,6 +21,7 @@ int run(int argc, char** argv) {
   lucerna::cli::Session session;
   session.set_command("lucerna-mpi", argc, argv);
   int exit_code = 0;
+  lucerna::cli::add_mpi_compress(app, session, ranks);
   lucerna::cli::add_mpi_trace(app, session, ranks);
   lucerna::cli::add_mpi_design(app, session, ranks, exit_code);
   return lucerna::cli::parse_and_run(app, argc, argv, exit_code, ranks.is_first());

@@ -15,6 +15,7 @@ RaySubset::RaySubset(std::uint64_t available, std::uint64_t count, std::uint64_t
 }
 
 std::uint64_t RaySubset::begin(std::uint64_t k) const {
+  if (count_ == 0) return available_;
   // k * available / count without overflow: files are far below 2^64 bytes, but the product need not be.
   const std::uint64_t whole = available_ / count_, rest = available_ % count_;
   return k * whole + static_cast<std::uint64_t>(UInt128{k} * rest / count_);
@@ -30,6 +31,7 @@ std::uint64_t RaySubset::at(std::uint64_t k) const {
 void RaySubset::select(const RayBlock& block, std::uint64_t first, RayBlock& out) const {
   if (count_ == 0 || block.empty()) return;
   if (out.empty()) out.extra.resize(block.extra.size());
+  if (count_ == available_) return out.append(block);
   // The first stretch that may hold a ray of the block: begin(k + 1) > first.
   auto k = static_cast<std::uint64_t>(UInt128{first} * count_ / available_);
   while (k > 0 && begin(k) > first) --k;

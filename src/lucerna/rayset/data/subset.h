@@ -18,14 +18,14 @@ class RaySubset {
   std::uint64_t count() const { return count_; }
   /// Number in the file of the k-th chosen ray; ascends strictly with k < count.
   std::uint64_t at(std::uint64_t k) const;
+  /// The first ray of stretch k; those of stretch `count` begin at the end.
+  std::uint64_t begin(std::uint64_t k) const;
 
   /// Appends to `out` those rays of `block` that are chosen, `first` being the number of the block's first
   /// ray. O(chosen rays).
   void select(const RayBlock& block, std::uint64_t first, RayBlock& out) const;
 
  private:
-  /// The first number of stretch k.
-  std::uint64_t begin(std::uint64_t k) const;
   std::uint64_t available_, count_, seed_;
 };
 

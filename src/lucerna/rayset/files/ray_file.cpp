@@ -129,6 +129,16 @@ RaySet read_ray_set(const std::filesystem::path& path, const ReadOptions& option
   return set;
 }
 
+void RayReader::skip(std::uint64_t rays) {
+  RayBlock passed;
+  while (rays > 0) {
+    const auto some = static_cast<std::size_t>(std::min<std::uint64_t>(rays, kStreamBlock));
+    const std::size_t n = read(passed, some);
+    if (n == 0) return;
+    rays -= n;
+  }
+}
+
 std::vector<std::string> write_ray_set(const std::filesystem::path& path, const RaySet& set,
                                        std::string_view format, const WriteOptions& options) {
   const auto writer = create_ray_file(path, format, set.header, set.rays.size(), options);

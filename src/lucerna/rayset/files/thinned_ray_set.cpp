@@ -3,43 +3,142 @@
 
 #include <algorithm>
 #include <memory>
+#include <string_view>
 #include <utility>
 
+#include "lucerna/core/io/error.h"
+#include "lucerna/core/io/message_bytes.h"
 #include "lucerna/ray_file.h"
 #include "lucerna/rayset/data/merge_ray_sets.h"
 #include "lucerna/rayset/data/subset.h"
+#include "lucerna/rayset/files/named_warnings.h"
 
 namespace lucerna {
 
 namespace {
 
-RaySet thinned(RayReader& reader, std::uint64_t wanted, std::uint64_t seed, Progress& progress) {
-  const RaySubset subset(reader.ray_count(), wanted, seed);
-  RaySet set{reader.header(), {}};
-  std::uint64_t first = 0;
-  for_each_block(reader, progress, "read rays", [&](const RayBlock& block) {
-    subset.select(block, first, set.rays);
-    first += block.size();
-  });
-  return set;
+/// All columns of a block, in order.
+template <class Block, class Use>
+void for_each_column(Block& rays, const Use& use) {
+  for (auto* column : {&rays.x_mm, &rays.y_mm, &rays.z_mm, &rays.kx, &rays.ky, &rays.kz, &rays.weight})
+    use(*column);
+  for (auto& column : rays.extra) use(column);
+}
+
+/// Leaves of extra columns the wavelengths, if there are any.
+void keep_wavelengths(const std::vector<ColumnSpec>& columns, RayBlock& rays) {
+  const auto column = find_column(columns, ColumnKind::wavelength_nm);
+  if (!column) return rays.extra.clear();
+  std::swap(rays.extra.front(), rays.extra[*column]);
+  rays.extra.resize(1);
+}
+
+void keep_wavelengths(std::vector<ColumnSpec>& columns) {
+  std::erase_if(columns, [](const ColumnSpec& c) { return c.kind != ColumnKind::wavelength_nm; });
+  if (columns.size() > 1) columns.resize(1);
+}
+
+/// A file of which some rays are wanted.
+struct ThinnedFile {
+  std::unique_ptr<RayReader> reader;
+  RaySubset subset;
+
+  /// Those of the chosen rays that have the numbers `own`.
+  RayBlock read(ItemRange own, const ThinOptions& options, Progress& progress) const {
+    const std::uint64_t first = subset.begin(own.first), last = subset.begin(own.last);
+    const std::vector<ColumnSpec>& columns = reader->header().columns;
+    RayBlock rays, block;
+    rays.extra.resize(columns.size());
+    if (options.only_wavelengths) keep_wavelengths(columns, rays);
+    rays.reserve(own.size());
+    reader->skip(first);
+    for (std::uint64_t at = first; at < last;) {
+      const std::uint64_t some = std::min<std::uint64_t>(kStreamBlock, last - at);
+      const std::size_t n = reader->read(block, static_cast<std::size_t>(some));
+      if (n == 0) break;
+      if (options.only_wavelengths) keep_wavelengths(columns, block);
+      subset.select(block, at, rays);
+      progress.step("read rays", (at += n) - first, last - first);
+    }
+    return rays;
+  }
+};
+
+/// Opens the files and says how many rays of each are wanted.
+std::vector<ThinnedFile> opened(const std::vector<std::filesystem::path>& files, const ThinOptions& options,
+                                std::uint64_t& all_rays) {
+  std::vector<std::unique_ptr<RayReader>> readers;
+  for (const std::filesystem::path& file : files) {
+    readers.push_back(open_ray_file(file));
+    all_rays += readers.back()->ray_count();
+  }
+  const double share = static_cast<double>(options.max_rays) / static_cast<double>(all_rays);
+  std::vector<ThinnedFile> all;
+  for (auto& reader : readers) {
+    const std::uint64_t count = reader->ray_count(), one = count > 0 ? 1 : 0;
+    // A file without a ray would lose its flux.
+    const std::uint64_t wanted =
+        all_rays <= options.max_rays
+            ? count
+            : std::max(one, static_cast<std::uint64_t>(share * static_cast<double>(count)));
+    all.push_back({std::move(reader), RaySubset(count, wanted, options.seed)});
+  }
+  return all;
+}
+
+/// The rays of all parts, in order, on all peers.
+RayBlock joined(Peers* peers, RayBlock own) {
+  if (peers == nullptr) return own;
+  const auto n = static_cast<std::size_t>(peers->size());
+  std::vector<RayBlock> parts(n);
+  const std::size_t columns = own.extra.size();
+  parts[static_cast<std::size_t>(peers->rank())] = std::move(own);
+  share_items(
+      peers, n, StateKey().add(std::uint64_t{columns}).value(),
+      [&](std::size_t r, std::string& bytes) {
+        for_each_column(parts[r], [&](const std::vector<float>& column) { append(bytes, column); });
+      },
+      [&](std::size_t r, std::string_view& bytes) {
+        parts[r].extra.resize(columns);
+        for_each_column(parts[r], [&](std::vector<float>& column) { take(bytes, column); });
+      });
+  for (std::size_t r = 1; r < n; ++r) {
+    parts.front().append(parts[r]);
+    parts[r] = {};
+  }
+  return std::move(parts.front());
+}
+
+/// What `read` returns; an InputError of one peer is thrown by all.
+template <class Read>
+auto together(Peers* peers, const Read& read) {
+  if (peers == nullptr) return read();
+  decltype(read()) result;
+  std::string error;
+  try {
+    result = read();
+  } catch (const InputError& e) {
+    error = e.what();
+  }
+  for (const std::string& text : peers->gather(error)) {
+    if (!text.empty()) throw InputError(text, ErrorCause::damaged);
+  }
+  return result;
 }
 
 }  // namespace
 
-ThinnedRaySet thinned_ray_set(const std::vector<std::filesystem::path>& files, std::uint64_t max_rays,
-                              std::uint64_t seed, Progress& progress) {
-  std::vector<std::unique_ptr<RayReader>> readers;
+ThinnedRaySet thinned_ray_set(const std::vector<std::filesystem::path>& files, const ThinOptions& options,
+                              Progress& progress) {
   ThinnedRaySet out;
-  for (const std::filesystem::path& file : files) {
-    readers.push_back(open_ray_file(file));
-    out.of += readers.back()->ray_count();
-  }
-  const double part = out.of > max_rays ? static_cast<double>(max_rays) / static_cast<double>(out.of) : 1.0;
+  const auto readers = together(options.peers, [&] { return opened(files, options, out.of); });
   for (std::size_t k = 0; k < files.size(); ++k) {
-    const std::uint64_t count = readers[k]->ray_count(), one = count > 0 ? 1 : 0;
-    // A file without a ray would lose its flux.
-    const std::uint64_t wanted = std::max(one, static_cast<std::uint64_t>(part * static_cast<double>(count)));
-    RaySet set = thinned(*readers[k], wanted, seed, progress);
+    const ThinnedFile& file = readers[k];
+    const ItemRange own = own_items(options.peers, file.subset.count());
+    RayBlock rays = together(options.peers, [&] { return file.read(own, options, progress); });
+    RaySet set{file.reader->header(), joined(options.peers, std::move(rays))};
+    if (options.only_wavelengths) keep_wavelengths(set.header.columns);
+    add_named_warnings(files[k], file.reader->warnings(), out.warnings);
     if (files.size() == 1) {
       out.set = std::move(set);
     } else {

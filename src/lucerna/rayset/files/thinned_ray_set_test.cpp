@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/rayset/files/thinned_ray_set.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
+#include "lucerna/core/io/file.h"
 #include "lucerna/ray_file.h"
+#include "tests/support/local_peers.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {
@@ -33,14 +37,15 @@ double weight_of(const RayBlock& rays, std::size_t first, std::size_t last) {
 TEST(ThinnedRaySet, AllRaysWhereThereAreNoMore) {
   const test::TempDir dir;
   const auto file = file_of(dir, "a", 500, 3.0);
-  const ThinnedRaySet all = thinned_ray_set({file}, 500, 1, no_progress());
+  const ThinnedRaySet all = thinned_ray_set({file}, {.max_rays = 500}, no_progress());
   EXPECT_EQ(all.of, 500u);
   EXPECT_EQ(all.set, read_ray_set(file));
 }
 
 TEST(ThinnedRaySet, IsSpreadOverTheFile) {
   const test::TempDir dir;
-  const ThinnedRaySet some = thinned_ray_set({file_of(dir, "a", 200'000, 3.0)}, 1000, 1, no_progress());
+  const ThinnedRaySet some =
+      thinned_ray_set({file_of(dir, "a", 200'000, 3.0)}, {.max_rays = 1000}, no_progress());
   EXPECT_EQ(some.of, 200'000u);
   ASSERT_EQ(some.set.rays.size(), 1000u);
   for (std::size_t i = 0; i < 1000; ++i) EXPECT_EQ(static_cast<std::size_t>(some.set.rays.x_mm[i]) / 200, i);
@@ -51,12 +56,81 @@ TEST(ThinnedRaySet, EveryFileKeepsItsFlux) {
   const test::TempDir dir;
   const std::vector<std::filesystem::path> files{file_of(dir, "a", 100'000, 90.0),
                                                  file_of(dir, "b", 3, 10.0)};
-  const ThinnedRaySet some = thinned_ray_set(files, 1000, 1, no_progress());
+  const ThinnedRaySet some = thinned_ray_set(files, {.max_rays = 1000}, no_progress());
   const std::size_t n = some.set.rays.size();
   EXPECT_EQ(n, 1000u);
   EXPECT_DOUBLE_EQ(*some.set.header.flux(), 100.0);
   EXPECT_NEAR(weight_of(some.set.rays, 0, n - 1), 90.0, 1e-4);
   EXPECT_NEAR(weight_of(some.set.rays, n - 1, n), 10.0, 1e-5);
+}
+
+// Peers that read a part each all have what one process reads, of every format, whole and thinned.
+TEST(ThinnedRaySet, IsTheSameForAnyNumberOfPeers) {
+  const test::TempDir dir;
+  std::vector<std::filesystem::path> files{file_of(dir, "a", 10'007, 90.0), file_of(dir, "b", 2, 10.0)};
+  RaySet text = read_ray_set(files[0]);
+  text.rays.resize(1001);
+  write_ray_set(dir / "c.txt", text, "text");
+  files.push_back(dir / "c.txt");
+  for (const std::uint64_t max_rays : {std::uint64_t{500}, std::uint64_t{20'000}}) {
+    const ThinnedRaySet one = thinned_ray_set(files, {.max_rays = max_rays}, no_progress());
+    for (const int n : {1, 2, 3, 7}) {
+      const auto errors = test::on_peers(n, [&](Peers& peers) {
+        const ThinnedRaySet some =
+            thinned_ray_set(files, {.max_rays = max_rays, .peers = &peers}, no_progress());
+        EXPECT_EQ(some.of, one.of);
+        EXPECT_EQ(some.set, one.set) << peers.rank() << " of " << n;
+      });
+      for (const std::string& error : errors) EXPECT_EQ(error, "");
+    }
+  }
+}
+
+TEST(ThinnedRaySet, AFaultThatOnePeerMeetsIsThrownByAll) {
+  const test::TempDir dir;
+  const auto file = file_of(dir, "a", 1000, 1.0);
+  std::string bytes = read_file(file, 1 << 20);
+  bytes.replace(bytes.size() - 28, 4, std::string("\x00\x00\xC0\x7F", 4));  // the last ray's x is no number
+  write_file(file, bytes);
+  const auto errors = test::on_peers(
+      3, [&](Peers& peers) { (void)thinned_ray_set({file}, {.peers = &peers}, no_progress()); });
+  for (const std::string& error : errors) {
+    EXPECT_THAT(error, testing::HasSubstr("ray 999"));
+    EXPECT_EQ(error, errors.front());
+  }
+}
+
+// Wavelengths stay where they are wanted, other columns go.
+TEST(ThinnedRaySet, KeepsOfItsColumnsTheWavelengths) {
+  const test::TempDir dir;
+  RaySet set = read_ray_set(file_of(dir, "a", 100, 1.0));
+  set.header.columns = {{ColumnKind::tristimulus_x, standard_label(ColumnKind::tristimulus_x)},
+                        {ColumnKind::wavelength_nm, standard_label(ColumnKind::wavelength_nm)}};
+  set.rays.extra = {std::vector<float>(100, 3.0f), std::vector<float>(100, 600.0f)};
+  write_ray_set(dir / "b", set, "tm25");
+  const RaySet read =
+      thinned_ray_set({dir / "b"}, {.max_rays = 10, .only_wavelengths = true}, no_progress()).set;
+  ASSERT_EQ(read.header.columns.size(), 1u);
+  EXPECT_EQ(read.header.columns[0].kind, ColumnKind::wavelength_nm);
+  ASSERT_EQ(read.rays.extra.size(), 1u);
+  EXPECT_EQ(read.rays.extra[0], std::vector<float>(10, 600.0f));
+}
+
+TEST(RayReader, PassesOverRays) {
+  const test::TempDir dir;
+  const RaySet set = read_ray_set(file_of(dir, "a", 1000, 1.0));
+  for (const char* const format : {"tm25", "text", "mcpl"}) {
+    write_ray_set(dir / "b", set, format);
+    const RaySet whole = read_ray_set(dir / "b");
+    for (const std::uint64_t skipped : {0, 1, 437, 1000, 2000}) {
+      const auto reader = open_ray_file(dir / "b");
+      reader->skip(skipped);
+      RayBlock rest;
+      const std::size_t n = reader->read(rest, 2000);
+      ASSERT_EQ(n, 1000 - std::min<std::uint64_t>(skipped, 1000)) << format;
+      for (std::size_t i = 0; i < n; ++i) EXPECT_EQ(rest.x_mm[i], whole.rays.x_mm[1000 - n + i]) << format;
+    }
+  }
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ constexpr std::uint64_t kMaxReportRays = std::uint64_t{1} << 22;
 void write_model_report(const SourceModel& model, const std::filesystem::path& model_path,
                         const std::vector<std::filesystem::path>& ray_files, nlohmann::ordered_json json,
                         const std::filesystem::path& html, Progress& progress) {
-  const ThinnedRaySet rays = thinned_ray_set(ray_files, kMaxReportRays, 1, progress);
+  const ThinnedRaySet rays = thinned_ray_set(ray_files, {.max_rays = kMaxReportRays}, progress);
   ModelReportOptions options;
   options.title = model_path.filename().string();
   options.rays = ray_files.empty() ? nullptr : &rays.set.rays;

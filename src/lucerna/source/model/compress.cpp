@@ -1,33 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "lucerna/core/io/error.h"
 #include "lucerna/ray_file.h"
-#include "lucerna/rayset/data/merge_ray_sets.h"
-#include "lucerna/rayset/files/named_warnings.h"
+#include "lucerna/rayset/files/thinned_ray_set.h"
 #include "lucerna/source/adaptive/compression/adaptive_compress.h"
 #include "lucerna/source/clusters/cluster_compress.h"
+#include "lucerna/source/model/compress_files.h"
 #include "lucerna/source_model.h"
 
 namespace lucerna {
 
 namespace {
 
-/// One file, adaptively, block by block.
-CompressedFiles compress_stream(const std::filesystem::path& file, const CompressOptions& options,
-                                Progress& progress) {
-  const AdaptiveOptions adaptive{.max_bytes = options.max_bytes, .seed = options.seed, .flux = options.flux};
-  const auto reader = open_ray_file(file);
-  if (!options.flux) require_flux(reader->header(), file.string());
-  CompressedFiles made;
-  made.rays = reader->ray_count();
-  if (made.rays > adaptive.max_rays) {
-    made.notes.push_back(fmt::format("{}: of its {} rays {} are used, one of each stretch of equal length",
-                                     file.string(), made.rays, adaptive.max_rays));
-  }
-  made.model = compress_adaptive(*reader, adaptive, progress);
-  add_named_warnings(file, reader->warnings(), made.warnings);
-  return made;
+/// The adaptive method uses at most so many rays: 560 MB, and 40 bytes a ray beside them.
+constexpr std::uint64_t kMaxAdaptiveRays = 20'000'000;
+
+ThinOptions thin_options(const CompressOptions& options, Peers* peers) {
+  ThinOptions thin{.seed = options.seed, .only_wavelengths = true, .peers = peers};
+  if (options.method == CompressMethod::adaptive) thin.max_rays = kMaxAdaptiveRays;
+  return thin;
 }
 
 }  // namespace
@@ -52,29 +46,30 @@ std::unique_ptr<SourceModel> compress(const RaySet& rays, const CompressOptions&
                            progress);
 }
 
+CompressedFiles compress_files(const std::vector<std::filesystem::path>& files,
+                               const CompressOptions& options, Peers* peers, Progress& progress) {
+  if (files.empty()) throw UsageError("no ray file to compress");
+  // Before much is read.
+  if (!options.flux && peers == nullptr)
+    require_flux(open_ray_file(files.front())->header(), files.front().string());
+  ThinnedRaySet read = thinned_ray_set(files, thin_options(options, peers), progress);
+  if (options.flux) read.set.header.set_flux(*options.flux);
+  require_flux(read.set.header, files.front().string());
+  CompressedFiles made;
+  made.rays = read.of;
+  made.warnings = std::move(read.warnings);
+  if (read.set.rays.size() < read.of) {
+    made.notes.push_back(fmt::format("{}: of {} rays {} are used, one of each stretch of equal length",
+                                     files.size() == 1 ? files.front().string() : "all files", read.of,
+                                     read.set.rays.size()));
+  }
+  made.model = compress(read.set, options, progress);
+  return made;
+}
+
 CompressedFiles compress(const std::vector<std::filesystem::path>& files, const CompressOptions& options,
                          Progress& progress) {
-  if (files.empty()) throw UsageError("no ray file to compress");
-  if (files.size() == 1 && options.method == CompressMethod::adaptive) {
-    return compress_stream(files.front(), options, progress);
-  }
-  CompressedFiles made;
-  RaySet all;
-  for (const std::filesystem::path& file : files) {
-    std::vector<std::string> warnings;
-    RaySet rays = read_ray_set(file, {}, progress, &warnings);
-    add_named_warnings(file, warnings, made.warnings);
-    if (files.size() == 1) {
-      all = std::move(rays);
-    } else {
-      merge_ray_sets(all, std::move(rays), file.string());
-    }
-  }
-  if (options.flux) all.header.set_flux(*options.flux);
-  require_flux(all.header, files.front().string());
-  made.rays = all.rays.size();
-  made.model = compress(all, options, progress);
-  return made;
+  return compress_files(files, options, nullptr, progress);
 }
 
 }  // namespace lucerna

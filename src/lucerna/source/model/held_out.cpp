@@ -49,7 +49,8 @@ std::optional<HeldOutComparison> compare_held_out(const std::vector<std::filesys
                                                   std::uint64_t max_rays, const CompressOptions& options,
                                                   Progress& progress) {
   if (files.empty()) throw UsageError("no ray file to compress");
-  return compare_held_out(thinned_ray_set(files, max_rays, options.seed, progress).set, options, progress);
+  return compare_held_out(thinned_ray_set(files, {.max_rays = max_rays, .seed = options.seed}, progress).set,
+                          options, progress);
 }
 
 }  // namespace lucerna

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -69,6 +70,7 @@ class RecordReader final : public RayReader {
   /// The caller has checked that all `facts.ray_count` records lie inside `file`.
   RecordReader(InputFile file, RayFileFacts facts, RecordLayout layout, bool salvage);
   std::size_t read(RayBlock& block, std::size_t max_rays) override;
+  void skip(std::uint64_t rays) override { next_ += std::min(rays, ray_count_ - next_); }
 
  private:
   [[noreturn]] void fail(const RayFault& fault) const;

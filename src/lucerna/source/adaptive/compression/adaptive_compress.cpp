@@ -386,15 +386,15 @@ double model_flux(const RaySetHeader& header, const AdaptiveOptions& options) {
 
 /// `rays` have no extra columns; `nm` are their wavelengths, if they have any.
 std::unique_ptr<AdaptiveModel> compress(const RayBlock& rays, std::span<const float> nm,
-                                        const RaySetHeader& header, std::uint64_t count,
-                                        const AdaptiveOptions& options, Progress& progress) {
+                                        const RaySetHeader& header, const AdaptiveOptions& options,
+                                        Progress& progress) {
   check_rays(rays);
   const bool coloured = std::all_of(nm.begin(), nm.end(), [](float x) { return x > 0.0f; });
   if (!coloured) nm = {};
   AdaptiveData data;
   data.flux = model_flux(header, options);
   data.flux_unit = header.flux_unit;
-  data.training_rays = count;
+  data.training_rays = rays.size();
   data.spectra = header.spectra;
   data.surface = starting_surface(rays);
   SearchResult search = search_support(rays, data.surface, options.seed, progress);
@@ -442,42 +442,11 @@ std::unique_ptr<AdaptiveModel> compress_adaptive(const RaySet& rays, const Adapt
                                                  Progress& progress) {
   const auto nm = wavelengths_of(rays.rays, rays.header);
   if (rays.rays.extra.empty()) {
-    return compress(rays.rays, nm, rays.header, rays.rays.size(), options, progress);
+    return compress(rays.rays, nm, rays.header, options, progress);
   }
   RayBlock plain = rays.rays;
   plain.extra.clear();
-  return compress(plain, nm, rays.header, rays.rays.size(), options, progress);
-}
-
-std::unique_ptr<AdaptiveModel> compress_adaptive(RayReader& reader, const AdaptiveOptions& options,
-                                                 Progress& progress) {
-  const std::uint64_t count = reader.ray_count(), retained = std::min(count, options.max_rays);
-  RayBlock rays, block;
-  std::vector<float> nm;
-  std::uint64_t read = 0, next = 0;
-  const auto place_of = [&](std::uint64_t i) {
-    if (retained == count) return i;
-    const double stretch = static_cast<double>(count) / static_cast<double>(retained);
-    return static_cast<std::uint64_t>((static_cast<double>(i) + Rng(options.seed, i).uniform()) * stretch);
-  };
-  std::uint64_t wanted = place_of(0);
-  while (const std::size_t n = reader.read(block, kStreamBlock)) {
-    const auto its = wavelengths_of(block, reader.header());
-    const std::vector<float> block_nm(its.begin(), its.end());
-    block.extra.clear();
-    if (retained == count) {
-      rays.append(block);
-      nm.insert(nm.end(), block_nm.begin(), block_nm.end());
-    }
-    for (; retained < count && next < retained && wanted < read + n; wanted = place_of(++next)) {
-      const auto i = static_cast<std::size_t>(wanted - read);
-      rays.append(block, i);
-      if (!block_nm.empty()) nm.push_back(block_nm[i]);
-    }
-    read += n;
-    progress.step("compress: read", read, count);
-  }
-  return compress(rays, nm, reader.header(), count, options, progress);
+  return compress(plain, nm, rays.header, options, progress);
 }
 
 }  // namespace lucerna

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "lucerna/progress.h"
-#include "lucerna/ray_file.h"
+#include "lucerna/rays.h"
 #include "lucerna/source/adaptive/sampling/adaptive_model.h"
 
 namespace lucerna {
@@ -17,9 +17,6 @@ struct AdaptiveOptions {
   std::uint64_t seed = 1;
   /// Total flux of the model, in the unit of the rays; absent: what the header states.
   std::optional<double> flux;
-  /// Of rays still in their file at most so many are used; more are thinned out evenly, by chance within each
-  /// stretch, as they are read. Keeps memory below 1.5 GB for files of any size.
-  std::uint64_t max_rays = 20'000'000;
   /// For studies only; absent: what the rays say. Trees averaged in each chart, nats a split must gain, and
   /// whether a second support is looked for.
   std::optional<int> trees;
@@ -32,10 +29,6 @@ struct AdaptiveOptions {
 /// `max_bytes` is too little for any model (1000 always do). Cost: about 1 us a ray; memory: 40 bytes a ray
 /// beside the rays.
 std::unique_ptr<AdaptiveModel> compress_adaptive(const RaySet& rays, const AdaptiveOptions& options,
-                                                 Progress& progress = no_progress());
-
-/// The same for rays still in their file.
-std::unique_ptr<AdaptiveModel> compress_adaptive(RayReader& reader, const AdaptiveOptions& options,
                                                  Progress& progress = no_progress());
 
 /// Where the rays of a compressed set start: the surface that holds 99.9 % of the starts (surface_guess.h),

@@ -10,6 +10,7 @@
 #include "lucerna/core/parallel/parallel.h"
 #include "lucerna/ray_comparison.h"
 #include "lucerna/ray_file.h"
+#include "lucerna/rayset/files/thinned_ray_set.h"
 #include "lucerna/rayset/statistics/surface_guess.h"
 #include "lucerna/source.h"
 #include "lucerna/source/emitters/draw_rays.h"
@@ -115,8 +116,9 @@ TEST(AdaptiveCompress, FilesOfMoreRaysThanAreWantedAreThinnedOutEvenly) {
     for (const float x : block.x_mm) n += x > 2.5f ? 1 : 0;
     return static_cast<double>(n) / static_cast<double>(block.size());
   };
-  const auto model = compress_adaptive(*open_ray_file(path), {.max_rays = 10'000});
-  EXPECT_EQ(model->training_rays(), 40'000u);
+  const auto model = compress_adaptive(
+      thinned_ray_set({path}, {.max_rays = 10'000, .only_wavelengths = true}, no_progress()).set, {});
+  EXPECT_EQ(model->training_rays(), 10'000u);
   EXPECT_DOUBLE_EQ(model->flux(), *rays.header.flux());
   EXPECT_NEAR(right(from_model(*model, 100'000)), 0.5, 0.01);
 }

@@ -103,7 +103,7 @@ TEST(Wavelengths, GoFromFileThroughModelToFile) {
   const RaySet set = coloured(true, 20000);
   const auto source = folder.path() / "in.tm25ray", copy = folder.path() / "out.tm25ray";
   write_ray_set(source, set, "tm25");
-  save_source_model(folder.path() / "model.nfl", *compress_adaptive(*open_ray_file(source), {}));
+  save_source_model(folder.path() / "model.nfl", *compress_adaptive(read_ray_set(source), {}));
   const auto model = load_source_model(folder.path() / "model.nfl");
   ASSERT_TRUE(model->has_wavelengths());
   RaySetHeader header;
