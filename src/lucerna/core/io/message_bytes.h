@@ -33,6 +33,19 @@ inline void append_double(std::string& bytes, double number) {
 }
 inline double take_double(std::string_view& bytes) { return std::bit_cast<double>(take(bytes)); }
 
+/// The length, then the characters.
+inline void append_text(std::string& bytes, std::string_view text) {
+  append(bytes, std::uint64_t{text.size()});
+  bytes += text;
+}
+inline std::string take_text(std::string_view& bytes) {
+  const std::uint64_t n = take(bytes);
+  LUCERNA_CHECK(n <= bytes.size(), "a message of {} bytes is to hold a text of {}", bytes.size(), n);
+  std::string text(bytes.substr(0, n));
+  bytes.remove_prefix(n);
+  return text;
+}
+
 /// The length, then the items.
 template <class T>
 void append(std::string& bytes, const std::vector<T>& items) {

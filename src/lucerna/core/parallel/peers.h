@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "lucerna/core/io/error.h"
+#include "lucerna/core/io/message_bytes.h"
 #include "lucerna/core/parallel/parallel.h"
 
 namespace lucerna {
@@ -84,6 +86,37 @@ void share_items(Peers* peers, std::size_t n, std::uint64_t key, const Write& wr
     const ItemRange theirs = items_of(r, peers->size(), n);
     for (std::size_t i = theirs.first; i < theirs.last; ++i) read(i, bytes);
   }
+}
+
+/// n items as texts, each made by one process alone and given to all. `make(i)` is not collective; a process
+/// that has several of them calls it on several threads. Collective; `key` as in share_items. Throws
+/// InputError on all processes if `make` does on one.
+template <class Make>
+std::vector<std::string> dealt_items(Peers& peers, std::size_t n, std::uint64_t key, const Make& make) {
+  std::vector<std::string> items(n), errors(n);
+  const ItemRange own = own_items(&peers, n);
+  parallel_blocks(own.size(), 1, [&](std::size_t first, std::size_t) {
+    const std::size_t i = own.first + first;
+    try {
+      items[i] = make(i);
+    } catch (const InputError& e) {
+      errors[i] = e.what();
+    }
+  });
+  share_items(
+      &peers, n, key,
+      [&](std::size_t i, std::string& bytes) {
+        append_text(bytes, items[i]);
+        append_text(bytes, errors[i]);
+      },
+      [&](std::size_t i, std::string_view& bytes) {
+        items[i] = take_text(bytes);
+        errors[i] = take_text(bytes);
+      });
+  for (const std::string& error : errors) {
+    if (!error.empty()) throw InputError(error);
+  }
+  return items;
 }
 
 /// Calls `body(i)` for each i < n: in any order on any thread, or where each of them shares its work with

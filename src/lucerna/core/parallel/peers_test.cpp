@@ -71,6 +71,34 @@ TEST(Peers, WhoHasOtherNumbersIsFoundByAll) {
     EXPECT_THAT(e, testing::HasSubstr("process 2 no longer has the numbers"));
 }
 
+TEST(Peers, DealtItemsAreEachMadeOnceAndKnownToAll) {
+  for (const std::size_t n : {0, 1, 2, 7}) {
+    std::atomic<int> made = 0, whole = 0;
+    const auto errors = test::on_peers(3, [&](Peers& peers) {
+      const std::vector<std::string> items = dealt_items(peers, n, 5, [&](std::size_t i) {
+        ++made;
+        return std::string(i, 'x');
+      });
+      bool all = items.size() == n;
+      for (std::size_t i = 0; i < items.size(); ++i) all = all && items[i] == std::string(i, 'x');
+      whole += all ? 1 : 0;
+    });
+    for (const std::string& e : errors) EXPECT_EQ(e, "");
+    EXPECT_EQ(made, static_cast<int>(n));
+    EXPECT_EQ(whole, 3);
+  }
+}
+
+TEST(Peers, AFaultOfOneDealtItemIsThatOfAll) {
+  const auto errors = test::on_peers(3, [&](Peers& peers) {
+    dealt_items(peers, 6, 5, [](std::size_t i) -> std::string {
+      if (i == 4) throw InputError("the fifth is bad");
+      return "good";
+    });
+  });
+  for (const std::string& e : errors) EXPECT_EQ(e, "the fifth is bad");
+}
+
 TEST(Peers, CollectiveBodiesAreCalledInTurn) {
   test::on_peers(2, [&](Peers& peers) {
     std::vector<std::size_t> order;

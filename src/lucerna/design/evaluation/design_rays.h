@@ -77,4 +77,17 @@ class DesignRays {
   Peers* peers_ = nullptr;
 };
 
+/// As long as it lives, the rays' evaluations are made by this process alone.
+class UnsharedRays {
+ public:
+  explicit UnsharedRays(DesignRays& rays) : rays_(rays), peers_(rays.peers()) { rays_.share_with(nullptr); }
+  ~UnsharedRays() { rays_.share_with(peers_); }
+  UnsharedRays(const UnsharedRays&) = delete;
+  UnsharedRays& operator=(const UnsharedRays&) = delete;
+
+ private:
+  DesignRays& rays_;
+  Peers* peers_;
+};
+
 }  // namespace lucerna

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "lucerna/design/fit/fit_state.h"
-#include "lucerna/design/search/free_form_search.h"
+#include "lucerna/design/search/free_form_state.h"
 
 namespace lucerna {
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/core/parallel/peers.h"
 #include "lucerna/design/fit/approach.h"
 #include "lucerna/random.h"
 
@@ -313,17 +314,89 @@ void FreeFormSearch::choose(Progress& progress) {
     begin(shape_of(next), next, progress);
     return;
   }
-  FreeFormSnapshot next;
-  if (state_.begun >= kApproach && state_.begun < kNoApproach && !worth_an_approach())
-    state_.begun = kNoApproach;
-  next.candidate = state_.begun++;
-  next.level = 0;
-  if (next.candidate > 0) next.transport = choice(next.candidate);
-  const std::optional<DesignShape> start = start_of(next);
+  state_.begun = next_number(state_.begun);
+  const FreeFormSnapshot next = candidate(state_.begun);
+  if (looks_ahead()) {
+    if (!is_among(ahead_, next)) fit_ahead();
+    replay_.emplace(taken_from(ahead_, next), state_);
+  }
+  ++state_.begun;
+  if (!replay_) return begin_candidate(next, progress);
+  state_.failed = replay_->has_start() ? 0 : state_.failed + 1;
+  if (!replay_->has_start()) replay_.reset();
+}
+
+void FreeFormSearch::begin_candidate(const FreeFormSnapshot& candidate, Progress& progress) {
+  const std::optional<DesignShape> start = start_of(candidate);
   state_.failed = start ? 0 : state_.failed + 1;
   if (!start) return;
   state_.lambda = FreeFormState{}.lambda;
-  begin(*start, next, progress);
+  begin(*start, candidate, progress);
+}
+
+int FreeFormSearch::next_number(int number) const {
+  return number >= kApproach && number < kNoApproach && !worth_an_approach() ? kNoApproach : number;
+}
+
+FreeFormSnapshot FreeFormSearch::candidate(int number) const {
+  FreeFormSnapshot out;
+  out.candidate = number;
+  out.level = 0;
+  if (number > 0) out.transport = choice(number);
+  return out;
+}
+
+std::vector<FreeFormSnapshot> FreeFormSearch::upcoming(std::size_t max) const {
+  // Neighbours are those of a mirror that is fitted to the end; whether an approach is worth its time shows
+  // when it is next.
+  const int end = best_of(kEnd) == nullptr ? kFirstCandidates
+                                           : kFirstCandidates + std::max(problem_.max_failed_restarts, 1);
+  std::vector<FreeFormSnapshot> out{candidate(state_.begun)};
+  for (int n = state_.begun + 1; n < end && out.size() < max; ++n) {
+    n = state_.begun < kApproach && n == kApproach ? kNoApproach : next_number(n);
+    const FreeFormSnapshot next = candidate(n);
+    if (!is_among(ahead_, next)) out.push_back(next);
+  }
+  return out;
+}
+
+bool FreeFormSearch::looks_ahead() const {
+  const Peers* peers = problem_.rays->peers();
+  return peers != nullptr && peers->size() > 1;
+}
+
+void FreeFormSearch::fit_ahead() {
+  Peers& peers = *problem_.rays->peers();
+  const std::vector<FreeFormSnapshot> next = upcoming(static_cast<std::size_t>(peers.size()));
+  // Each has one of them at most, as the rays may grow for it.
+  const UnsharedRays unshared(*problem_.rays);
+  const auto key = StateKey().add(static_cast<std::uint64_t>(state_.begun)).add(state_.total_rays).value();
+  const std::vector<std::string> fits =
+      dealt_items(peers, next.size(), key, [&](std::size_t i) { return message_of(rough_fit(next[i])); });
+  for (const std::string& fit : fits) ahead_.push_back(rough_fit_of(fit));
+}
+
+RoughFit FreeFormSearch::rough_fit(const FreeFormSnapshot& candidate) const {
+  RoughFit out{candidate.candidate, candidate.transport, {}};
+  FreeFormSearch alone(problem_, given_, max_intervals_, max_rays_);
+  alone.begin_candidate(candidate, no_progress());
+  if (!alone.point_) return out;
+  out.steps.push_back({alone.measured(true), alone.state_});
+  while (!alone.level_ended()) {
+    const bool accepted = alone.advance(no_progress());
+    out.steps.push_back({alone.measured(accepted), alone.state_});
+  }
+  return out;
+}
+
+FitRecord FreeFormSearch::replayed() {
+  const RoughStep step = replay_->next();
+  FreeFormState now = step.state;
+  now.begun = state_.begun;
+  now.failed = state_.failed;
+  now.done = std::move(state_.done);
+  state_ = std::move(now);
+  return step.record;
 }
 
 bool FreeFormSearch::is_slow_approach() const {
@@ -360,27 +433,35 @@ void FreeFormSearch::finish() {
   state_.now = {};
   fit_.reset();
   point_.reset();
+  replay_.reset();
   forget_what_cannot_win();
 }
 
 std::optional<FitRecord> FreeFormSearch::step(Progress& progress) {
-  FitRecord record;
-  if (!state_.now.exists()) {
-    choose(progress);
-    if (!point_) return std::nullopt;
-  } else {
-    if (!point_) {  // taken up again in the middle of a level
-      fit_.emplace(problem_, with_bins(level(state_.now.level), state_.now.bins), progress);
-      point_.emplace(fit_->at(shape_of(state_.now)));
-    }
-    record.accepted = fit_->step(*point_, state_.lambda);
-    state_.lambda = std::max(state_.lambda, kMinLambda);
-    ++state_.evaluations;
-    ++state_.step;
-    state_.total_rays += level(state_.now.level).rays;
-    state_.refused = record.accepted ? 0 : state_.refused + 1;
-    if (record.accepted) state_.costs.push_back(point_->equations.cost);
+  const bool begins = !state_.now.exists();
+  if (begins) choose(progress);
+  if (begins && !replay_ && !point_) return std::nullopt;
+  const FitRecord record = replay_ ? replayed() : measured(begins || advance(progress));
+  if (level_ended()) finish();
+  return record;
+}
+
+bool FreeFormSearch::advance(Progress& progress) {
+  if (!point_) {  // taken up again in the middle of a level
+    fit_.emplace(problem_, with_bins(level(state_.now.level), state_.now.bins), progress);
+    point_.emplace(fit_->at(shape_of(state_.now)));
   }
+  const bool accepted = fit_->step(*point_, state_.lambda);
+  state_.lambda = std::max(state_.lambda, kMinLambda);
+  ++state_.evaluations;
+  ++state_.step;
+  state_.total_rays += level(state_.now.level).rays;
+  state_.refused = accepted ? 0 : state_.refused + 1;
+  if (accepted) state_.costs.push_back(point_->equations.cost);
+  return accepted;
+}
+
+FitRecord FreeFormSearch::measured(bool accepted) {
   const BinError error = fit_->error(*point_);
   const Eigen::VectorXd& p = point_->shape.parameters();
   state_.now.parameters.assign(p.begin(), p.end());
@@ -393,6 +474,8 @@ std::optional<FitRecord> FreeFormSearch::step(Progress& progress) {
   state_.now.cost = kErrorShare[static_cast<std::size_t>(state_.now.level)] * excess + (cost - squared);
   state_.now.error_to_noise = std::sqrt(cost / std::max(noise, 1e-24));
   if (state_.step == kEarlySteps) state_.now.early_cost = state_.now.cost;
+  FitRecord record;
+  record.accepted = accepted;
   record.stage = state_.now.level;
   record.step = state_.step;
   record.candidate = state_.now.candidate;
@@ -404,7 +487,6 @@ std::optional<FitRecord> FreeFormSearch::step(Progress& progress) {
   record.lambda = state_.lambda;
   record.efficiency = point_->light.reflected + point_->light.direct;
   record.in_rectangle = fit_->in_rectangle(*point_);
-  if (level_ended()) finish();
   return record;
 }
 
@@ -420,8 +502,13 @@ bool FreeFormSearch::done() const {
 }
 
 std::uint64_t FreeFormSearch::next_rays() const {
+  if (replay_) return 0;
   if (state_.now.exists()) return (point_ ? 1 : 2) * level(state_.now.level).rays;
   const FreeFormSnapshot* next = next_promotion();
+  if (next == nullptr && looks_ahead()) {
+    const bool fitted = is_among(ahead_, candidate(next_number(state_.begun)));
+    return fitted ? 0 : static_cast<std::uint64_t>(level(0).max_steps + 1) * level(0).rays;
+  }
   return 2 * level(next != nullptr ? next->level + 1 : 0).rays;
 }
 

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "lucerna/design/fit/fit_record.h"
 #include "lucerna/design/fit/free_form_fit.h"
-#include "lucerna/design/initial/transport_guess.h"
+#include "lucerna/design/search/fits_ahead.h"
+#include "lucerna/design/search/free_form_state.h"
 
 namespace lucerna {
 
@@ -17,45 +15,6 @@ namespace lucerna {
 /// transport_guess. Grows the problem's rays.
 std::optional<DesignShape> free_form_guess(const FitProblem& problem, const DesignShape& family,
                                            const TransportChoice& choice);
-
-/// Rough, fine, to the end; the last is gone through again with more rays.
-inline constexpr int kFreeFormLevels = 4;
-
-/// A candidate that was fitted on a level.
-struct FreeFormSnapshot {
-  int candidate = -1, level = -1;
-  /// What it began with; none: the given mirror, or what an approach made of it.
-  TransportChoice transport{};
-  /// What candidates are compared by: the squared error less its noise (a share of it while the fit is
-  /// rough), and what lost light, limits and roughness cost.
-  double cost = 0.0;
-  /// What it was after the first few steps of the level; 0 before.
-  double early_cost = 0.0;
-  /// Root of the whole cost, missing light included, over the noise.
-  double error_to_noise = 0.0;
-  int intervals_x = 1, intervals_y = 1;
-  /// Bins across the widened rectangle: the level's, or fewer. And what of the derivatives was noise in them,
-  /// over the rest.
-  int bins = 1;
-  double derivative_noise = 0.0;
-  std::vector<double> parameters;
-  bool exists() const { return candidate >= 0; }
-};
-
-/// All that the next step depends on; a checkpoint holds exactly this.
-struct FreeFormState {
-  /// The candidate at work; without parameters: none, the next is chosen.
-  FreeFormSnapshot now;
-  int step = 0, refused = 0;
-  double lambda = 1e-2;
-  std::vector<double> costs;
-  /// Candidates begun so far, and how many in turn had no start.
-  int begun = 0, failed = 0;
-  int evaluations = 0;
-  std::uint64_t total_rays = 0;
-  /// What came to the end of a level, in order; only snapshots that may still be taken up keep parameters.
-  std::vector<FreeFormSnapshot> done;
-};
 
 /// Finds a free form by successive halving: candidates (the given mirror; a point source's mirrors of both
 /// signs at several vertex distances) are fitted roughly, the best of them finely, the best of these to the
@@ -66,6 +25,10 @@ struct FreeFormState {
 /// A given mirror keeps its knots as long as they bring it near the noise or the target. Knots are only ever
 /// refined. Every decision depends on the state alone: a search that is stopped after any step and taken up
 /// from its state continues bit-identically.
+///
+/// Where the problem's rays are shared with peers, the rough levels of the candidates to come are fitted by
+/// one process each, before their turn. The steps that follow repeat them, so that the search has the same
+/// states as one process; what the search does not come to is lost.
 class FreeFormSearch {
  public:
   /// `given` with its own knots; `max_intervals`: knots along the longer side that the search may refine to
@@ -115,6 +78,26 @@ class FreeFormSearch {
   const FreeFormSnapshot* next_promotion() const;
   /// Begins a level of the next candidate, unless it has no start.
   void choose(Progress& progress);
+  /// Begins the rough level of a candidate, unless it has no start.
+  void begin_candidate(const FreeFormSnapshot& candidate, Progress& progress);
+  /// The number of the candidate at or after `number` that is next: approaches that do not help are left out.
+  int next_number(int number) const;
+  FreeFormSnapshot candidate(int number) const;
+  /// The next candidates that were not fitted ahead, `max` at most, if nothing changes what the choice of
+  /// them depends on.
+  std::vector<FreeFormSnapshot> upcoming(std::size_t max) const;
+  /// Whether rough levels are fitted ahead.
+  bool looks_ahead() const;
+  /// Fits the rough level of the next candidates, each by one of the peers.
+  void fit_ahead();
+  /// The rough level of a candidate, to an end that depends on no other candidate.
+  RoughFit rough_fit(const FreeFormSnapshot& candidate) const;
+  /// The next step of the rough level that was fitted ahead.
+  FitRecord replayed();
+  /// One trial step from the point at work.
+  bool advance(Progress& progress);
+  /// The point at work, in the state, as a line of the history.
+  FitRecord measured(bool accepted);
   /// `snapshot`: the candidate, its transport, and the level that begins.
   void begin(const DesignShape& shape, const FreeFormSnapshot& snapshot, Progress& progress);
   /// A level for a shape of that many knots: with fewer bins and less smoothing where derivatives would be
@@ -133,6 +116,9 @@ class FreeFormSearch {
   FreeFormState state_;
   std::optional<FreeFormFit> fit_;
   std::optional<FreeFormPoint> point_;
+  /// Rough levels that wait for the turn of their candidates; and the one whose turn it is.
+  std::vector<RoughFit> ahead_;
+  std::optional<RoughReplay> replay_;
 };
 
 }  // namespace lucerna

@@ -3,14 +3,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "lucerna/design/search/checkpoint.h"
 #include "lucerna/design/shape/perturbed.h"
 #include "lucerna/random.h"
 #include "lucerna/source.h"
+#include "tests/support/local_peers.h"
 
 namespace lucerna {
 namespace {
@@ -130,6 +134,84 @@ TEST(FreeFormSearch, EndsAtTheSameBitsHoweverOftenItWasStopped) {
     state = parse_search_checkpoint(checkpoint_text(run(again, plain(), steps, state).state(), "key"), "key");
   }
   EXPECT_EQ(checkpoint_text(state, "key"), whole);
+}
+
+/// A search whose best, a neighbour, is fitted to the end.
+FreeFormState with_neighbours_next(double cost) {
+  DesignRays rays = disk_rays();
+  FreeFormState state = run(oval_problem(rays), plain(), 20).state();
+  FreeFormSnapshot best = state.done.back();
+  best.candidate = 20;
+  best.transport = {1.0, 22.0};
+  best.cost = cost;
+  best.error_to_noise = 10.0;
+  state.now = {};
+  state.step = 0;
+  state.done.clear();
+  for (int level = 0; level < kFreeFormLevels; ++level) {
+    best.level = level;
+    state.done.push_back(best);
+  }
+  state.begun = 21;
+  return state;
+}
+
+/// State and record after each of the first steps.
+std::vector<std::string> steps_of(DesignRays rays, const FreeFormState& start, int steps, bool ahead) {
+  const FitProblem problem = oval_problem(rays);
+  FreeFormSearch search(problem, plain(), 16, kSearchRays, start);
+  std::vector<std::string> out;
+  for (int i = 0; i < steps && !search.done(); ++i) {
+    const auto record = search.step();
+    if (i == 0) {
+      EXPECT_EQ(search.next_rays() == 0, ahead) << "the next step is known already";
+    }
+    out.push_back(checkpoint_text(search.state(), "key"));
+    if (!record) continue;
+    for (const double x : {record->error, record->floor, record->in_rectangle, record->efficiency,
+                           record->lambda, static_cast<double>(record->total_rays)})
+      out.back() += fmt::format("{:a} ", x);
+  }
+  return out;
+}
+
+/// Expects them of `n` peers, which fit rough levels ahead, as of one process; returns that one's last state.
+FreeFormState expect_same_steps(DesignRays (*rays)(), int steps, const std::vector<int>& peer_counts,
+                                const FreeFormState& start = {}) {
+  const std::vector<std::string> alone = steps_of(rays(), start, steps, false);
+  for (const int n : peer_counts) {
+    std::vector<std::vector<std::string>> found(static_cast<std::size_t>(n));
+    const auto errors = test::on_peers(n, [&](Peers& peers) {
+      DesignRays own = rays();
+      own.share_with(&peers);
+      found[static_cast<std::size_t>(peers.rank())] = steps_of(std::move(own), start, steps, true);
+    });
+    for (const std::string& e : errors) EXPECT_EQ(e, "");
+    for (const auto& of_peer : found) {
+      EXPECT_EQ(of_peer.size(), alone.size());
+      const auto differ = std::mismatch(alone.begin(), alone.end(), of_peer.begin(), of_peer.end());
+      if (differ.first == alone.end() || differ.second == of_peer.end()) continue;
+      ADD_FAILURE() << n << " peers, step " << differ.first - alone.begin() << ":\n"
+                    << *differ.second << "\nalone:\n"
+                    << *differ.first;
+    }
+  }
+  return parse_search_checkpoint(alone.back(), "key");
+}
+
+TEST(FreeFormSearch, CandidatesFittedAheadLeadToTheSameSteps) { expect_same_steps(disk_rays, 14, {3}); }
+
+// Also where others end a rough level early, where an approach comes next, and among neighbours, of which the
+// last are no longer worth going on with.
+TEST(FreeFormSearchSlow, CandidatesFittedAheadLeadToTheSameSteps) {
+  expect_same_steps(disk_rays, 120, {2, 12});
+  for (const double cost : {1e-9, 1e-2}) {
+    EXPECT_GT(expect_same_steps(disk_rays, 40, {2, 3}, with_neighbours_next(cost)).begun, 22) << cost;
+  }
+  const FreeFormState of_long = expect_same_steps(cylinder_rays, 60, {2, 3, 12});
+  EXPECT_TRUE(std::any_of(of_long.done.begin(), of_long.done.end(), [](const FreeFormSnapshot& m) {
+    return m.candidate > 3 && !m.transport.exists();
+  })) << "approaches";
 }
 
 // Its levels have fewer bins, and what follows from that.
@@ -252,21 +334,7 @@ TEST(FreeFormSearch, ANeighbourThatIsTheBestHasNeighbours) {
   DesignRays rays = disk_rays();
   FitProblem problem = oval_problem(rays);
   problem.max_failed_restarts = 1000;
-  FreeFormState state = run(problem, plain(), 20).state();
-  state.now = {};
-  state.step = 0;
-  FreeFormSnapshot best = state.done.back();
-  best.candidate = 20;
-  best.transport = {1.0, 22.0};
-  best.cost = 1e-9;
-  best.error_to_noise = 10.0;
-  state.done.clear();
-  for (int level = 0; level < 4; ++level) {
-    best.level = level;
-    state.done.push_back(best);
-  }
-  state.begun = 21;
-  const FreeFormSearch search = run(problem, plain(), 1, state);
+  const FreeFormSearch search = run(problem, plain(), 1, with_neighbours_next(1e-9));
   EXPECT_GE(search.state().now.candidate, 21);
   EXPECT_EQ(search.state().now.transport.sign, 1.0);
   EXPECT_NEAR(search.state().now.transport.vertex_distance_mm, 22.0, 0.31 * 22.0);

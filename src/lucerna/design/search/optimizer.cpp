@@ -37,6 +37,31 @@ constexpr std::size_t kProfilesCompared = 3;
 
 struct Stopped {};
 
+/// The costs of a batch, each computed by one process alone.
+template <class Cost>
+std::vector<double> costs_of(const FitProblem& problem, const std::vector<Eigen::VectorXd>& points,
+                             const Cost& cost) {
+  std::vector<double> costs(points.size());
+  Peers* const peers = problem.rays->peers();
+  if (peers == nullptr) {
+    parallel_blocks(points.size(), 1, [&](std::size_t i, std::size_t) { costs[i] = cost(points[i]); });
+    return costs;
+  }
+  StateKey key;
+  for (const Eigen::VectorXd& point : points) key.add(point.sum());
+  const UnsharedRays unshared(*problem.rays);
+  const std::vector<std::string> dealt = dealt_items(*peers, points.size(), key.value(), [&](std::size_t i) {
+    std::string bytes;
+    append_double(bytes, cost(points[i]));
+    return bytes;
+  });
+  for (std::size_t i = 0; i < dealt.size(); ++i) {
+    std::string_view bytes = dealt[i];
+    costs[i] = take_double(bytes);
+  }
+  return costs;
+}
+
 /// Puts what a search among profiles finds before the other starts. False if `watch` ended it.
 bool add_profiles(FitProblem& problem, const DesignShape& shape, std::uint64_t rays,
                   std::vector<double>& costs, const SearchWatch& watch, Progress& progress) {
@@ -123,9 +148,9 @@ bool prepare_guesses(FitProblem& problem, const DesignShape& shape, const Contin
     if (!fresh) {
       std::copy_n(costs.begin() + static_cast<std::ptrdiff_t>(asked), n, now.begin());
     } else {
-      for_each_shared(problem.rays->peers(), n, [&](std::size_t i) {
-        const double cost = fit_cost(problem, space.shape.with(points[i]), bins, target, rays);
-        now[i] = std::isfinite(cost) ? cost : 1e30;
+      now = costs_of(problem, points, [&](const Eigen::VectorXd& point) {
+        const double cost = fit_cost(problem, space.shape.with(point), bins, target, rays);
+        return std::isfinite(cost) ? cost : 1e30;
       });
       costs.resize(asked);  // a batch is paid for as a whole
       costs.insert(costs.end(), now.begin(), now.end());
