@@ -42,7 +42,7 @@ CompressOptions compress_options(const CompressArguments& a) {
   // Other programs, and `check` of a folder, know a source model by its ending.
   if (std::filesystem::path(a.output).extension() != ".nfl")
     throw UsageError(fmt::format("{}: a source model is written, expected the ending .nfl", a.output));
-  parse_count(a.held_out);
+  parse_count(a.held_out);  // is used after the work, and refused before it
   CompressOptions options{.method = compress_method(a.method), .flux = given_flux(a)};
   if (!a.max_bytes.empty()) options.max_bytes = parse_size(a.max_bytes);
   options.seed = parse_count(a.seed);

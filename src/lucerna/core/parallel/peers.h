@@ -88,13 +88,13 @@ void share_items(Peers* peers, std::size_t n, std::uint64_t key, const Write& wr
   }
 }
 
-/// n items as texts, each made by one process alone and given to all. `make(i)` is not collective; a process
-/// that has several of them calls it on several threads. Collective; `key` as in share_items. Throws
-/// InputError on all processes if `make` does on one.
+/// n items as texts, each made by one process alone and given to all; without peers (null) by this one.
+/// `make(i)` is not collective; a process that has several of them calls it on several threads. Collective;
+/// `key` as in share_items. Throws InputError on all processes if `make` does on one.
 template <class Make>
-std::vector<std::string> dealt_items(Peers& peers, std::size_t n, std::uint64_t key, const Make& make) {
+std::vector<std::string> dealt_items(Peers* peers, std::size_t n, std::uint64_t key, const Make& make) {
   std::vector<std::string> items(n), errors(n);
-  const ItemRange own = own_items(&peers, n);
+  const ItemRange own = own_items(peers, n);
   parallel_blocks(own.size(), 1, [&](std::size_t first, std::size_t) {
     const std::size_t i = own.first + first;
     try {
@@ -104,7 +104,7 @@ std::vector<std::string> dealt_items(Peers& peers, std::size_t n, std::uint64_t 
     }
   });
   share_items(
-      &peers, n, key,
+      peers, n, key,
       [&](std::size_t i, std::string& bytes) {
         append_text(bytes, items[i]);
         append_text(bytes, errors[i]);

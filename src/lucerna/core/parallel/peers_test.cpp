@@ -75,7 +75,7 @@ TEST(Peers, DealtItemsAreEachMadeOnceAndKnownToAll) {
   for (const std::size_t n : {0, 1, 2, 7}) {
     std::atomic<int> made = 0, whole = 0;
     const auto errors = test::on_peers(3, [&](Peers& peers) {
-      const std::vector<std::string> items = dealt_items(peers, n, 5, [&](std::size_t i) {
+      const std::vector<std::string> items = dealt_items(&peers, n, 5, [&](std::size_t i) {
         ++made;
         return std::string(i, 'x');
       });
@@ -87,11 +87,13 @@ TEST(Peers, DealtItemsAreEachMadeOnceAndKnownToAll) {
     EXPECT_EQ(made, static_cast<int>(n));
     EXPECT_EQ(whole, 3);
   }
+  const std::vector<std::string> alone{"0", "1"};
+  EXPECT_EQ(dealt_items(nullptr, 2, 5, [](std::size_t i) { return std::to_string(i); }), alone);
 }
 
 TEST(Peers, AFaultOfOneDealtItemIsThatOfAll) {
   const auto errors = test::on_peers(3, [&](Peers& peers) {
-    dealt_items(peers, 6, 5, [](std::size_t i) -> std::string {
+    dealt_items(&peers, 6, 5, [](std::size_t i) -> std::string {
       if (i == 4) throw InputError("the fifth is bad");
       return "good";
     });

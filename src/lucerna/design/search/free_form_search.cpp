@@ -349,8 +349,8 @@ FreeFormSnapshot FreeFormSearch::candidate(int number) const {
 std::vector<FreeFormSnapshot> FreeFormSearch::upcoming(std::size_t max) const {
   // Neighbours are those of a mirror that is fitted to the end; whether an approach is worth its time shows
   // when it is next.
-  const int end = best_of(kEnd) == nullptr ? kFirstCandidates
-                                           : kFirstCandidates + std::max(problem_.max_failed_restarts, 1);
+  const int neighbours = best_of(kEnd) == nullptr ? 0 : problem_.max_failed_restarts;
+  const int end = kFirstCandidates + neighbours;
   std::vector<FreeFormSnapshot> out{candidate(state_.begun)};
   for (int n = state_.begun + 1; n < end && out.size() < max; ++n) {
     n = state_.begun < kApproach && n == kApproach ? kNoApproach : next_number(n);
@@ -366,8 +366,8 @@ bool FreeFormSearch::looks_ahead() const {
 }
 
 void FreeFormSearch::fit_ahead() {
-  Peers& peers = *problem_.rays->peers();
-  const std::vector<FreeFormSnapshot> next = upcoming(static_cast<std::size_t>(peers.size()));
+  Peers* const peers = problem_.rays->peers();
+  const std::vector<FreeFormSnapshot> next = upcoming(static_cast<std::size_t>(peers->size()));
   // Each has one of them at most, as the rays may grow for it.
   const UnsharedRays unshared(*problem_.rays);
   const auto key = StateKey().add(static_cast<std::uint64_t>(state_.begun)).add(state_.total_rays).value();

@@ -41,24 +41,17 @@ struct Stopped {};
 template <class Cost>
 std::vector<double> costs_of(const FitProblem& problem, const std::vector<Eigen::VectorXd>& points,
                              const Cost& cost) {
-  std::vector<double> costs(points.size());
   Peers* const peers = problem.rays->peers();
-  if (peers == nullptr) {
-    parallel_blocks(points.size(), 1, [&](std::size_t i, std::size_t) { costs[i] = cost(points[i]); });
-    return costs;
-  }
   StateKey key;
   for (const Eigen::VectorXd& point : points) key.add(point.sum());
   const UnsharedRays unshared(*problem.rays);
-  const std::vector<std::string> dealt = dealt_items(*peers, points.size(), key.value(), [&](std::size_t i) {
+  const std::vector<std::string> dealt = dealt_items(peers, points.size(), key.value(), [&](std::size_t i) {
     std::string bytes;
     append_double(bytes, cost(points[i]));
     return bytes;
   });
-  for (std::size_t i = 0; i < dealt.size(); ++i) {
-    std::string_view bytes = dealt[i];
-    costs[i] = take_double(bytes);
-  }
+  std::vector<double> costs;
+  for (std::string_view bytes : dealt) costs.push_back(take_double(bytes));
   return costs;
 }
 
