@@ -152,6 +152,11 @@ struct Solid {
   /// polygon, at least three, r >= 0, whichever way it runs; a side along the axis makes no surface. Empty
   /// for a mesh.
   std::vector<std::array<double, 2>> outline_mm;
+  /// Not null: the top of the body, z = face->at(x, y).z_mm in the body's own frame, which looks to +z. Then
+  /// `outline_mm` is open: corners from the axis to the upper end of a wall, so that the last two have the
+  /// same radius R > 0 and the last one is higher. The face covers x^2 + y^2 <= R^2, and the wall begins at
+  /// the last corner but one and ends at the face's rim. Null for any other body.
+  std::shared_ptr<const HeightSurface> face = nullptr;
   /// Where it is in the luminaire frame.
   Frame world_from_solid;
   /// 1 to 4. The default is PMMA in the visible.
@@ -166,14 +171,17 @@ struct Solid {
 };
 
 /// Throws InputError naming what is out of its range, and for a surface that is open or partly turned, or an
-/// outline as solid_of_revolution refuses it, or whose curve crosses itself. O(triangles log triangles +
-/// corners^2).
+/// outline as solid_of_revolution refuses it, or whose curve crosses itself. With a face, for an outline that
+/// is not as `face` says, or turns into the wall by no more than `smooth_below_deg`, and a face that is not
+/// finite, is not above the outline at one of 64 x 64 points, or has its rim not above the wall's lower end.
+/// O(triangles log triangles + corners^2).
 void check(const Solid& solid);
 /// How far the triangles of an outline may leave it, over its size, where they are only shown.
 inline constexpr double kSurfaceTolerance = 1e-4;
 /// Its surface as triangles, in its own frame: `mesh`, or what stands for its outline within `tolerance` of
-/// its size. Throws InputError as `check` does for the outline, and for a tolerance that is not between 1e-8
-/// and 1. O(corners^2 + triangles).
+/// its size. Of a face, normals blended between its corners are within 10 `tolerance` rad of its own; it has at
+/// most 512 rings of triangles. Throws InputError as `check` does for the outline, and for a tolerance that is
+/// not between 1e-8 and 1. O(corners^2 + triangles).
 [[nodiscard]] std::shared_ptr<const Mesh> surface_mesh(const Solid& solid,
                                                        double tolerance = kSurfaceTolerance);
 

@@ -28,6 +28,7 @@ std::vector<Solid> meshed(const Scene& scene) {
   for (Solid& s : out) {
     s.mesh = surface_mesh(s, kMeshTolerance);
     s.outline_mm.clear();
+    s.face = nullptr;
   }
   return out;
 }

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <vector>
 
 #include "lucerna/cad.h"
 #include "lucerna/core/io/error.h"
+#include "lucerna/optics/cad/step_curves.h"
 #include "lucerna/optics/cad/step_writer.h"
+#include "lucerna/optics/shapes/faced_outline.h"
 #include "lucerna/optics/shapes/outline_curve.h"
 
 namespace lucerna {
@@ -60,9 +64,61 @@ class SolidStep {
     }
   }
 
+  /// The wall from a corner up to the rim of `face`, in two half cylinders, and the face, which is `shape`.
+  void add_face(std::size_t corner, const BsplineShape& shape, const HeightSurface& face) {
+    const SolidRing low = ring(corner);
+    const auto [r, z] = corners_[corner];
+    const FaceRim rim = face_rim(face, r);
+    const Vec3 near_low{r, 0.0, z}, far_low{-r, 0.0, z};
+    const int near = straight_edge(low.near, rim.vertex[0], near_low, rim.curve[0].poles.front());
+    const int far = straight_edge(low.far, rim.vertex[2], far_low, rim.curve[2].poles.front());
+    const int wall = step_.revolution(step_.curve(straight(near_low, {r, 0.0, rim.top_mm})));
+    const auto& q = rim.edge;
+    step_.face(wall, true,
+               step_.loop({{low.first_half, true}, {far, true}, {q[1], false}, {q[0], false}, {near, false}}),
+               {});
+    step_.face(
+        wall, true,
+        step_.loop({{low.second_half, true}, {near, true}, {q[3], false}, {q[2], false}, {far, false}}), {});
+    step_.face(step_.surface(step_surface(shape)), true,
+               step_.loop({{q[0], true}, {q[1], true}, {q[2], true}, {q[3], true}}), {});
+  }
+
   std::string text(const std::string& name) { return step_.text(name, true); }
 
  private:
+  /// The rim of a face in quarters from +x, and the height that it stays below.
+  struct FaceRim {
+    std::array<StepCurve, 4> curve;
+    std::array<int, 4> vertex{}, edge{};
+    double top_mm = 0.0;
+  };
+
+  FaceRim face_rim(const HeightSurface& face, double radius_mm) {
+    FaceRim out;
+    out.top_mm = face.at(radius_mm, 0.0).z_mm;
+    for (std::size_t i = 0; i < 4; ++i) {
+      out.curve[i] = step_quarter(face, radius_mm, static_cast<int>(i));
+      out.vertex[i] = step_.vertex(out.curve[i].poles.front());
+      // The rim is in the hull of its poles.
+      for (const Vec3& p : out.curve[i].poles) out.top_mm = std::max(out.top_mm, p.z);
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      out.curve[i].poles.back() = out.curve[(i + 1) % 4].poles.front();
+      out.edge[i] = step_.edge(out.vertex[i], out.vertex[(i + 1) % 4], step_.curve(out.curve[i]));
+    }
+    return out;
+  }
+
+  static StepCurve straight(const Vec3& from, const Vec3& to) {
+    const Vec3 third = (1.0 / 3.0) * (to - from);
+    return {{from, from + third, to - third, to}, {0.0, length(to - from)}, {4, 4}};
+  }
+
+  int straight_edge(int from, int to, const Vec3& from_mm, const Vec3& to_mm) {
+    return step_.edge(from, to, step_.curve(straight(from_mm, to_mm)));
+  }
+
   SolidRing ring(std::size_t corner) {
     const std::size_t i = corner % corners_.size();
     const auto known = rings_.find(i);
@@ -95,6 +151,20 @@ std::string solid_step_text(std::span<const OutlinePoint> outline_mm, double smo
   if (runs.empty()) throw InputError("CAD: STEP: the outline has no edge");
   SolidStep step(corners);
   for (const OutlineRun& run : runs) step.add(run);
+  return step.text(name);
+}
+
+std::string solid_step_text(std::span<const OutlinePoint> outline_mm, const HeightSurface& face,
+                            double smooth_below_deg, const std::string& name) {
+  check_faced_outline(outline_mm, face, smooth_below_deg);
+  const auto* const spline = dynamic_cast<const SmoothSurface<BsplineShape>*>(&face);
+  if (spline == nullptr)
+    throw InputError(
+        "CAD: STEP: found a face of a solid that is no B-spline, expected one with coefficients");
+  const FacedBase base = faced_base(outline_mm, smooth_below_deg);
+  SolidStep step(base.corners);
+  for (const OutlineRun& run : base.runs) step.add(run);
+  step.add_face(outline_mm.size() - 2, spline->shape(), face);
   return step.text(name);
 }
 

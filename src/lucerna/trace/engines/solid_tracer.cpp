@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/optics/mesh/faced_solid.h"
+#include "lucerna/optics/shapes/faced_outline.h"
 #include "lucerna/trace/engines/body_tracer.h"
 
 namespace lucerna {
@@ -33,11 +35,11 @@ std::size_t turned_edges(const Mesh& mesh) {
   return turned;
 }
 
-/// As the tree takes it.
-Body as_body(const Solid& solid) {
+/// As the tree takes it; `mesh` stands for its surface.
+Body as_body(const Solid& solid, std::shared_ptr<const Mesh> mesh) {
   Body body;
   body.name = solid.name;
-  body.mesh = surface_mesh(solid);
+  body.mesh = std::move(mesh);
   body.world_from_body = solid.world_from_solid;
   body.smooth_below_deg = solid.smooth_below_deg;
   return body;
@@ -61,10 +63,26 @@ void check_mesh(const Solid& solid) {
 
 /// Straight pieces leave the curve of an outline by at most this share of its size.
 constexpr double kCurveTolerance = 1e-7;
+/// The triangles that a body with a face is traced by leave it by at most this share of its size.
+constexpr double kFaceTolerance = 1e-5;
 
 std::vector<OutlineSide> sides_of(const Solid& solid, double tolerance) {
   return outline_sides(solid.outline_mm, solid.smooth_below_deg,
                        tolerance * outline_reach_mm(solid.outline_mm));
+}
+
+/// Errors of its shape, with the name of the solid.
+void check_face(const Solid& solid) {
+  try {
+    check_faced_outline(solid.outline_mm, *solid.face, solid.smooth_below_deg);
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("solid '{}': {}", solid.name, e.what()), e.cause());
+  }
+}
+
+FacedSolid faced(const Solid& solid, double tolerance) {
+  check_face(solid);
+  return faced_solid(solid.outline_mm, *solid.face, solid.smooth_below_deg, tolerance);
 }
 
 }  // namespace
@@ -78,6 +96,9 @@ void check(const Solid& solid) {
     throw InputError(fmt::format("solid '{}' has {}, expected either a mesh or an outline", solid.name,
                                  solid.mesh == nullptr ? "no surface" : "both"));
   }
+  if (solid.face != nullptr && solid.mesh != nullptr)
+    throw InputError(
+        fmt::format("solid '{}' has a mesh and a face, expected a face with an outline", solid.name));
   need(solid.refractive_index >= 1.0 && solid.refractive_index <= 4.0, "refractive_index",
        solid.refractive_index, "1 to 4");
   need(solid.absorption_per_mm >= 0.0 && std::isfinite(solid.absorption_per_mm), "absorption_per_mm",
@@ -86,6 +107,8 @@ void check(const Solid& solid) {
        solid.smooth_below_deg, "0 to 180");
   if (solid.mesh != nullptr) {
     check_mesh(solid);
+  } else if (solid.face != nullptr) {
+    check_face(solid);
   } else {
     (void)sides_of(solid, kSurfaceTolerance);
   }
@@ -95,6 +118,7 @@ std::shared_ptr<const Mesh> surface_mesh(const Solid& solid, double tolerance) {
   if (!(tolerance >= 1e-8 && tolerance <= 1.0))
     throw InputError(fmt::format("tolerance of a mesh: found {}, expected 1e-8 to 1", tolerance));
   if (solid.mesh != nullptr) return solid.mesh;
+  if (solid.face != nullptr) return std::make_shared<const Mesh>(faced(solid, tolerance).mesh);
   std::vector<OutlinePoint> corners;
   for (const OutlineSide& side : sides_of(solid, tolerance)) {
     if (corners.empty() || corners.back() != side.from) corners.push_back(side.from);
@@ -114,9 +138,16 @@ SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
     traced.solid_from_world = s.world_from_solid.inverse();
     if (s.mesh != nullptr) {
       of_triangles_.push_back(solids_.size());
-      meshes.push_back(as_body(s));
+      meshes.push_back(as_body(s, s.mesh));
       traced.sense = signed_volume(*s.mesh) < 0.0 ? -1.0 : 1.0;
       traced.corner_normals = smooth_normals(meshes.back());
+    } else if (s.face != nullptr) {
+      of_triangles_.push_back(solids_.size());
+      FacedSolid made = faced(s, kFaceTolerance);
+      meshes.push_back(as_body(s, std::make_shared<const Mesh>(std::move(made.mesh))));
+      // Those of the surface, not means over triangles.
+      traced.corner_normals = std::move(made.corner_normals);
+      for (Vec3& n : traced.corner_normals) n = s.world_from_solid.vector(n);
     } else {
       traced.revolved = std::make_unique<const RevolvedTree>(sides_of(s, kCurveTolerance));
     }
@@ -299,7 +330,7 @@ void check_apart(const Scene& scene) {
   std::vector<std::unique_ptr<Placed>> solids;
   for (const Solid& solid : scene.solids) {
     check(solid);
-    Placed& s = *solids.emplace_back(std::make_unique<Placed>(as_body(solid)));
+    Placed& s = *solids.emplace_back(std::make_unique<Placed>(as_body(solid, surface_mesh(solid))));
     for (std::size_t k = 0; k + 1 < solids.size(); ++k) {
       Placed& other = *solids[k];
       if (are_far(s.extents, other.extents)) continue;

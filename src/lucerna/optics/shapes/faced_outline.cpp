@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/optics/shapes/faced_outline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "lucerna/core/io/error.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Points at which a face is compared with what lies below it.
+constexpr int kFaceRings = 64;
+constexpr int kFaceSpokes = 64;
+
+struct FacePlace {
+  double x_mm, y_mm;
+};
+
+FacePlace face_place(double r_mm, int spoke) {
+  const double angle = 2.0 * std::numbers::pi * spoke / kFaceSpokes;
+  return {r_mm * std::cos(angle), r_mm * std::sin(angle)};
+}
+
+void check_wall(std::span<const OutlinePoint> p) {
+  if (p.size() < 3)
+    throw InputError(
+        fmt::format("outline below a face: found {} corners, expected at least 3: from the axis to the upper "
+                    "end of a wall",
+                    p.size()));
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!std::isfinite(p[i][0]) || !std::isfinite(p[i][1]) || p[i][0] < 0.0)
+      throw InputError(
+          fmt::format("corner {} of the outline below a face: found [{}, {}], expected a radius "
+                      ">= 0 and a height",
+                      i + 1, p[i][0], p[i][1]));
+  }
+  if (p.front()[0] != 0.0)
+    throw InputError(
+        fmt::format("outline below a face: found its first corner at [{}, {}], expected it on the "
+                    "axis, r = 0",
+                    p.front()[0], p.front()[1]));
+  const OutlinePoint &low = p[p.size() - 2], &high = p.back();
+  if (!(low[0] == high[0] && low[0] > 0.0 && high[1] > low[1])) {
+    throw InputError(
+        fmt::format("outline below a face: found its last side from [{}, {}] to [{}, {}], expected "
+                    "a wall: one radius > 0, running upward",
+                    low[0], low[1], high[0], high[1]));
+  }
+}
+
+/// The highest point of the base at this radius; below all where there is none.
+double base_height(const std::vector<OutlineSide>& sides, double r_mm) {
+  double z = -std::numeric_limits<double>::infinity();
+  for (const OutlineSide& s : sides) {
+    const double low = std::min(s.from[0], s.to[0]), high = std::max(s.from[0], s.to[0]);
+    if (r_mm < low || r_mm > high) continue;
+    const double share = high > low ? (r_mm - s.from[0]) / (s.to[0] - s.from[0]) : 0.0;
+    const double here = s.from[1] + share * (s.to[1] - s.from[1]);
+    z = std::max(z, high > low ? here : std::max(s.from[1], s.to[1]));
+  }
+  return z;
+}
+
+void check_above(std::span<const OutlinePoint> p, const std::vector<OutlineSide>& sides,
+                 const HeightSurface& face) {
+  const double radius = p.back()[0], wall = p[p.size() - 2][1];
+  for (int ring = 0; ring <= kFaceRings; ++ring) {
+    const double r = radius * ring / kFaceRings;
+    // Above the very rim there is the wall, and the base ends at its lower corner.
+    const double below = ring == kFaceRings ? wall : base_height(sides, r);
+    for (int spoke = 0; spoke < kFaceSpokes; ++spoke) {
+      const auto [x, y] = face_place(r, spoke);
+      const SurfacePoint at = face.at(x, y);
+      if (!std::isfinite(at.z_mm) || !std::isfinite(at.dzdx) || !std::isfinite(at.dzdy))
+        throw InputError(fmt::format(
+            "face: found no finite height and slope at x = {:.6g}, y = {:.6g}, expected both", x, y));
+      if (at.z_mm > below) continue;
+      throw InputError(
+          fmt::format("face: found z = {:.6g} at {}x = {:.6g}, y = {:.6g}, expected it above {}, z = {:.6g}",
+                      at.z_mm, ring == kFaceRings ? "its rim, " : "", x, y,
+                      ring == kFaceRings ? "the wall's lower corner" : "the outline below", below));
+    }
+  }
+}
+
+}  // namespace
+
+void check_faced_outline(std::span<const OutlinePoint> corners_mm, const HeightSurface& face,
+                         double smooth_below_deg) {
+  check_wall(corners_mm);
+  const FacedBase base = faced_base(corners_mm, smooth_below_deg);
+  check_outline(base.corners);
+  const std::size_t wall = corners_mm.size() - 2;
+  if (const double turn = turn_deg(base.corners, wall); turn <= smooth_below_deg) {
+    throw InputError(
+        fmt::format("outline below a face: found a turn of {:.6g} degrees into the wall, at [{}, {}], "
+                    "expected an edge: more than smooth_below_deg, {}",
+                    turn, corners_mm[wall][0], corners_mm[wall][1], smooth_below_deg));
+  }
+  const double reach = outline_reach_mm(corners_mm);
+  // The lid is above all of the outline, so what crosses is the outline's own curve.
+  static_cast<void>(outline_sides(base.corners, smooth_below_deg, 1e-3 * reach));
+  check_above(corners_mm, faced_base_sides(corners_mm, smooth_below_deg, 1e-4 * reach), face);
+}
+
+FacedBase faced_base(std::span<const OutlinePoint> corners_mm, double smooth_below_deg) {
+  FacedBase out{{corners_mm.begin(), corners_mm.end()}, {}};
+  double top = corners_mm.back()[1];
+  for (const OutlinePoint& c : corners_mm) top = std::max(top, c[1]);
+  // A spline may swing above its corners, by less than the outline's size.
+  top += 2.0 * outline_reach_mm(corners_mm);
+  out.corners.back()[1] = top;
+  out.corners.push_back({0.0, top});
+  const std::size_t wall = corners_mm.size() - 2;
+  for (const OutlineRun& run : outline_runs(out.corners, smooth_below_deg)) {
+    if (run.to <= wall) out.runs.push_back(run);
+  }
+  return out;
+}
+
+std::vector<OutlineSide> faced_base_sides(std::span<const OutlinePoint> corners_mm, double smooth_below_deg,
+                                          double tolerance_mm) {
+  const FacedBase base = faced_base(corners_mm, smooth_below_deg);
+  std::vector<OutlineSide> out;
+  for (const OutlineRun& run : base.runs) {
+    for (const OutlinePiece<double>& piece : run_curve(base.corners, run))
+      add_sides(piece, straight_pieces_of(piece, tolerance_mm), out);
+  }
+  return out;
+}
+
+double faced_reach_mm(std::span<const OutlinePoint> corners_mm, const HeightSurface& face) {
+  const double radius = corners_mm.back()[0];
+  double reach =
+      std::max(outline_reach_mm(corners_mm.first(corners_mm.size() - 1)), std::abs(face.at(0.0, 0.0).z_mm));
+  for (int spoke = 0; spoke < kFaceSpokes; ++spoke) {
+    const auto [x, y] = face_place(radius, spoke);
+    reach = std::max(reach, std::hypot(radius, face.at(x, y).z_mm));
+  }
+  return reach;
+}
+
+}  // namespace lucerna
