@@ -33,6 +33,11 @@ void check_alone(const TomlReader& root, const Scene& scene) {
                           scene.solids.size(), scene.solids.empty() ? "" : ", of triangles or several"),
               ErrorCause::unsupported);
   }
+  if (scene.solids.front().face) {
+    root.fail("body",
+              "found a solid with a [body.face], expected one of revolution, whose `free_sides` are shaped",
+              ErrorCause::unsupported);
+  }
 }
 
 std::vector<std::size_t> read_sides(TomlReader& design) {

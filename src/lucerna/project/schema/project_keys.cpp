@@ -82,6 +82,7 @@ constexpr std::array kKeys{
     ProjectKey{"body", "role", Type::word, kAny, "absorber mirror lamp glass solid", "\"absorber\"", "What light hits there. A lamp's body stops only light that comes back: rays of its file have left it already. A glass is a flat plate; a solid is any closed body of a clear medium."},
     ProjectKey{"body", "file", Type::file, kAny, "", "required but for glass and `outline_mm`", "A mesh (.stl .obj)."},
     ProjectKey{"body", "outline_mm", Type::pairs, kAny, "", "none", "Of a solid of revolution, instead of `file`: corners [radius, height] of a closed outline that turns about the z axis."},
+    ProjectKey{"body", "face", Type::table, kAny, "", "none", "Of a solid with `outline_mm`: its top, a free form. The outline is then open: from the axis to the upper end of a wall of one radius, which goes on to the face's rim."},
     ProjectKey{"body", "smooth_below_deg", Type::number, within(0, 180), "", "20", "Of a solid: across triangles that meet at less than this angle the normal changes steadily, and an outline is a curve through corners that turn by less; 0 for facets and straight sides."},
     ProjectKey{"body", "scale", Type::number, kAboveZero, "", "1", "Millimetres of one unit of the mesh."},
     ProjectKey{"body", "open", Type::flag, kAny, "", "false", "Takes a mesh with open edges, as a sheet."},
@@ -103,6 +104,10 @@ constexpr std::array kKeys{
     ProjectKey{"body", "position_mm", Type::vector, kAny, "", "[0, 0, 0]", "Where the body's origin is placed."},
     ProjectKey{"body", "axis", Type::axis, kAny, "", "\"+z\"", "Where the body's +z axis points."},
     ProjectKey{"body", "turn_deg", Type::number, kAny, "", "0", "Rotation about that axis."},
+
+    ProjectKey{"body.face", "half_mm", Type::number, kAboveZero, "", "required", "The knots span [-half_mm, half_mm] along x and y; at least the wall's radius."},
+    ProjectKey{"body.face", "intervals", Type::numbers, whole(1, 1000), "", "required", "Intervals between the knots along x and y."},
+    ProjectKey{"body.face", "coefficients_mm", Type::numbers, kAny, "", "required", "Heights of a bicubic B-spline on equal knots: (intervals + 3) in each direction, x first."},
 
     ProjectKey{"detector", "kind", Type::word, kAny, "far-field plane luminance rays", "required", "Intensity by direction; illuminance on a plane; a luminance image; a ray file of what leaves."},
     ProjectKey{"detector", "name", Type::text, kAny, "", "its kind", "Names its files."},

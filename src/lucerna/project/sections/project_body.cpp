@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <limits>
 #include <utility>
+#include <vector>
 
 #include "lucerna/glass_catalogue.h"
 #include "lucerna/material.h"
@@ -126,22 +128,42 @@ CoverGlass read_cover_glass(TomlReader& reader, Project& project) {
   return glass;
 }
 
+/// [body.face]: the top of a solid of this open outline.
+std::shared_ptr<const HeightSurface> read_face(TomlReader face, const std::vector<OutlinePoint>& outline) {
+  const auto half_mm = face.number("half_mm");
+  if (!half_mm) face.missing("half_mm", "half the width of the knots' square");
+  const double radius_mm = outline.empty() ? 0.0 : outline.back()[0];
+  if (*half_mm < radius_mm)
+    face.fail("half_mm",
+              fmt::format("found {}, expected at least the wall's radius, {}", *half_mm, radius_mm));
+  if (!face.has("intervals")) face.missing("intervals", "the intervals along x and y");
+  if (!face.has("coefficients_mm")) face.missing("coefficients_mm", "the spline's heights");
+  auto surface = read_spline(face, std::numeric_limits<double>::infinity(), *half_mm, *half_mm);
+  face.finish();
+  return surface;
+}
+
 Solid read_solid(TomlReader& reader, Project& project) {
   Solid solid;
   solid.name = read_cause(reader, project.scene, solid.name);
   solid.world_from_solid = read_placement(reader);
   if (const auto outline = reader.pairs("outline_mm")) {
     if (reader.has("file")) reader.fail("file", "found `outline_mm` too, which says what it is");
-    at_key(reader, "outline_mm", [&] { check_outline(*outline); });
     solid.outline_mm = *outline;
+    if (auto face = reader.table("face")) {
+      solid.face = read_face(std::move(*face), *outline);
+    } else {
+      at_key(reader, "outline_mm", [&] { check_outline(*outline); });
+    }
   } else {
+    if (reader.has("face")) reader.fail("face", "belongs to `outline_mm`, which is not there");
     solid.mesh = read_mesh_file(reader, project);
   }
   const ClearMedium medium = read_medium(reader, solid.refractive_index, project);
   solid.refractive_index = medium.refractive_index;
   solid.absorption_per_mm = read_absorption_per_mm(reader, medium);
   solid.smooth_below_deg = reader.number("smooth_below_deg", solid.smooth_below_deg);
-  at_key(reader, "role", [&] { check(solid); });
+  at_key(reader, solid.face ? "face" : "role", [&] { check(solid); });
   return solid;
 }
 

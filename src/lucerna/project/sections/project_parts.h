@@ -49,6 +49,11 @@ std::string read_cause(TomlReader& reader, const Scene& scene, const std::string
 /// `aperture`, `diameter_mm` or `size_mm`, `hole_diameter_mm`.
 Aperture read_aperture(TomlReader& reader, std::optional<double> default_diameter_mm);
 
+/// `intervals` and `coefficients_mm`: a bicubic B-spline with knots over [-half, half] along x and y, on the
+/// paraboloid of `focal_mm`; infinite for none.
+std::shared_ptr<const HeightSurface> read_spline(TomlReader& reader, double focal_mm, double half_x_mm,
+                                                 double half_y_mm);
+
 /// One [[body]], added to the scene: a mesh, a cover glass, or a solid.
 void read_body(TomlReader reader, Project& project);
 

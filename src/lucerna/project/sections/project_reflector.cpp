@@ -148,15 +148,8 @@ Reflector read_faceted(TomlReader& reader, Project& project) {
 Reflector read_bspline(TomlReader& reader) {
   const auto focal = reader.number("focal_mm");
   if (!focal) reader.missing("focal_mm", "the paraboloid that the spline stands on");
-  const auto intervals = reader.numbers("intervals", 2).value_or(std::vector<double>{4.0, 4.0});
   const Aperture aperture = read_aperture(reader, std::nullopt);
-  const double a = aperture.half_x_mm(), b = aperture.half_y_mm();
-  const KnotRow x{-a, 2.0 * a / intervals[0], static_cast<int>(intervals[0])};
-  const KnotRow y{-b, 2.0 * b / intervals[1], static_cast<int>(intervals[1])};
-  const auto n = static_cast<std::size_t>(x.coefficients()) * static_cast<std::size_t>(y.coefficients());
-  std::vector<double> c(n, 0.0);
-  if (reader.has("coefficients_mm")) c = *reader.numbers("coefficients_mm", n);
-  return {std::make_shared<SmoothSurface<BsplineShape>>(BsplineShape(*focal, x, y, std::move(c))), aperture};
+  return {read_spline(reader, *focal, aperture.half_x_mm(), aperture.half_y_mm()), aperture};
 }
 
 /// Heights of a file over `size_mm`: z = z_offset_mm + z_scale_mm * value.
@@ -207,6 +200,17 @@ Reflector read_family(TomlReader& reader, const std::string& family, Project& pr
 }
 
 }  // namespace
+
+std::shared_ptr<const HeightSurface> read_spline(TomlReader& reader, double focal_mm, double half_x_mm,
+                                                 double half_y_mm) {
+  const auto intervals = reader.numbers("intervals", 2).value_or(std::vector<double>{4.0, 4.0});
+  const KnotRow x{-half_x_mm, 2.0 * half_x_mm / intervals[0], static_cast<int>(intervals[0])};
+  const KnotRow y{-half_y_mm, 2.0 * half_y_mm / intervals[1], static_cast<int>(intervals[1])};
+  const auto n = static_cast<std::size_t>(x.coefficients()) * static_cast<std::size_t>(y.coefficients());
+  std::vector<double> c(n, 0.0);
+  if (reader.has("coefficients_mm")) c = *reader.numbers("coefficients_mm", n);
+  return std::make_shared<SmoothSurface<BsplineShape>>(BsplineShape(focal_mm, x, y, std::move(c)));
+}
 
 void read_reflector(TomlReader reader, Project& project) {
   const std::string family = reader.required_word("family");
