@@ -404,6 +404,44 @@ TEST(Project, SolidsAreMeshesOrOutlinesOfAMedium) {
   expect(std::string(kSource) + "[[body]]\nrole = 'absorber'\n" + outline, "body[0]");
 }
 
+TEST(Project, ASolidHasAFreeFace) {
+  const std::string lens = std::string(kSource) + "[[body]]\nrole = 'solid'\n";
+  const std::string outline = "outline_mm = [[0, 0], [10, 0], [10, 2]]\n";
+  std::string heights;  // 5 everywhere but for one coefficient
+  for (int i = 0; i < 20; ++i) heights += i == 7 ? "5.3, " : "5, ";
+  const std::string coefficients = "coefficients_mm = [" + heights + "]\n";
+  const std::string face = "[body.face]\nhalf_mm = 11\nintervals = [1, 2]\n" + coefficients;
+  const Project project = read(lens + outline + face);
+  ASSERT_EQ(project.scene.solids.size(), 1U);
+  const Solid& solid = project.scene.solids[0];
+  ASSERT_NE(solid.face, nullptr);
+  EXPECT_EQ(solid.face->at(11.0, 11.0).z_mm, 5.0) << "no paraboloid below it";
+  EXPECT_GT(solid.face->at(11.0, 0.0).z_mm, 5.0) << "rows along x come first";
+  EXPECT_EQ(open_edges(*surface_mesh(solid)), 0U);
+  EXPECT_EQ(solid.outline_mm.size(), 3U);
+  const Project again = read(project_text(project));
+  EXPECT_EQ(project_text(again), project_text(project));
+  for (const double x : {-7.3, 0.1, 4.0})
+    EXPECT_EQ(again.scene.solids[0].face->at(x, 2.5).z_mm, solid.face->at(x, 2.5).z_mm);
+
+  const auto expect = [](const std::string& text, const std::string& part) {
+    EXPECT_THAT(message(text), testing::HasSubstr(part));
+  };
+  expect(lens + "file = 'lens.stl'\n" + face, "body[0].face: belongs to `outline_mm`");
+  expect(lens + outline + "[body.face]\nintervals = [1, 2]\n" + coefficients, "body[0].face.half_mm");
+  expect(lens + outline + "[body.face]\nhalf_mm = 11\n" + coefficients, "body[0].face.intervals");
+  expect(lens + outline + "[body.face]\nhalf_mm = 11\nintervals = [1, 2]\n", "body[0].face.coefficients_mm");
+  expect(lens + outline + "[body.face]\nhalf_mm = 9\nintervals = [1, 2]\n" + coefficients,
+         "body[0].face.half_mm: found 9, expected at least the wall's radius, 10");
+  expect(lens + outline + "[body.face]\nhalf_mm = 11\nintervals = [2, 2]\n" + coefficients,
+         "body[0].face.coefficients_mm");
+  expect(lens + outline + face + "focal_mm = 3\n", "body[0].face.focal_mm: unknown key");
+  expect(lens + "outline_mm = [[0, 0], [10, 0], [10, 2], [0, 4]]\n" + face,
+         "body[0].face: solid 'solid': outline below a face: found its last side");
+  expect(lens + "outline_mm = [[0, 6], [4, 0], [10, 0], [10, 2]]\n" + face,
+         "body[0].face: solid 'solid': face: found z = 5");
+}
+
 TEST(Project, AMisspeltKeyIsNamedWhereItsMeaningIsMissing) {
   const test::TempDir dir;
   const auto message = [&](const std::string& reflector) {
