@@ -33,7 +33,7 @@ double wavy(double x, double y) {
   return 7.0 + 0.012 * x * x - 0.015 * y * y + 0.02 * x + 0.1 * std::sin(0.6 * x + 0.3 * y);
 }
 
-double volume(const Mesh& mesh) {
+double volume_of(const Mesh& mesh) {
   double sum = 0.0;
   for (const auto& t : mesh.triangles)
     sum += dot(mesh.vertices_mm[t[0]], cross(mesh.vertices_mm[t[1]], mesh.vertices_mm[t[2]])) / 6.0;
@@ -76,7 +76,8 @@ TEST(FacedSolid, IsClosedTurnedOutwardAndHasTheVolume) {
       EXPECT_EQ(turned_edges_of(solid.mesh), 0u);
       ASSERT_EQ(solid.corner_normals.size(), 3 * solid.mesh.triangles.size());
       // The dome is a spline through five corners, 1e-3 off the sphere's volume.
-      EXPECT_NEAR(volume(solid.mesh), expected, expected * (10.0 * tolerance + (cavity > 0.0 ? 1e-3 : 1e-5)));
+      EXPECT_NEAR(volume_of(solid.mesh), expected,
+                  expected * (10.0 * tolerance + (cavity > 0.0 ? 1e-3 : 1e-5)));
     }
   }
 }
