@@ -415,8 +415,8 @@ TEST(Project, ASolidHasAFreeFace) {
   ASSERT_EQ(project.scene.solids.size(), 1U);
   const Solid& solid = project.scene.solids[0];
   ASSERT_NE(solid.face, nullptr);
-  EXPECT_EQ(solid.face->at(11.0, 11.0).z_mm, 5.0) << "no paraboloid below it";
-  EXPECT_GT(solid.face->at(11.0, 0.0).z_mm, 5.0) << "rows along x come first";
+  EXPECT_NEAR(solid.face->at(-11.0, 11.0).z_mm, 5.0, 1e-12) << "no paraboloid below it";
+  EXPECT_GT(solid.face->at(11.0, -11.0).z_mm, solid.face->at(-11.0, -11.0).z_mm) << "x comes first";
   EXPECT_EQ(open_edges(*surface_mesh(solid)), 0U);
   EXPECT_EQ(solid.outline_mm.size(), 3U);
   const Project again = read(project_text(project));
