@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Designs of lenses by design() itself.
 //   bench_lenses hidden [N [SECONDS [RAYS]]]  light of random lenses of 20 parameters, tables of RAYS (2^25)
+//   bench_lenses free [N [SECONDS [RAYS]]]    the same of faces of 100 parameters without symmetry (60 s)
+//   bench_lenses oval [SECONDS]               a free form for 60 x 30 degrees from a disk of 1 mm
 //   bench_lenses collimator [SECONDS]         a TIR collimator for the dies of `make-source led`, 10 degrees
 // Lines of `hidden`: error in 48 x 48 boxes (noise taken out) of the result and of the start, that of the
 // exact lens against its own table, efficiency, and how it ended.
@@ -17,8 +19,10 @@
 #include <vector>
 
 #include "lucerna/design.h"
+#include "lucerna/design/lens/free_face.h"
 #include "lucerna/design/lens/lens_problem.h"
 #include "lucerna/design/lens/lens_validation.h"
+#include "lucerna/design/shape/perturbed.h"
 #include "lucerna/design/validation/error_boxes.h"
 #include "lucerna/random.h"
 #include "lucerna/trace.h"
@@ -67,7 +71,15 @@ LensShape random_lens(std::uint64_t seed, double size_mm) {
   }
 }
 
-std::string project_of(const LensShape& lens, double seconds) {
+/// What a kind of hidden lens has in its project.
+struct LensKind {
+  const char* detector;
+  const char* design;
+};
+constexpr LensKind kRevolution{"c_step_deg = 360\ngamma_step_deg = 0.1\n", ""};
+constexpr LensKind kFreeForm{"c_step_deg = 2.5\ngamma_step_deg = 0.5\n", "family = \"bspline\"\n"};
+
+std::string project_of(const LensShape& lens, const LensKind& kind, double seconds) {
   std::size_t side = 0;
   for (const LensFace& face : lens.form().faces) {
     if (face.is_free) side = face.run.from;
@@ -75,9 +87,10 @@ std::string project_of(const LensShape& lens, double seconds) {
   return "[[source]]\nkind = \"disk\"\nradius_mm = 0.5\n[[body]]\nrole = \"solid\"\nrefractive_index = "
          "1.49\n" +
          outline_text(lens.corners()) +
-         "[[detector]]\nname = \"far\"\nkind = \"far-field\"\nc_step_deg = 360\ngamma_step_deg = 0.1\n"
-         "[target]\nfile = \"hidden.ldt\"\n[design]\n" +
-         fmt::format("free_sides = {}\ntime_s = {}\n", side, seconds);
+         fmt::format(
+             "[[detector]]\nname = \"far\"\nkind = \"far-field\"\n{}[target]\nfile = "
+             "\"hidden.ldt\"\n[design]\nfree_sides = {}\ntime_s = {}\n{}",
+             kind.detector, side, seconds, kind.design);
 }
 
 std::shared_ptr<const IntensityDistribution> light_of(const Project& project, std::uint64_t rays) {
@@ -89,24 +102,34 @@ std::shared_ptr<const IntensityDistribution> light_of(const Project& project, st
       trace_metrics(traced, project.scene).far_fields.front().intensity.distribution);
 }
 
-void hidden(int count, double seconds, std::uint64_t table_rays) {
+/// The exact lens number `k` of a kind.
+Project exact_lens(int k, const LensKind& kind, const ProjectMemory& memory) {
+  const std::uint64_t seed = 100 + static_cast<std::uint64_t>(k);
+  if (&kind == &kRevolution)
+    return parse_project(project_of(random_lens(seed, 0.4), kind, 1.0), "hidden.toml", memory);
+  const LensProblem plain =
+      lens_problem(parse_project(project_of(dome(), kind, 1.0), "hidden.toml", memory), "hidden.toml");
+  constexpr int kIntervals = 7;
+  const DesignShape truth = perturbed(face_of(plain.start, kIntervals), 0.4, Rng(seed, 0));
+  return with_lens(plain, {plain.start, truth});
+}
+
+void hidden(const LensKind& kind, int count, double seconds, std::uint64_t table_rays) {
   std::vector<double> errors;
   for (int k = 0; k < count; ++k) {
-    const LensShape truth = random_lens(100 + static_cast<std::uint64_t>(k), 0.4);
     ProjectMemory memory;
     memory.targets["hidden.ldt"] =
         std::make_shared<const IntensityDistribution>(uniform_distribution(1.0, 1.0));
-    const Project exact = parse_project(project_of(truth, seconds), "hidden.toml", memory);
+    const Project exact = exact_lens(k, kind, memory);
     memory.targets["hidden.ldt"] = light_of(exact, table_rays);
-    const LensProblem problem =
-        lens_problem(parse_project(project_of(dome(), seconds), "hidden.toml", memory), "hidden.toml");
+    const std::string text = project_of(dome(), kind, seconds);
+    const LensProblem problem = lens_problem(parse_project(text, "hidden.toml", memory), "hidden.toml");
     const ErrorBoxes boxes(target_rectangle(problem.target));
     const LensValidation own =
         validate_lens(exact.scene, boxes, box_target(boxes, problem.target, total_flux(exact.scene.sources)),
                       TargetMode::shape, 9, std::uint64_t{1} << 20);
     const auto begin = std::chrono::steady_clock::now();
-    const DesignedMirror found =
-        design(parse_project(project_of(dome(), seconds), "hidden.toml", memory), "hidden");
+    const DesignedMirror found = design(parse_project(text, "hidden.toml", memory), "hidden");
     const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const BoxErrorEstimate &e = found.error.c48, &start = found.start_error.c48;
     errors.push_back(e.excess);
@@ -132,6 +155,62 @@ IntensityDistribution beam(double width_deg) {
     out.cd[g] = std::exp(-std::numbers::ln2 * x * x);
   }
   return out;
+}
+
+/// The same of 60 degrees along C0 and 30 across.
+IntensityDistribution oval_beam() {
+  IntensityDistribution out = uniform_distribution(5.0, 1.0);
+  const std::size_t rows = out.gamma_deg.size();
+  for (std::size_t c = 0; c < out.c_deg.size(); ++c) {
+    for (std::size_t g = 0; g < rows; ++g) {
+      const double off = 180.0 - out.gamma_deg[g], steep = off < 90.0 ? std::tan(radians(off)) : 0.0;
+      const double x = degrees(std::atan(steep * std::cos(radians(out.c_deg[c])))) / 30.0;
+      const double y = degrees(std::atan(steep * std::sin(radians(out.c_deg[c])))) / 15.0;
+      out.cd[c * rows + g] = off < 90.0 ? std::exp(-std::numbers::ln2 * (x * x + y * y)) : 0.0;
+    }
+  }
+  return out;
+}
+
+void print(const char* what, const DesignedMirror& found) {
+  const BoxErrorEstimate &e = found.error.c48, &start = found.start_error.c48;
+  fmt::print(
+      "{}: error {:.2f} +- {:.2f} % (start {:.2f} %), {:.1f} % of the light in the rectangle, "
+      "efficiency {:.4f} with Fresnel, {} evaluations, {}\n",
+      what, 100.0 * e.excess, 100.0 * e.standard_error, 100.0 * start.excess,
+      100.0 * found.error.in_rectangle.mean, found.efficiency.mean, found.evaluations, to_string(found.end));
+  const auto& peak = found.light.far_fields.front().metrics.peak;
+  if (peak) fmt::print("peak {:.0f} +- {:.0f} cd\n", peak->cd.mean, peak->cd.standard_error);
+  for (const LimitCheck& c : found.limits)
+    fmt::print("limit {}: {:.4g} found, {:.4g} allowed, {}\n", c.limit, c.found, c.allowed,
+               c.held ? "held" : "NOT HELD");
+}
+
+void oval(double seconds) {
+  const std::string text = fmt::format(R"([[source]]
+kind = "disk"
+radius_mm = 0.5
+[[body]]
+role = "solid"
+refractive_index = 1.49
+outline_mm = [[0, 3], [14, 3], [14, 6], [12.6, 7], [9.8, 8.55], [7, 9.75], [4.2, 10.55], [1.4, 10.95],
+  [0, 11]]
+[[detector]]
+kind = "far-field"
+[target]
+file = "beam.ldt"
+[design]
+family = "bspline"
+free_sides = 2
+time_s = {}
+[design.limits]
+max_height_mm = 14
+min_thickness_mm = 1.0
+)",
+                                       seconds);
+  ProjectMemory memory;
+  memory.targets["beam.ldt"] = std::make_shared<const IntensityDistribution>(oval_beam());
+  print("oval", design(parse_project(text, "oval.toml", memory), "oval"));
 }
 
 void collimator(double seconds) {
@@ -164,18 +243,7 @@ min_draft_deg = 1.0
                                        seconds);
   ProjectMemory memory;
   memory.targets["beam.ldt"] = std::make_shared<const IntensityDistribution>(beam(10.0));
-  const DesignedMirror found = design(parse_project(text, "collimator.toml", memory), "collimator");
-  const BoxErrorEstimate &e = found.error.c48, &start = found.start_error.c48;
-  fmt::print(
-      "collimator: error {:.2f} +- {:.2f} % (start {:.2f} %), {:.1f} % of the light in the rectangle, "
-      "efficiency {:.4f} with Fresnel, {} evaluations, {}\n",
-      100.0 * e.excess, 100.0 * e.standard_error, 100.0 * start.excess, 100.0 * found.error.in_rectangle.mean,
-      found.efficiency.mean, found.evaluations, to_string(found.end));
-  const auto& peak = found.light.far_fields.front().metrics.peak;
-  if (peak) fmt::print("peak {:.0f} +- {:.0f} cd of 1000 lm\n", peak->cd.mean, peak->cd.standard_error);
-  for (const LimitCheck& c : found.limits)
-    fmt::print("limit {}: {:.4g} found, {:.4g} allowed, {}\n", c.limit, c.found, c.allowed,
-               c.held ? "held" : "NOT HELD");
+  print("collimator", design(parse_project(text, "collimator.toml", memory), "collimator"));
 }
 
 }  // namespace
@@ -183,13 +251,16 @@ min_draft_deg = 1.0
 int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
   const auto number = [&](int i, double otherwise) { return argc > i ? std::atof(argv[i]) : otherwise; };
-  if (what == "hidden") {
-    hidden(static_cast<int>(number(2, 10)), number(3, 20.0),
-           static_cast<std::uint64_t>(number(4, 33554432.0)));
+  if (what == "hidden" || what == "free") {
+    const bool is_free = what == "free";
+    hidden(is_free ? kFreeForm : kRevolution, static_cast<int>(number(2, 10)),
+           number(3, is_free ? 60.0 : 20.0), static_cast<std::uint64_t>(number(4, 33554432.0)));
+  } else if (what == "oval") {
+    oval(number(2, 60.0));
   } else if (what == "collimator") {
     collimator(number(2, 60.0));
   } else {
-    fmt::print("usage: bench_lenses hidden [N [SECONDS [RAYS]]] | collimator [SECONDS]\n");
+    fmt::print("usage: bench_lenses hidden|free [N [SECONDS [RAYS]]] | oval|collimator [SECONDS]\n");
     return 2;
   }
   return 0;

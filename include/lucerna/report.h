@@ -30,8 +30,8 @@ std::vector<std::string> write_trace(const std::filesystem::path& folder, const 
 
 /// Writes what `lucerna design` leaves in a folder, which is made if it is missing: what `write_trace` leaves
 /// of the finished project, and reflector.toml .step .stl .obj .dxf .csv, history.csv, checkpoint,
-/// tolerances.csv; of a lens lens.toml .step .stl .obj .dxf .csv and history.csv. Errors and what is returned
-/// as `write_trace`.
+/// tolerances.csv; of a lens lens.toml .step .stl .obj, .dxf and .csv unless its face is a free form, and
+/// history.csv. Errors and what is returned as `write_trace`.
 std::vector<std::string> write_design(const std::filesystem::path& folder, const DesignedMirror& mirror);
 
 /// Writes the report of `input` as one self-contained HTML file. Of a folder that `write_trace`, `lucerna

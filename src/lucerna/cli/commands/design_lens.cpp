@@ -19,7 +19,7 @@ class LensWatch {
   LensWatch(std::filesystem::path folder, const LensProblem& problem, Session& session)
       : folder_(std::move(folder)), problem_(problem), session_(session) {}
 
-  void operator()(const FitRecord& record, const LensShape& best) {
+  void operator()(const FitRecord& record, const ShapedLens& best) {
     add_step(record, history_);
     write_lens_progress(folder_, problem_, best, history_);
     session_.show(step_line(record));

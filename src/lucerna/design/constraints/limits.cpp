@@ -140,7 +140,8 @@ Curvature curvature_at(const DesignShape& design, double x, double y) {
 
 }  // namespace
 
-ShapeLimits::ShapeLimits(const DesignLimits& limits, const DesignShape& start) {
+ShapeLimits::ShapeLimits(const DesignLimits& limits, const DesignShape& start,
+                         std::span<const HeightBounds> bounds) {
   const auto add = [&](Kind kind, double value, std::string text) {
     limits_.push_back({kind, value, std::move(text), {}});
   };
@@ -155,6 +156,13 @@ ShapeLimits::ShapeLimits(const DesignLimits& limits, const DesignShape& start) {
     add(Kind::radius, *limits.min_radius_mm, fmt::format("min_radius_mm = {}", *limits.min_radius_mm));
   }
   for (const KeepOut& zone : limits.keep_out) limits_.push_back(keep_out(zone, start));
+  if (bounds.empty()) return;
+  Limit between{Kind::keep_out, 0.0, "the bounds on the heights", {}};
+  for (const HeightBounds& b : bounds) {
+    if (std::isfinite(b.low_mm)) between.walls.push_back({{b.x_mm, b.y_mm}, b.low_mm, false});
+    if (std::isfinite(b.high_mm)) between.walls.push_back({{b.x_mm, b.y_mm}, b.high_mm, true});
+  }
+  limits_.push_back(std::move(between));
 }
 
 ShapeLimits::Limit ShapeLimits::keep_out(const KeepOut& zone, const DesignShape& start) const {

@@ -11,6 +11,11 @@
 
 namespace lucerna {
 
+/// Between which heights a surface is to be at a place, in mm.
+struct HeightBounds {
+  double x_mm, y_mm, low_mm, high_mm;
+};
+
 /// The limits on a mirror's form as costs that a fit can add to its error. At places over the aperture, each
 /// limit costs the square of its excess over a small margin (0.02 mm, 0.01 of slope, 2 % of curvature), from
 /// a margin inside the limit on: a margin too much costs as much as an error of 100 %. What is not linear in
@@ -19,7 +24,9 @@ class ShapeLimits {
  public:
   /// `start` says the aperture and on which side of each keep-out zone the mirror is to stay: where most of
   /// it is to begin with.
-  ShapeLimits(const DesignLimits& limits, const DesignShape& start);
+  /// `bounds`: also between these.
+  ShapeLimits(const DesignLimits& limits, const DesignShape& start,
+              std::span<const HeightBounds> bounds = {});
 
   bool empty() const { return limits_.empty(); }
 

@@ -78,6 +78,12 @@ void DesignRays::evaluate_on(std::shared_ptr<Accelerator> accelerator) {
   device_ = accelerator ? std::make_shared<DeviceEvaluator>(std::move(accelerator)) : nullptr;
 }
 
+void DesignRays::refract(const MediumView& medium, Pass into) {
+  LUCERNA_CHECK(block_.empty(), "{} rays were drawn before they were to enter a lens", size());
+  medium_ = medium;
+  into_ = std::move(into);
+}
+
 void DesignRays::fill(std::uint64_t b) {
   Block& block = block_[b];
   std::size_t at = 0;
@@ -92,14 +98,15 @@ void DesignRays::fill(std::uint64_t b) {
     const std::uint64_t seed = detail::mix_bits(seed_ * 0x9E3779B97F4A7C15ull + k * kDesignStreams + stream);
     source.rays->emit(Sequence(SequenceKind::sobol, seed), from, rays);
     for (std::size_t i = 0; i < rays.size(); ++i, ++at) {
-      const Ray ray = mirror_from_source.ray(rays.ray(i));
+      Ray ray = mirror_from_source.ray(rays.ray(i));
+      const double left = into_ ? into_(ray) : 1.0;
       block.x_mm[at] = static_cast<float>(ray.origin_mm.x);
       block.y_mm[at] = static_cast<float>(ray.origin_mm.y);
       block.z_mm[at] = static_cast<float>(ray.origin_mm.z);
       block.kx[at] = static_cast<float>(ray.direction.x());
       block.ky[at] = static_cast<float>(ray.direction.y());
       block.kz[at] = static_cast<float>(ray.direction.z());
-      block.weight[at] = static_cast<float>(static_cast<double>(rays.weight[i]) * ray_flux_[k]);
+      block.weight[at] = static_cast<float>(left * static_cast<double>(rays.weight[i]) * ray_flux_[k]);
     }
   }
   LUCERNA_CHECK(at == kBlockRays, "{} rays in a block", at);

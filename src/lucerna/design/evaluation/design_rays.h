@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include "lucerna/progress.h"
 #include "lucerna/rays.h"
 #include "lucerna/trace/engines/ray_numbering.h"
+#include "lucerna/trace/kernels/solid_kernel.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
 namespace lucerna {
@@ -53,6 +56,15 @@ class DesignRays {
   /// Null without bodies.
   const BodyShadows* shadows() const { return shadows_.get(); }
 
+  /// What is done to each ray, in the mirror's frame, before a design sees it: returns the share of its flux
+  /// that is left. Thread safe.
+  using Pass = std::function<double(Ray&)>;
+  /// From now on the shape is the last face of a lens: rays that are drawn from here on first go into the
+  /// medium by `into`, and the face refracts them. There are none yet.
+  void refract(const MediumView& medium, Pass into);
+  /// What the rays come through to the shape; nothing where that is a mirror.
+  const std::optional<MediumView>& medium() const { return medium_; }
+
   /// From now on evaluations are shared with other processes, which make all of them too (peers.h); null:
   /// this one makes them alone.
   void share_with(Peers* peers) { peers_ = peers; }
@@ -74,6 +86,8 @@ class DesignRays {
   std::vector<Block> block_;
   std::shared_ptr<DeviceEvaluator> device_;
   std::shared_ptr<const BodyShadows> shadows_;
+  std::optional<MediumView> medium_;
+  Pass into_;
   Peers* peers_ = nullptr;
 };
 

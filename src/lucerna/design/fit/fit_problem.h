@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
+#include "lucerna/design/constraints/limits.h"
 #include "lucerna/design/constraints/zone_cost.h"
 #include "lucerna/design/problem/target_rectangle.h"
 #include "lucerna/design/solver/residual_rows.h"
@@ -39,6 +41,14 @@ struct FitProblem {
   /// What the limits cost at a shape, to be added to the squared error: 0 where all are held. Adds its
   /// residuals to `rows` unless null. Limits on light trace the first `rays` rays. Empty: no limits.
   std::function<double(const DesignShape&, std::uint64_t rays, ResidualRows* rows)> limits;
+  /// Those of `limits` on the form, for steps that look ahead at them; may be null.
+  std::shared_ptr<const ShapeLimits> form;
+  /// Brings what a search begins with within limits on its heights; empty: it begins as it is.
+  std::function<DesignShape(const DesignShape&)> within;
+  /// Flux, as shares of the sources', that a shape sends into bins by ways that an evaluation does not
+  /// follow, looked at by some of `rays` rays. A free form's levels keep that of the shape that they begin
+  /// with. Empty: none.
+  std::function<Eigen::VectorXd(const DesignShape&, const TentBins&, std::uint64_t rays)> other_light;
   /// Shapes to begin with, the most promising first; empty: the shape that the fit is made with.
   std::vector<InitialGuess> guesses;
   /// So many of them are compared at the screening stage before the best goes on; further ones are the first

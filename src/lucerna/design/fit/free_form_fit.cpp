@@ -25,6 +25,10 @@ constexpr double kMaxMove = 0.05;
 /// Bins on each side of the widened rectangle out to the horizon; where zones may lie there.
 constexpr int kOuterBins = 8, kZoneBins = 24;
 
+/// A step looks so often at the limits that it breaks, unless they cost less than this share of all.
+constexpr int kLooksAhead = 5;
+constexpr double kLittleCost = 0.01;
+
 double smoothing_for(const DesignShape& shape, double level_smoothing) {
   const Aperture& a = shape.aperture();
   const double step =
@@ -46,6 +50,12 @@ FreeFormFit::FreeFormFit(const FitProblem& problem, const FreeFormLevel& level, 
   if (problem_.zones.cells) zones_.emplace(problem_.zones, bins_, level_.rays, level_.zones.weight);
 }
 
+void FreeFormFit::keep_other_light_of(const DesignShape& shape) {
+  if (!problem_.other_light) return;
+  // Beside the rectangle no shape makes it less, and all of it would hide what is left to gain.
+  other_light_ = problem_.other_light(shape, bins_, level_.rays).cwiseProduct(inside_);
+}
+
 FreeFormPoint FreeFormFit::at(DesignShape shape) const {
   EvaluationOptions options;
   options.rays = level_.rays;
@@ -53,6 +63,7 @@ FreeFormPoint FreeFormFit::at(DesignShape shape) const {
   options.rim_mm = kRimShare * shape.aperture().outer_radius_mm();
   options.sparse = true;
   Evaluation light = evaluate(shape, problem_.reflectance, *problem_.rays, bins_, options);
+  if (other_light_.size() > 0) light.flux += other_light_;
   SparseEquations equations = sparse_equations(light, target_, bins_, problem_.mode);
   equations *= error_weight();
   if (zones_) zones_->add_to(light, equations);
@@ -72,12 +83,32 @@ FreeFormPoint FreeFormFit::at(DesignShape shape) const {
   return {std::move(shape), std::move(light), std::move(equations)};
 }
 
+Eigen::VectorXd FreeFormFit::move_of(const FreeFormPoint& now, const SparseSymmetric& metric,
+                                     double lambda) const {
+  Eigen::VectorXd move = damped_step(now.equations, metric, lambda);
+  if (problem_.form == nullptr) return move;
+  ResidualRows here;
+  problem_.form->cost(now.shape, &here);
+  SparseEquations without = now.equations;
+  here.take_from(without);
+  for (int i = 0; i < kLooksAhead && move.allFinite(); ++i) {
+    ResidualRows there;
+    const double cost = problem_.form->cost(now.shape.with(now.shape.parameters() + move), &there);
+    if (cost <= kLittleCost * now.equations.cost) break;
+    SparseEquations with = without;
+    there.before(move).add_to(with);
+    move = damped_step(with, metric, lambda);
+  }
+  return move;
+}
+
 bool FreeFormFit::step(FreeFormPoint& now, double& lambda) const {
   const Eigen::VectorXd from = now.shape.parameters();
   const double longest = kMaxMove * now.shape.aperture().outer_radius_mm();
-  const LevenbergMarquardtStep step =
-      levenberg_marquardt_step(now, sparse_step_metric(now.shape, now.equations), lambda, longest,
-                               [&](const Eigen::VectorXd& move) { return at(now.shape.with(from + move)); });
+  const SparseSymmetric metric = sparse_step_metric(now.shape, now.equations);
+  const LevenbergMarquardtStep step = levenberg_marquardt_step(
+      now, [&](double damping) { return move_of(now, metric, damping); }, lambda, longest,
+      [&](const Eigen::VectorXd& move) { return at(now.shape.with(from + move)); });
   lambda = step.next_lambda;
   return step.accepted;
 }

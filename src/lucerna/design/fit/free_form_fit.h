@@ -44,6 +44,9 @@ class FreeFormFit {
   /// `problem` must outlive it. Grows the problem's rays to the level's.
   FreeFormFit(const FitProblem& problem, const FreeFormLevel& level, Progress& progress = no_progress());
 
+  /// From now on points have `FitProblem::other_light` of this shape.
+  void keep_other_light_of(const DesignShape& shape);
+
   FreeFormPoint at(DesignShape shape) const;
 
   /// Tries one step from `now`, which moves there if the cost falls; adapts the damping. True if it moved.
@@ -57,10 +60,15 @@ class FreeFormFit {
   double in_rectangle(const FreeFormPoint& point) const { return inside_.dot(point.light.flux); }
 
  private:
+  /// The damped step of the equations at `now`. Limits on the form that it would break are taken into the
+  /// linear model: their costs are nothing at `now` and very steep beyond.
+  Eigen::VectorXd move_of(const FreeFormPoint& now, const SparseSymmetric& metric, double lambda) const;
+
   const FitProblem& problem_;
   FreeFormLevel level_;
   TentBins bins_;
   Eigen::VectorXd target_, inside_;
+  Eigen::VectorXd other_light_;  ///< empty: none
   std::optional<ZoneCost> zones_;
 };
 

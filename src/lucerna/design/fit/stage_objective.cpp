@@ -53,8 +53,9 @@ NormalEquations StageObjective::equations(const DesignShape& shape, const Evalua
 LevenbergMarquardtStep StageObjective::step(FitPoint& now, double lambda) const {
   const Eigen::VectorXd from = now.shape.parameters();
   const double longest = kLongestStep * now.shape.aperture().outer_radius_mm();
+  const auto metric = step_metric(now.shape, now.equations);
   return levenberg_marquardt_step(
-      now, step_metric(now.shape, now.equations), lambda, longest,
+      now, [&](double damping) { return damped_step(now.equations, metric, damping); }, lambda, longest,
       [&](const Eigen::VectorXd& move) { return at(now.shape.with(from + move)); });
 }
 

@@ -135,9 +135,13 @@ class Sinkhorn {
 }  // namespace
 
 PointTransport::PointTransport(const std::vector<DirectedFlux>& from, std::vector<DirectedFlux> to,
-                               double sign, double entropy, const Eigen::VectorXf* guess)
-    : to_(std::move(to)), sign_(sign), entropy_(entropy), directions_(vectors(to_)) {
-  Matrix cost = vectors(from) * directions_.transpose();
+                               double sign, double entropy, const Eigen::VectorXf* guess, double ratio)
+    : to_(std::move(to)),
+      sign_(sign),
+      entropy_(entropy),
+      ratio_(static_cast<float>(ratio)),
+      directions_(vectors(to_)) {
+  Matrix cost = ratio_ * (vectors(from) * directions_.transpose());
   cost = (-static_cast<float>(sign)) * (1.0f - cost.array()).max(kMinOpening).log();
   const Eigen::VectorXf b = shares(to_);
   const double range = static_cast<double>(cost.maxCoeff() - cost.minCoeff());
@@ -156,7 +160,7 @@ double PointTransport::radius(const Direction& towards) const {
                           static_cast<float>(towards.z()));
   const float per = static_cast<float>(sign_ / entropy_);
   const Eigen::ArrayXf x =
-      potential_.array() + per * (1.0f - (directions_ * d).array()).max(kMinOpening).log();
+      potential_.array() + per * (1.0f - ratio_ * (directions_ * d).array()).max(kMinOpening).log();
   const float max = x.maxCoeff();
   const double soft =
       -entropy_ * (static_cast<double>(max) + std::log(static_cast<double>((x - max).exp().sum())));

@@ -27,6 +27,8 @@ constexpr int kMeridians = 96, kPlaces = 160, kPlacesForEdges = 64;
 constexpr double kBeyondRim = 1.04;
 /// A mirror that turns back before so much of its radius is none.
 constexpr double kMinRimReach = 0.85;
+/// The same of a lens's face, where light of a flat source does not come to the rim at all.
+constexpr double kMinFaceReach = 0.4;
 /// Weight of a third difference of coefficients against that of a point: nothing where there are points.
 constexpr double kSmoothness = 1e-4;
 
@@ -259,6 +261,7 @@ std::optional<DesignShape> transport_guess(const TransportProblem& problem, cons
                                            const TransportChoice& choice) {
   const Vec3 source = point_source(*problem.rays, std::uint64_t{1} << 14).at_mm;
   const Aperture& aperture = family.aperture();
+  const std::optional<MediumView>& medium = problem.rays->medium();
   const Vec3 vertex{0.0, 0.0, source.z - choice.vertex_distance_mm};
   Catch edges = first_catch(aperture, choice.vertex_distance_mm);
   std::optional<Outline> mirror;
@@ -272,14 +275,14 @@ std::optional<DesignShape> transport_guess(const TransportProblem& problem, cons
     // What the aperture catches changes from round to round, and the transport little.
     const Eigen::VectorXf guess = potentials(to.bins);
     const PointTransport transport(light.caught, to.flux, choice.sign, 0.5 * source_cell * bin,
-                                   round > 0 ? &guess : nullptr);
+                                   round > 0 ? &guess : nullptr, medium ? 1.0 / medium->index : 1.0);
     potentials(to.bins) = transport.potentials();
     const bool last = round + 1 == kTransportRounds;
     mirror =
         outline(transport, aperture, source, choice.vertex_distance_mm, last ? kPlaces : kPlacesForEdges);
     edges = mirror->edges;
   }
-  if (mirror->reach < kMinRimReach) return std::nullopt;
+  if (mirror->reach < (medium ? kMinFaceReach : kMinRimReach)) return std::nullopt;
   return fitted_to_points(family, mirror->points);
 }
 

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <utility>
 
+#include "lucerna/design/lens/free_face.h"
+#include "lucerna/design/lens/free_face_fit.h"
 #include "lucerna/design/lens/lens_validation.h"
 #include "lucerna/design/validation/error_boxes.h"
 
@@ -29,8 +31,8 @@ class LensCheck {
         boxes_(target_rectangle(problem.target)),
         target_(box_target(boxes_, problem.target, total_flux(problem.project.scene.sources))) {}
 
-  LensValidation operator()(const LensShape& shape, std::uint64_t rays, double max_s) const {
-    return validate_lens(with_lens(problem_, shape).scene, boxes_, target_, problem_.target.mode,
+  LensValidation operator()(const ShapedLens& lens, std::uint64_t rays, double max_s) const {
+    return validate_lens(with_lens(problem_, lens).scene, boxes_, target_, problem_.target.mode,
                          options_.seed, rays, max_s, progress_);
   }
 
@@ -48,6 +50,12 @@ void set_findings(const LensValidation& v, LensResult& result) {
   result.bodies = v.absorbed;
   result.lost = v.lost;
   result.validation_s += v.seconds;
+}
+
+LensFitResult fitted(const LensProblem& problem, const LensFitOptions& options, const LensFitWatcher& watch) {
+  if (problem.free_face) return fit_free_face(problem, options, watch);
+  DesignRays rays(problem.project.scene.sources, problem.world_from_lens.inverse(), options.seed);
+  return fit_lens(problem, options, rays, watch);
 }
 
 bool is_better(const BoxErrorEstimate& given, const BoxErrorEstimate& found) {
@@ -78,37 +86,38 @@ LensResult design_lens(const LensProblem& problem, const LensOptions& options, P
   const double time_s = options.time_s.value_or(problem.time_s);
   const LensCheck check(problem, options, progress);
   const LensValidation given =
-      check(problem.start, std::min(kGivenRays, options.validation_rays), 0.05 * time_s);
+      check({problem.start}, std::min(kGivenRays, options.validation_rays), 0.05 * time_s);
   const double per_ray_s = given.seconds / static_cast<double>(given.rays);
   const double after_s =
       std::min(kValidationShare * time_s, per_ray_s * static_cast<double>(options.validation_rays));
-  DesignRays rays(problem.project.scene.sources, problem.world_from_lens.inverse(), options.seed);
   double last_s = -1.0;
-  LensFitResult fit = fit_lens(problem, {options.seed, options.max_rays}, rays,
-                               [&](const FitRecord& step, const LensShape& best) {
-                                 if (observer) observer(step, best);
-                                 // What comes before the first step comes once.
-                                 const double now = seconds(), step_s = last_s < 0.0 ? 0.0 : now - last_s;
-                                 last_s = now;
-                                 return !progress.stop_requested() && now + step_s + after_s < time_s;
-                               });
-  LensResult result(fit.shape);
+  const LensFitWatcher watch = [&](const FitRecord& step, const ShapedLens& best) {
+    if (observer) observer(step, best);
+    // What comes before the first step comes once.
+    const double now = seconds(), step_s = last_s < 0.0 ? 0.0 : now - last_s;
+    last_s = now;
+    return !progress.stop_requested() && now + step_s + after_s < time_s;
+  };
+  LensFitResult fit = fitted(problem, {options.seed, options.max_rays}, watch);
+  LensResult result(fit.lens);
   result.end = progress.stop_requested() ? DesignTermination::interrupted : fit.end;
   result.evaluations = fit.evaluations;
   result.rays = fit.rays;
   result.history = std::move(fit.history);
   const double left_s = std::max(0.05 * time_s, time_s - seconds());
-  set_findings(check(result.shape, options.validation_rays, left_s), result);
+  set_findings(check(result.lens, options.validation_rays, left_s), result);
   result.start_error = given.error;
   const auto signs = draft_signs(problem.start);
-  result.limits = check_lens_limits(problem.limits, result.shape, signs);
+  result.limits = result.lens.face
+                      ? check_face_limits(problem.limits, face_seat(problem.start), *result.lens.face)
+                      : check_lens_limits(problem.limits, result.lens.outline, signs);
   const auto given_limits = check_lens_limits(problem.limits, problem.start, signs);
   const bool given_holds =
       std::all_of(given_limits.begin(), given_limits.end(), [](const LimitCheck& c) { return c.held; });
   if (given_holds && is_better(given.error.c48, result.error.c48)) {
-    result.shape = problem.start;
+    result.lens = {problem.start};
     result.limits = given_limits;
-    set_findings(check(result.shape, options.validation_rays, left_s), result);
+    set_findings(check(result.lens, options.validation_rays, left_s), result);
     result.remarks.emplace_back("the given lens is the result: nothing that was found is better");
   }
   add_lens_remarks(result);

@@ -22,14 +22,14 @@ struct LensOptions {
 };
 
 struct LensResult : DesignFindings {
-  explicit LensResult(LensShape found) : shape(std::move(found)) {}
-  LensShape shape;
+  explicit LensResult(ShapedLens found) : lens(std::move(found)) {}
+  ShapedLens lens;
   std::vector<FitRecord> history;
   double validation_s = 0.0;
 };
 
 /// Called after every step with the best so far.
-using LensObserver = std::function<void(const FitRecord& step, const LensShape& best)>;
+using LensObserver = std::function<void(const FitRecord& step, const ShapedLens& best)>;
 
 /// Shapes the problem's lens until its light is the target's, validates it by fresh rays through its mesh,
 /// and keeps the given lens where that is the better one. Progress phases "rays", "validate". Stops when

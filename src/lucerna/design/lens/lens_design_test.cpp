@@ -77,7 +77,7 @@ TEST(LensDesign, ComesNearerToTheTarget) {
   EXPECT_LT(found.error.c12.excess, 0.5 * found.start_error.c12.excess);
   EXPECT_LT(found.error.c48.excess, found.start_error.c48.excess);
   EXPECT_NEAR(found.efficiency.mean + found.bodies.mean + found.lost.mean, 1.0, 1e-9);
-  EXPECT_TRUE(found.shape.is_valid());
+  EXPECT_TRUE(found.lens.outline.is_valid());
 }
 
 TEST(LensDesignSlow, IsTheSameForAnyNumberOfThreads) {
@@ -85,7 +85,7 @@ TEST(LensDesignSlow, IsTheSameForAnyNumberOfThreads) {
   const LensResult many = design_lens(problem, quick());
   const ThreadLimit limit(1);
   const LensResult one = design_lens(problem, quick());
-  EXPECT_EQ(many.shape.corners(), one.shape.corners());
+  EXPECT_EQ(many.lens.outline.corners(), one.lens.outline.corners());
   EXPECT_EQ(many.error.c48.value, one.error.c48.value);
 }
 
@@ -96,7 +96,7 @@ TEST(LensDesignSlow, FindsAHiddenLens) {
   const LensShape hidden = perturbed_smoothly(plain.start, 0.45, Rng(11, 0));
   TraceOptions options;
   options.last_ray = 1 << 22;
-  const Scene exact = with_lens(plain, hidden).scene;
+  const Scene exact = with_lens(plain, {hidden}).scene;
   const auto light = std::make_shared<const IntensityDistribution>(
       trace_metrics(trace(exact, options), exact).far_fields.front().intensity.distribution);
   LensOptions more = quick();
@@ -196,6 +196,7 @@ TEST(LensProblem, SaysWhatItDoesNotTake) {
   };
   EXPECT_NE(refused("[design.limits]\nmax_slope_deg = 3\n").find("max_slope_deg"), std::string::npos);
   EXPECT_NE(refused("light_weight = 0.1\n").find("light_weight"), std::string::npos);
+  EXPECT_NE(refused("family = \"trough\"\n").find("family"), std::string::npos);
   EXPECT_NE(refused("[design.tolerances]\nsamples = 4\n").find("tolerances"), std::string::npos);
   EXPECT_NE(
       refused("[[reflector]]\npreset = \"parabola\"\nfocal_mm = 9\ndiameter_mm = 40\n").find("reflector"),
@@ -207,7 +208,7 @@ TEST(LensProblem, TheFinishedProjectIsDesignedOn) {
   const LensProblem problem = problem_of();
   Eigen::VectorXd p = problem.start.parameters();
   p[1] = 0.2;
-  const std::string text = project_text(with_lens(problem, problem.start.with(p)));
+  const std::string text = project_text(with_lens(problem, {problem.start.with(p)}));
   const LensProblem again =
       lens_problem(parse_project(text, "lens.toml", memory_of(beam_up(25.0))), "lens.toml");
   EXPECT_EQ(again.start.parameter_count(), problem.start.parameter_count());

@@ -143,7 +143,7 @@ class LensFit {
         watch_(watch),
         signs_(draft_signs(problem.start)),
         window_(lens_window(problem)),
-        result_(problem.start) {
+        result_({problem.start}) {
     rays_.grow(std::uint64_t{1} << 16);
     given_within_ = share_within(problem.start, rays_, kWithinRays);
     LensEvaluationOptions plain;
@@ -171,7 +171,7 @@ class LensFit {
       begun.push_back(coarsely(perturbed(begun.front().shape, k), coarse_ - 1));
     }
     sort_by_cost(begun);
-    result_.shape = begun.front().shape;
+    result_.lens.outline = begun.front().shape;
     coarse_cost_ = begun.front().cost;
     for (std::size_t k = 0; k < std::min<std::size_t>(kTakenOn, begun.size()); ++k) {
       if (begun[k].cost <= kHopeful * coarse_cost_) take_on(begun[k].shape);
@@ -226,7 +226,7 @@ class LensFit {
     const bool gained = cost < kBetter * middle_cost_;
     middle_cost_ = cost;
     middle_ = std::move(shape);
-    if (!std::isfinite(fine_cost_)) result_.shape = *middle_;
+    if (!std::isfinite(fine_cost_)) result_.lens.outline = *middle_;
     return gained;
   }
 
@@ -239,15 +239,16 @@ class LensFit {
     if (!(cost < fine_cost_)) return false;
     const bool gained = cost < kBetter * fine_cost_;
     fine_cost_ = cost;
-    result_.shape = std::move(shape);
+    result_.lens.outline = std::move(shape);
     result_.at_noise = noise;
     return gained;
   }
 
   /// Two times of three from the best, a little perturbed; else from another start.
   bool restart(int k) {
-    const Candidate found = k % 3 == 2 ? coarsely(other_start(kStarts + k), 0)
-                                       : coarsely(perturbed(result_.shape, kEarlyRestarts + k), coarse_ - 1);
+    const Candidate found = k % 3 == 2
+                                ? coarsely(other_start(kStarts + k), 0)
+                                : coarsely(perturbed(result_.lens.outline, kEarlyRestarts + k), coarse_ - 1);
     if (stopped_ || !(found.cost <= kHopeful * coarse_cost_)) return false;
     coarse_cost_ = std::min(found.cost, coarse_cost_);
     return take_on(found.shape) && finish();
@@ -323,10 +324,11 @@ class LensFit {
     for (int step = 1, small = 0, refused = 0; step <= most && !stopped_; ++step) {
       const double before = now.equations.cost;
       const Eigen::VectorXd diagonal = now.equations.hessian.diagonal();
-      const Eigen::VectorXd metric = diagonal.array() + 1e-2 * diagonal.mean() + 1e-300;
+      const Eigen::MatrixXd metric =
+          Eigen::VectorXd(diagonal.array() + 1e-2 * diagonal.mean() + 1e-300).asDiagonal();
       const Eigen::VectorXd from = now.shape.parameters();
       const LevenbergMarquardtStep made = levenberg_marquardt_step(
-          now, Eigen::MatrixXd(metric.asDiagonal()), lambda, longest,
+          now, [&](double damping) { return damped_step(now.equations, metric, damping); }, lambda, longest,
           [&](const Eigen::VectorXd& move) { return objective.at(problem_.start.with(from + move)); });
       lambda = made.next_lambda;
       count(objective, now, stage, step, made.tried_lambda, made.accepted);
@@ -357,7 +359,7 @@ class LensFit {
       r.efficiency = now.light.reflected + now.light.direct;
     }
     result_.history.push_back(r);
-    if (!watch_(r, std::isfinite(fine_cost_) ? result_.shape : now.shape)) {
+    if (!watch_(r, {std::isfinite(fine_cost_) ? result_.lens.outline : now.shape})) {
       stopped_ = true;
       result_.end = DesignTermination::time;
     }

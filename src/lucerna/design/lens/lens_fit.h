@@ -23,8 +23,8 @@ struct LensFitOptions {
 
 /// What a fit came to.
 struct LensFitResult {
-  explicit LensFitResult(LensShape found) : shape(std::move(found)) {}
-  LensShape shape;
+  explicit LensFitResult(ShapedLens found) : lens(std::move(found)) {}
+  ShapedLens lens;
   std::vector<FitRecord> history;
   DesignTermination end = DesignTermination::converged;
   bool at_noise = false;
@@ -33,7 +33,7 @@ struct LensFitResult {
 };
 
 /// Called after each step, with the best so far; false ends the fit.
-using LensFitWatcher = std::function<bool(const FitRecord& step, const LensShape& best)>;
+using LensFitWatcher = std::function<bool(const FitRecord& step, const ShapedLens& best)>;
 
 /// Shapes the lens by Levenberg-Marquardt on stages from coarse bins and few rays to fine ones and many
 /// (docs/theory/lens-design.md). The given lens, the zero-étendue ones and smoothly perturbed copies go

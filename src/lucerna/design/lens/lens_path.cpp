@@ -17,15 +17,6 @@ constexpr int kSlides = 3;
 /// Nearer to the axis the normal turns about it as it does along the curve.
 constexpr double kOnAxisMm = 1e-7;
 
-/// Amplitudes' derivatives by the cosine of incidence: of (c - n t) / (c + n t) and (n c - t) / (n c + t).
-struct AmplitudeSlopes {
-  double s, p;
-};
-AmplitudeSlopes amplitude_slopes(double n, double c, double t) {
-  const double dt = c / (n * n * t), both = 2.0 * n * (t - c * dt);
-  return {both / ((c + n * t) * (c + n * t)), both / ((n * c + t) * (n * c + t))};
-}
-
 }  // namespace
 
 void LensTracer::locate(const SideHit& side, const Vec3& o, const Vec3& d, LensHit& hit) const {

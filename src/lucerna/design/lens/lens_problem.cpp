@@ -8,6 +8,7 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/design/evaluation/window.h"
+#include "lucerna/design/lens/free_face.h"
 #include "lucerna/design/problem/design_detectors.h"
 #include "lucerna/design/problem/target_rectangle.h"
 #include "lucerna/design/validation/error_boxes.h"
@@ -47,12 +48,29 @@ std::vector<std::size_t> read_sides(TomlReader& design) {
   return out;
 }
 
-int read_pieces(TomlReader& design) {
+/// 0 where the project does not say.
+int read_lens_intervals(TomlReader& design) {
   const auto given = design.number_or_numbers("intervals");
   if (!given) return 0;
   if (given->size() != 1) design.fail("intervals", "expected one number for the faces of a lens");
   if (given->front() < 3.0) design.fail("intervals", "expected at least 3 for the faces of a lens");
   return static_cast<int>(given->front());
+}
+
+/// What `family` makes of the free face.
+std::optional<FreeFaceProblem> read_free_face(TomlReader& design, int intervals) {
+  const std::string family = design.word("family").value_or("revolution");
+  if (family == "revolution") {
+    if (design.has("light_weight"))
+      design.fail("light_weight", "belongs to free forms; this is a lens of revolution");
+    return std::nullopt;
+  }
+  if (family != "bspline")
+    design.fail("family", fmt::format("found \"{}\", expected \"revolution\" or \"bspline\"", family));
+  FreeFaceProblem out;
+  out.light_weight = design.number("light_weight", out.light_weight);
+  if (intervals > 0) out.intervals = out.max_intervals = intervals;
+  return out;
 }
 
 LensLimits read_lens_limits(TomlReader reader) {
@@ -70,6 +88,16 @@ LensLimits read_lens_limits(TomlReader reader) {
   }
   reader.finish();
   return limits;
+}
+
+/// A face as [body.face] has it.
+toml::table face_table(const DesignShape& face) {
+  const FaceSpline spline = face_spline(face);
+  toml::array coefficients;
+  for (const double c : spline.coefficients_mm) coefficients.push_back(c + 0.0);
+  return toml::table{{"half_mm", spline.half_mm},
+                     {"intervals", toml::array{spline.intervals_x, spline.intervals_y}},
+                     {"coefficients_mm", std::move(coefficients)}};
 }
 
 /// The [[body]] of the lens: the project's only one.
@@ -96,13 +124,14 @@ LensProblem lens_problem(Project project, const std::filesystem::path& path) {
   check_alone(root, project.scene);
   const Solid& solid = project.scene.solids.front();
   const auto sides = read_sides(*design);
-  const int intervals = read_pieces(*design);
+  const int intervals = read_lens_intervals(*design);
+  const auto free_face = read_free_face(*design, intervals);
   const double time_s = design->number("time_s", 60.0);
   const double restarts = design->number("restarts", 1e6);
   const std::string optimizer = design->word("optimizer").value_or("auto");
   if (optimizer != "auto" && optimizer != "least-squares")
     design->fail("optimizer", fmt::format("found \"{}\": a lens is designed by \"auto\"", optimizer));
-  for (const char* key : {"reflector", "light_weight", "tolerances"}) {
+  for (const char* key : {"reflector", "tolerances"}) {
     if (design->has(key)) design->fail(key, "belongs to the design of a mirror; this is a lens");
   }
   LensLimits limits;
@@ -110,7 +139,9 @@ LensProblem lens_problem(Project project, const std::filesystem::path& path) {
   design->finish();
   const LensShape start = [&] {
     try {
-      return LensShape(solid.outline_mm, solid.smooth_below_deg, sides, intervals);
+      LensShape shape(solid.outline_mm, solid.smooth_below_deg, sides, free_face ? 0 : intervals);
+      if (free_face) (void)face_of(shape, free_face->intervals);
+      return shape;
     } catch (const InputError& e) {
       design->fail("free_sides", e.what());
     }
@@ -123,7 +154,7 @@ LensProblem lens_problem(Project project, const std::filesystem::path& path) {
   const MediumView medium{solid.refractive_index, solid.absorption_per_mm};
   const Frame placed = solid.world_from_solid;
   add_design_detectors(project, target);
-  return {std::move(project),        std::move(target), limits, start, medium, placed, time_s,
+  return {std::move(project),        std::move(target), limits, start, medium, placed, free_face, time_s,
           static_cast<int>(restarts)};
 }
 
@@ -141,24 +172,31 @@ TentBins lens_window(const LensProblem& problem) {
   return rebinned(bins, 1.0, static_cast<int>(rings));
 }
 
-Solid with_outline(const LensProblem& problem, const LensShape& shape) {
+Solid shaped_solid(const LensProblem& problem, const ShapedLens& lens) {
   Solid solid = problem.project.scene.solids.front();
-  solid.outline_mm = shape.corners();
+  if (lens.face) return with_face(solid, face_seat(lens.outline), *lens.face);
+  solid.outline_mm = lens.outline.corners();
   return solid;
 }
 
-Project with_lens(const LensProblem& problem, const LensShape& shape) {
+Project with_lens(const LensProblem& problem, const ShapedLens& lens) {
   Project project = problem.project;
-  project.scene.solids.front() = with_outline(problem, shape);
+  project.scene.solids.front() = shaped_solid(problem, lens);
   toml::array outline;
-  for (const OutlinePoint& p : shape.corners()) outline.push_back(toml::array{p[0] + 0.0, p[1] + 0.0});
+  for (const OutlinePoint& p : project.scene.solids.front().outline_mm)
+    outline.push_back(toml::array{p[0] + 0.0, p[1] + 0.0});
   lens_table(project).insert_or_assign("outline_mm", std::move(outline));
-  if (auto* design = toml_tables(project)["design"].as_table()) {
+  auto* const design = toml_tables(project)["design"].as_table();
+  if (lens.face) {
+    lens_table(project).insert_or_assign("face", face_table(*lens.face));
+    // A lens with such a face is not one to begin with.
+    if (design != nullptr) toml_tables(project).erase("design");
+  } else if (design != nullptr) {
     // Sides have other numbers now: those of the shaped faces.
     toml::array sides;
-    for (const LensFace& face : shape.form().faces) {
+    for (const LensFace& face : lens.outline.form().faces) {
       if (face.is_free)
-        sides.push_back(static_cast<std::int64_t>(corner_number(shape.form(), face.run.from)));
+        sides.push_back(static_cast<std::int64_t>(corner_number(lens.outline.form(), face.run.from)));
     }
     design->insert_or_assign("free_sides", std::move(sides));
     design->erase("intervals");

@@ -2,15 +2,25 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "lucerna/design/evaluation/tent_bins.h"
 #include "lucerna/design/lens/lens_limits.h"
 #include "lucerna/design/problem/target.h"
+#include "lucerna/design/shape/design_shape.h"
 #include "lucerna/project.h"
 #include "lucerna/trace/kernels/solid_kernel.h"
 
 namespace lucerna {
+
+/// How the free face of a lens becomes a free form.
+struct FreeFaceProblem {
+  /// Knot intervals across: to begin with, and at most.
+  int intervals = 24, max_intervals = 48;
+  /// What light costs that misses the target's rectangle.
+  double light_weight = 0.1;
+};
 
 /// A lens that is to be designed, checked.
 struct LensProblem {
@@ -21,6 +31,8 @@ struct LensProblem {
   LensShape start;
   MediumView medium;
   Frame world_from_lens;
+  /// Without, the free faces stay those of a body of revolution.
+  std::optional<FreeFaceProblem> free_face;
   double time_s = 60.0;
   int max_failed_restarts = 1'000'000;
 };
@@ -37,9 +49,19 @@ LensProblem lens_problem(Project project, const std::filesystem::path& path);
 /// lens's axis, else 48 x 48.
 TentBins lens_window(const LensProblem& problem);
 
-/// The project's solid with another outline.
-Solid with_outline(const LensProblem& problem, const LensShape& shape);
+/// What a design makes of a lens: another outline, or the given one with a free form as its free face.
+struct ShapedLens {
+  LensShape outline;
+  std::optional<DesignShape> face = std::nullopt;
+
+  std::size_t parameter_count() const;
+  /// Largest minus smallest height of the whole lens.
+  double height_mm() const;
+};
+
+/// The project's solid in another shape.
+Solid shaped_solid(const LensProblem& problem, const ShapedLens& lens);
 /// The project with that solid: what `trace` takes.
-Project with_lens(const LensProblem& problem, const LensShape& shape);
+Project with_lens(const LensProblem& problem, const ShapedLens& lens);
 
 }  // namespace lucerna

@@ -99,6 +99,8 @@ FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& option
   }
   LightLimits(problem.limits, problem.reflectance).check(problem.start, rays);
   fit.limits = limits_cost(problem, rays);
+  if (auto form = ShapeLimits(problem.limits, problem.start); !form.empty())
+    fit.form = std::make_shared<const ShapeLimits>(std::move(form));
   fit.target = target_flux(problem.target, problem.world_from_mirror, rays.flux());
   fit.rectangle = target_rectangle(problem.target);
   fit.mirror_from_world = problem.world_from_mirror.inverse();

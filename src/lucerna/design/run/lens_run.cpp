@@ -23,7 +23,7 @@ LensRun run_lens(const LensProblem& problem, LensOptions options, Progress& prog
   double design_s = 0.0;
   LensRun run(timed(design_s, [&] { return design_lens(problem, options, progress, observer); }));
   run.design_s = design_s;
-  const Scene scene = with_lens(problem, run.result.shape).scene;
+  const Scene scene = with_lens(problem, run.result.lens).scene;
   follow_up(problem.target, run.result.error.scale, scene, {.seed = options.seed + 1}, goal, {}, progress,
             run);
   return run;
@@ -55,17 +55,17 @@ DesignedMirror designed_lens(Project project, const std::string& name, const Des
   LensProblem problem = lens_problem(std::move(project), name);
   LensObserver observer;
   if (watcher)
-    observer = [&](const FitRecord& step, const LensShape&) { watcher(design_step(step), std::string()); };
+    observer = [&](const FitRecord& step, const ShapedLens&) { watcher(design_step(step), std::string()); };
   LensRun run = run_lens(problem, lens_options(settings), progress, observer);
   DesignedMirror out{static_cast<const DesignFindings&>(run.result),
                      {},
                      problem.world_from_lens,
-                     project_text(with_lens(problem, run.result.shape)),
+                     project_text(with_lens(problem, run.result.lens)),
                      std::move(run.trace.result),
                      run.figures.trace,
                      std::nullopt};
   for (const FitRecord& step : run.result.history) out.history.push_back(design_step(step));
-  out.lens = with_outline(problem, run.result.shape);
+  out.lens = shaped_solid(problem, run.result.lens);
   out.lens_record = std::make_shared<const LensRecord>(
       LensRecord{std::move(problem), std::move(run.result), std::move(run.figures), settings.seed});
   return out;

@@ -8,6 +8,7 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/parallel/peers.h"
+#include "lucerna/design/evaluation/point_source.h"
 #include "lucerna/design/fit/approach.h"
 #include "lucerna/random.h"
 
@@ -23,6 +24,10 @@ constexpr int kRoughIntervals = 32;
 constexpr std::array<TransportChoice, 2> kBeforeApproaches{{{-1.0, 0.33}, {-1.0, 0.27}}};
 constexpr std::array<TransportChoice, 7> kAfterApproaches{
     {{-1.0, 0.21}, {-1.0, 0.45}, {1.0, 0.75}, {1.0, 0.92}, {1.0, 0.33}, {1.0, 0.27}, {1.0, 0.45}}};
+/// Of the last face of a lens: both signs at the given face's distance from the source, then beside it.
+constexpr std::array<TransportChoice, 2> kFacesBefore{{{-1.0, 1.0}, {1.0, 1.0}}};
+constexpr std::array<TransportChoice, 7> kFacesAfter{
+    {{-1.0, 0.8}, {1.0, 0.8}, {-1.0, 1.25}, {1.0, 1.25}, {-1.0, 0.65}, {1.0, 0.65}, {1.0, 1.5}}};
 /// The approach is tried where the candidates before it stay this far from the target (relative error), for a
 /// point source's mirror is no guide for a source that is long or wide; and where the given mirror is the
 /// nearest of them. Further approaches, from perturbed copies, follow where none is near: they end in basins
@@ -80,6 +85,8 @@ constexpr double kWideSmoothing = 0.3;
 /// Light that a start is made for, in rays.
 constexpr std::uint64_t kStartRays = std::uint64_t{1} << 19;
 constexpr int kStartBins = 36;
+/// That tell where the source is.
+constexpr std::uint64_t kUnitRays = std::uint64_t{1} << 14;
 constexpr double kStartWiden = 1.1;
 
 /// How finely each level fits; knots, smoothing and zones are the search's.
@@ -104,6 +111,13 @@ std::pair<int, int> intervals_of(const Aperture& a, int max) {
           std::max(4, static_cast<int>(std::lround(max * y / longer)))};
 }
 
+/// What the first candidates' vertex distances are told in: a mirror's radius, a lens face's own distance.
+double distance_unit_mm(const FitProblem& problem, const DesignShape& given) {
+  if (!problem.rays->medium()) return given.aperture().outer_radius_mm();
+  problem.rays->grow(kUnitRays);
+  return point_source(*problem.rays, kUnitRays).at_mm.z - given.at(0.0, 0.0).z_mm;
+}
+
 }  // namespace
 
 std::optional<DesignShape> free_form_guess(const FitProblem& problem, const DesignShape& family,
@@ -121,6 +135,7 @@ FreeFormSearch::FreeFormSearch(const FitProblem& problem, const DesignShape& giv
       given_(given),
       max_intervals_(std::max({max_intervals, given.intervals_x(), given.intervals_y()})),
       max_rays_(max_rays),
+      unit_mm_(distance_unit_mm(problem, given)),
       state_(std::move(state)) {}
 
 FreeFormLevel FreeFormSearch::level(int number) const {
@@ -130,16 +145,23 @@ FreeFormLevel FreeFormSearch::level(int number) const {
   std::tie(out.intervals_x, out.intervals_y) = intervals_of(given_.aperture(), max);
   out.rays = std::min(out.rays, max_rays_);
   out.smoothing = problem_.rectangle.is_plane ? kSmoothing : kSmoothing / (half * half);
+  if (const auto& medium = problem_.rays->medium()) {
+    // A mirror turns light by twice what it turns itself, a face by less: slopes of that much more are
+    // smooth.
+    const double turn = 0.5 * (medium->index - 1.0);
+    out.smoothing *= turn * turn;
+  }
   out.zones = zone_stage(number);
   return out;
 }
 
 TransportChoice FreeFormSearch::first_choice(int number) const {
   if (number >= kApproach && number < kNoApproach) return {};
-  const TransportChoice& c = number < kApproach
-                                 ? kBeforeApproaches[static_cast<std::size_t>(number - 1)]
-                                 : kAfterApproaches[static_cast<std::size_t>(number - kNoApproach)];
-  return {c.sign, c.vertex_distance_mm * given_.aperture().outer_radius_mm()};
+  const bool is_lens = problem_.rays->medium().has_value(), before = number < kApproach;
+  const auto i = static_cast<std::size_t>(number - (before ? 1 : kNoApproach));
+  const TransportChoice& c = before ? (is_lens ? kFacesBefore : kBeforeApproaches)[i]
+                                    : (is_lens ? kFacesAfter : kAfterApproaches)[i];
+  return {c.sign, c.vertex_distance_mm * unit_mm_};
 }
 
 bool FreeFormSearch::fixed_to_few_knots() const {
@@ -153,6 +175,7 @@ bool FreeFormSearch::is_approach(const FreeFormSnapshot& snapshot) {
 bool FreeFormSearch::worth_an_approach() const {
   const FreeFormSnapshot* best = best_of(0);
   if (!has_few_knots(given_) || fixed_to_few_knots() || best == nullptr) return false;
+  if (problem_.rays->medium()) return false;  // the ladder of an approach has mirrors only
   const double near = is_approach(*best) ? kNear : kFarError;
   return best->candidate == 0 || best->cost > kErrorShare[0] * near * near;
 }
@@ -187,7 +210,9 @@ std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormSnapshot& snap
   const FreeFormLevel rough = level(0);
   const DesignShape family = DesignShape::bspline(given_.focal_mm(), given_.aperture(), rough.intervals_x,
                                                   rough.intervals_y, given_.symmetry());
-  return free_form_guess(problem_, family, snapshot.transport);
+  std::optional<DesignShape> guess = free_form_guess(problem_, family, snapshot.transport);
+  if (guess && problem_.within) guess = problem_.within(*guess);
+  return guess;
 }
 
 DesignShape FreeFormSearch::approached(int restart) {
@@ -198,7 +223,7 @@ DesignShape FreeFormSearch::approached(int restart) {
 }
 
 DesignShape FreeFormSearch::nearer_of_given() {
-  if (!fixed_to_few_knots()) return given_;
+  if (!fixed_to_few_knots() || problem_.rays->medium()) return given_;
   DesignShape near = approached(0);
   const FreeFormFit fit(problem_, level(0));
   state_.evaluations += 2;
@@ -293,6 +318,7 @@ void FreeFormSearch::begin(const DesignShape& shape, const FreeFormSnapshot& sna
                                                std::max(shape.intervals_y(), l.intervals_y));
   l = level_after(snapshot, snapshot.level, fine);
   fit_.emplace(problem_, l, progress);
+  fit_->keep_other_light_of(fine);
   point_.emplace(fit_->at(fine));
   ++state_.evaluations;
   state_.total_rays += l.rays;
@@ -449,6 +475,7 @@ std::optional<FitRecord> FreeFormSearch::step(Progress& progress) {
 bool FreeFormSearch::advance(Progress& progress) {
   if (!point_) {  // taken up again in the middle of a level
     fit_.emplace(problem_, with_bins(level(state_.now.level), state_.now.bins), progress);
+    fit_->keep_other_light_of(shape_of(state_.now));
     point_.emplace(fit_->at(shape_of(state_.now)));
   }
   const bool accepted = fit_->step(*point_, state_.lambda);
@@ -490,7 +517,9 @@ FitRecord FreeFormSearch::measured(bool accepted) {
   return record;
 }
 
-bool FreeFormSearch::out_of_candidates() const { return state_.failed >= kMaxFailed; }
+bool FreeFormSearch::out_of_candidates() const {
+  return state_.failed >= kMaxFailed && state_.begun >= kFirstCandidates && next_promotion() == nullptr;
+}
 
 bool FreeFormSearch::done() const {
   const int neighbours = state_.begun - kFirstCandidates;

@@ -113,6 +113,7 @@ class FreeFormSearch {
   DesignShape given_;
   int max_intervals_;
   std::uint64_t max_rays_;
+  double unit_mm_;
   FreeFormState state_;
   std::optional<FreeFormFit> fit_;
   std::optional<FreeFormPoint> point_;

@@ -16,19 +16,19 @@ struct LevenbergMarquardtStep {
 };
 
 /// One step of Levenberg-Marquardt, without a state of its own. `now` has `equations` (normal or sparse),
-/// `metric` measures a step; damping begins at `lambda` and grows until no parameter moves by more than
-/// `longest`. `at(move)` evaluates the point there. Where the cost falls, `now` moves and the damping follows
-/// Nielsen's rule; else `now` stays and the damping is five times as strong. Where no damping makes the step
-/// short enough (no light tells of any parameter) nothing is evaluated.
-template <class Point, class Metric, class PointAt>
-LevenbergMarquardtStep levenberg_marquardt_step(Point& now, const Metric& metric, double lambda,
+/// `move_of(lambda)` is their damped step; damping begins at `lambda` and grows until no parameter moves by
+/// more than `longest`. `at(move)` evaluates the point there. Where the cost falls, `now` moves and the
+/// damping follows Nielsen's rule; else `now` stays and the damping is five times as strong. Where no damping
+/// makes the step short enough (no light tells of any parameter) nothing is evaluated.
+template <class Point, class MoveOf, class PointAt>
+LevenbergMarquardtStep levenberg_marquardt_step(Point& now, const MoveOf& move_of, double lambda,
                                                 double longest, const PointAt& at) {
   constexpr double kRaise = 4.0, kRefused = 5.0;
-  Eigen::VectorXd move = damped_step(now.equations, metric, lambda);
+  Eigen::VectorXd move = move_of(lambda);
   while (!(move.cwiseAbs().maxCoeff() <= longest)) {
     if (lambda >= kMaxLambda) return {false, lambda, kRefused * lambda};
     lambda *= kRaise;
-    move = damped_step(now.equations, metric, lambda);
+    move = move_of(lambda);
   }
   Point trial = at(std::as_const(move));
   if (!(trial.equations.cost < now.equations.cost)) return {false, lambda, kRefused * lambda};

@@ -37,8 +37,10 @@ template <class Surface>
 LevenbergMarquardtStep step_on(const Surface& surface, QuadraticPoint& now, double lambda, double longest) {
   const Eigen::VectorXd from = now.x;
   const auto n = from.size();
-  return levenberg_marquardt_step(now, Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)), lambda, longest,
-                                  [&](const Eigen::VectorXd& move) { return surface.at(from + move); });
+  const Eigen::MatrixXd metric = Eigen::MatrixXd::Identity(n, n);
+  return levenberg_marquardt_step(
+      now, [&](double damping) { return damped_step(now.equations, metric, damping); }, lambda, longest,
+      [&](const Eigen::VectorXd& move) { return surface.at(from + move); });
 }
 
 TEST(LevenbergMarquardt, OneStepReachesTheMinimumOfAQuadratic) {
@@ -91,9 +93,12 @@ TEST(LevenbergMarquardt, WithoutLightNothingIsEvaluated) {
   QuadraticPoint now{Eigen::VectorXd::Zero(3),
                      {1.0, Eigen::VectorXd::Constant(3, std::nan("")), Eigen::MatrixXd::Zero(3, 3)}};
   int evaluated = 0;
-  const LevenbergMarquardtStep step =
-      levenberg_marquardt_step(now, Eigen::MatrixXd(Eigen::MatrixXd::Identity(3, 3)), 1e-2, 1.0,
-                               [&](const Eigen::VectorXd&) { return ++evaluated, now; });
+  const LevenbergMarquardtStep step = levenberg_marquardt_step(
+      now,
+      [&](double damping) {
+        return damped_step(now.equations, Eigen::MatrixXd(Eigen::MatrixXd::Identity(3, 3)), damping);
+      },
+      1e-2, 1.0, [&](const Eigen::VectorXd&) { return ++evaluated, now; });
   EXPECT_FALSE(step.accepted);
   EXPECT_EQ(evaluated, 0);
   EXPECT_GE(step.tried_lambda, kMaxLambda);

@@ -21,7 +21,16 @@ void ResidualRows::add_to(NormalEquations& equations) const {
   }
 }
 
-void ResidualRows::add_to(SparseEquations& equations) const {
+ResidualRows ResidualRows::before(const Eigen::VectorXd& move) const {
+  ResidualRows out = *this;
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    for (std::size_t i = rows_[row].first; i < end(row); ++i)
+      out.rows_[row].residual -= slope_[i] * move[index_[i]];
+  }
+  return out;
+}
+
+void ResidualRows::add_to(SparseEquations& equations, double weight) const {
   // A row of many parameters would fill the Hessian, so it stays a product. Each product costs a step one
   // more solution, and all of them a dense system: when a limit on the height makes thousands, filling is
   // cheaper.
@@ -32,7 +41,9 @@ void ResidualRows::add_to(SparseEquations& equations) const {
   };
   std::size_t joining = 0;
   for (std::size_t row = 0; row < rows_.size(); ++row) joining += is_product(row) ? 1 : 0;
-  add_gradient_to(equations.gradient);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
+  add_gradient_to(gradient);
+  equations.gradient += weight * gradient;
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t row = 0; row < rows_.size(); ++row) {
     Eigen::VectorXd dense;
@@ -44,11 +55,11 @@ void ResidualRows::add_to(SparseEquations& equations) const {
         entries.emplace_back(static_cast<int>(row), index_[i], slope_[i]);
       }
     }
-    if (dense.size() > 0) equations.products.push_back({std::move(dense), 1.0});
+    if (dense.size() > 0) equations.products.push_back({std::move(dense), weight});
   }
   SparseJacobian jacobian(static_cast<Eigen::Index>(rows_.size()), n);
   jacobian.setFromTriplets(entries.begin(), entries.end());
-  equations.hessian += squared_rows(jacobian);
+  equations.hessian += weight * squared_rows(jacobian);
 }
 
 }  // namespace lucerna

@@ -21,7 +21,11 @@ class ResidualRows {
   bool empty() const { return rows_.empty(); }
   /// Adds gradients and Gauss-Newton Hessians; the cost is not touched.
   void add_to(NormalEquations& equations) const;
-  void add_to(SparseEquations& equations) const;
+  void add_to(SparseEquations& equations) const { add_to(equations, 1.0); }
+  /// Takes out again what was added.
+  void take_from(SparseEquations& equations) const { add_to(equations, -1.0); }
+  /// The same where the parameters were before `move`, as if residuals were linear in them.
+  ResidualRows before(const Eigen::VectorXd& move) const;
   /// Adds J^T r: half the derivative of the cost.
   void add_gradient_to(Eigen::VectorXd& gradient) const;
 
@@ -30,6 +34,7 @@ class ResidualRows {
     double residual;
     std::size_t first;
   };
+  void add_to(SparseEquations& equations, double weight) const;
   std::size_t end(std::size_t row) const {
     return row + 1 < rows_.size() ? rows_[row + 1].first : index_.size();
   }

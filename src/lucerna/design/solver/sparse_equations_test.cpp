@@ -151,5 +151,36 @@ TEST(ResidualRows, CountTheSameInBothKindsOfEquations) {
   }
 }
 
+TEST(ResidualRows, AreTakenOutAgain) {
+  constexpr int kParameters = 40;
+  for (const int joining : {0, 3, 500}) {
+    SparseEquations sparse;
+    sparse.gradient = Eigen::VectorXd::Zero(kParameters);
+    sparse.hessian.resize(kParameters, kParameters);
+    const ResidualRows rows = random_rows(kParameters, joining + 30, joining);
+    rows.add_to(sparse);
+    const double size = sparse.gradient.norm() + sparse.hessian.norm();
+    rows.take_from(sparse);
+    EXPECT_LT(sparse.gradient.norm(), 1e-12 * size);
+    EXPECT_LT(sparse.hessian.norm(), 1e-12 * size);
+    Eigen::MatrixXd left = Eigen::MatrixXd::Zero(kParameters, kParameters);
+    for (const SparseEquations::Product& p : sparse.products) left += p.weight * p.v * p.v.transpose();
+    EXPECT_LT(left.norm(), 1e-12 * size);
+  }
+}
+
+// (x - 1)^2 and (2 x + y)^2 at (3, 1), from what they are a move of (1, -2) farther on.
+TEST(ResidualRows, AreLinearAlongAMove) {
+  ResidualRows there;
+  there.begin(3.0);
+  there.add(0, 1.0);
+  there.begin(7.0);
+  there.add(0, 2.0);
+  there.add(1, 1.0);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(2);
+  there.before(Eigen::Vector2d(1.0, -2.0)).add_gradient_to(gradient);
+  EXPECT_EQ(gradient, Eigen::Vector2d(2.0 * 1.0 + 7.0 * 2.0, 7.0));
+}
+
 }  // namespace
 }  // namespace lucerna

@@ -258,7 +258,7 @@ DesignForm design_form(const DesignResult& result) {
 }
 
 DesignForm design_form(const LensResult& result) {
-  return {result.shape.parameter_count(), result.shape.height_mm(), result.validation_s, true};
+  return {result.lens.parameter_count(), result.lens.height_mm(), result.validation_s, true};
 }
 
 Json design_json(const DesignTarget& target, const DesignFindings& result, const DesignForm& form,

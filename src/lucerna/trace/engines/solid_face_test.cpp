@@ -74,6 +74,45 @@ TEST(SolidFace, ASphereAsASplineSendsLightWhereItsOutlineDoes) {
   EXPECT_LT(worst, 1e-3);
 }
 
+// Against the same body as triangles, which are within 1e-5 of its size.
+TEST(SolidFace, RaysMeetWhatItsTrianglesShow) {
+  Solid meshed = capped();
+  meshed.mesh = surface_mesh(capped(), 1e-5);
+  meshed.outline_mm.clear();
+  meshed.face = nullptr;
+  const SolidTracer exact({capped()}), triangles({meshed});
+  int met = 0, edges = 0;
+  for (std::uint64_t i = 0; i < 5000; ++i) {
+    Rng rng(5, i);
+    const auto in_box = [&] {
+      return Vec3{30.0 * rng.uniform() - 15.0, 30.0 * rng.uniform() - 15.0, 20.0 * rng.uniform() - 7.0};
+    };
+    const Vec3 from = in_box(), to = in_box();
+    const Ray ray{from, Direction::from(to - from)};
+    const auto a = exact.first_hit(ray, 1e9, false), b = triangles.first_hit(ray, 1e9, false);
+    met += a && b ? 1 : 0;
+    // Beside a rim the one is met and the other missed.
+    const bool same = a.has_value() == b.has_value() && (!a || std::abs(a->t_mm - b->t_mm) < 0.01);
+    edges += same ? 0 : 1;
+  }
+  EXPECT_GT(met, 1500);
+  EXPECT_LE(edges, 5);
+}
+
+// From within, towards the circle where face and wall meet and to either side of it by less than rounding.
+TEST(SolidFace, NoLightSlipsThroughItsEdges) {
+  const SolidTracer tracer({capped()});
+  for (std::uint64_t i = 0; i < 20000; ++i) {
+    Rng rng(7, i);
+    const double phi = radians(360.0 * rng.uniform()), off = 1e-10 * (rng.uniform() - 0.5);
+    const Vec3 rim{10.0 * std::cos(phi), 10.0 * std::sin(phi), cap(10.0, 0.0) + off};
+    const Vec3 from{8.0 * rng.uniform() - 4.0, 8.0 * rng.uniform() - 4.0, 1.0 + rng.uniform()};
+    const auto hit = tracer.first_hit({from, Direction::from(rim - from)}, 1e9, false);
+    ASSERT_TRUE(hit) << i;
+    EXPECT_NEAR(hit->t_mm, length(rim - from), 1e-6) << i;
+  }
+}
+
 TEST(SolidFace, IsPlacedWithItsBody) {
   Solid moved = capped();
   moved.world_from_solid = Frame({0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {7, -3, 2});

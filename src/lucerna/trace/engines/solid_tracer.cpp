@@ -63,8 +63,6 @@ void check_mesh(const Solid& solid) {
 
 /// Straight pieces leave the curve of an outline by at most this share of its size.
 constexpr double kCurveTolerance = 1e-7;
-/// The triangles that a body with a face is traced by leave it by at most this share of its size.
-constexpr double kFaceTolerance = 1e-5;
 
 std::vector<OutlineSide> sides_of(const Solid& solid, double tolerance) {
   return outline_sides(solid.outline_mm, solid.smooth_below_deg,
@@ -80,9 +78,10 @@ void check_face(const Solid& solid) {
   }
 }
 
-FacedSolid faced(const Solid& solid, double tolerance) {
-  check_face(solid);
-  return faced_solid(solid.outline_mm, *solid.face, solid.smooth_below_deg, tolerance);
+std::unique_ptr<const FacedBody> faced_body(const Solid& solid) {
+  const double tolerance_mm = kCurveTolerance * faced_reach_mm(solid.outline_mm, *solid.face);
+  return std::make_unique<const FacedBody>(solid.outline_mm, solid.face, solid.smooth_below_deg,
+                                           tolerance_mm);
 }
 
 }  // namespace
@@ -118,7 +117,11 @@ std::shared_ptr<const Mesh> surface_mesh(const Solid& solid, double tolerance) {
   if (!(tolerance >= 1e-8 && tolerance <= 1.0))
     throw InputError(fmt::format("tolerance of a mesh: found {}, expected 1e-8 to 1", tolerance));
   if (solid.mesh != nullptr) return solid.mesh;
-  if (solid.face != nullptr) return std::make_shared<const Mesh>(faced(solid, tolerance).mesh);
+  if (solid.face != nullptr) {
+    check_face(solid);
+    return std::make_shared<const Mesh>(
+        faced_solid(solid.outline_mm, *solid.face, solid.smooth_below_deg, tolerance));
+  }
   std::vector<OutlinePoint> corners;
   for (const OutlineSide& side : sides_of(solid, tolerance)) {
     if (corners.empty() || corners.back() != side.from) corners.push_back(side.from);
@@ -142,12 +145,7 @@ SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
       traced.sense = signed_volume(*s.mesh) < 0.0 ? -1.0 : 1.0;
       traced.corner_normals = smooth_normals(meshes.back());
     } else if (s.face != nullptr) {
-      of_triangles_.push_back(solids_.size());
-      FacedSolid made = faced(s, kFaceTolerance);
-      meshes.push_back(as_body(s, std::make_shared<const Mesh>(std::move(made.mesh))));
-      // Those of the surface, not means over triangles.
-      traced.corner_normals = std::move(made.corner_normals);
-      for (Vec3& n : traced.corner_normals) n = s.world_from_solid.vector(n);
+      traced.faced = faced_body(s);
     } else {
       traced.revolved = std::make_unique<const RevolvedTree>(sides_of(s, kCurveTolerance));
     }
@@ -168,9 +166,10 @@ std::optional<GlassHit> SolidTracer::first_hit(const Ray& ray, double t_max_mm, 
     }
   }
   for (std::size_t i = 0; i < solids_.size(); ++i) {
-    if (solids_[i].revolved == nullptr) continue;
-    const SurfaceHit hit = RevolvedSurface{solids_[i].revolved->view()}.first(
-        solids_[i].solid_from_world.ray(ray), started ? kSolidStart : 0.0, t_max_mm);
+    if (solids_[i].is_of_triangles()) continue;
+    const SurfaceHit hit = solids_[i].with_surface([&](const auto& surface) {
+      return surface.first(solids_[i].solid_from_world.ray(ray), started ? kSolidStart : 0.0, t_max_mm);
+    });
     if (hit.part < 0) continue;
     out = GlassHit{hit.t_mm, i, false, hit.part, hit.u, hit.v};
     t_max_mm = hit.t_mm;
@@ -182,17 +181,19 @@ GlassPassage SolidTracer::pass(const Ray& ray, const GlassHit& hit, const Reflec
                                const std::function<void(const Vec3&)>& visit) const {
   const Traced& solid = solids_[hit.glass];
   const SurfaceHit at{hit.part, hit.t_mm, hit.u, hit.v};
-  if (solid.revolved == nullptr) {
+  if (solid.is_of_triangles()) {
     const Vec3* const normals = solid.corner_normals.empty() ? nullptr : solid.corner_normals.data();
     return through_solid(TriangleSurface{tree_->view(), solid.sense, normals}, solid.medium, ray, at, key,
                          [&](const Vec3& point) {
                            if (visit) visit(point);
                          });
   }
-  GlassPassage out = through_solid(RevolvedSurface{solid.revolved->view()}, solid.medium,
-                                   solid.solid_from_world.ray(ray), at, key, [&](const Vec3& point) {
-                                     if (visit) visit(solid.world_from_solid.point(point));
-                                   });
+  GlassPassage out = solid.with_surface([&](const auto& surface) {
+    return through_solid(surface, solid.medium, solid.solid_from_world.ray(ray), at, key,
+                         [&](const Vec3& point) {
+                           if (visit) visit(solid.world_from_solid.point(point));
+                         });
+  });
   out.ray = solid.world_from_solid.ray(out.ray);
   return out;
 }

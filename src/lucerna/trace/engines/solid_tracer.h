@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lucerna/scene.h"
+#include "lucerna/trace/engines/faced_body.h"
 #include "lucerna/trace/kernels/revolved_tree.h"
 #include "lucerna/trace/kernels/solid_kernel.h"
 #include "lucerna/trace/kernels/triangle_bvh.h"
@@ -31,13 +32,21 @@ class SolidTracer {
                     const std::function<void(const Vec3&)>& visit = {}) const;
 
  private:
-  /// A body by its outline, or of triangles.
+  /// A body by its outline, with a face at its top or not, or of triangles, which has neither of these.
   struct Traced {
     MediumView medium;
-    std::unique_ptr<const RevolvedTree> revolved;  ///< null for triangles
+    std::unique_ptr<const RevolvedTree> revolved;
+    std::unique_ptr<const FacedBody> faced;
     Frame world_from_solid, solid_from_world;
     double sense = 1.0;
     std::vector<Vec3> corner_normals;
+
+    bool is_of_triangles() const { return revolved == nullptr && faced == nullptr; }
+    /// Calls `use` with the surface, in the body's frame; not of triangles.
+    template <class Use>
+    auto with_surface(const Use& use) const {
+      return faced != nullptr ? use(*faced) : use(RevolvedSurface{revolved->view()});
+    }
   };
 
   std::vector<Traced> solids_;

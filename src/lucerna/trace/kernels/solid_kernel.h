@@ -39,6 +39,16 @@ LUCERNA_HD inline Boundary boundary(double ratio, double cos_incidence) {
   return {(c - ratio * t) / (c + ratio * t), (ratio * c - t) / (ratio * c + t), t};
 }
 
+/// The amplitudes' derivatives by the cosine of incidence `c`, with `t` the cosine beyond (not 0) and `ratio`
+/// as `boundary` has it: of (c - ratio t) / (c + ratio t) and (ratio c - t) / (ratio c + t).
+struct AmplitudeSlopes {
+  double s = 0.0, p = 0.0;
+};
+LUCERNA_HD inline AmplitudeSlopes amplitude_slopes(double ratio, double c, double t) {
+  const double dt = c / (ratio * ratio * t), both = 2.0 * ratio * (t - c * dt);
+  return {both / ((c + ratio * t) * (c + ratio * t)), both / ((ratio * c + t) * (ratio * c + t))};
+}
+
 /// Snell's law for what `boundary` found; `normal` is unit and towards where the light comes from.
 LUCERNA_HD inline Vec3 refracted(const Direction& d, const Direction& normal, double ratio,
                                  const Boundary& found) {

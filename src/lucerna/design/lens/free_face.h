@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "lucerna/design/constraints/limits.h"
+#include "lucerna/design/evaluation/design_rays.h"
+#include "lucerna/design/lens/lens_problem.h"
+#include "lucerna/design/shape/design_shape.h"
+
+namespace lucerna {
+
+// The last face of a lens as a free form: what stays a body of revolution below it, and the face itself as a
+// design sees it. A design's frame is the lens's turned about x: light goes down to the face, as it does to a
+// mirror.
+
+/// The lens without its free face: the corners from the axis to the upper end of the wall.
+struct FaceSeat {
+  std::vector<OutlinePoint> below_mm;
+  /// In straight pieces, without the wall.
+  std::vector<OutlineSide> base;
+  double radius_mm() const { return below_mm.back()[0]; }
+  double lowest_mm() const;
+  /// Of what is below the face, by the distance from the axis.
+  double height_mm(double r_mm) const;
+};
+
+/// The seat of the one free face of a lens, which leads from the upper end of a wall along the axis to the
+/// axis. Throws InputError for any other.
+FaceSeat face_seat(const LensShape& lens);
+
+/// The free face of the lens as it is, in a design's frame. Throws InputError where it is not a height over
+/// every place.
+DesignShape face_of(const LensShape& lens, int intervals);
+
+Frame lens_from_design();
+
+/// Brings rays of a design into the lens: by the first face that they meet. Rays that meet none, or the free
+/// face from outside, are lost.
+DesignRays::Pass into_lens(const LensShape& lens, const MediumView& medium);
+
+/// A face as a bicubic spline in the lens's frame: over [-half, half] along both sides, row by row.
+struct FaceSpline {
+  int intervals_x = 1, intervals_y = 1;
+  double half_mm = 1.0;
+  std::vector<double> coefficients_mm;
+};
+FaceSpline face_spline(const DesignShape& face);
+
+/// Circles on which a face is compared with its limits, and twice as many radii: while it is fitted, and as
+/// the result is judged.
+inline constexpr int kFitRings = 48, kCheckRings = 100;
+
+/// The limits on a lens as those on its free face, on so many circles.
+ShapeLimits face_limits(const LensLimits& limits, const FaceSeat& seat, const DesignShape& start, int rings);
+
+/// The face with its heights cut to what the limits allow.
+DesignShape within_limits(const LensLimits& limits, const FaceSeat& seat, const DesignShape& face);
+
+/// Every limit that is set, as found on a fine grid.
+std::vector<LimitCheck> check_face_limits(const LensLimits& limits, const FaceSeat& seat,
+                                          const DesignShape& face);
+
+/// The lens with a face: what `trace` takes.
+Solid with_face(const Solid& solid, const FaceSeat& seat, const DesignShape& face);
+
+}  // namespace lucerna
