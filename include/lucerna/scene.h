@@ -179,9 +179,8 @@ void check(const Solid& solid);
 /// How far the triangles of an outline may leave it, over its size, where they are only shown.
 inline constexpr double kSurfaceTolerance = 1e-4;
 /// Its surface as triangles, in its own frame: `mesh`, or what stands for its outline within `tolerance` of
-/// its size. Of a face, normals blended between its corners are within 10 `tolerance` rad of its own; it has at
-/// most 512 rings of triangles. Throws InputError as `check` does for the outline, and for a tolerance that is
-/// not between 1e-8 and 1. O(corners^2 + triangles).
+/// its size. A face has at most 512 rings of triangles. Throws InputError as `check` does for the outline,
+/// and for a tolerance that is not between 1e-8 and 1. O(corners^2 + triangles).
 [[nodiscard]] std::shared_ptr<const Mesh> surface_mesh(const Solid& solid,
                                                        double tolerance = kSurfaceTolerance);
 
