@@ -336,9 +336,12 @@ std::optional<DesignShape> ShapeLimits::solve(const DesignShape& shape,
   return std::nullopt;
 }
 
+std::optional<DesignShape> ShapeLimits::held_nearby(const DesignShape& shape) const {
+  return held(shape) ? shape : solve(shape, all());
+}
+
 DesignShape ShapeLimits::nearest(const DesignShape& shape) const {
-  if (held(shape)) return shape;
-  if (const auto found = solve(shape, all())) return *found;
+  if (const auto found = held_nearby(shape)) return *found;
   for (const Limit& a : limits_) {
     const Limit* one = &a;
     if (!solve(shape, {&one, 1})) {

@@ -23,8 +23,7 @@ struct HeightBounds {
 class ShapeLimits {
  public:
   /// `start` says the aperture and on which side of each keep-out zone the mirror is to stay: where most of
-  /// it is to begin with.
-  /// `bounds`: also between these.
+  /// it is to begin with. `bounds`: heights that it is to stay between, too.
   ShapeLimits(const DesignLimits& limits, const DesignShape& start,
               std::span<const HeightBounds> bounds = {});
 
@@ -36,8 +35,10 @@ class ShapeLimits {
   /// True if every limit itself, without margin, is held on a fine grid.
   bool held(const DesignShape& shape) const;
 
-  /// The shape itself if it holds the limits; else one near it, of the same knots, that does. Throws
-  /// InputError if there is none, naming the pair of limits that contradict each other.
+  /// The shape itself if it holds the limits; else one near it, of the same knots, that does; nothing where
+  /// none is found.
+  std::optional<DesignShape> held_nearby(const DesignShape& shape) const;
+  /// The same; throws InputError if there is none, naming the pair of limits that contradict each other.
   DesignShape nearest(const DesignShape& shape) const;
 
  private:

@@ -45,7 +45,7 @@ struct FitProblem {
   std::shared_ptr<const ShapeLimits> form;
   /// Brings what a search begins with within limits on its heights; empty: it begins as it is.
   std::function<DesignShape(const DesignShape&)> within;
-  /// Flux, as shares of the sources', that a shape sends into bins by ways that an evaluation does not
+  /// Flux, as an evaluation has it, that a shape sends into bins by ways that an evaluation does not
   /// follow, looked at by some of `rays` rays. A free form's levels keep that of the shape that they begin
   /// with. Empty: none.
   std::function<Eigen::VectorXd(const DesignShape&, const TentBins&, std::uint64_t rays)> other_light;

@@ -83,19 +83,15 @@ FreeFormPoint FreeFormFit::at(DesignShape shape) const {
   return {std::move(shape), std::move(light), std::move(equations)};
 }
 
-Eigen::VectorXd FreeFormFit::move_of(const FreeFormPoint& now, const SparseSymmetric& metric,
-                                     double lambda) const {
+Eigen::VectorXd FreeFormFit::move_within_limits(const FreeFormPoint& now,
+                                                const SparseEquations& without_limits,
+                                                const SparseSymmetric& metric, double lambda) const {
   Eigen::VectorXd move = damped_step(now.equations, metric, lambda);
-  if (problem_.form == nullptr) return move;
-  ResidualRows here;
-  problem_.form->cost(now.shape, &here);
-  SparseEquations without = now.equations;
-  here.take_from(without);
   for (int i = 0; i < kLooksAhead && move.allFinite(); ++i) {
     ResidualRows there;
     const double cost = problem_.form->cost(now.shape.with(now.shape.parameters() + move), &there);
     if (cost <= kLittleCost * now.equations.cost) break;
-    SparseEquations with = without;
+    SparseEquations with = without_limits;
     there.before(move).add_to(with);
     move = damped_step(with, metric, lambda);
   }
@@ -106,9 +102,20 @@ bool FreeFormFit::step(FreeFormPoint& now, double& lambda) const {
   const Eigen::VectorXd from = now.shape.parameters();
   const double longest = kMaxMove * now.shape.aperture().outer_radius_mm();
   const SparseSymmetric metric = sparse_step_metric(now.shape, now.equations);
-  const LevenbergMarquardtStep step = levenberg_marquardt_step(
-      now, [&](double damping) { return move_of(now, metric, damping); }, lambda, longest,
-      [&](const Eigen::VectorXd& move) { return at(now.shape.with(from + move)); });
+  const auto at_move = [&](const Eigen::VectorXd& move) { return at(now.shape.with(from + move)); };
+  const auto tried = [&](const auto& move_of) {
+    return levenberg_marquardt_step(now, move_of, lambda, longest, at_move);
+  };
+  LevenbergMarquardtStep step;
+  if (problem_.form == nullptr) {
+    step = tried([&](double damping) { return damped_step(now.equations, metric, damping); });
+  } else {
+    ResidualRows here;
+    problem_.form->cost(now.shape, &here);
+    SparseEquations without_limits = now.equations;
+    here.take_from(without_limits);
+    step = tried([&](double damping) { return move_within_limits(now, without_limits, metric, damping); });
+  }
   lambda = step.next_lambda;
   return step.accepted;
 }

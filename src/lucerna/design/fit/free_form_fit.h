@@ -61,8 +61,10 @@ class FreeFormFit {
 
  private:
   /// The damped step of the equations at `now`. Limits on the form that it would break are taken into the
-  /// linear model: their costs are nothing at `now` and very steep beyond.
-  Eigen::VectorXd move_of(const FreeFormPoint& now, const SparseSymmetric& metric, double lambda) const;
+  /// linear model: their costs are nothing at `now` and very steep beyond. `without_limits`: the equations
+  /// without those limits.
+  Eigen::VectorXd move_within_limits(const FreeFormPoint& now, const SparseEquations& without_limits,
+                                     const SparseSymmetric& metric, double lambda) const;
 
   const FitProblem& problem_;
   FreeFormLevel level_;

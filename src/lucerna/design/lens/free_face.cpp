@@ -68,17 +68,7 @@ double FaceSeat::lowest_mm() const {
   return out;
 }
 
-double FaceSeat::height_mm(double r_mm) const {
-  const double r = std::min(r_mm, radius_mm());
-  double out = -std::numeric_limits<double>::infinity();
-  for (const OutlineSide& side : base) {
-    const OutlinePoint &a = side.from, &b = side.to;
-    if (r < std::min(a[0], b[0]) || r > std::max(a[0], b[0])) continue;
-    const double share = a[0] == b[0] ? (a[1] > b[1] ? 0.0 : 1.0) : (r - a[0]) / (b[0] - a[0]);
-    out = std::max(out, a[1] + share * (b[1] - a[1]));
-  }
-  return out;
-}
+double FaceSeat::height_mm(double r_mm) const { return base_height_mm(base, std::min(r_mm, radius_mm())); }
 
 FaceSeat face_seat(const LensShape& lens) {
   const LensForm& form = lens.form();
@@ -220,16 +210,15 @@ std::vector<LimitCheck> check_face_limits(const LensLimits& limits, const FaceSe
   double widest = 0.0;
   for (const OutlinePoint& p : seat.below_mm) widest = std::max(widest, p[0]);
   std::vector<LimitCheck> out;
-  const auto add = [&](const std::optional<double>& limit, const char* name, double found, bool at_most) {
-    if (!limit) return;
-    // A limit is held where it is missed by less than rounding.
-    const double slack = 1e-6 * std::max(1.0, std::abs(*limit));
-    out.push_back({name, *limit, found, at_most ? found <= *limit + slack : found >= *limit - slack});
-  };
-  add(limits.max_diameter_mm, "max_diameter_mm", 2.0 * widest, true);
-  add(limits.max_height_mm, "max_height_mm", extent.highest_mm - seat.lowest_mm(), true);
-  add(limits.min_thickness_mm, "min_thickness_mm", extent.thinnest_mm, false);
-  add(limits.min_draft_deg, "min_draft_deg", 90.0 - degrees(std::atan(extent.steepest)), false);
+  if (limits.max_diameter_mm)
+    out.push_back(at_most("max_diameter_mm", *limits.max_diameter_mm, 2.0 * widest));
+  if (limits.max_height_mm)
+    out.push_back(at_most("max_height_mm", *limits.max_height_mm, extent.highest_mm - seat.lowest_mm()));
+  if (limits.min_thickness_mm)
+    out.push_back(at_least("min_thickness_mm", *limits.min_thickness_mm, extent.thinnest_mm));
+  if (limits.min_draft_deg)
+    out.push_back(
+        at_least("min_draft_deg", *limits.min_draft_deg, 90.0 - degrees(std::atan(extent.steepest))));
   return out;
 }
 

@@ -28,7 +28,7 @@ double share_within(const DesignRays& rays, std::uint64_t count) {
 }
 
 FitProblem face_problem(const LensProblem& problem, const LensFitOptions& options, const DesignShape& start,
-                        std::shared_ptr<const ShapeLimits> limits, DesignRays& rays) {
+                        const FaceSeat& seat, std::shared_ptr<const ShapeLimits> limits, DesignRays& rays) {
   const Frame world_from_design = problem.world_from_lens * lens_from_design();
   FitProblem fit{&rays,
                  Reflectance(1.0),
@@ -53,7 +53,7 @@ FitProblem face_problem(const LensProblem& problem, const LensFitOptions& option
     return limits->cost(shape, rows);
   };
   fit.form = std::move(limits);
-  fit.within = [&problem, seat = face_seat(problem.start)](const DesignShape& shape) {
+  fit.within = [&problem, &seat](const DesignShape& shape) {
     return within_limits(problem.limits, seat, shape);
   };
   fit.other_light = [&problem, within, seed = options.seed](const DesignShape& face, const TentBins& bins,
@@ -76,7 +76,7 @@ LensFitResult fit_free_face(const LensProblem& problem, const LensFitOptions& op
   DesignRays rays(problem.project.scene.sources, (problem.world_from_lens * lens_from_design()).inverse(),
                   options.seed);
   rays.refract(problem.medium, into_lens(problem.start, problem.medium));
-  const FitProblem fit = face_problem(problem, options, start, limits, rays);
+  const FitProblem fit = face_problem(problem, options, start, seat, limits, rays);
   FreeFormSearch search(fit, start, problem.free_face->max_intervals, options.max_rays);
   LensFitResult result({problem.start, start});
   while (!search.done()) {
@@ -87,7 +87,9 @@ LensFitResult fit_free_face(const LensProblem& problem, const LensFitOptions& op
     result.end = DesignTermination::time;
     break;
   }
-  result.lens.face = face_limits(problem.limits, seat, start, kCheckRings).nearest(search.best());
+  // A design is not lost where no such face is found: the check of its limits says so.
+  const ShapeLimits fine_limits = face_limits(problem.limits, seat, start, kCheckRings);
+  result.lens.face = fine_limits.held_nearby(search.best()).value_or(search.best());
   result.evaluations = search.state().evaluations;
   result.rays = search.state().total_rays;
   return result;

@@ -174,6 +174,12 @@ TEST(FreeFace, SaysWhichFacesCannotBeOne) {
   EXPECT_NE(dome_refusal(dome_with(dome_text, "intervals = 12", "intervals = [8, 6]")).find("one number"),
             std::string::npos);
   EXPECT_EQ(dome_refusal(dome_text + "light_weight = 0.02\n"), "");
+  // Limits that no face holds are refused before the work.
+  EXPECT_NE(dome_refusal(dome_text + "[design.limits]\nmax_height_mm = 3\nmin_thickness_mm = 4\n")
+                .find("max_height_mm"),
+            std::string::npos);
+  EXPECT_NE(dome_refusal(dome_text + "[design.limits]\nmax_diameter_mm = 17\n").find("max_diameter_mm = 17"),
+            std::string::npos);
 }
 
 // The design ends nearer to a target that no lens of revolution has, within its limits; what is traced has

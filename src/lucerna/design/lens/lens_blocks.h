@@ -10,7 +10,8 @@
 namespace lucerna {
 
 /// Blocks of rays of a scene's sources on their way through its solids, as triangles with smooth normals
-/// (`surface_mesh`), with all reflections at all boundaries by chance. Immutable and thread safe.
+/// (`surface_mesh`) or, with a face, as they are, with all reflections at all boundaries by chance. Immutable
+/// and thread safe.
 class LensBlocks {
  public:
   /// Throws InputError as `check(Scene)` does. Keeps `scene`.

@@ -171,35 +171,38 @@ double lens_limits_cost(const LensLimits& limits, const LensShape& shape, const 
   return hinges.cost;
 }
 
+LimitCheck at_most(const char* limit, double allowed, double found) {
+  return {limit, allowed, found, found <= allowed * (1.0 + kRounding)};
+}
+
+LimitCheck at_least(const char* limit, double allowed, double found) {
+  return {limit, allowed, found, found >= allowed * (1.0 - kRounding)};
+}
+
 std::vector<LimitCheck> check_lens_limits(const LensLimits& limits, const LensShape& shape,
                                           const std::vector<double>& signs) {
   std::vector<LimitCheck> out;
   if (!limits.any()) return out;
   const auto all = samples_of(shape, kCheckPoints, false);
-  const auto at_most = [&](const char* what, double allowed, double found) {
-    out.push_back({what, allowed, found, found <= allowed * (1.0 + kRounding)});
-  };
-  const auto at_least = [&](const char* what, double allowed, double found) {
-    out.push_back({what, allowed, found, found >= allowed * (1.0 - kRounding)});
-  };
   if (limits.max_diameter_mm)
-    at_most("max_diameter_mm", *limits.max_diameter_mm, 2.0 * outermost(all, 0, 1.0).at[0]);
+    out.push_back(at_most("max_diameter_mm", *limits.max_diameter_mm, 2.0 * outermost(all, 0, 1.0).at[0]));
   if (limits.max_height_mm) {
-    at_most("max_height_mm", *limits.max_height_mm,
-            outermost(all, 1, 1.0).at[1] - outermost(all, 1, -1.0).at[1]);
+    out.push_back(at_most("max_height_mm", *limits.max_height_mm,
+                          outermost(all, 1, 1.0).at[1] - outermost(all, 1, -1.0).at[1]));
   }
   if (limits.min_thickness_mm) {
     double least = std::numeric_limits<double>::infinity();
     for_thickness(shape.form(), all,
                   [&](const OutlineSample&, const OutlineSample&, double d) { least = std::min(least, d); });
-    at_least("min_thickness_mm", *limits.min_thickness_mm, least);
+    out.push_back(at_least("min_thickness_mm", *limits.min_thickness_mm, least));
   }
   if (limits.min_draft_deg) {
     double least = 1.0;
     for (const OutlineSample& s : all) {
       if (shape.form().faces[s.face].is_free) least = std::min(least, signs[s.face] * s.nz);
     }
-    at_least("min_draft_deg", *limits.min_draft_deg, degrees(std::asin(std::clamp(least, -1.0, 1.0))));
+    out.push_back(
+        at_least("min_draft_deg", *limits.min_draft_deg, degrees(std::asin(std::clamp(least, -1.0, 1.0)))));
   }
   return out;
 }

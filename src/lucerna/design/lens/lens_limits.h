@@ -30,6 +30,10 @@ double lens_limits_cost(const LensLimits& limits, const LensShape& shape, const 
 /// Of each face, 1 where it looks along +z in its middle, -1 along -z.
 std::vector<double> draft_signs(const LensShape& shape);
 
+/// Whether a limit is held, but for rounding.
+LimitCheck at_most(const char* limit, double allowed, double found);
+LimitCheck at_least(const char* limit, double allowed, double found);
+
 /// Every limit that is set as found on the curve, at points ten times as close as a fit's.
 std::vector<LimitCheck> check_lens_limits(const LensLimits& limits, const LensShape& shape,
                                           const std::vector<double>& signs);

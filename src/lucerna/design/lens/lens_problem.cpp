@@ -90,6 +90,22 @@ LensLimits read_lens_limits(TomlReader reader) {
   return limits;
 }
 
+/// Refuses limits that no face of the lens holds.
+void check_free_face(const LensShape& lens, int intervals, const LensLimits& limits) {
+  const DesignShape face = face_of(lens, intervals);
+  const FaceSeat seat = face_seat(lens);
+  const auto held = face_limits(limits, seat, face, kCheckRings).held_nearby(face);
+  std::string broken;
+  for (const LimitCheck& check : check_face_limits(limits, seat, held.value_or(face))) {
+    if (!check.held)
+      broken += fmt::format("{}{} = {} ({:.4g} found)", broken.empty() ? "" : ", ", check.limit,
+                            check.allowed, check.found);
+  }
+  if (!held || !broken.empty())
+    throw InputError("no face over this base was found that holds [design.limits]: " + broken,
+                     ErrorCause::contradiction);
+}
+
 /// A face as [body.face] has it.
 toml::table face_table(const DesignShape& face) {
   const FaceSpline spline = face_spline(face);
@@ -140,7 +156,7 @@ LensProblem lens_problem(Project project, const std::filesystem::path& path) {
   const LensShape start = [&] {
     try {
       LensShape shape(solid.outline_mm, solid.smooth_below_deg, sides, free_face ? 0 : intervals);
-      if (free_face) (void)face_of(shape, free_face->intervals);
+      if (free_face) check_free_face(shape, free_face->intervals, limits);
       return shape;
     } catch (const InputError& e) {
       design->fail("free_sides", e.what());

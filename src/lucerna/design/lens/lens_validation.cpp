@@ -14,6 +14,7 @@ namespace lucerna {
 namespace {
 
 constexpr std::uint64_t kFirstRays = std::uint64_t{1} << 18;
+
 /// Adds rays to the cells of the boxes.
 class BoxTally {
  public:

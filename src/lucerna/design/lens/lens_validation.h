@@ -11,7 +11,8 @@
 
 namespace lucerna {
 
-/// What a lens does with light, found by code that shares nothing with its fit but Fresnel's formulas.
+/// What a lens does with light, found by code that shares nothing with its fit but Fresnel's formulas and, of
+/// a free face, the way of light that does not go straight (other_light.h).
 struct LensValidation {
   DesignError error;
   /// Shares of the sources' flux: what leaves, what the medium keeps, rays that were given up.
@@ -20,7 +21,7 @@ struct LensValidation {
   double seconds = 0.0;
 };
 
-/// Traces the scene's sources through its solids as triangles with smooth normals (`surface_mesh`), with all
+/// Traces the scene's sources through its solids (LensBlocks), with all
 /// reflections at all boundaries by chance, into the cells of the boxes: 16 replicates of independent
 /// Owen-scrambled Sobol sequences. Rays are doubled from 2^18 to `max_rays`, or until the floor is half of
 /// the excess; `max_s` stops them earlier. `target`: flux per cell (box_target). The same bits for any number

@@ -39,14 +39,12 @@ class Blur {
 
   /// Adds the copies, turned as a whole by `turn`, with their share of `flux`.
   void deposit(const Ray& ray, double turn, double flux, const TentBins& bins, Eigen::VectorXd& sums) const {
-    const Vec3 d = ray.direction.vec();
-    const Vec3 x = Direction::from(cross(d, std::abs(d.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0})).vec();
-    const Vec3 y = cross(d, x);
+    const Frame about_ray = Frame::from_z(ray.direction);
     const double c = std::cos(turn), s = std::sin(turn);
     TentDeposit to;
     for (const auto& [u, v] : offset_) {
-      const Vec3 about = d + (c * u - s * v) * x + (s * u + c * v) * y;
-      bins.deposit(ray.origin_mm, Direction::from(about).vec(), to);
+      const Vec3 beside = about_ray.vector({c * u - s * v, s * u + c * v, 1.0});
+      bins.deposit(ray.origin_mm, Direction::from(beside).vec(), to);
       for (std::size_t k = 0; k < static_cast<std::size_t>(to.n); ++k)
         sums[static_cast<Eigen::Index>(to.bin[k])] += flux / kCopies * to.weight[k];
     }

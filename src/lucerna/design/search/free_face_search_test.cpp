@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <vector>
 
 #include "lucerna/design/search/free_form_search.h"
 #include "lucerna/design/shape/perturbed.h"
@@ -82,6 +84,50 @@ TEST(FreeFaceSearch, FindsLightThatAnotherFaceMakes) {
   };
   EXPECT_GT(error_of_face(dome), 0.1) << "it is far off, or the test says nothing";
   EXPECT_LT(error_of_face(search.best()), 0.01);
+}
+
+// A limit costs nothing at the dome and very much where a step of little damping leads: one that does not see
+// it is refused.
+TEST(FreeFaceSearch, StepsSeeTheLimitsThatTheyWouldBreak) {
+  const Aperture aperture = Aperture::circle(24);
+  const auto dome_of = [&](double depth_mm) {
+    return DesignShape::bspline(6, aperture, 12, 12).through([&](double x, double y) {
+      return -12.0 + depth_mm * (x * x + y * y) / 144.0;
+    });
+  };
+  const DesignShape dome = dome_of(6.0);
+  std::vector<HeightBounds> bounds;
+  for (int i = -24; i <= 24; ++i) {
+    for (int k = -24; k <= 24; ++k) {
+      const double x = 0.5 * i, y = 0.5 * k;
+      const double z = dome.at(x, y).z_mm;
+      if (aperture.contains(x, y)) bounds.push_back({x, y, z - 0.05, z + 0.05});
+    }
+  }
+  const auto limits = std::make_shared<const ShapeLimits>(DesignLimits{}, dome, bounds);
+  const LightOf light(dome_of(7.0));
+  DesignRays rays = square_in_lens(3);
+  FitProblem problem{&rays, Reflectance(1.0), {}, TentBins::square(kDown, 0.9, 24), TargetMode::shape};
+  problem.target = [&](const TentBins& bins) { return light(bins); };
+  problem.direct_light = false;
+  problem.rectangle = {kDown, false, -0.8, 0.8, -0.8, 0.8};
+  problem.limits = [&](const DesignShape& shape, std::uint64_t, ResidualRows* rows) {
+    return limits->cost(shape, rows);
+  };
+  FreeFormLevel level;
+  level.bins = 24;
+  level.rays = std::uint64_t{1} << 16;
+  const auto is_accepted = [&](const FitProblem& with) {
+    const FreeFormFit fit(with, level);
+    FreeFormPoint point = fit.at(dome);
+    double lambda = 1e-3;  // more damping makes steps too short to break anything
+    const bool moved = fit.step(point, lambda);
+    EXPECT_LT(limits->cost(point.shape, nullptr), 0.1 * point.equations.cost);
+    return moved;
+  };
+  EXPECT_FALSE(is_accepted(problem));
+  problem.form = limits;
+  EXPECT_TRUE(is_accepted(problem));
 }
 
 }  // namespace

@@ -52,26 +52,13 @@ void check_wall(std::span<const OutlinePoint> p) {
   }
 }
 
-/// The highest point of the base at this radius; below all where there is none.
-double base_height(const std::vector<OutlineSide>& sides, double r_mm) {
-  double z = -std::numeric_limits<double>::infinity();
-  for (const OutlineSide& s : sides) {
-    const double low = std::min(s.from[0], s.to[0]), high = std::max(s.from[0], s.to[0]);
-    if (r_mm < low || r_mm > high) continue;
-    const double share = high > low ? (r_mm - s.from[0]) / (s.to[0] - s.from[0]) : 0.0;
-    const double here = s.from[1] + share * (s.to[1] - s.from[1]);
-    z = std::max(z, high > low ? here : std::max(s.from[1], s.to[1]));
-  }
-  return z;
-}
-
 void check_above(std::span<const OutlinePoint> p, const std::vector<OutlineSide>& sides,
                  const HeightSurface& face) {
   const double radius = p.back()[0], wall = p[p.size() - 2][1];
   for (int ring = 0; ring <= kFaceRings; ++ring) {
     const double r = radius * ring / kFaceRings;
     // Above the very rim there is the wall, and the base ends at its lower corner.
-    const double below = ring == kFaceRings ? wall : base_height(sides, r);
+    const double below = ring == kFaceRings ? wall : base_height_mm(sides, r);
     for (int spoke = 0; spoke < kFaceSpokes; ++spoke) {
       const auto [x, y] = face_place(r, spoke);
       const SurfacePoint at = face.at(x, y);
@@ -131,6 +118,18 @@ std::vector<OutlineSide> faced_base_sides(std::span<const OutlinePoint> corners_
       add_sides(piece, straight_pieces_of(piece, tolerance_mm), out);
   }
   return out;
+}
+
+double base_height_mm(std::span<const OutlineSide> sides, double r_mm) {
+  double z = -std::numeric_limits<double>::infinity();
+  for (const OutlineSide& s : sides) {
+    const double low = std::min(s.from[0], s.to[0]), high = std::max(s.from[0], s.to[0]);
+    if (r_mm < low || r_mm > high) continue;
+    const double share = high > low ? (r_mm - s.from[0]) / (s.to[0] - s.from[0]) : 0.0;
+    const double here = s.from[1] + share * (s.to[1] - s.from[1]);
+    z = std::max(z, high > low ? here : std::max(s.from[1], s.to[1]));
+  }
+  return z;
 }
 
 double faced_reach_mm(std::span<const OutlinePoint> corners_mm, const HeightSurface& face) {

@@ -32,6 +32,9 @@ FacedBase faced_base(std::span<const OutlinePoint> corners_mm, double smooth_bel
 std::vector<OutlineSide> faced_base_sides(std::span<const OutlinePoint> corners_mm, double smooth_below_deg,
                                           double tolerance_mm);
 
+/// The highest point of such sides at this radius; below all where there is none. O(sides).
+double base_height_mm(std::span<const OutlineSide> sides, double r_mm);
+
 /// The largest distance of a corner, of the face's centre and of its rim from the origin, mm.
 double faced_reach_mm(std::span<const OutlinePoint> corners_mm, const HeightSurface& face);
 
