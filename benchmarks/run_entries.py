@@ -91,7 +91,7 @@ def run(options):
     campaign = Campaign(pathlib.Path(options.out), means, options.rays, commit, options.force,
                         lambda text: print(text, flush=True))
     wrong = campaign.run(tasks, options.methods)
-    not_entered = [(t.name, lucerna_entry.kind_of(t)[1]) for t in tasks if lucerna_entry.kind_of(t)[0] is None]
+    not_entered = [(t.name, lucerna_entry.why_not(t)) for t in tasks if lucerna_entry.why_not(t)]
     pathlib.Path(options.out).mkdir(parents=True, exist_ok=True)
     for file in tables.write_all(options.out, not_entered):
         print(file)

@@ -15,7 +15,7 @@ import time
 
 from . import lucerna_entry
 from .entry import Stated, score, write_submission, write_whole
-from .methods import METHODS, Means, make
+from .methods import METHODS, Means, make, target_place_of
 from .tasks import Task
 
 SEEDS = 9_000_000_000_000_000
@@ -38,20 +38,19 @@ class Campaign:
     def run(self, tasks, methods=tuple(METHODS)):
         """Makes what is missing, then scores what is missing; what went wrong, one sentence each."""
         wrong = []
-        entered = [t for t in tasks if lucerna_entry.kind_of(t)[0] is not None]
+        entries = [(t, m) for t in tasks for m in methods if m != "lucerna" or not lucerna_entry.why_not(t)]
         for task in tasks:
-            if task not in entered:
-                self.say(f"{task.name}: not entered: {lucerna_entry.kind_of(task)[1]}")
+            if "lucerna" in methods and lucerna_entry.why_not(task):
+                self.say(f"{task.name}: not entered by Lucerna: {lucerna_entry.why_not(task)}")
         for work in (self._make, self._score):
             # Nobody knows the seed before the last entry is made.
             seed = secrets.randbelow(SEEDS)
-            for task in entered:
-                for method in methods:
-                    try:
-                        work(task, method, seed)
-                    except ValueError as e:
-                        wrong.append(f"{task.name}, {method}: {e}")
-                        self.say(wrong[-1])
+            for task, method in entries:
+                try:
+                    work(task, method, seed)
+                except ValueError as e:
+                    wrong.append(f"{task.name}, {method}: {e}")
+                    self.say(wrong[-1])
         return wrong
 
     def _make(self, task: Task, method, _seed):
@@ -67,7 +66,7 @@ class Campaign:
         program = lucerna_version(self.means.lucerna) if method == "lucerna" else f"lucerna_bench, {method}"
         stated = Stated(free_parameters=made.free_parameters, wall_s=wall, cpu_s=cpu,
                         program=f"{program}, commit {self.commit}", method=made.method)
-        write_submission(part, task.name, made.name, "Lucerna", made.surfaces, stated)
+        write_submission(part, task.name, made.name, "Lucerna", made.surfaces, stated, target_place_of(task, made.surfaces))
         record = {"settings": self.settings(), "method": method, "program": program, "machine": stated.machine,
                   "wall_s": wall, "cpu_s": cpu, **made.notes}
         write_whole(part / "made.json", json.dumps(record, indent=1) + "\n")

@@ -71,13 +71,15 @@ class Entry:
         entry.cost(p, rays=200_000)                  # error_48 without noise: for any minimiser
         entry.write("out", p, name="mine", author="me", program="...", method="...")
 
-    `surfaces_of(parameters)` gives the list that `write_submission` takes. Tasks are scored with other rays than
+    `surfaces_of(parameters)` gives the list that `write_submission` takes, and `target_place_of(surfaces)`, of tasks
+    whose target is free, where it is. Tasks are scored with other rays than
     these seeds give, so that nothing is gained by fitting to them."""
 
-    def __init__(self, task_file, surfaces_of, scorer, threads=None, fitting_seed=1000):
+    def __init__(self, task_file, surfaces_of, scorer, threads=None, fitting_seed=1000, target_place_of=None):
         self.task_file = pathlib.Path(task_file)
         self.task = json.loads(self.task_file.read_text())
         self.surfaces_of = surfaces_of
+        self.target_place_of = target_place_of or (lambda _: None)
         self.scorer = scorer
         self.threads = threads
         self.fitting_seed = fitting_seed
@@ -87,7 +89,8 @@ class Entry:
         """All figures of one set of parameters."""
         with tempfile.TemporaryDirectory() as folder:
             stated = Stated(free_parameters=len(parameters), wall_s=0.0, program="", method="")
-            file = write_submission(folder, self.task["task"], "trial", "", self.surfaces_of(parameters), stated)
+            surfaces = self.surfaces_of(parameters)
+            file = write_submission(folder, self.task["task"], "trial", "", surfaces, stated, self.target_place_of(surfaces))
             return score(self.scorer, self.task_file, file, rays, self.fitting_seed, self.threads)
 
     def cost(self, parameters, rays=1_000_000, light_weight=0.0):
@@ -107,4 +110,5 @@ class Entry:
         seconds = time.monotonic() - self._start if wall_s is None else wall_s
         more = {} if machine is None else {"machine": machine}
         stated = Stated(free_parameters=len(parameters), wall_s=seconds, program=program, method=method, **more)
-        return write_submission(folder, self.task["task"], name, author, self.surfaces_of(parameters), stated)
+        surfaces = self.surfaces_of(parameters)
+        return write_submission(folder, self.task["task"], name, author, surfaces, stated, self.target_place_of(surfaces))

@@ -9,7 +9,7 @@ import tomllib
 import numpy as np
 
 from . import photometry
-from .shapes import LENS_INDEX, MARGIN_MM, cap_height, mirror
+from .shapes import LENS_INDEX, MARGIN_MM, cap_height, free_lens_surfaces, mirror
 from .surfaces import extruded_profile, height_field, revolved, spline_through
 from .tasks import Task
 
@@ -17,29 +17,20 @@ TROUGH_LENGTH_MM = 400.0
 KEPT_FILES = ("project.toml", "reflector.toml", "lens.toml", "result.json", "history.csv")
 
 
-def kind_of(task: Task):
-    """What Lucerna makes for a task ("mirror", "trough" or "lens") and None, or None and why it makes nothing."""
-    roles, target = task.definition["optics"]["roles"], task.target
-    if task.definition.get("target_place") == "free":
-        return None, "Lucerna designs for a target in one place, and not for étendue alone"
-    if target["kind"] == "angle":
-        return "trough", None
-    if target["kind"] == "far_field" and roles == ["mirror"]:
-        return "mirror", None
-    if target["function"] == "uniform_disk" and task.source["emitter"] == "disk":
-        return "lens", None
-    return None, "the light asked for is not round, and Lucerna designs lenses of revolution only"
+def why_not(task: Task):
+    """Why Lucerna enters nothing for a task; None where it does."""
+    return "Lucerna designs for a target in one place, and not for étendue alone" if task.kind == "horn" else None
 
 
 def project(task: Task, folder):
     """Writes project.toml and its target to a folder; the share by which the target's table is off."""
     folder = pathlib.Path(folder)
-    kind, why_not = kind_of(task)
-    if kind is None:
-        raise ValueError(f"{task.file}: {task.name}: found a task that Lucerna cannot enter ({why_not})")
-    if kind == "lens":
-        target, off = _plane_target(task, folder), 0.0
-        text = _sources(task) + _lens(task) + target
+    if why_not(task):
+        raise ValueError(f"{task.file}: {task.name}: found a task that Lucerna cannot enter ({why_not(task)})")
+    kind = task.kind
+    if kind in ("lens", "free-lens"):
+        off = 0.0
+        text = _sources(task) + _lens(task) + _plane_target(task, folder) + _lens_design(task, kind)
     else:
         table, off = photometry.sampled(task.target, task.is_round)
         (folder / "target.ies").write_text(table.ies(task.name), newline="")
@@ -55,11 +46,12 @@ def _sources(task):
     s = task.source
     lines = {"led": 'kind = "led"\n', "disk": f'kind = "disk"\nradius_mm = {s.get("radius_mm")}\n',
              "filament": f'kind = "filament"\nradius_mm = {s.get("radius_mm")}\nlength_mm = {s.get("length_mm")}\n'
-                         f'ghost_share = {s.get("ghost_share")}\n'}
+                         f'ghost_share = {s.get("ghost_share")}\n',
+             "rectangle": f'kind = "rectangle"\nsize_mm = {s.get("size_mm")}\n'}
     if s["emitter"] in lines:
         return f'[[source]]\n{lines[s["emitter"]]}surface = "none"\nflux_lm = 1000\naxis = "+z"\n'
     if s["emitter"] != "strip":
-        raise ValueError(f"{task.file}: /source/emitter: found {s['emitter']}, expected led, disk, filament or strip")
+        raise ValueError(f"{task.file}: /source/emitter: found {s['emitter']}, expected {', '.join(lines)} or strip")
     half, ratio = s["half_width_mm"], s["right_to_left_luminance"]
     halves = [(-0.5 * half, 1000.0 / (1.0 + ratio)), (0.5 * half, 1000.0 * ratio / (1.0 + ratio))]
     return "".join(f'[[source]]\nkind = "rectangle"\nsize_mm = [{half}, 1]\nflux_lm = {flux}\n'
@@ -94,9 +86,11 @@ def _keep_out(task, kind):
                    f"clearance_mm = {gap}\n" for a, b, c, d, e, f, gap in boxes)
 
 
-def _lens(task, wall_mm=2.0, cap_mm=11.0, corners=12):
-    """A flat face next to the source, a wall, and a spherical cap whose corners are free."""
+def _lens(task, wall_mm=2.0, corners=12):
+    """A flat face next to the source, a wall, and a spherical cap whose corners are free: three fifths of the room that
+    is left over the wall."""
     rim, bottom = task.room.half_mm - MARGIN_MM, task.room.low_mm + MARGIN_MM
+    cap_mm = round(0.6 * (task.room.high_mm - MARGIN_MM - bottom - wall_mm), 3)
     r = np.linspace(rim, 0.0, corners)
     outer = [[float(a), float(b)] for a, b in zip(r, bottom + wall_mm + cap_height(rim, cap_mm, r))]
     outline = [[0.0, bottom], [rim, bottom], *outer]
@@ -105,11 +99,18 @@ def _lens(task, wall_mm=2.0, cap_mm=11.0, corners=12):
 
 
 def _plane_target(task, folder, cells=250, widened=1.25):
+    """An even rectangle or disk of light, in a window that is a quarter wider."""
     t = task.target
-    half = widened * t["radius_mm"]
-    (folder / "target.csv").write_text(photometry.csv(photometry.disk_cells(t["radius_mm"], half, cells)))
+    half = [0.5 * widened * side for side in t.get("size_mm", 2 * [2.0 * t.get("radius_mm", 0.0)])]
+    (folder / "target.csv").write_text(photometry.csv(photometry.lit_cells(t, half, cells)))
     return (f'[target]\nkind = "plane"\nfile = "target.csv"\nposition_mm = {t["place"]["origin_mm"]}\nnormal = "-z"\n'
-            f"size_mm = [{2 * half}, {2 * half}]\n[design]\nfree_sides = 2\nintervals = 16\n[design.limits]\n"
+            f"size_mm = {[2 * h for h in half]}\n")
+
+
+def _lens_design(task, kind):
+    """Of a lens of revolution 16 pieces of its face move; a free form chooses its knots."""
+    shape = 'family = "bspline"\n' if kind == "free-lens" else "intervals = 16\n"
+    return (f"[design]\nfree_sides = 2\n{shape}[design.limits]\n"
             f"max_diameter_mm = {2 * task.room.half_mm - MARGIN_MM}\n"
             f"max_height_mm = {task.room.high_mm - task.room.low_mm - 2 * MARGIN_MM}\nmin_thickness_mm = 0.5\n")
 
@@ -146,8 +147,8 @@ def keep_files(folder):
 def surfaces_of(text, kind):
     """The surfaces of a designed project (reflector.toml, lens.toml), and the number of its free parameters."""
     tables = tomllib.loads(text)
-    if kind == "lens":
-        return _lens_surfaces(tables["body"][0])
+    if kind in ("lens", "free-lens"):
+        return (_lens_surfaces if kind == "lens" else _free_lens_surfaces)(tables["body"][0])
     r = tables["reflector"][0]
     if r["axis"] != "-z" or r["family"] not in ("bspline", "revolution"):
         raise ValueError(f"reflector: found {r['family']} along {r['axis']}, expected bspline or revolution along -z")
@@ -172,15 +173,19 @@ def surfaces_of(text, kind):
 def spline_heights(reflector):
     """Heights of Lucerna's free form, mm over its vertex: x^2 + y^2 over 4 f plus a bicubic B-spline whose knots are
     even over the aperture and go on evenly beyond it; coefficients along x first."""
-    nx, ny = reflector["intervals"]
-    half_x, half_y = ([0.5 * s for s in reflector["size_mm"]] if "size_mm" in reflector
-                      else 2 * [0.5 * reflector["diameter_mm"]])
-    c = np.reshape(reflector["coefficients_mm"], (ny + 3, nx + 3))
+    halves = [0.5 * s for s in reflector.get("size_mm", 2 * [reflector.get("diameter_mm")])]
+    offset = _even_spline(reflector, halves)
+    return lambda x, y: (x * x + y * y) / (4.0 * reflector["focal_mm"]) + offset(x, y)
+
+
+def _even_spline(table, halves):
+    """The bicubic B-spline of a table's `intervals` and `coefficients_mm` over |x| and |y| up to `halves`."""
+    nx, ny = table["intervals"]
+    c = np.reshape(table["coefficients_mm"], (ny + 3, nx + 3))
 
     def height(x, y):
-        bx, by = _cubic_pieces(x, -half_x, half_x, nx), _cubic_pieces(y, -half_y, half_y, ny)
-        offset = np.einsum("...j,...i,ji->...", by, bx, c)
-        return (x * x + y * y) / (4.0 * reflector["focal_mm"]) + offset
+        bx, by = (_cubic_pieces(at, -half, half, n) for at, half, n in zip((x, y), halves, (nx, ny)))
+        return np.einsum("...j,...i,ji->...", by, bx, c)
 
     return height
 
@@ -224,3 +229,16 @@ def _lens_surfaces(body):
     parts = [{"name": name, "role": "interface", "bspline": face, "refractive_index": body["refractive_index"]}
              for name, face in faces.items()]
     return parts, len(outer) - 1
+
+
+def _free_lens_surfaces(body):
+    """Bottom, wall and free face of the body that `project` gave."""
+    outline = body["outline_mm"]
+    if len(outline) != 3 or outline[0][1] != outline[1][1]:
+        raise ValueError(f"outline_mm: found {outline}, expected a flat bottom and a wall")
+    rim, bottom = outline[1]
+    face, half = body["face"], body["face"]["half_mm"]
+    # Both are bicubic splines on the same knots, as of mirrors.
+    sheet = height_field(_even_spline(face, 2 * [half]), half, half, intervals=tuple(face["intervals"]),
+                         trim={"kind": "circle", "diameter_mm": 2.0 * rim})
+    return free_lens_surfaces(sheet, rim, bottom, body["refractive_index"]), len(face["coefficients_mm"])

@@ -7,8 +7,8 @@ import time
 from . import cma_es, lucerna_entry, point_source, tree_search
 from .entry import Entry
 from .golden import golden_section
-from .shapes import Lens, Mirror, Trough
-from .tasks import Task
+from .shapes import FreeLens, Horn, Lens, Mirror, Trough, exit_place
+from .tasks import Room, Task
 
 # What missing light costs beside the error, as in a design of Lucerna: a tenth of it as an error of 3.2 %.
 LIGHT_WEIGHT = 0.1
@@ -41,7 +41,8 @@ class Search:
 
     def __init__(self, task: Task, means: Means, surfaces_of):
         self.means, self.trials, self.start = means, 0, time.monotonic()
-        self.entry = Entry(task.file, surfaces_of, means.scorer, threads=means.threads)
+        self.entry = Entry(task.file, surfaces_of, means.scorer, threads=means.threads,
+                           target_place_of=lambda surfaces: target_place_of(task, surfaces))
 
     def cost(self, parameters):
         self.trials += 1
@@ -56,43 +57,60 @@ class Search:
         return f"{what}, {self.trials} trials of {self.means.fit_rays:g} rays"
 
 
-def lucerna(task, kind, means, folder):
+def target_place_of(task, surfaces):
+    """Where an entry has its target, if that is free: at the end of its horn."""
+    return exit_place(surfaces) if task.kind == "horn" else None
+
+
+def lucerna(task, means, folder):
     """`lucerna design`, its seconds and threads given; everything else is its own choice."""
     off = lucerna_entry.project(task, folder)
     text = lucerna_entry.design(means.lucerna, task, folder, means.time_s, means.threads, means.seed)
     lucerna_entry.keep_files(folder)
-    surfaces, free = lucerna_entry.surfaces_of(text, kind)
+    surfaces, free = lucerna_entry.surfaces_of(text, task.kind)
     return Made(surfaces, free, f"Lucerna, {free} free parameters", f"lucerna design --time {means.time_s:g}",
                 {"target_sampling_error": off})
 
 
-def _plain_shape(task, kind, number):
-    """The optic of one number: a focal length, or the height of a lens's cap."""
-    return {"mirror": Mirror, "trough": Trough, "lens": Lens}[kind](task, float(number))
+@dataclasses.dataclass
+class Plain:
+    """The optic of one number, what it is called, and the number's range in a room."""
+    shape: type
+    what: str
+    range_mm: callable
 
 
-def _best_plain(search, task, kind, share):
+PLAIN = {"mirror": Plain(Mirror, "paraboloid, focal length", Room.focal_range_mm),
+         "trough": Plain(Trough, "parabolic trough, focal length", Room.focal_range_mm),
+         "lens": Plain(Lens, "spherical cap, height", Room.cap_range_mm),
+         "free-lens": Plain(FreeLens, "spherical cap, height", Room.cap_range_mm),
+         "horn": Plain(Horn, "horn of flat walls, length", lambda _: (0.5, 20.0))}
+
+
+def _plain_shape(task, number):
+    return PLAIN[task.kind].shape(task, float(number))
+
+
+def _best_plain(search, task, share):
     """Golden section over the one number, until its trials or its share of the time are used up."""
-    low, high = (0.5, task.room.half_mm - 4.0) if kind == "lens" else task.room.focal_range_mm()
+    low, high = PLAIN[task.kind].range_mm(task.room)
     # A hundredth within, so that what rounding adds stays in the room.
     low, high = low + 0.01 * (high - low), high - 0.01 * (high - low)
     return golden_section(lambda x: search.cost([x]), low, high,
                           lambda trials: trials >= TRIALS_OF_PLAIN or search.over(share))
 
 
-def plain(task, kind, means, _folder):
-    """The plain optic of one number: a paraboloid, a parabolic trough or a spherical cap; golden section."""
-    search = Search(task, means, lambda p: _plain_shape(task, kind, p[0]).surfaces())
-    number = _best_plain(search, task, kind, 1.0)
-    what = {"mirror": "paraboloid, focal length", "trough": "parabolic trough, focal length",
-            "lens": "spherical cap, height"}[kind]
-    return Made(_plain_shape(task, kind, number).surfaces(), 1, f"plain {what} {number:.3f} mm",
+def plain(task, means, _folder):
+    """The plain optic of one number; golden section."""
+    search = Search(task, means, lambda p: _plain_shape(task, p[0]).surfaces())
+    number = _best_plain(search, task, 1.0)
+    return Made(_plain_shape(task, number).surfaces(), 1, f"plain {PLAIN[task.kind].what} {number:.3f} mm",
                 search.told("golden section"))
 
 
-def point_source_alone(task, kind, means, _folder):
+def point_source_alone(task, means, _folder):
     """Zero-étendue solutions with the real source: the best of some variants and vertex distances."""
-    make, variants, distances = point_source.candidates(task, kind)
+    make, variants, distances = point_source.candidates(task)
     made, best = {}, None
     search = Search(task, means, lambda p: made[tuple(p)])
     for vertex_mm in distances:
@@ -116,11 +134,11 @@ def point_source_alone(task, kind, means, _folder):
                 search.told(f"{make.__name__} of a point source, best of {len(made)} vertex distances and variants"))
 
 
-def _spline_search(task, kind, means, minimise, what):
+def _spline_search(task, means, minimise, what):
     """A search among splines over the best plain optic, which takes a tenth of the time at most."""
-    search = Search(task, means, lambda p: _plain_shape(task, kind, p[0]).surfaces())
-    number = _best_plain(search, task, kind, 0.1)
-    shape = _plain_shape(task, kind, number)
+    search = Search(task, means, lambda p: _plain_shape(task, p[0]).surfaces())
+    number = _best_plain(search, task, 0.1)
+    shape = _plain_shape(task, number)
     # The same clock goes on with other parameters.
     search.entry.surfaces_of = shape.surfaces
     found = minimise(search.cost, [0.0] * shape.size, shape, lambda *_: search.over())
@@ -129,15 +147,15 @@ def _spline_search(task, kind, means, minimise, what):
                 {"cost": found.cost})
 
 
-def cma(task, kind, means, _folder):
+def cma(task, means, _folder):
     """CMA-ES on spline heights over the best plain optic."""
-    return _spline_search(task, kind, means, lambda cost, start, shape, stop: cma_es.minimise(
+    return _spline_search(task, means, lambda cost, start, shape, stop: cma_es.minimise(
         cost, start, 0.5 * shape.scale_mm, stop, means.seed), "CMA-ES")
 
 
-def tree(task, kind, means, _folder):
+def tree(task, means, _folder):
     """The search tree with pattern search on the same spline heights."""
-    return _spline_search(task, kind, means, lambda cost, start, shape, stop: tree_search.minimise(
+    return _spline_search(task, means, lambda cost, start, shape, stop: tree_search.minimise(
         cost, start, 3.0 * shape.scale_mm, stop, means.seed), "search tree")
 
 
@@ -145,7 +163,4 @@ METHODS = {"lucerna": lucerna, "plain": plain, "point-source": point_source_alon
 
 
 def make(name, task: Task, means: Means, folder: pathlib.Path):
-    kind, why_not = lucerna_entry.kind_of(task)
-    if kind is None:
-        raise ValueError(f"{task.file}: {task.name}: found a task that is not entered ({why_not})")
-    return METHODS[name](task, kind, means, folder)
+    return METHODS[name](task, means, folder)

@@ -90,10 +90,14 @@ def sampled(target, is_round, goal=5e-4):
     return table, error
 
 
-def disk_cells(radius_mm, half_mm, cells, parts=8):
-    """Shares of square cells that lie within a disk: an even disk of light."""
-    fine = (np.arange(cells * parts) + 0.5) * 2.0 * half_mm / (cells * parts) - half_mm
-    within = np.hypot(*np.meshgrid(fine, fine)) <= radius_mm
+def lit_cells(target, half_mm, cells, parts=8):
+    """Shares of the cells of a window (half its sides, as many cells along each) that a disk or rectangle of even light
+    covers. Rows are along y, their cells along x."""
+    x, y = ((np.arange(cells * parts) + 0.5) * 2.0 * half / (cells * parts) - half for half in half_mm)
+    if target["function"] == "uniform_disk":
+        within = np.hypot(x, y[:, None]) <= target["radius_mm"]
+    else:
+        within = (np.abs(x) <= 0.5 * target["size_mm"][0]) & (np.abs(y[:, None]) <= 0.5 * target["size_mm"][1])
     return within.reshape(cells, parts, cells, parts).mean(axis=(1, 3))
 
 

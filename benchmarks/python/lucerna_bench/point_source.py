@@ -9,6 +9,9 @@
   in geometric optics", Inverse Problems 3, 743 (1987); X.-J. Wang, "On the design of a reflector antenna II", Calc.
   Var. 20, 329 (2004). Solved with entropy: M. Cuturi, "Sinkhorn Distances", NIPS 2013.
 - Lenses of revolution with a flat entry: balance of flux and Snell's law, from ray to ray.
+- Horns: two compound parabolic concentrators across each other.
+- Free lenses with a flat entry that touches the source: a hull of ellipsoids, with the cost -log(1 - d.e / n).
+  C. E. Gutierrez, Q. Huang, "The refractor problem in reshaping light beams", Arch. Rational Mech. Anal. 193 (2009).
 
 What an optic cannot catch or turn is left out of the balance. One number is free, the distance of the vertex, and there
 are a few variants: rays cross the axis or not, and the middle of the optic lights the middle of the target or its edge.
@@ -18,8 +21,8 @@ import functools
 import numpy as np
 
 from .photometry import target_rectangle
-from .shapes import LENS_INDEX, MARGIN_MM, lens_surfaces, mirror
-from .surfaces import _basis, _greville, _knots, _surface, placed, revolved, spline_through
+from .shapes import LENS_INDEX, MARGIN_MM, free_lens_surfaces, horn_walls, lens_surfaces, mirror
+from .surfaces import _basis, _greville, _knots, _surface, heights_at, placed, revolved, spline_through
 from .tasks import intensity, source_directions
 
 # Every fortieth step is a point of a spline, the last one is.
@@ -162,24 +165,56 @@ def transport(sign, a, b, cost, entropies=(0.1, 0.05, 0.02, 0.01, 0.006), rounds
     return g, entropy
 
 
-def _cost(directions, beam):
-    """Of a paraboloid that turns one into the other; bounded where light would have to go straight on."""
-    return -np.log(np.maximum(0.02, 1.0 - directions @ beam.T))
-
-
 def _from_disk(s, t):
     """Directions by stereographic coordinates: 0 is +z, 1 is the horizon."""
     k = 1.0 + s * s + t * t
     return np.stack([2.0 * s / k, 2.0 * t / k, (2.0 - k) / k], axis=-1)
 
 
-class FreeMirror:
-    """A mirror of a point source for any target: its distance in each direction."""
+class PointSurface:
+    """A surface that turns light of a point into any beam: its distance in each direction, by optimal transport.
+    Subclasses say what is bent how: `cost`, and the light there is."""
 
-    WIDEST, CELLS, TARGET_CELLS = 1.6, 30, 28
+    CELLS, TARGET_CELLS = 30, 28
+
+    def __init__(self, sign, vertex_mm):
+        self.sign, self.vertex_mm = sign, vertex_mm
+
+    def _solve(self, directions, flux, wanted):
+        cost = self.cost(directions @ self.beam.T)
+        self.potential, self.entropy = transport(self.sign, flux / flux.sum(), wanted / wanted.sum(), cost)
+        self.scale = 1.0
+        self.scale = self.vertex_mm / self.distance(np.array([[0.0, 0.0, 1.0]]))[0]
+
+    def distance(self, directions):
+        """The hull of the surfaces that make one direction each, soft by the entropy, mm."""
+        soft = (self.potential - self.sign * self.cost(directions @ self.beam.T)) / self.entropy
+        most = soft.max(axis=1)
+        hull = -self.entropy * (most + np.log(np.exp(soft - most[:, None]).sum(axis=1)))
+        return self.scale * np.exp(self.sign * hull)
+
+    def height_spline(self, points, half, above_mm, sign, intervals=12):
+        """A bicubic spline of heights, `above_mm` + `sign` z, through points of the surface by least squares, trimmed
+        to a circle."""
+        knots = _knots(-half, half, intervals, 3)
+        bx, by = (_basis(knots, 3, points[:, k]) for k in (0, 1))
+        rows = np.einsum("ki,kj->kij", bx, by).reshape(len(points), -1)
+        smooth = 1e-3 * _third_differences(intervals + 3)
+        right = np.concatenate([above_mm + sign * points[:, 2], np.zeros(len(smooth))])
+        heights = np.linalg.lstsq(np.vstack([rows, smooth]), right, None)[0]
+        x, y = np.meshgrid(_greville(knots, 3), _greville(knots, 3), indexing="ij")
+        return _surface((3, 3), knots, knots, np.stack([x, y, heights.reshape(x.shape)], axis=-1),
+                        trim={"kind": "circle", "diameter_mm": 2.0 * half})
+
+
+class FreeMirror(PointSurface):
+    """A mirror of a point source for any target."""
+
+    WIDEST = 1.6
 
     def __init__(self, task, sign, vertex_mm, rounds=3):
-        self.task, self.sign, self.vertex_mm = task, sign, vertex_mm
+        super().__init__(sign, vertex_mm)
+        self.task = task
         centre = (np.arange(self.CELLS) + 0.5) * 2.0 * self.WIDEST / self.CELLS - self.WIDEST
         cells = _from_disk(*(x.ravel() for x in np.meshgrid(centre, centre, indexing="ij")))
         light = directions_of(task)
@@ -192,8 +227,13 @@ class FreeMirror:
             hit = (reach * np.hypot(cells[:, 0], cells[:, 1]) <= task.room.half_mm) & (flux > 0.0)
             if not hit.any():
                 raise NoSolution("the mirror is wider than its room in every direction")
-            self._solve(cells[hit], flux[hit])
+            self._solve(cells[hit], flux[hit], self._left_for(flux[hit].sum()))
             reach = self.distance(cells)
+
+    @staticmethod
+    def cost(cosine):
+        """Of a paraboloid that turns one direction into the other; bounded where light would have to go straight on."""
+        return -np.log(np.maximum(0.02, 1.0 - cosine))
 
     def _set_target(self, light):
         low, high = target_rectangle(self.task.target, fine=512)
@@ -207,24 +247,12 @@ class FreeMirror:
         wanted = intensity(self.task.target, u, v) / w
         self.beam, self.wanted = np.stack([u, -v, -w], axis=-1), wanted / wanted.sum()
 
-    def _solve(self, directions, flux):
-        total = self.task.definition["optics"]["reflectance"] * flux.sum() + self.direct.sum()
-        left = np.maximum(1e-12, total * self.wanted - self.direct)
-        cost = _cost(directions, self.beam)
-        self.potential, self.entropy = transport(self.sign, flux / flux.sum(), left / left.sum(), cost)
-        self.scale = 1.0
-        self.scale = self.vertex_mm / self.distance(np.array([[0.0, 0.0, 1.0]]))[0]
-
-    def distance(self, directions):
-        """The hull of paraboloids, soft by the entropy, mm."""
-        cost = _cost(directions, self.beam)
-        soft = (self.potential - self.sign * cost) / self.entropy
-        most = soft.max(axis=1)
-        hull = -self.entropy * (most + np.log(np.exp(soft - most[:, None]).sum(axis=1)))
-        return self.scale * np.exp(self.sign * hull)
+    def _left_for(self, caught):
+        """The wanted light, less what falls there by itself."""
+        total = self.task.definition["optics"]["reflectance"] * caught + self.direct.sum()
+        return np.maximum(1e-12, total * self.wanted - self.direct)
 
     def surfaces(self, intervals=12, lines=70):
-        """A bicubic spline of heights through points of the mirror, by least squares."""
         half = self.task.room.half_mm
         at = np.linspace(-self.WIDEST, self.WIDEST, lines)
         directions = _from_disk(*(x.ravel() for x in np.meshgrid(at, at, indexing="ij")))
@@ -234,17 +262,67 @@ class FreeMirror:
         if len(within) < (intervals + 3) ** 2:
             raise NoSolution("the mirror does not fill its room")
         check_room(self.task.room, np.hypot(within[:, 0], within[:, 1]), within[:, 2])
-        knots = _knots(-half, half, intervals, 3)
-        bx, by = (_basis(knots, 3, points[:, k]) for k in (0, 1))
-        rows = np.einsum("ki,kj->kij", bx, by).reshape(len(points), -1)
-        smooth = 1e-3 * _third_differences(intervals + 3)
-        system = np.vstack([rows, smooth])
-        right = np.concatenate([self.vertex_mm - points[:, 2], np.zeros(len(smooth))])
-        heights = np.linalg.lstsq(system, right, None)[0]
-        x, y = np.meshgrid(_greville(knots, 3), _greville(knots, 3), indexing="ij")
-        sheet = _surface((3, 3), knots, knots, np.stack([x, y, heights.reshape(x.shape)], axis=-1),
-                         trim={"kind": "circle", "diameter_mm": 2.0 * half})
-        return [mirror(sheet, self.vertex_mm)]
+        return [mirror(self.height_spline(points, half, self.vertex_mm, -1.0, intervals), self.vertex_mm)]
+
+
+class FreeFace(PointSurface):
+    """The outer face of a lens with a flat entry, for a rectangle of even light. The source lies at the flat face:
+    within the glass its light comes from one point, in directions within the critical angle."""
+
+    def __init__(self, task, sign, vertex_mm):
+        super().__init__(sign, vertex_mm)
+        self.task, self.bottom_mm = task, task.room.low_mm + MARGIN_MM
+        widest = 1.0 / LENS_INDEX
+        centre = (np.arange(self.CELLS) + 0.5) * 2.0 * widest / self.CELLS - widest
+        u, v = (x.ravel() for x in np.meshgrid(centre, centre, indexing="ij"))
+        sine = np.hypot(u, v)
+        inside = sine < 0.999 * widest
+        u, v, sine = u[inside], v[inside], sine[inside]
+        # Lambertian light is even in direction cosines, outside as inside of the glass.
+        flux = 1.0 - fresnel(np.arcsin(LENS_INDEX * sine), np.arcsin(sine))
+        far = task.target["place"]["origin_mm"][2] - self.bottom_mm - vertex_mm
+        x, y = (0.5 * side * ((np.arange(self.TARGET_CELLS) + 0.5) * 2.0 / self.TARGET_CELLS - 1.0)
+                for side in task.target["size_mm"])
+        x, y = (p.ravel() for p in np.meshgrid(x, y, indexing="ij"))
+        self.beam = np.stack([x, y, np.full_like(x, far)], axis=-1)
+        self.beam /= np.linalg.norm(self.beam, axis=1, keepdims=True)
+        self._solve(np.stack([u, v, np.sqrt(1.0 - sine**2)], axis=-1), flux, np.ones(len(x)))
+
+    @staticmethod
+    def cost(cosine):
+        """Of an ellipsoid that turns one direction into the other; bounded where glass cannot bend light so much."""
+        return -np.log(np.maximum(0.02, 1.0 - cosine / LENS_INDEX))
+
+    def surfaces(self, whole, intervals=16):
+        """`whole`: as wide as its light reaches anywhere, else as it reaches everywhere."""
+        room = self.task.room
+        points = self._rings()
+        ends = np.hypot(points[-1, :, 0], points[-1, :, 1])
+        rim = min(room.half_mm - MARGIN_MM, ends.max() if whole else ends.min())
+        points = np.concatenate([points, self._beyond(points, 1.5 * rim)]).reshape(-1, 3)
+        points = points[np.abs(points[:, :2]).max(axis=1) <= rim]
+        face = self.height_spline(points, rim, self.bottom_mm, 1.0, intervals)
+        way, turn = np.linspace(0.0, rim, 25)[:, None], np.linspace(0.0, 2.0 * np.pi, 73)
+        heights = heights_at(face, way * np.cos(turn), way * np.sin(turn))
+        if heights.min() < self.bottom_mm + 0.1:
+            raise NoSolution("the face comes down to the flat one")
+        check_room(room, np.array([rim]), heights)
+        return free_lens_surfaces(face, rim, self.bottom_mm)
+
+    def _rings(self, rings=60, spokes=120):
+        """Points of the face up to the critical angle, by ring and spoke."""
+        sine = np.linspace(0.0, 0.999 / LENS_INDEX, rings)[:, None]
+        turn = 2.0 * np.pi * np.arange(spokes) / spokes
+        d = np.stack(np.broadcast_arrays(sine * np.cos(turn), sine * np.sin(turn), np.sqrt(1.0 - sine**2)), axis=-1)
+        return self.distance(d.reshape(-1, 3)).reshape(rings, spokes, 1) * d
+
+    @staticmethod
+    def _beyond(points, radius_mm, rings=20):
+        """No light comes there: straight on from the last two rings, so that a spline has no gap to bridge."""
+        before, last = points[-3], points[-1]
+        step = (last - before) / np.linalg.norm((last - before)[:, :2], axis=1, keepdims=True)
+        left = np.maximum(0.0, radius_mm - np.linalg.norm(last[:, :2], axis=1, keepdims=True))
+        return last + np.linspace(0.05, 1.0, rings)[:, None, None] * left * step
 
 
 def _third_differences(n):
@@ -255,6 +333,11 @@ def _third_differences(n):
 def free_mirror(task, variant, vertex_mm):
     """`variant` 0: the lower hull, spreading rays; 1: the upper hull, crossing ones."""
     return FreeMirror(task, -1.0 if variant else 1.0, vertex_mm).surfaces()
+
+
+def free_lens(task, variant, vertex_mm):
+    """Variants as of `free_mirror`, each as wide as its light reaches anywhere (0, 1) or everywhere (2, 3)."""
+    return FreeFace(task, -1.0 if variant % 2 else 1.0, vertex_mm).surfaces(variant < 2)
 
 
 def round_lens(task, variant, vertex_mm):
@@ -302,10 +385,41 @@ def fresnel(outside, inside):
     return 0.5 * (((ca - n * cb) / (ca + n * cb)) ** 2 + ((n * ca - cb) / (n * ca + cb)) ** 2)
 
 
-def candidates(task, kind, distances=9):
-    """Makers of surfaces, how many variants they have, and vertex distances to try: the middle ones first."""
-    if kind == "lens":
-        make, variants, low, high = round_lens, 4, 0.2 * task.room.high_mm, 0.9 * task.room.high_mm
+# Of a horn along x; along y it is what the étendue leaves. At 2 both acceptance angles are 30 degrees.
+WIDENING = (1.5, 2.9)
+
+
+def compound_parabolic_horn(task, _variant, widening, intervals=32):
+    """Two troughs across each other, each a compound parabolic concentrator that is used the other way: edge rays of
+    the entry leave at the edges of the cone (R. Winston, J. C. Minano, P. Benitez, "Nonimaging Optics", 2005, chapter
+    4). The shorter one goes on straight."""
+    across = widening, 1.0 / (widening * np.sin(np.radians(task.target["max_angle_deg"])) ** 2)
+    profiles = [_concentrator(0.5 * side, ratio) for side, ratio in zip(task.source["size_mm"], across)]
+    length = max(z[-1] for z, _ in profiles)
+    knots = _knots(0.0, length, intervals, 3)
+    at = _greville(knots, 3)
+    basis = _basis(knots, 3, at)
+    return horn_walls(knots, at, *(np.linalg.solve(basis, np.interp(at, z, half)) for z, half in profiles))
+
+
+def _concentrator(half_mm, ratio):
+    """Heights and half widths, from the narrow end to one `ratio` times as wide."""
+    accepted = np.arcsin(1.0 / ratio)
+    focal = half_mm * (1.0 + np.sin(accepted))
+    turn = np.linspace(0.5 * np.pi + accepted, 2.0 * accepted, 400)
+    reach = 2.0 * focal / (1.0 - np.cos(turn))
+    return reach * np.cos(turn - accepted), reach * np.sin(turn - accepted) - half_mm
+
+
+def candidates(task, distances=9):
+    """Makers of surfaces, how many variants they have, and vertex distances to try: the middle ones first. Of a horn
+    the number is how many times as wide as its entry it is along x."""
+    kind = task.kind
+    if kind == "horn":
+        make, variants, (low, high) = compound_parabolic_horn, 1, WIDENING
+    elif kind.endswith("lens"):
+        make, variants = (round_lens, 4) if kind == "lens" else (free_lens, 4)
+        low, high = 0.2 * task.room.high_mm, 0.9 * task.room.high_mm
     else:
         low, high = max(task.room.lamp_radius_mm + 1.0, task.room.low_mm, 0.15 * task.room.half_mm), task.room.high_mm
         make, variants = (trough, 4) if kind == "trough" else (round_mirror, 4) if task.is_round else (free_mirror, 2)

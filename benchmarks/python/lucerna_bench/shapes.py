@@ -2,7 +2,7 @@
 """Optics of few numbers, as surfaces of submissions: plain ones, and splines over them for optimisers."""
 import numpy as np
 
-from .surfaces import _basis, _greville, _knots, extruded_profile, height_field, placed, revolved
+from .surfaces import _basis, _greville, _knots, _surface, extruded_profile, height_field, placed, revolved, wall_below
 
 DOWN = (0.0, 0.0, -1.0)
 LENS_INDEX = 1.4925
@@ -76,6 +76,65 @@ class Lens:
         return lens_surfaces(self.room, knots, np.stack([rim - way, self.wall_mm + sag], axis=-1))
 
 
+class FreeLens:
+    """A lens before a source that shines to +z: a flat face next to the source, a wall, and a bicubic spline of
+    heights over a spherical cap. Parameters: the spline's coefficients, mm."""
+
+    def __init__(self, task, cap_mm, intervals=3, wall_mm=2.0):
+        self.room, self.cap_mm, self.intervals, self.wall_mm = task.room, cap_mm, intervals, wall_mm
+        self.size = (intervals + 3) ** 2
+        self.scale_mm = 0.02 * task.room.half_mm
+
+    def surfaces(self, heights_mm=None):
+        rim = self.room.half_mm - MARGIN_MM
+        bottom = self.room.low_mm + MARGIN_MM
+        face = height_field(lambda x, y: bottom + self.wall_mm + cap_height(rim, self.cap_mm, np.hypot(x, y)), rim, rim,
+                            intervals=(self.intervals, self.intervals), trim={"kind": "circle", "diameter_mm": 2 * rim})
+        if heights_mm is not None:
+            points = np.asarray(face["points_mm"])
+            points[:, :, 2] += np.reshape(heights_mm, points.shape[:2])
+            face["points_mm"] = points.tolist()
+        return free_lens_surfaces(face, rim, bottom)
+
+
+class Horn:
+    """Four walls from the source's rectangle to the target's: ruled between splines of both half widths over the
+    height. Parameters: the splines' coefficients but for the first, mm."""
+
+    def __init__(self, task, length_mm, intervals=3):
+        self.length_mm, self.intervals = length_mm, intervals
+        self.ends_mm = [(0.5 * a, 0.5 * b) for a, b in zip(task.source["size_mm"], task.target["size_mm"])]
+        self.size = 2 * (intervals + 2)
+        self.scale_mm = 0.05
+
+    def surfaces(self, widths_mm=None):
+        knots = _knots(0.0, self.length_mm, self.intervals, 3)
+        at = _greville(knots, 3)
+        halves = [a + (b - a) * at / self.length_mm for a, b in self.ends_mm]
+        if widths_mm is not None:
+            # Walls never meet.
+            halves = [np.maximum(0.1, h + np.concatenate([[0.0], more])) for h, more in
+                      zip(halves, np.reshape(widths_mm, (2, -1)))]
+        return horn_walls(knots, at, *halves)
+
+
+def horn_walls(knots, z_mm, half_x_mm, half_y_mm):
+    """Mirrors that look inwards, whose edges meet in the corners."""
+    walls = []
+    # Along the height, then across: so turned that the normal looks inwards.
+    for name, (ax, ay), (bx, by) in (("+x", (1, -1), (1, 1)), ("-x", (-1, 1), (-1, -1)), ("+y", (1, 1), (-1, 1)),
+                                     ("-y", (-1, -1), (1, -1))):
+        rows = [[[ax * x, ay * y, z], [bx * x, by * y, z]] for x, y, z in zip(half_x_mm, half_y_mm, z_mm)]
+        walls.append({"name": name, "role": "mirror", "bspline": _surface((3, 1), knots, _knots(0.0, 1.0, 1, 1), rows)})
+    return walls
+
+
+def exit_place(walls, gap_mm=0.01):
+    """Where a target stands before the end of a horn."""
+    top = max(p[2] for wall in walls for row in wall["bspline"]["points_mm"] for p in row)
+    return placed((0.0, 0.0, top + gap_mm), z_axis=DOWN)
+
+
 def cap_height(rim_mm, cap_mm, radius_mm):
     """Height over its rim of a spherical cap that is `cap_mm` high at the axis; 0 for a flat one."""
     if cap_mm == 0.0:
@@ -91,5 +150,15 @@ def lens_surfaces(room, knots, outer_rz_mm):
     faces = {"bottom": revolved([0, 0, 1, 1], [(0.0, bottom), (rim, bottom)], degree=1),
              "wall": revolved([0, 0, 1, 1], [(rim, bottom), (rim, bottom + outer_rz_mm[0][1])], degree=1),
              "outer": revolved(knots, [(r, bottom + z) for r, z in outer_rz_mm])}
-    return [{"name": name, "role": "interface", "bspline": face, "refractive_index": LENS_INDEX}
-            for name, face in faces.items()]
+    return [_interface(name, face, LENS_INDEX) for name, face in faces.items()]
+
+
+def free_lens_surfaces(face, rim_mm, bottom_mm, refractive_index=LENS_INDEX):
+    """A closed lens: flat bottom, wall, and a height field trimmed to a circle as its outer face."""
+    faces = {"bottom": revolved([0, 0, 1, 1], [(0.0, bottom_mm), (rim_mm, bottom_mm)], degree=1),
+             "wall": wall_below(face, rim_mm, bottom_mm), "outer": face}
+    return [_interface(name, surface, refractive_index) for name, surface in faces.items()]
+
+
+def _interface(name, surface, refractive_index):
+    return {"name": name, "role": "interface", "bspline": surface, "refractive_index": refractive_index}

@@ -112,6 +112,18 @@ def cylinder_wall(radius_mm, low_mm, high_mm):
     return revolved([0, 0, 1, 1], [(radius_mm, low_mm), (radius_mm, high_mm)], degree=1)
 
 
+def wall_below(face, radius_mm, low_mm, places=480):
+    """The wall of a solid about z from low_mm up to the rim of a height field that is trimmed to this radius. Its
+    normal looks outwards. Circle and rim are cubic splines through as many places: within 1e-7 of the radius, and of
+    the rim's height where the field is smooth."""
+    turn = np.linspace(0.0, 2.0 * np.pi, places + 1)
+    x, y = radius_mm * np.cos(turn), radius_mm * np.sin(turn)
+    knots, x_points = spline_through(turn, x)
+    (_, y_points), (_, z_points) = (spline_through(turn, values) for values in (y, heights_at(face, x, y)))
+    rows = [[[a, b, low_mm], [a, b, c]] for a, b, c in zip(x_points, y_points, z_points)]
+    return _surface((3, 1), knots, _knots(0.0, 1.0, 1, 1), rows)
+
+
 def placed(origin_mm=(0.0, 0.0, 0.0), z_axis=(0.0, 0.0, 1.0), x_axis=(1.0, 0.0, 0.0)):
     """Where a surface's own frame is in that of the task."""
     return {"origin_mm": list(origin_mm), "x_axis": list(x_axis), "z_axis": list(z_axis)}

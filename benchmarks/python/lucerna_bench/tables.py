@@ -21,6 +21,13 @@ def read_scores(out):
     return found
 
 
+def loss(s):
+    """What is the less the better, and its standard error: the error, or the light that does not arrive."""
+    if s["headline"] == "error_48":
+        return s["error_48"]["excess"], s["error_48"]["standard_error"]
+    return 1.0 - s["efficiency_with_losses"]["value"], s["efficiency_with_losses"]["standard_error"]
+
+
 def percent(x, digits=2):
     return f"{100.0 * x:.{digits}f} %"
 
@@ -45,15 +52,16 @@ def table(scores, not_entered=()):
     best = {}
     for task, _, s in scores:
         if s["counts"]:
-            best[task] = min(best.get(task, math.inf), s["error_48"]["excess"])
+            best[task] = min(best.get(task, math.inf), loss(s)[0])
     for task, method, s in scores:
         cells = row(task, method, s)
-        if s["counts"] and s["error_48"]["excess"] == best[task]:
-            cells[2] = f"**{cells[2]}**"
+        if s["counts"] and loss(s)[0] == best[task]:
+            headline = 2 if s["headline"] == "error_48" else 5
+            cells[headline] = f"**{cells[headline]}**"
         lines.append("| " + " | ".join(c.replace("|", "\\|") for c in cells) + " |")
     lines += ["", "Scored with " + "; ".join(", ".join(x) for x in scored) + "."] if scored else []
     if not_entered:
-        lines += ["", "Not entered:", "", *(f"- {task}: {why}." for task, why in not_entered)]
+        lines += ["", "Not entered by Lucerna:", "", *(f"- {task}: {why}." for task, why in not_entered)]
     return "\n".join(lines) + "\n"
 
 
@@ -61,7 +69,7 @@ def plot(scores, title):
     """Errors on a logarithmic axis, a line a task, with their standard errors; one that does not count is hollow."""
     tasks = sorted({task for task, _, _ in scores})
     methods = [m for m in COLOURS if any(m == method for _, method, _ in scores)]
-    errors = [max(1e-5, s["error_48"]["excess"]) for _, _, s in scores]
+    errors = [max(1e-5, loss(s)[0]) for _, _, s in scores]
     low = math.floor(math.log10(min(errors)))
     high = max(low + 1, math.ceil(math.log10(max(errors))))
     left, width, high_px, top = 16 + 7 * max(map(len, tasks)), 420, 26, 40
@@ -89,7 +97,7 @@ def plot(scores, title):
 
 
 def _mark(s, x, y, colour, method):
-    error, spread = s["error_48"]["excess"], s["error_48"]["standard_error"]
+    error, spread = loss(s)
     label = f"{method}: {percent(error)} +- {percent(spread)}"
     fill = colour if s["counts"] else "#ffffff"
     return (f'<line x1="{x(error - spread):.1f}" y1="{y}" x2="{x(error + spread):.1f}" y2="{y}" stroke="{colour}"/>'
@@ -106,6 +114,7 @@ def write_all(out, not_entered=()):
         picture = f"\n![Errors by entry]({family}.svg)\n" if ours else ""
         files.append(write_whole(out / f"{family}.md", f"# {family}\n{picture}\n" + table(ours, missing)))
         if ours:
-            title = f"{family}: error at 48 boxes a side, noise taken out"
+            title = (f"{family}: error at 48 boxes a side, noise taken out" if ours[0][2]["headline"] == "error_48" else
+                     f"{family}: light that does not arrive")
             files.append(write_whole(out / f"{family}.svg", plot(ours, title)))
     return files

@@ -29,6 +29,11 @@ class Room:
             raise ValueError(f"limits: found room for no paraboloid in {self}, expected room for one")
         return shortest, self.high_mm
 
+    def cap_range_mm(self, wall_mm=2.0):
+        """Heights of spherical caps on a wall of a lens that this room holds: from nearly flat to nearly half a
+        sphere."""
+        return 0.5, min(self.half_mm - 4.0, self.high_mm - self.low_mm - wall_mm - 0.1)
+
 
 def family_of(name):
     """LB-6 of LB-6-led-oval, LB-1 of LB-1a-flat-free."""
@@ -56,6 +61,17 @@ class Task:
     @property
     def source(self):
         return self.definition["source"]
+
+    @property
+    def kind(self):
+        """The optic that is entered: a mirror, a trough, a lens of revolution, a free-lens or a horn."""
+        if self.definition.get("target_place") == "free":
+            return "horn"
+        if self.target["kind"] == "angle":
+            return "trough"
+        if self.target["kind"] == "far_field" and self.definition["optics"]["roles"] == ["mirror"]:
+            return "mirror"
+        return "lens" if self.target["function"] == "uniform_disk" and self.source["emitter"] == "disk" else "free-lens"
 
     @property
     def is_round(self):

@@ -95,8 +95,8 @@ def error(excess, standard_error=0.0, floor=0.0):
 
 
 def fake_score(**changed):
-    share = lambda x: {"value": x}
-    s = {"counts": True, "faults": [], "rays": 1000, "seed": 77, "error_48": error(0.0123, 0.0004, 0.0056),
+    share = lambda x: {"value": x, "standard_error": 0.0}
+    s = {"counts": True, "headline": "error_48", "faults": [], "rays": 1000, "seed": 77, "error_48": error(0.0123, 0.0004, 0.0056),
          "nmae": share(0.0789), "efficiency_with_losses": share(0.8111), "efficiency_without_losses": share(0.9222),
          "outside_rectangle": share(0.0333), "run": {"machine": "scoring box"},
          "stated": {"free_parameters": 44, "wall_s": 60.25, "cpu_s": 118.5, "machine": "a box",
@@ -130,6 +130,28 @@ def test_plots_put_marks_where_the_errors_are():
     assert marks["lucerna"] < marks["tree"] < marks["plain"]
     assert marks["lucerna"] == ticks["1"] and marks["plain"] == ticks["10"]
     assert "LB-9-&lt;y&gt;" in svg and svg.count('fill="#ffffff" stroke') == 1
+
+
+def test_the_headline_decides_what_is_best():
+    """Of étendue transfer the light that arrives counts, whatever the error."""
+    more = fake_score(headline="efficiency_with_losses", efficiency_with_losses={"value": 0.9, "standard_error": 0.01},
+                      error_48=error(0.5))
+    less = fake_score(headline="efficiency_with_losses", efficiency_with_losses={"value": 0.7, "standard_error": 0.01})
+    text = tables.table([("LB-2a", "cma-es", more), ("LB-2a", "plain", less)])
+    assert "| **90.00 %** |" in text and text.count("**") == 2
+    svg = tables.plot([("LB-2a", "cma-es", more)], "title")
+    assert "cma-es: 10.00 % +- 1.00 %" in svg
+
+
+def test_horns_are_made_by_the_baselines_and_not_by_lucerna(run, tasks, tmp_path):
+    said = []
+    found = run(time_s=2.0)
+    found.say = said.append
+    assert found.run([read_task(tasks / "LB-2a.json")], ["lucerna", "plain", "cma-es"]) == []
+    assert any("LB-2a: not entered by Lucerna: Lucerna designs for a target in one place" in text for text in said)
+    scores = {method: s for _, method, s in tables.read_scores(tmp_path / "out")}
+    assert set(scores) == {"plain", "cma-es"} and all(s["counts"] for s in scores.values())
+    assert scores["cma-es"]["efficiency_with_losses"]["value"] > 0.3
 
 
 def test_families_have_a_page_each(tmp_path):

@@ -14,6 +14,9 @@ POINT = {"emitter": "disk", "radius_mm": 0.01}
 ROUND = {"kind": "far_field", "axis": "-z", "function": "round_gaussian_beam", "beam_deg": 40}
 OVAL = {"kind": "far_field", "axis": "-z", "function": "gaussian_beam", "beam_x_deg": 60, "beam_y_deg": 35}
 
+GLASS = {"roles": ["interface"], "interface": {"model": "fresnel", "refractive_index": [1.4925, 1.4925],
+                                               "absorption_per_mm": 0.0}}
+
 
 def task_of(folder, source, target, optics=None, limits=None):
     file = folder / "test.json"
@@ -67,18 +70,56 @@ def test_trough_of_a_narrow_strip(scorer, tmp_path):
 
 
 def test_lens_of_a_small_disk(scorer, tmp_path):
-    glass = {"roles": ["interface"], "interface": {"model": "fresnel", "refractive_index": [1.4925, 1.4925],
-                                                   "absorption_per_mm": 0.0}}
     target = {"kind": "plane", "place": placed((0, 0, 1000), z_axis=(0, 0, -1)), "function": "uniform_disk",
               "radius_mm": 1000, "cells": [50, 50]}
     room = [{"kind": "inside_cylinder", "radius_mm": 20, "z_mm": [0.01, 20]}]
-    task = task_of(tmp_path, {"emitter": "disk", "radius_mm": 0.02}, target, glass, room)
+    task = task_of(tmp_path, {"emitter": "disk", "radius_mm": 0.02}, target, GLASS, room)
     found = figures(scorer, task, point_source.round_lens(task, 0, 9.0))
     # Light that was reflected within the lens goes elsewhere: some per cent.
     assert found["error_48"]["excess"] < 0.08
     assert found["absorbed"]["wrong_side"]["value"] < 1e-4
-    wide = task_of(tmp_path, {"emitter": "disk", "radius_mm": 5.0}, target, glass, room)
+    wide = task_of(tmp_path, {"emitter": "disk", "radius_mm": 5.0}, target, GLASS, room)
     assert error(scorer, wide, point_source.round_lens(wide, 0, 9.0)) > 0.2
+
+
+def test_free_lens_of_a_small_square(scorer, tmp_path):
+    """Nearly all of the light of a point comes to the rectangle, evenly but for its blurred edges; a wide source does
+    not do it, and a plain lens has most of its light beside it."""
+    target = {"kind": "plane", "place": placed((0, 0, 1000), z_axis=(0, 0, -1)), "function": "uniform_rectangle",
+              "size_mm": [1200, 800], "cells": [60, 40]}
+    room = [{"kind": "inside_cylinder", "radius_mm": 20, "z_mm": [0.01, 20]}]
+    square = lambda mm: {"emitter": "rectangle", "size_mm": [mm, mm]}
+    task = task_of(tmp_path, square(0.02), target, GLASS, room)
+    found = figures(scorer, task, point_source.free_lens(task, 1, 9.0))
+    assert found["error_12"]["excess"] < 0.25 and found["in_rectangle"]["value"] > 0.8
+    assert found["absorbed"]["wrong_side"]["value"] < 1e-4
+    assert figures(scorer, task, shapes.FreeLens(task, 9.0).surfaces())["in_rectangle"]["value"] < 0.6
+    wide = task_of(tmp_path, square(6.0), target, GLASS, room)
+    light = Entry(wide.file, lambda _: point_source.free_lens(wide, 1, 9.0), scorer).figures([0], RAYS)
+    assert light["in_rectangle"]["value"] < 0.6
+
+
+def test_horn_of_concentrators(scorer, tasks):
+    """At a widening of 2 all light leaves within 30 degrees in both planes of walls; the task's target is wider than
+    that. The walls reflect inside and not outside."""
+    task = read_task(tasks / "LB-2a.json")
+
+    def arrives(walls):
+        found = Entry(task.file, lambda _: walls, scorer, target_place_of=shapes.exit_place).figures([0], RAYS)
+        assert found["counts"], found["faults"]
+        return found["efficiency_without_losses"]["value"]
+
+    made = point_source.compound_parabolic_horn(task, 0, 2.6)
+    good = arrives(made)
+    assert good > 0.77 > arrives(shapes.Horn(task, 3.0).surfaces()) > 0.7
+    for wall in made:
+        wall["flip"] = True
+    assert arrives(made) < 0.5 * good
+    # At the end of a concentrator the walls are as wide as they should be, and level.
+    z, half = point_source._concentrator(0.5, 2.0)
+    assert z[0] == pytest.approx(0.0, abs=1e-12) and half[0] == pytest.approx(0.5)
+    assert half[-1] == pytest.approx(1.0) and half[-1] - half[-2] < 1e-4
+    assert z[-1] == pytest.approx(1.5 / np.tan(np.radians(30.0)))
 
 
 def test_what_does_not_fit_is_no_solution(tmp_path):
