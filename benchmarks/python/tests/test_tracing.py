@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""LB-F1: the mirrors of the scenes, and speeds that do not count the start of a program."""
+import json
+
+import numpy as np
+import pytest
+from lucerna_bench import lucerna_entry, tracing
+
+RAYS = 1 << 20
+
+
+@pytest.fixture
+def scene(tasks):
+    return {s.name: s for s in tracing.scenes(tasks.parent / "forward")}
+
+
+def test_both_descriptions_are_one_mirror(scene):
+    assert set(scene) == {"LB-F1-para", "LB-F1-wavy", "LB-F1-deep"}
+    for s in scene.values():
+        given = json.loads((s.folder / "submission.json").read_text())["surfaces"]
+        made, _ = lucerna_entry.surfaces_of((s.folder / "reflector.toml").read_text(), "mirror")
+        assert given == json.loads(json.dumps(made))
+        assert s.task["optics"]["reflectance"] == 1.0
+
+
+@pytest.mark.parametrize("name", ["LB-F1-para", "LB-F1-wavy", "LB-F1-deep"])
+def test_lucerna_and_the_scorer_see_the_same_light(scene, scorer, lucerna, tmp_path, name):
+    one, two = (tmp_path / x for x in "ab")
+    one.mkdir()
+    two.mkdir()
+    ours = tracing.Scorer(scorer).shares(scene[name], RAYS, 1, 2, one)
+    theirs = tracing.LucernaTrace(lucerna).shares(scene[name], RAYS, 1, 2, two)
+    assert 0.3 < ours.sum() < 1.0 + 1e-9
+    assert abs(tracing.deviation(ours, RAYS, theirs, RAYS)) < tracing.MOST_DEVIATION
+    # The same light turned by 90 degrees is another, where the mirror is not round.
+    turned = ours.reshape(48, 48).T.ravel()
+    assert name != "LB-F1-wavy" or tracing.deviation(turned, RAYS, theirs, RAYS) > 20.0
+
+
+class Pretender:
+    """Takes 0.2 s to start, then does a million rays a second; its light is even but for noise of its seed."""
+
+    def __init__(self, clock, shift=0.0):
+        self.clock, self.shift = clock, shift
+
+    def shares(self, _scene, rays, seed, _threads, _folder):
+        self.clock.now += 0.2 + rays / 1e6
+        p = np.full(100, 0.01)
+        p[:50] += self.shift
+        return np.random.default_rng(seed).multinomial(rays, p / p.sum()) / rays
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    class Clock:
+        now = 0.0
+    monkeypatch.setattr(tracing.time, "monotonic", lambda: Clock.now)
+    return Clock
+
+
+def test_speed_does_not_count_the_start(scene, clock, tmp_path):
+    runs = tracing.Clock(Pretender(clock), scene["LB-F1-para"], 1, tmp_path)
+    # 0.33 s, 0.46 s, 0.72 s: the third is long enough.
+    assert runs.enough(0.5, first=1 << 17) == 1 << 19
+    assert runs.rays_per_s(1 << 19) == pytest.approx(1e6)
+
+
+def test_light_that_is_not_the_judges_does_not_count(scene, clock, tmp_path):
+    entrants = {"judge": Pretender(clock), "good": Pretender(clock), "bad": Pretender(clock, 0.002)}
+    found = tracing.measure(scene["LB-F1-para"], entrants, seconds=0.3, rounds=1, say=lambda _: None)
+    off = {m.entrant: m.deviation for m in found}
+    assert off["judge"] == 0.0 and abs(off["good"]) < 5.0 < off["bad"]
+    page = tracing.write(tmp_path, found, {"threads": 1, "program": "p", "commit": "c", "machine": "m"}).read_text()
+    rows = [line for line in page.splitlines() if line.startswith("| LB-F1-para")]
+    assert len(rows) == 3 and "DOES NOT COUNT" in rows[2] and "DOES NOT COUNT" not in rows[1]
+    assert json.loads((tmp_path / "LB-F1.json").read_text())["speeds"][2]["entrant"] == "bad"
+
+
+def test_deviation_is_normal():
+    """Two hundred pairs of equal sources: mean 0, standard deviation 1, each within five of its own errors."""
+    random = np.random.default_rng(1)
+    p = random.random(2000)
+    p /= p.sum()
+    draw = lambda n: random.multinomial(n, p) / n
+    found = [tracing.deviation(draw(10**6), 10**6, draw(3 * 10**6), 3 * 10**6) for _ in range(200)]
+    assert abs(np.mean(found)) < 5.0 / np.sqrt(200.0) and 0.75 < np.std(found) < 1.25
+
+
+def test_a_folder_without_scenes_is_named(tmp_path):
+    with pytest.raises(ValueError, match=r"found no LB-F1-\*/task.json, expected scenes"):
+        tracing.scenes(tmp_path)
