@@ -89,3 +89,24 @@ def test_deviation_is_normal():
 def test_a_folder_without_scenes_is_named(tmp_path):
     with pytest.raises(ValueError, match=r"found no LB-F1-\*/task.json, expected scenes"):
         tracing.scenes(tmp_path)
+
+
+def test_step_files_of_lucerna_are_the_same_mirror(scene, scorer, tmp_path):
+    """The same rays meet the spline of the JSON and the one that OpenCASCADE reads, box by box."""
+    lucerna = pytest.importorskip("lucerna")
+    wavy = scene["LB-F1-wavy"]
+    given = json.loads((wavy.folder / "submission.json").read_text())
+    lucerna.Reflector.from_toml((wavy.folder / "reflector.toml").read_text()).save(tmp_path / "mirror.step")
+    given["surfaces"] = [{"name": "mirror", "role": "mirror", "step": "mirror.step",
+                          "place": given["surfaces"][0]["place"]}]
+    (tmp_path / "submission.json").write_text(json.dumps(given))
+    (tmp_path / "task.json").write_text(json.dumps(wavy.task))
+    rays = 1 << 17
+    try:
+        step = tracing.Scorer(scorer).shares(tracing.Scene(tmp_path), rays, 1, 2, tmp_path)
+    except ValueError as e:
+        assert "built without OpenCASCADE" in str(e)
+        pytest.skip("the scorer was built without OpenCASCADE")
+    json_shares = tracing.Scorer(scorer).shares(wavy, rays, 1, 2, tmp_path)
+    # A ray at the edge of a box, or at the rim, may go to the other side.
+    assert np.abs(step - json_shares).sum() < 1e-3 < 0.3 < json_shares.sum()

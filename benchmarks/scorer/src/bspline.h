@@ -6,17 +6,13 @@
 #include <vector>
 
 #include "json_node.h"
+#include "patch.h"
 #include "vec.h"
 
 namespace bench {
 
 /// Largest degree of a B-spline.
 inline constexpr int kMaxDegree = 7;
-
-/// Point and first derivatives of a surface.
-struct SurfaceJet {
-  Vec3 point, by_u, by_v;
-};
 
 /// A tensor-product B-spline, rational where it has weights (L. Piegl and W. Tiller, "The NURBS Book",
 /// chapters 2 to 4). Immutable; thread safe.

@@ -17,20 +17,26 @@ std::string beside(const JsonNode& name) {
   return (std::filesystem::path(name.file()).parent_path() / given).string();
 }
 
-std::shared_ptr<const Surface> read_surface(const JsonNode& s) {
+/// One, or the faces of a STEP file.
+std::vector<std::shared_ptr<const Surface>> read_surfaces(const JsonNode& s) {
   const Frame place = s.has("place") ? s.at("place").frame() : Frame();
-  if (s.has("stl") == s.has("bspline")) s.fail("one of the keys stl and bspline");
+  if (s.has("stl") + s.has("bspline") + s.has("step") != 1) s.fail("one of the keys stl, step and bspline");
+  if (s.has("step")) {
+    std::vector<std::shared_ptr<const Surface>> faces;
+    for (auto& face : read_step(beside(s.at("step")), place)) faces.push_back(std::move(face));
+    return faces;
+  }
   if (s.has("stl")) {
     const bool flat = s.at("normals").one_of({"facet", "interpolated"}) == "facet";
     const double crease = s.has("crease_deg") ? s.at("crease_deg").number_in(0.1, 90.0) : 30.0;
-    return read_stl(beside(s.at("stl")), place, flat ? 0.0 : crease);
+    return {read_stl(beside(s.at("stl")), place, flat ? 0.0 : crease)};
   }
   const JsonNode b = s.at("bspline");
   const JsonNode surface = b.json().is_string() ? JsonNode::read(beside(b)) : b;
   surface.only({"format", "version", "degree", "knots_u", "knots_v", "points_mm", "weights", "trim", "note"});
   surface.at("format").one_of({"lucerna-bench-surface"});
   surface.at("version").whole(1, 1);
-  return read_bspline(surface, place);
+  return {read_bspline(surface, place)};
 }
 
 /// Farther coordinates are no optic, and too large for float32 to be of use.
@@ -43,8 +49,9 @@ void check_extent(const Surface& surface, const JsonNode& s) {
   }
 }
 
-Part read_part(const JsonNode& s, const Task& task) {
-  s.only({"name", "role", "stl", "normals", "crease_deg", "bspline", "place", "flip", "refractive_index"});
+std::vector<Part> read_parts(const JsonNode& s, const Task& task) {
+  s.only({"name", "role", "stl", "step", "normals", "crease_deg", "bspline", "place", "flip",
+          "refractive_index"});
   Part part;
   part.name = s.at("name").text();
   const std::string role = s.at("role").one_of(task.optics.roles);
@@ -52,9 +59,13 @@ Part read_part(const JsonNode& s, const Task& task) {
   if (part.role == Role::interface)
     part.refractive_index = s.at("refractive_index").number_in(task.optics.min_index, task.optics.max_index);
   part.flip = s.has("flip") && s.at("flip").boolean();
-  part.surface = read_surface(s);
-  check_extent(*part.surface, s);
-  return part;
+  std::vector<Part> out;
+  for (const auto& surface : read_surfaces(s)) {
+    check_extent(*surface, s);
+    part.surface = surface;
+    out.push_back(part);
+  }
+  return out;
 }
 
 Stated read_stated(const JsonNode& s) {
@@ -79,7 +90,9 @@ Submission::Submission(const std::string& path, const Task& task) : file(path) {
   s.at("task").one_of({task.id});
   name = s.at("name").text();
   author = s.at("author").text();
-  for (const JsonNode& part : s.at("surfaces").items()) parts.push_back(read_part(part, task));
+  for (const JsonNode& surface : s.at("surfaces").items()) {
+    for (Part& part : read_parts(surface, task)) parts.push_back(std::move(part));
+  }
   if (parts.empty()) s.at("surfaces").fail("one surface or more");
   if (parts.size() > 1000) s.at("surfaces").fail("1000 surfaces at most");
   for (const Part& p : parts) {

@@ -55,6 +55,10 @@ double distance(const Surface& surface, const Vec3& from);
 /// meet there within that angle, weighted by their angles at the corner. With 0 facets are flat.
 std::unique_ptr<Surface> read_stl(const std::string& file, const Frame& place, double crease_deg);
 
+/// The faces of a STEP file, read by OpenCASCADE, one by one; they are traced themselves. Normals are those
+/// of the faces: out of a solid. Throws InputError where the scorer was built without OpenCASCADE.
+std::vector<std::unique_ptr<Surface>> read_step(const std::string& file, const Frame& place);
+
 /// A tensor-product B-spline surface (README.md, "Surfaces"): traced itself, by Newton's method from a hit
 /// with triangles of it. Normals along dP/du x dP/dv.
 std::unique_ptr<Surface> read_bspline(const JsonNode& surface, const Frame& place);

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "patch.h"
+
+namespace bench {
+
+namespace {
+
+/// Pieces into which knot intervals are cut, until flat ones are as near as this, or there are so many.
+constexpr double kChordMm = 1e-3;
+constexpr std::size_t kMinSteps = 128;
+/// Newton's method ends at this distance between ray and surface.
+constexpr double kExactMm = 1e-10;
+
+class PatchSurface final : public Surface {
+ public:
+  PatchSurface(std::unique_ptr<const Patch> patch, const Frame& place)
+      : patch_(std::move(patch)), place_(place) {
+    cut();
+    for (const Vec3& p : mesh_.corners) size_ = std::max(size_, length(p - mesh_.corners[0]));
+  }
+
+  const Triangles& triangles() const override { return mesh_; }
+  bool whole(const std::array<std::uint32_t, 3>& t) const override {
+    return kept(u_[t[0]], v_[t[0]]) && kept(u_[t[1]], v_[t[1]]) && kept(u_[t[2]], v_[t[2]]);
+  }
+  std::vector<Vec3> extent() const override {
+    if (!patch_->trimmed()) return mesh_.corners;
+    std::vector<Vec3> out;
+    for (std::size_t k = 0; k < mesh_.corners.size(); ++k) {
+      if (kept(u_[k], v_[k])) out.push_back(mesh_.corners[k]);
+    }
+    for (const auto& t : mesh_.triangles) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t a = t[i], b = t[(i + 1) % 3];
+        if (kept(u_[a], v_[a]) && !kept(u_[b], v_[b])) out.push_back(rim(a, b));
+      }
+    }
+    return out;
+  }
+
+  bool refine(const Vec3& origin, const Vec3& direction, const FlatHit& flat, Hit& hit) const override {
+    const auto& c = mesh_.triangles[flat.triangle];
+    const double b0 = 1.0 - flat.b1 - flat.b2;
+    double u = b0 * u_[c[0]] + flat.b1 * u_[c[1]] + flat.b2 * u_[c[2]];
+    double v = b0 * v_[c[0]] + flat.b1 * v_[c[1]] + flat.b2 * v_[c[2]];
+    double t = flat.t;
+    const Vec3 o = place_.local_point(origin), d = place_.local_vector(direction);
+    SurfaceJet jet;
+    for (int step = 0;; ++step) {
+      jet = patch_->jet(u, v);
+      const Vec3 off = jet.point - o - t * d;
+      if (length(off) < kExactMm) break;
+      const Vec3 n = cross(jet.by_u, jet.by_v);
+      const double across = dot(n, d);
+      if (step == 12 || across == 0.0) return false;
+      // off + du Pu + dv Pv = dt d, solved by triple products.
+      const double dt = dot(off, n) / across;
+      const Vec3 rest = dt * d - off;
+      const double nn = dot(n, n);
+      u += dot(cross(rest, jet.by_v), n) / nn;
+      v += dot(cross(jet.by_u, rest), n) / nn;
+      t += dt;
+    }
+    if (std::abs(t - flat.t) > 0.01 * size_ || !patch_->keeps(u, v, jet.point)) return false;
+    hit.t = t;
+    hit.normal = hit.geometric = place_.vector(patch_->side() * unit(cross(jet.by_u, jet.by_v)));
+    return true;
+  }
+
+ private:
+  Vec3 point(double u, double v) const { return patch_->jet(u, v).point; }
+  bool kept(double u, double v) const { return patch_->keeps(u, v, point(u, v)); }
+  /// Where the rim crosses the edge from a corner that is kept to one that is not.
+  Vec3 rim(std::uint32_t kept_corner, std::uint32_t other) const {
+    double in = 0.0, out = 1.0;
+    const auto at = [&](double x) {
+      return std::array{(1.0 - x) * u_[kept_corner] + x * u_[other],
+                        (1.0 - x) * v_[kept_corner] + x * v_[other]};
+    };
+    for (int step = 0; step < 40; ++step) {
+      const double x = 0.5 * (in + out);
+      (kept(at(x)[0], at(x)[1]) ? in : out) = x;
+    }
+    return place_.point(point(at(in)[0], at(in)[1]));
+  }
+  std::vector<double> grid(std::size_t axis, std::size_t pieces) const {
+    const auto ends = patch_->breaks(axis);
+    std::vector<double> out{ends.front()};
+    for (std::size_t k = 1; k < ends.size(); ++k) {
+      for (std::size_t i = 1; i <= pieces; ++i)
+        out.push_back(ends[k - 1] +
+                      (ends[k] - ends[k - 1]) * static_cast<double>(i) / static_cast<double>(pieces));
+    }
+    out.back() = ends.back();
+    return out;
+  }
+  /// Largest distance of the middle of an edge along an axis from the surface.
+  double chord(const std::vector<double>& along, const std::vector<double>& across, std::size_t axis) const {
+    double worst = 0.0;
+    for (std::size_t k = 1; k < along.size(); ++k) {
+      for (const double w : across) {
+        const auto at = [&](double x) { return axis == 0 ? point(x, w) : point(w, x); };
+        const Vec3 flat = 0.5 * (at(along[k - 1]) + at(along[k]));
+        worst = std::max(worst, length(at(0.5 * (along[k - 1] + along[k])) - flat));
+      }
+    }
+    return worst;
+  }
+  void cut() {
+    std::array<std::size_t, 2> pieces{1, 1};
+    std::array<std::vector<double>, 2> at{grid(0, 1), grid(1, 1)};
+    const auto coarse = [&](std::size_t axis) {
+      // Trimmed surfaces have steps that their rims can be found between.
+      if (patch_->trimmed() && at[axis].size() < kMinSteps) return true;
+      return !patch_->straight(axis) && chord(at[axis], grid(1 - axis, 2), axis) > kChordMm;
+    };
+    std::array<bool, 2> cut_more{true, true};
+    while (2 * at[0].size() * at[1].size() <= kMaxQuads) {
+      for (std::size_t axis = 0; axis < 2; ++axis) cut_more[axis] = cut_more[axis] && coarse(axis);
+      if (!cut_more[0] && !cut_more[1]) break;
+      // Where there is room for one of both, the one with fewer pieces: long thin triangles are poor guesses.
+      const bool both = cut_more[0] && cut_more[1];
+      const std::size_t axis = both ? (at[0].size() <= at[1].size() ? 0 : 1) : cut_more[0] ? 0 : 1;
+      at[axis] = grid(axis, pieces[axis] *= 2);
+    }
+    for (const double u : at[0]) {
+      for (const double v : at[1]) {
+        u_.push_back(u);
+        v_.push_back(v);
+        mesh_.corners.push_back(place_.point(point(u, v)));
+      }
+    }
+    const auto row = static_cast<std::uint32_t>(at[1].size());
+    for (std::uint32_t i = 0; i + 1 < at[0].size(); ++i) {
+      for (std::uint32_t j = 0; j + 1 < row; ++j) {
+        const std::uint32_t k = i * row + j;
+        mesh_.triangles.push_back({k, k + row, k + row + 1});
+        mesh_.triangles.push_back({k, k + row + 1, k + 1});
+      }
+    }
+  }
+
+  std::unique_ptr<const Patch> patch_;
+  Frame place_;
+  double size_ = 0.0;
+  Triangles mesh_;
+  std::vector<double> u_, v_;
+};
+
+}  // namespace
+
+std::unique_ptr<Surface> surface_of(std::unique_ptr<const Patch> patch, const Frame& place) {
+  return std::make_unique<PatchSurface>(std::move(patch), place);
+}
+
+}  // namespace bench
