@@ -81,6 +81,9 @@ def sampling_error(target, table, points=8):
 
 def sampled(target, is_round, goal=5e-4):
     """The coarsest of a row of tables that is as near to the target as `goal`, else the finest; and its error."""
+    if target["function"] == "table":
+        table = Table(target, target["c_step_deg"], target["gamma_step_deg"])
+        return table, sampling_error(target, table)
     steps = [(0.0, 0.1)] if is_round else [(2.0, 1.0), (2.0, 0.5), (1.0, 0.5), (1.0, 0.25), (0.5, 0.25)]
     for c_step_deg, gamma_step_deg in steps:
         table = Table(target, c_step_deg, gamma_step_deg)

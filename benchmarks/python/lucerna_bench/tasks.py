@@ -141,6 +141,19 @@ def _batwing(t, _a, _b, gamma, _v):
     return np.where(gamma < 89.0, light, 0.0)
 
 
+def _table(t, a, b, gamma, _v):
+    """Bilinear between nodes, 0 beyond the last gamma. C0 is along u, C270 along v."""
+    rows = np.asarray(t["rows"], float)
+    rows = np.vstack([rows, rows[:1]])
+    c = np.degrees(np.arctan2(-np.tan(np.radians(b)), np.tan(np.radians(a)))) % 360.0 / t["c_step_deg"]
+    g = gamma / t["gamma_step_deg"]
+    i, j = np.minimum(c.astype(int), len(rows) - 2), np.minimum(g.astype(int), rows.shape[1] - 2)
+    s, k = c - i, g - j
+    light = ((1.0 - s) * ((1.0 - k) * rows[i, j] + k * rows[i, j + 1])
+             + s * ((1.0 - k) * rows[i + 1, j] + k * rows[i + 1, j + 1]))
+    return np.where(g <= rows.shape[1] - 1, light, 0.0)
+
+
 _INTENSITY = {
     "cosine_power": _cosine_power,
     "round_gaussian_beam": lambda t, a, b, gamma, v: np.exp2(-((2.0 * gamma / t["beam_deg"]) ** 2)),
@@ -148,6 +161,7 @@ _INTENSITY = {
                                                          + (2.0 * b / t["beam_y_deg"]) ** 2)),
     "wall_washer": _wall_washer,
     "batwing": _batwing,
+    "table": _table,
 }
 
 

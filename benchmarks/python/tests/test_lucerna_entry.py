@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Entries of Lucerna: projects of tasks, and the surfaces of what it designs."""
 import json
+import re
 import subprocess
 import tomllib
 
 import numpy as np
 import pytest
-from lucerna_bench import Stated, lucerna_entry, photometry, placed, score, write_submission
+from lucerna_bench import Entry, Stated, lucerna_entry, photometry, placed, score, write_submission
+from lucerna_bench.shapes import Mirror
 from lucerna_bench.surfaces import heights_at, revolved, spline_through
 from lucerna_bench.tasks import intensity, read_task
 
@@ -205,6 +207,33 @@ def test_tables_are_the_targets(tasks, name, goal):
     u, v = np.array([0.03, 0.3, -0.3, 0.1]), np.array([0.01, -0.2, 0.1, 0.4])
     wanted = intensity(task.target, u, v)
     assert np.allclose(table.at(u, v) / table.at(u, v)[0], wanted / wanted[0], atol=2e-3)
+
+
+def test_tables_of_hidden_mirrors_are_handed_on(tasks):
+    task = read_task(tasks / "LB-6-hidden-49.json")
+    table, error = photometry.sampled(task.target, task.is_round)
+    assert error < 1e-9
+    rows = np.asarray(task.target["rows"])
+    assert np.allclose(table.cd[:-1, :rows.shape[1]], 1000.0 * rows / rows.max(), atol=1e-6)
+    assert not table.cd[:, rows.shape[1]:].any()
+
+
+@pytest.mark.parametrize("count", [10, 49, 400])
+def test_hidden_mirrors_score_what_is_said(scorer, tasks, count):
+    """Within five errors of a run of this length; another mirror is far from it."""
+    name = f"LB-6-hidden-{count}"
+    task = read_task(tasks / f"{name}.json")
+    hidden = tasks.parent / "hidden" / name / "submission.json"
+    found = score(scorer, task.file, hidden, 1 << 20)
+    assert found["counts"], found["faults"]
+    said = re.fullmatch(r"the hidden mirror itself: error ([\d.]+) \+- ([\d.]+) %, ([\d.]+) % of the light in the rectangle",
+                        task.definition["reference"][0]["text"])
+    error, spread, light = (float(x) / 100.0 for x in said.groups())
+    assert abs(found["error_48"]["excess"] - error) < 5.0 * np.hypot(spread, found["error_48"]["standard_error"])
+    assert found["in_rectangle"]["value"] == pytest.approx(light, abs=2e-3)
+    assert error < 0.012
+    plain = Entry(task.file, lambda _: Mirror(task, 9.0).surfaces(), scorer).figures([0], 1 << 18)
+    assert plain["error_48"]["excess"] > 0.1
 
 
 def test_projects_are_read(lucerna, tasks, tmp_path):

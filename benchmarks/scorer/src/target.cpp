@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "intensity_table.h"
+
 namespace bench {
 
 namespace {
@@ -94,10 +96,10 @@ Target::Target(const JsonNode& t, const Frame* place) {
 
 void Target::read_function(const JsonNode& t) {
   t.only({"kind", "axis", "function", "beam_x_deg", "beam_y_deg", "beam_deg", "edge_deg", "soft", "power",
-          "note"});
-  const std::string name =
-      t.at("function")
-          .one_of({"cosine_power", "gaussian_beam", "round_gaussian_beam", "batwing", "wall_washer"});
+          "c_step_deg", "gamma_step_deg", "rows", "note"});
+  const std::string name = t.at("function")
+                               .one_of({"cosine_power", "gaussian_beam", "round_gaussian_beam", "batwing",
+                                        "wall_washer", "table"});
   const auto degrees = [&](const char* key) { return t.at(key).number_in(0.01, 180.0); };
   if (name == "cosine_power") {
     const double power = t.at("power").number_in(0.0, 1000.0), edge = t.at("edge_deg").number_in(0.01, 90.0);
@@ -122,6 +124,8 @@ void Target::read_function(const JsonNode& t) {
   } else if (name == "batwing") {
     const double edge = degrees("edge_deg"), soft = t.at("soft").positive();
     density_ = [=](double u, double v) { return batwing(u, v, edge, soft); };
+  } else if (name == "table") {
+    density_ = [table = IntensityTable(t)](double u, double v) { return table.at(u, v); };
   } else {
     density_ = wall_washer;
   }

@@ -6,10 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "intensity_table.h"
 #include "support.h"
 
 namespace bench::test {
 namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
 
 JsonNode node(const Json& json) { return {"task.json", json}; }
 
@@ -28,6 +31,65 @@ TEST(Target, PlaneHasItsRectangleAndCells) {
   EXPECT_NEAR(t.cell_target()[0], 100.0, 1e-6);
   // The window less 5 %: half sides 95 and 47.5 mm, cells of 10 mm: 18 x 8 are wholly inside.
   EXPECT_EQ(std::count(t.cell_steady().begin(), t.cell_steady().end(), 1), 18 * 8);
+}
+
+TEST(Target, TablesAreBilinearBetweenTheirNodes) {
+  Json table{{"kind", "far_field"},
+             {"axis", "-z"},
+             {"function", "table"},
+             {"c_step_deg", 90},
+             {"gamma_step_deg", 20}};
+  // C0 to C270, gamma 0, 20, 40.
+  table["rows"] = std::vector<std::vector<double>>{{1, 4, 0}, {1, 2, 0}, {1, 1, 0}, {1, 0, 0}};
+  const IntensityTable t(node(table));
+  const auto at = [&](double c, double gamma) {
+    const double s = std::sin(gamma * kDegree);
+    return t.at(s * std::cos(c * kDegree), -s * std::sin(c * kDegree));
+  };
+  EXPECT_NEAR(at(0, 20), 4.0, 1e-9);
+  EXPECT_NEAR(at(90, 20), 2.0, 1e-9);
+  EXPECT_NEAR(at(270, 20), 0.0, 1e-9);
+  EXPECT_NEAR(at(45, 20), 3.0, 1e-9);
+  EXPECT_NEAR(at(315, 10), 0.5 * (1.0 + 2.0), 1e-9);
+  EXPECT_NEAR(at(180, 30), 0.5, 1e-9);
+  EXPECT_EQ(at(10, 41), 0.0);
+  // A fine table of a beam is the beam.
+  const Json beam{
+      {"kind", "far_field"}, {"axis", "-z"}, {"function", "round_gaussian_beam"}, {"beam_deg", 30}};
+  Json fine{{"kind", "far_field"},
+            {"axis", "-z"},
+            {"function", "table"},
+            {"c_step_deg", 60},
+            {"gamma_step_deg", 0.25}};
+  std::vector<double> row;
+  for (int k = 0; k <= 360; ++k) row.push_back(std::exp2(-std::pow(2.0 * 0.25 * k / 30.0, 2)));
+  fine["rows"] = std::vector<std::vector<double>>(6, row);
+  const Target a(node(beam)), b(node(fine));
+  double off = 0.0, sum = 0.0;
+  for (std::size_t k = 0; k < a.box_target().size(); ++k) {
+    off += std::abs(a.box_target()[k] - b.box_target()[k]);
+    sum += a.box_target()[k];
+  }
+  EXPECT_LT(off, 2e-4 * sum);
+}
+
+TEST(Target, BrokenTablesAreRefused) {
+  const auto message = [](const Json& rows, double step) {
+    Json t{{"kind", "far_field"},
+           {"axis", "-z"},
+           {"function", "table"},
+           {"c_step_deg", 180},
+           {"gamma_step_deg", step}};
+    t["rows"] = rows;
+    return refusal([&] { const Target target(node(t)); });
+  };
+  using Rows = std::vector<std::vector<double>>;
+  EXPECT_NE(message(Rows{{1, 2}, {1, 2, 3}}, 10).find("/rows/1: found 3 values"), std::string::npos);
+  EXPECT_NE(message(Rows{{1, 2}}, 10).find("/rows: found 1 rows, expected 360 / c_step_deg"),
+            std::string::npos);
+  EXPECT_NE(message(Rows{{1, -2}, {1, 2}}, 10).find("found an intensity < 0"), std::string::npos);
+  EXPECT_NE(message(Rows{{1, 2, 0}, {1, 2, 0}}, 60).find("beyond 90 degrees"), std::string::npos);
+  EXPECT_NE(message(Rows{{0, 0}, {0, 0}}, 10).find("expected a target with light"), std::string::npos);
 }
 
 TEST(Target, LightLandsOnThePlane) {
