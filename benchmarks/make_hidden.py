@@ -29,12 +29,12 @@ C_STEP_DEG, GAMMA_STEP_DEG = 2.0, 0.25
 def mirror(count, seed):
     """A reflector table with so many free numbers: 10 of a profile, else those of a spline over a paraboloid."""
     random = np.random.default_rng(seed)
-    head = (f'diameter_mm = {DIAMETER_MM}\nposition_mm = [0, 0, {FOCAL_MM}]\naxis = "-z"\nreflectance = 0.92\n')
+    place = f'position_mm = [0, 0, {FOCAL_MM}]\naxis = "-z"\nreflectance = 0.92\n'
     if count == 10:
         r = np.linspace(0.0, 0.5 * DIAMETER_MM, count + 1)
         z = r * r / (4.0 * FOCAL_MM) + np.cumsum(random.normal(scale=0.25, size=count + 1))
         profile = np.round(np.stack([r, z - z[0]], axis=-1), 4).tolist()
-        return f'[[reflector]]\nfamily = "revolution"\nprofile_mm = {profile}\n{head.split(chr(10), 1)[1]}'
+        return f'[[reflector]]\nfamily = "revolution"\nprofile_mm = {profile}\n{place}'
     side = int(round(count**0.5))
     # Where the splines have their middles, in half diameters: some lie beyond the rim.
     x = 2.0 * (np.arange(side) - 1.0) / (side - 3) - 1.0
@@ -42,7 +42,7 @@ def mirror(count, seed):
     waves = random.normal(scale=0.35 * 7.0 / side, size=(side, side))
     c = np.round(waves - 3.0 * x**2 - 8.0 * x[:, None] ** 2, 4)
     return (f'[[reflector]]\nfamily = "bspline"\nfocal_mm = {FOCAL_MM}\nintervals = [{side - 3}, {side - 3}]\n'
-            f"coefficients_mm = {c.ravel().tolist()}\n{head}")
+            f"coefficients_mm = {c.ravel().tolist()}\ndiameter_mm = {DIAMETER_MM}\n{place}")
 
 
 def table_of(lucerna, text, rays, folder):

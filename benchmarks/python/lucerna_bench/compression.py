@@ -5,7 +5,6 @@ import dataclasses
 import json
 import math
 import pathlib
-import subprocess
 import tempfile
 import time
 
@@ -13,6 +12,7 @@ import numpy as np
 
 from .entry import write_whole
 from .light_field import LightField
+from .programs import run
 from .rays import Rays, read_tm25
 from .views import NAMES, Views, compare
 
@@ -52,16 +52,6 @@ def read_compression(file):
         raise ValueError(f"{file}: /format: found another format, expected {FORMAT}")
     return Compression([Source(s["name"], s["kind"], tuple(s["options"])) for s in d["sources"]], d["sizes_bytes"],
                        d["train_rays"], d["train_seed"])
-
-
-def run(command):
-    """Runs a program; ValueError with its words where it fails."""
-    try:
-        done = subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False)
-    except OSError as e:
-        raise ValueError(f"{command[0]}: file: found {e.strerror}, expected a program") from None
-    if done.returncode != 0:
-        raise ValueError(f"{' '.join(map(str, command))}: found exit {done.returncode}, expected 0: {done.stderr.strip()}")
 
 
 @dataclasses.dataclass(frozen=True)

@@ -13,8 +13,8 @@ import time
 
 import numpy as np
 
-from .compression import run
 from .entry import write_whole
+from .programs import run
 
 BOXES = 48
 # Chi^2 is nearly normal with so many boxes: once in three million by chance.

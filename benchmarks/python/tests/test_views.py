@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from lucerna_bench import compression, views
 from lucerna_bench.light_field import LightField
+from lucerna_bench.programs import run
 from lucerna_bench.rays import Rays, read_tm25
 from lucerna_bench.views import NAMES, Views, compare
 
@@ -112,7 +113,7 @@ def test_the_task_is_read_and_damage_is_named(tasks, tmp_path):
 
 def test_files_that_are_cut_are_refused(lucerna, tmp_path):
     file = tmp_path / "disk.tm25ray"
-    compression.run([lucerna, "make-source", "disk", "-n", "1000", "-o", file, "--quiet"])
+    run([lucerna, "make-source", "disk", "-n", "1000", "-o", file, "--quiet"])
     rays = read_tm25(file)
     assert len(rays) == 1000 and np.allclose(np.linalg.norm(rays.direction, axis=1), 1.0, atol=1e-6)
     whole = file.read_bytes()
