@@ -73,7 +73,7 @@ class LucernaTrace:
         side_mm = 0.995 * scene.task["target"]["size_mm"][0]
         (folder / "p.toml").write_text(self.project(scene, side_mm))
         run([self.program, "trace", folder / "p.toml", "-o", folder / "out", "--rays", str(rays), "--seed", str(seed),
-             "--threads", str(threads), "--sequence", "random", "--quiet"])
+             "--threads", str(threads), "--sequence", "random", "--quiet", "--force"])
         return column(folder / "out" / "boxes.csv", "illuminance_lx") * 1e-9 * (side_mm / BOXES) ** 2
 
     @staticmethod

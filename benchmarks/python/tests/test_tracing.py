@@ -29,6 +29,8 @@ def test_lucerna_and_the_scorer_see_the_same_light(scene, scorer, lucerna, tmp_p
     one.mkdir()
     two.mkdir()
     ours = tracing.Scorer(scorer).shares(scene[name], RAYS, 1, 2, one)
+    # Rounds are traced in the same folder.
+    tracing.LucernaTrace(lucerna).shares(scene[name], 1000, 1, 2, two)
     theirs = tracing.LucernaTrace(lucerna).shares(scene[name], RAYS, 1, 2, two)
     assert 0.3 < ours.sum() < 1.0 + 1e-9
     assert abs(tracing.deviation(ours, RAYS, theirs, RAYS)) < tracing.MOST_DEVIATION
