@@ -129,12 +129,16 @@ def test_files_that_are_cut_are_refused(lucerna, tmp_path):
 def test_models_are_measured_at_their_sizes(lucerna, tmp_path):
     task = compression.Compression([compression.Source("disk", "disk", ("--radius-mm", "1"))], [4000, 60000], 50_000, 1)
     found = compression.measure(task, task.sources[0], compression.methods(lucerna), lucerna, 100_000, 77, say=lambda _: None)
-    assert [(m.method, m.max_bytes) for m in found] == [
-        (name, size) for name in ("lucerna", "thesis", "light-field", "picked-rays") for size in (4000, 60000)]
+    # A model that more bytes leave as it is appears once.
+    assert list(dict.fromkeys(m.method for m in found)) == ["lucerna", "thesis", "light-field", "picked-rays"]
+    assert len({(m.method, m.size_bytes) for m in found}) == len(found)
     assert all(0 < m.size_bytes <= m.max_bytes for m in found)
-    worst = {(m.method, m.max_bytes): m.views[m.worst].excess for m in found}
+    worst = {m.method: {} for m in found}
+    for m in found:
+        worst[m.method][m.max_bytes] = m.views[m.worst].excess
     # Few rays have much noise; a model of an exact disk has little.
-    assert worst["picked-rays", 4000] > worst["picked-rays", 60000] > 2.0 * worst["lucerna", 60000]
+    picked = worst["picked-rays"]
+    assert picked[4000] > picked[60000] > 2.0 * max(worst["lucerna"].values())
     page = compression.write(tmp_path, found, {"train_rays": 50_000, "test_rays": 100_000, "seed": 77, "program": "p",
                                                "commit": "c", "machine": "m"})
     assert page.read_text().count("| disk |") == len(found)
