@@ -5,12 +5,12 @@
     python3 benchmarks/make_hidden.py --lucerna build/release/lucerna --scorer benchmarks/build/lucerna-bench-score
 
 Writes tasks/LB-6-hidden-N.json and hidden/LB-6-hidden-N/submission.json, the mirror. A task that was published does not
-change: this is run once a task, and is here to be read."""
+change: this is run once a task, and is here to be read. Those that are there were made with --rays 50000000
+--score-rays 6000000, commit 7688f36."""
 import argparse
 import csv
 import json
 import pathlib
-import subprocess
 import sys
 import tempfile
 
@@ -20,6 +20,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE / "python"))
 from lucerna_bench import Stated, lucerna_entry, score, write_submission  # noqa: E402
 from lucerna_bench.entry import write_whole  # noqa: E402
+from lucerna_bench.programs import run  # noqa: E402
 from lucerna_bench.tasks import read_task  # noqa: E402
 
 FOCAL_MM, DIAMETER_MM = 9.0, 60.0
@@ -48,10 +49,10 @@ def mirror(count, seed):
 def table_of(lucerna, text, rays, folder):
     """Intensities relative to the largest one, by C and gamma up to where they end."""
     folder = pathlib.Path(folder)
-    (folder / "p.toml").write_text('[[source]]\nkind = "led"\nsurface = "none"\nflux_lm = 1000\naxis = "+z"\n' + text
+    (folder / "p.toml").write_text(lucerna_entry.sources({"emitter": "led"}, "LB-6") + text
                                    + f'[[detector]]\nkind = "far-field"\nc_step_deg = {C_STEP_DEG}\n'
                                      f"gamma_step_deg = {GAMMA_STEP_DEG}\n")
-    subprocess.run([lucerna, "trace", folder / "p.toml", "-o", folder / "out", "--rays", str(rays), "--quiet"], check=True)
+    run([lucerna, "trace", folder / "p.toml", "-o", folder / "out", "--rays", str(rays), "--quiet"])
     with open(folder / "out" / "far-field.csv", encoding="ascii") as file:
         rows = [(float(r["c_deg"]), float(r["gamma_deg"]), float(r["intensity_cd"])) for r in csv.DictReader(file)]
     planes, nodes = round(360.0 / C_STEP_DEG), round(90.0 / GAMMA_STEP_DEG) + 1

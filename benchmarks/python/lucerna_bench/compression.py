@@ -11,7 +11,7 @@ import time
 import numpy as np
 
 from .entry import write_whole
-from .light_field import LightField
+from .light_field import HEADER_BYTES, LightField
 from .programs import run
 from .rays import Rays, read_tm25
 from .views import NAMES, Views, compare
@@ -101,7 +101,7 @@ class PickedRays:
 
 class UniformLightField:
     def compress(self, file, max_bytes, _folder):
-        field = LightField(read_tm25(file), max(2, math.floor((max_bytes - 64) ** 0.25)))
+        field = LightField(read_tm25(file), max(2, math.floor((max_bytes - HEADER_BYTES) ** 0.25)))
         return Model(field.size_bytes, field.sample)
 
 
@@ -135,6 +135,8 @@ def measure(task, source, entrants, lucerna, test_rays, seed, say=print):
         trained = source.rays(lucerna, file, task.train_rays, task.train_seed)
         reference = source.rays(lucerna, folder / "test.tm25ray", test_rays, seed)
         views = Views(reference)
+        # Every model is compared with these.
+        fresh, used = views.shares(reference), views.shares(trained)
         for name, method in entrants.items():
             for max_bytes in task.sizes_bytes:
                 begun = time.monotonic()
@@ -149,7 +151,7 @@ def measure(task, source, entrants, lucerna, test_rays, seed, say=print):
                 drawn = model.sample(test_rays, seed + 1)
                 speed = test_rays / (time.monotonic() - begun)
                 found.append(Measured(source.name, name, max_bytes, model.size_bytes, made, speed,
-                                      compare(reference, drawn, trained, views)))
+                                      compare(fresh, views.shares(drawn), used)))
                 worst = found[-1].views[found[-1].worst]
                 say(f"{source.name}: {name}: {model.size_bytes} bytes, worst {found[-1].worst} {worst.excess:.4f} +- "
                     f"{worst.standard_error:.4f} (raw {worst.raw:.4f})")

@@ -7,6 +7,8 @@ from .rays import Rays
 
 # A byte is a step of 4.4 % on a logarithmic scale; 0 is dark.
 STEP = 1.044
+# Of a file: eight numbers.
+HEADER_BYTES = 64
 
 
 def _sphere_from(across, around):
@@ -48,8 +50,7 @@ class LightField:
 
     @property
     def size_bytes(self):
-        """Of a file: the table, and eight numbers."""
-        return self.table.nbytes + 64
+        return self.table.nbytes + HEADER_BYTES
 
     def sample(self, count, seed):
         random = np.random.default_rng(seed)

@@ -30,20 +30,19 @@ def project(task: Task, folder):
     kind = task.kind
     if kind in ("lens", "free-lens"):
         off = 0.0
-        text = _sources(task) + _lens(task) + _plane_target(task, folder) + _lens_design(task, kind)
+        text = sources(task.source, task.file) + _lens(task) + _plane_target(task, folder) + _lens_design(task, kind)
     else:
         table, off = photometry.sampled(task.target, task.is_round)
         (folder / "target.ies").write_text(table.ies(task.name), newline="")
-        text = (_sources(task) + _reflector(task, kind) + '[target]\nfile = "target.ies"\n[design]\n'
+        text = (sources(task.source, task.file) + _reflector(task, kind) + '[target]\nfile = "target.ies"\n[design]\n'
                 + _keep_out(task, kind))
     (folder / "project.toml").write_text(text)
     return off
 
 
-def _sources(task):
-    """The task's emitter by Lucerna's of the same definition. A strip is two-dimensional: a Lambertian rectangle in a
+def sources(s, file):
+    """An emitter of a task file by Lucerna's of the same definition. A strip is two-dimensional: a Lambertian rectangle in a
     long trough sends the same light over the angles across it (see `tasks.intensity`)."""
-    s = task.source
     lines = {"led": 'kind = "led"\n', "disk": f'kind = "disk"\nradius_mm = {s.get("radius_mm")}\n',
              "filament": f'kind = "filament"\nradius_mm = {s.get("radius_mm")}\nlength_mm = {s.get("length_mm")}\n'
                          f'ghost_share = {s.get("ghost_share")}\n',
@@ -51,7 +50,7 @@ def _sources(task):
     if s["emitter"] in lines:
         return f'[[source]]\n{lines[s["emitter"]]}surface = "none"\nflux_lm = 1000\naxis = "+z"\n'
     if s["emitter"] != "strip":
-        raise ValueError(f"{task.file}: /source/emitter: found {s['emitter']}, expected {', '.join(lines)} or strip")
+        raise ValueError(f"{file}: /source/emitter: found {s['emitter']}, expected {', '.join(lines)} or strip")
     half, ratio = s["half_width_mm"], s["right_to_left_luminance"]
     halves = [(-0.5 * half, 1000.0 / (1.0 + ratio)), (0.5 * half, 1000.0 * ratio / (1.0 + ratio))]
     return "".join(f'[[source]]\nkind = "rectangle"\nsize_mm = [{half}, 1]\nflux_lm = {flux}\n'

@@ -24,11 +24,7 @@ class Mirror:
         bowl = height_field(lambda x, y: (x * x + y * y) / (4.0 * self.focal_mm), half, half,
                             intervals=(self.intervals, self.intervals),
                             trim={"kind": "circle", "diameter_mm": 2 * half})
-        if heights_mm is not None:
-            points = np.asarray(bowl["points_mm"])
-            points[:, :, 2] += np.reshape(heights_mm, points.shape[:2])
-            bowl["points_mm"] = points.tolist()
-        return [mirror(bowl, self.focal_mm)]
+        return [mirror(_raised(bowl, heights_mm), self.focal_mm)]
 
 
 class Trough:
@@ -41,11 +37,16 @@ class Trough:
 
     def surfaces(self, heights_mm=None):
         sheet = extruded_profile(lambda x: x * x / (4.0 * self.focal_mm), self.room.half_mm, intervals=self.intervals)
-        if heights_mm is not None:
-            points = np.asarray(sheet["points_mm"])
-            points[:, :, 2] += np.reshape(heights_mm, (-1, 1))
-            sheet["points_mm"] = points.tolist()
-        return [mirror(sheet, self.focal_mm)]
+        return [mirror(_raised(sheet, heights_mm), self.focal_mm)]
+
+
+def _raised(sheet, heights_mm):
+    """A height field with these added to its coefficients, by rows along u; a trough has one a row. None adds none."""
+    if heights_mm is None:
+        return sheet
+    points = np.asarray(sheet["points_mm"])
+    points[:, :, 2] += np.reshape(heights_mm, (len(points), -1))
+    return {**sheet, "points_mm": points.tolist()}
 
 
 def mirror(sheet, vertex_mm):
@@ -90,11 +91,7 @@ class FreeLens:
         bottom = self.room.low_mm + MARGIN_MM
         face = height_field(lambda x, y: bottom + self.wall_mm + cap_height(rim, self.cap_mm, np.hypot(x, y)), rim, rim,
                             intervals=(self.intervals, self.intervals), trim={"kind": "circle", "diameter_mm": 2 * rim})
-        if heights_mm is not None:
-            points = np.asarray(face["points_mm"])
-            points[:, :, 2] += np.reshape(heights_mm, points.shape[:2])
-            face["points_mm"] = points.tolist()
-        return free_lens_surfaces(face, rim, bottom)
+        return free_lens_surfaces(_raised(face, heights_mm), rim, bottom)
 
 
 class Horn:

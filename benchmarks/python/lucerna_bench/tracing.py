@@ -14,6 +14,7 @@ import time
 import numpy as np
 
 from .entry import write_whole
+from .lucerna_entry import sources
 from .programs import run
 
 BOXES = 48
@@ -79,7 +80,7 @@ class LucernaTrace:
     @staticmethod
     def project(scene, side_mm):
         z_mm = scene.task["target"]["place"]["origin_mm"][2]
-        return ('[[source]]\nkind = "led"\nsurface = "none"\nflux_lm = 1000\naxis = "+z"\n'
+        return (sources(scene.task["source"], scene.folder / "task.json")
                 + (scene.folder / "reflector.toml").read_text()
                 + f'[[detector]]\nname = "boxes"\nkind = "plane"\nposition_mm = [0, 0, {z_mm}]\nnormal = "+z"\n'
                   f"size_mm = [{side_mm}, {side_mm}]\ncells = [{BOXES}, {BOXES}]\n")
@@ -100,8 +101,9 @@ class Speed:
 
 def deviation(a, rays_a, b, rays_b):
     """Chi^2 of the shares of two independent sets of equal rays, less its mean, in its standard deviations."""
-    variance = (a * rays_a + b * rays_b) / (rays_a + rays_b) * (1.0 / rays_a + 1.0 / rays_b)
-    there = variance * rays_a * rays_b / (rays_a + rays_b) * min(rays_a, rays_b) > 10.0
+    pooled = (a * rays_a + b * rays_b) / (rays_a + rays_b)
+    variance = pooled * (1.0 / rays_a + 1.0 / rays_b)
+    there = pooled * min(rays_a, rays_b) > 10.0
     chi2 = np.sum((a - b)[there] ** 2 / variance[there])
     return float((chi2 - there.sum()) / math.sqrt(2.0 * max(1, there.sum())))
 

@@ -91,9 +91,8 @@ class Views:
             return np.where(np.isfinite(t)[:, None], (d - 2.0 * np.sum(d * normal, axis=1, keepdims=True) * normal)[:, :2],
                             np.nan)
 
-    def cells(self, rays, view):
+    def _cells(self, o, d, view):
         """The cell of each ray in a view, and how many there are. A ray that the view does not see has cell -1."""
-        o, d = self._turned(rays)
         if view == "far":
             rest = 48 * 96
             row = np.floor((d[:, 2] - self.cosine_low) / (1.0 - self.cosine_low) * 48).astype(np.int64)
@@ -110,18 +109,20 @@ class Views:
         place, way = self.on_focus.cells(self._crossing(o, d, 0.0), 8), self.across.cells(d[:, :2], 8)
         return np.where((place == 64) | (way == 64), 64 * 64, place * 64 + way), 64 * 64 + 1
 
-    def shares(self, rays, view, block=1 << 19):
-        """Shares of the flux by cell, and their variances by counting."""
-        share = variance = 0.0
+    def shares(self, rays, block=1 << 19):
+        """By view: shares of the flux by cell, and their variances by counting."""
+        found = {name: (0.0, 0.0) for name in NAMES}
         total = rays.flux.sum(dtype=float)
         for k in range(0, len(rays), block):
             part = rays[k:k + block]
-            cell, count = self.cells(part, view)
+            o, d = self._turned(part)
             w = np.asarray(part.flux, float) / total
-            seen = cell >= 0
-            share = share + np.bincount(cell[seen], w[seen], count)
-            variance = variance + np.bincount(cell[seen], w[seen] ** 2, count)
-        return share, variance
+            for name, (share, variance) in found.items():
+                cell, count = self._cells(o, d, name)
+                seen = cell >= 0
+                found[name] = (share + np.bincount(cell[seen], w[seen], count),
+                               variance + np.bincount(cell[seen], w[seen] ** 2, count))
+        return found
 
 
 @dataclasses.dataclass(frozen=True)
@@ -135,12 +136,12 @@ class Difference:
     raw: float
 
 
-def compare(reference, test, trained, views=None):
-    """By view. `trained`: the rays that the test's model was made from."""
-    views = views or Views(reference)
+def compare(reference, test, trained):
+    """By view, from the shares of each in the views of the reference. `trained`: of the rays that the test's model was
+    made from."""
     found = {}
     for name in NAMES:
-        (p, vp), (q, vq), (_, vt) = (views.shares(rays, name) for rays in (reference, test, trained))
+        (p, vp), (q, vq), (_, vt) = reference[name], test[name], trained[name]
         size = np.linalg.norm(p)
         variance = vp + vq
         error, floor = np.linalg.norm(p - q) / size, math.sqrt(variance.sum()) / size

@@ -9,7 +9,7 @@ import sys
 
 import numpy as np
 import pytest
-from lucerna_bench import Entry, Stated, cylinder_wall, extruded_profile, height_field, placed, score, write_submission
+from lucerna_bench import Entry, Stated, cylinder_wall, extruded_profile, height_field, placed, score, tracing, write_submission
 
 import make_sources
 
@@ -75,12 +75,8 @@ def lucerna_plane(lucerna, folder, scene, side_mm, z_mm, up, cells=48):
 
 
 def deviation(a, b):
-    """Chi^2 of two sets of counts of equal rays, less its mean, in its standard deviations: beyond 5 once in a
-    million by chance."""
-    ka, kb = a * RAYS, b * RAYS
-    there = ka + kb >= 10
-    chi2 = np.sum((ka - kb)[there] ** 2 / (ka + kb)[there])
-    return (chi2 - there.sum()) / np.sqrt(2.0 * there.sum())
+    """Of two sets of shares of RAYS rays: beyond 5 once in a million by chance."""
+    return tracing.deviation(a, RAYS, b, RAYS)
 
 
 def test_two_tracers_agree_on_a_mirror(scorer, lucerna, tmp_path):

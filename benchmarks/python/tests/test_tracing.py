@@ -4,6 +4,8 @@ import json
 
 import numpy as np
 import pytest
+
+import run_forward
 from lucerna_bench import lucerna_entry, tracing
 
 RAYS = 1 << 20
@@ -112,3 +114,22 @@ def test_step_files_of_lucerna_are_the_same_mirror(scene, scorer, tmp_path):
     json_shares = tracing.Scorer(scorer).shares(wavy, rays, 1, 2, tmp_path)
     # A ray at the edge of a box, or at the rim, may go to the other side.
     assert np.abs(step - json_shares).sum() < 1e-3 < 0.3 < json_shares.sum()
+
+
+def test_one_command_measures_a_scene(scorer, lucerna, tmp_path, capsys):
+    words = ["tracing", "--only", "LB-F1-para", "--seconds", "1", "--rounds", "1", "--scorer", scorer, "--lucerna", lucerna,
+             "--commit", "abc", "-o", str(tmp_path)]
+    assert run_forward.main(words) == 0
+    page = (tmp_path / "LB-F1.md").read_text()
+    assert page.count("| LB-F1-para |") == 2 and "commit abc" in page and "LB-F1.md" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("words,said", [
+    (["tracing", "--only", "LB-F1-moon"], "--only: found LB-F1-moon, expected some of LB-F1-deep, LB-F1-para"),
+    (["compression", "--only", "moon"], "--only: found moon, expected some of disk, led"),
+    (["tracing", "--scorer", "/none/scorer"], "/none/scorer: file: found no program, expected one"),
+])
+def test_bad_calls_are_refused(words, said, tmp_path, capsys):
+    programs = ["--scorer", "/bin/true", "--lucerna", "/bin/true", "--commit", "x", "-o", str(tmp_path)]
+    assert run_forward.main([words[0], *programs, *words[1:]]) == 1
+    assert said in capsys.readouterr().err

@@ -23,6 +23,12 @@ def lambertian_disk(count, seed, radius=1.0, centre=(0.0, 0.0, 0.0), axis=2):
     return Rays(roll(start) + centre, roll(direction), np.ones(count))
 
 
+def differences(reference, test):
+    views = Views(reference)
+    shares = views.shares(reference)
+    return compare(shares, views.shares(test), shares)
+
+
 def test_a_disk_has_the_frame_that_is_known():
     v = Views(lambertian_disk(200_000, 1, radius=2.0, centre=(5.0, -3.0, 7.0)))
     assert np.allclose(v.frame[2], [0.0, 0.0, 1.0], atol=5e-3)
@@ -63,7 +69,7 @@ def test_a_collimator_makes_a_beam_of_the_focus():
 def test_equal_sources_differ_by_noise_only(axis):
     """Five standard errors: a false alarm in a million, a view. A disk that is 5 % wider is told apart."""
     one, two, wide = (lambertian_disk(300_000, seed, radius, axis=axis) for seed, radius in ((1, 1.0), (2, 1.0), (3, 1.05)))
-    same, other = compare(one, two, one), compare(one, wide, one)
+    same, other = differences(one, two), differences(one, wide)
     for name in NAMES:
         assert same[name].excess < 5.0 * same[name].standard_error
         assert same[name].raw == pytest.approx(same[name].floor / math.sqrt(2.0), rel=0.02)
@@ -75,12 +81,13 @@ def test_light_that_a_view_does_not_see_is_missing():
     disk = lambertian_disk(20_000, 1)
     v = Views(disk)
     back = Rays(disk.start, disk.direction * [1.0, 1.0, -1.0], disk.flux)
-    assert v.shares(disk, "near")[0].sum() == pytest.approx(1.0)
+    whole, parts = v.shares(disk), v.shares(disk, block=999)
+    assert whole["near"][0].sum() == pytest.approx(1.0)
     # The axis is that of the rays, a little tilted: of the grazing ones some go the other way.
-    assert v.shares(back, "near")[0].sum() < 1e-3
+    assert v.shares(back)["near"][0].sum() < 1e-3
     for name in NAMES:
-        assert v.shares(disk, name, block=999)[0] == pytest.approx(v.shares(disk, name)[0], abs=1e-12)
-    assert v.shares(disk, "far")[0][-1] == pytest.approx(0.01, abs=0.003)
+        assert parts[name][0] == pytest.approx(whole[name][0], abs=1e-12)
+    assert whole["far"][0][-1] == pytest.approx(0.01, abs=0.003)
 
 
 def test_quantiles_are_weighted():
@@ -94,7 +101,7 @@ def test_light_field_holds_the_light():
     drawn = field.sample(200_000, 5)
     assert np.allclose(np.linalg.norm(drawn.direction, axis=1), 1.0)
     assert np.allclose(drawn.direction.mean(axis=0), disk.direction.mean(axis=0), atol=0.02)
-    coarse, fine = (compare(disk, f.sample(200_000, 5), disk) for f in (field, LightField(disk, 20)))
+    coarse, fine = (differences(disk, f.sample(200_000, 5)) for f in (field, LightField(disk, 20)))
     assert all(fine[name].excess < coarse[name].excess for name in ("far", "focus"))
     assert field.size_bytes == 12**4 + 64
 
