@@ -68,7 +68,6 @@ def test_callbacks_report_and_may_raise(lamp):
 
 
 def test_a_short_call_reports_its_end(lamp):
-    """And no more than that where it is faster than a report every tenth of a second."""
     steps = []
     lamp.trace(rays=1000, callback=steps.append)
     assert [step.done for step in steps] == sorted({step.done for step in steps})
