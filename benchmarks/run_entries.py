@@ -13,7 +13,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE / "python"))
-from lucerna_bench import lucerna_entry, tables  # noqa: E402
+from lucerna_bench import tables  # noqa: E402
 from lucerna_bench.campaign import Campaign, commit_of, lucerna_version  # noqa: E402
 from lucerna_bench.methods import METHODS, Means  # noqa: E402
 from lucerna_bench.tasks import read_task  # noqa: E402
@@ -91,9 +91,8 @@ def run(options):
     campaign = Campaign(pathlib.Path(options.out), means, options.rays, commit, options.force,
                         lambda text: print(text, flush=True))
     wrong = campaign.run(tasks, options.methods)
-    not_entered = [(t.name, lucerna_entry.why_not(t)) for t in tasks if lucerna_entry.why_not(t)]
     pathlib.Path(options.out).mkdir(parents=True, exist_ok=True)
-    for file in tables.write_all(options.out, not_entered):
+    for file in tables.write_all(options.out):
         print(file)
     for text in wrong:
         print(f"WRONG: {text}", file=sys.stderr)

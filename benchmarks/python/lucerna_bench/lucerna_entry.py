@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Entries of Lucerna: a task becomes a project, `lucerna design` shapes the optic, and what it wrote becomes the very
 same surface as a B-spline of a submission."""
+import math
 import pathlib
 import shutil
 import subprocess
@@ -10,27 +11,27 @@ import numpy as np
 
 from . import photometry
 from .shapes import LENS_INDEX, MARGIN_MM, cap_height, free_lens_surfaces, mirror
-from .surfaces import extruded_profile, height_field, revolved, spline_through
+from .surfaces import extruded_profile, height_field, placed, revolved, spline_through
 from .tasks import Task
 
 TROUGH_LENGTH_MM = 400.0
+# Large beside the source, so that its size does not matter.
+COLLECTOR_RADIUS_MM = 50.0
+# Of LB-2 only the light counts.
+LIGHT_WEIGHT_OF_COLLECTOR = 100
 KEPT_FILES = ("project.toml", "reflector.toml", "lens.toml", "result.json", "history.csv")
-
-
-def why_not(task: Task):
-    """Why Lucerna enters nothing for a task; None where it does."""
-    return "Lucerna designs for a target in one place, and not for étendue alone" if task.kind == "horn" else None
 
 
 def project(task: Task, folder):
     """Writes project.toml and its target to a folder; the share by which the target's table is off."""
     folder = pathlib.Path(folder)
-    if why_not(task):
-        raise ValueError(f"{task.file}: {task.name}: found a task that Lucerna cannot enter ({why_not(task)})")
-    kind = task.kind
-    if kind in ("lens", "free-lens"):
-        off = 0.0
-        text = sources(task.source, task.file) + _lens(task) + _plane_target(task, folder) + _lens_design(task, kind)
+    kind, off = task.kind, 0.0
+    if kind == "horn":
+        text = (sources(task.source, task.file) + _collector(task) + _plane_target(task, folder, target_place(task))
+                + f"[design]\nlight_weight = {LIGHT_WEIGHT_OF_COLLECTOR}\n")
+    elif kind in ("lens", "free-lens"):
+        text = (sources(task.source, task.file) + _lens(task) + _plane_target(task, folder, task.target["place"])
+                + _lens_design(task, kind))
     else:
         table, off = photometry.sampled(task.target, task.is_round)
         (folder / "target.ies").write_text(table.ies(task.name), newline="")
@@ -97,12 +98,41 @@ def _lens(task, wall_mm=2.0, corners=12):
             f"outline_mm = {outline}\naxis = \"+z\"\n")
 
 
-def _plane_target(task, folder, cells=250, widened=1.25):
+def target_place(task):
+    """Where Lucerna's entry has its target, if that is free: below the source, which shines up into a mirror. The mirror's
+    rim is level with the source, and seen from the target within its largest angle."""
+    if task.kind != "horn":
+        return None
+    return placed((0.0, 0.0, -COLLECTOR_RADIUS_MM / math.tan(math.radians(task.target["max_angle_deg"]))))
+
+
+def _collector(task, intervals=20):
+    """The ellipsoid from the source to the target, whose rim is level with the source, as a free form to begin with."""
+    radius, down = COLLECTOR_RADIUS_MM, -target_place(task)["origin_mm"][2]
+    # The way from focus to focus is the same by the rim and by the vertex.
+    vertex = 0.5 * (radius + math.hypot(radius, down) - down)
+    half_axis = vertex + 0.5 * down
+    b2 = half_axis**2 - (0.5 * down) ** 2
+    across = np.linspace(-radius, radius, 6 * intervals + 1)
+    square = across**2 + across[:, None] ** 2
+    # Beyond the rim, where the ellipsoid ends, its height goes on as a parabola of r^2.
+    cosine = np.sqrt(1.0 - np.minimum(square, radius**2) / b2)
+    beyond = np.maximum(0.0, square - radius**2) / b2
+    depth = half_axis * (1.0 - cosine + beyond / (2.0 * cosine) + beyond**2 / (8.0 * cosine**3))
+    inverse = np.linalg.pinv(_cubic_pieces(across, -radius, radius, intervals))
+    coefficients = inverse @ (depth - square / (4.0 * vertex)) @ inverse.T
+    return (f'[[reflector]]\nfamily = "bspline"\ndiameter_mm = {2.0 * radius}\nfocal_mm = {vertex}\n'
+            f"intervals = {2 * [intervals]}\ncoefficients_mm = {[float(c) for c in coefficients.ravel()]}\n"
+            f'position_mm = [0, 0, {vertex}]\naxis = "-z"\nreflectance = {task.definition["optics"]["reflectance"]}\n')
+
+
+def _plane_target(task, folder, place, cells=250, widened=1.25):
     """An even rectangle or disk of light, in a window that is a quarter wider."""
     t = task.target
     half = [0.5 * widened * side for side in t.get("size_mm", 2 * [2.0 * t.get("radius_mm", 0.0)])]
     (folder / "target.csv").write_text(photometry.csv(photometry.lit_cells(t, half, cells)))
-    return (f'[target]\nkind = "plane"\nfile = "target.csv"\nposition_mm = {t["place"]["origin_mm"]}\nnormal = "-z"\n'
+    return (f'[target]\nkind = "plane"\nfile = "target.csv"\nposition_mm = {place["origin_mm"]}\n'
+            f'normal = "{"+z" if place["z_axis"][2] > 0 else "-z"}"\n'
             f"size_mm = {[2 * h for h in half]}\n")
 
 

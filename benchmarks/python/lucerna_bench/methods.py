@@ -34,6 +34,7 @@ class Made:
     name: str
     method: str
     notes: dict = dataclasses.field(default_factory=dict)
+    target_place: dict | None = None
 
 
 class Search:
@@ -41,8 +42,9 @@ class Search:
 
     def __init__(self, task: Task, means: Means, surfaces_of):
         self.means, self.trials, self.start = means, 0, time.monotonic()
+        # At the end of a horn, where the target is free.
         self.entry = Entry(task.file, surfaces_of, means.scorer, threads=means.threads,
-                           target_place_of=lambda surfaces: target_place_of(task, surfaces))
+                           target_place_of=exit_place if task.kind == "horn" else None)
 
     def cost(self, parameters):
         self.trials += 1
@@ -53,13 +55,9 @@ class Search:
         spent = time.monotonic() - self.start
         return spent + spent / max(1, self.trials) > share * self.means.time_s
 
-    def told(self, what):
-        return f"{what}, {self.trials} trials of {self.means.fit_rays:g} rays"
-
-
-def target_place_of(task, surfaces):
-    """Where an entry has its target, if that is free: at the end of its horn."""
-    return exit_place(surfaces) if task.kind == "horn" else None
+    def made(self, surfaces, free_parameters, name, what, **notes):
+        return Made(surfaces, free_parameters, name, f"{what}, {self.trials} trials of {self.means.fit_rays:g} rays",
+                    notes, self.entry.target_place_of(surfaces))
 
 
 def lucerna(task, means, folder):
@@ -69,7 +67,7 @@ def lucerna(task, means, folder):
     lucerna_entry.keep_files(folder)
     surfaces, free = lucerna_entry.surfaces_of(text, task.kind)
     return Made(surfaces, free, f"Lucerna, {free} free parameters", f"lucerna design --time {means.time_s:g}",
-                {"target_sampling_error": off})
+                {"target_sampling_error": off}, lucerna_entry.target_place(task))
 
 
 @dataclasses.dataclass
@@ -104,8 +102,8 @@ def plain(task, means, _folder):
     """The plain optic of one number; golden section."""
     search = Search(task, means, lambda p: _plain_shape(task, p[0]).surfaces())
     number = _best_plain(search, task, 1.0)
-    return Made(_plain_shape(task, number).surfaces(), 1, f"plain {PLAIN[task.kind].what} {number:.3f} mm",
-                search.told("golden section"))
+    return search.made(_plain_shape(task, number).surfaces(), 1, f"plain {PLAIN[task.kind].what} {number:.3f} mm",
+                       "golden section")
 
 
 def point_source_alone(task, means, _folder):
@@ -130,8 +128,8 @@ def point_source_alone(task, means, _folder):
     if best is None:
         raise ValueError(f"{task.file}: found no point-source solution that fits the room, expected one")
     variant, vertex_mm = best[1]
-    return Made(made[best[1]], 1, f"point-source solution {variant}, vertex {vertex_mm:.2f} mm",
-                search.told(f"{make.__name__} of a point source, best of {len(made)} vertex distances and variants"))
+    return search.made(made[best[1]], 1, f"point-source solution {variant}, vertex {vertex_mm:.2f} mm",
+                       f"{make.__name__} of a point source, best of {len(made)} vertex distances and variants")
 
 
 def _spline_search(task, means, minimise, what):
@@ -142,9 +140,8 @@ def _spline_search(task, means, minimise, what):
     # The same clock goes on with other parameters.
     search.entry.surfaces_of = shape.surfaces
     found = minimise(search.cost, [0.0] * shape.size, shape, lambda *_: search.over())
-    return Made(shape.surfaces(found.parameters), shape.size + 1, f"{what}, {shape.size + 1} parameters",
-                search.told(f"{what} over the plain optic of {number:.3f} mm"),
-                {"cost": found.cost})
+    return search.made(shape.surfaces(found.parameters), shape.size + 1, f"{what}, {shape.size + 1} parameters",
+                       f"{what} over the plain optic of {number:.3f} mm", cost=found.cost)
 
 
 def cma(task, means, _folder):

@@ -43,8 +43,8 @@ def row(task, method, s):
             str(stated["free_parameters"]), f"{stated['wall_s']:.1f}", cpu, stated["machine"], stated["program"]]
 
 
-def table(scores, not_entered=()):
-    """The Markdown page of a family. `not_entered`: pairs of a task and why."""
+def table(scores):
+    """The Markdown page of a family."""
     scored = sorted({(f"{s['rays']:,} rays", f"seed {s['seed']}", s["run"]["machine"]) for _, _, s in scores})
     lines = ["<!-- written by benchmarks/run_entries.py -->", "",
              "Errors have their noise taken out. NMAE has it in. Light counts as shares of the source's flux.", "",
@@ -59,9 +59,7 @@ def table(scores, not_entered=()):
             headline = 2 if s["headline"] == "error_48" else 5
             cells[headline] = f"**{cells[headline]}**"
         lines.append("| " + " | ".join(c.replace("|", "\\|") for c in cells) + " |")
-    lines += ["", "Scored with " + "; ".join(", ".join(x) for x in scored) + "."] if scored else []
-    if not_entered:
-        lines += ["", "Not entered by Lucerna:", "", *(f"- {task}: {why}." for task, why in not_entered)]
+    lines += ["", "Scored with " + "; ".join(", ".join(x) for x in scored) + "."]
     return "\n".join(lines) + "\n"
 
 
@@ -105,16 +103,13 @@ def _mark(s, x, y, colour, method):
             f"<title>{html.escape(label)}</title></circle>")
 
 
-def write_all(out, not_entered=()):
+def write_all(out):
     """Writes FAMILY.md and FAMILY.svg of all that is scored below `out`; the files."""
     out, scores, files = pathlib.Path(out), read_scores(out), []
-    for family in sorted({family_of(task) for task, _, _ in scores} | {family_of(task) for task, _ in not_entered}):
+    for family in sorted({family_of(task) for task, _, _ in scores}):
         ours = [s for s in scores if family_of(s[0]) == family]
-        missing = [pair for pair in not_entered if family_of(pair[0]) == family]
-        picture = f"\n![Errors by entry]({family}.svg)\n" if ours else ""
-        files.append(write_whole(out / f"{family}.md", f"# {family}\n{picture}\n" + table(ours, missing)))
-        if ours:
-            title = (f"{family}: error at 48 boxes a side, noise taken out" if ours[0][2]["headline"] == "error_48" else
-                     f"{family}: light that does not arrive")
-            files.append(write_whole(out / f"{family}.svg", plot(ours, title)))
+        title = (f"{family}: error at 48 boxes a side, noise taken out" if ours[0][2]["headline"] == "error_48" else
+                 f"{family}: light that does not arrive")
+        page = f"# {family}\n\n![Errors by entry]({family}.svg)\n\n" + table(ours)
+        files += [write_whole(out / f"{family}.md", page), write_whole(out / f"{family}.svg", plot(ours, title))]
     return files
