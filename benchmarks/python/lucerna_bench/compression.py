@@ -11,12 +11,15 @@ import time
 import numpy as np
 
 from .entry import write_whole
+from .interpolated_rays import InterpolatedRays
 from .light_field import HEADER_BYTES, LightField
 from .programs import run
 from .rays import Rays, read_tm25
 from .views import NAMES, Views, compare
 
 FORMAT = "lucerna-bench-compression"
+# Six floats of a ray whose flux is that of the others.
+PICKED_BYTES = 24
 
 
 @dataclasses.dataclass(frozen=True)
@@ -80,23 +83,35 @@ class Lucerna:
         return read_tm25(out)
 
 
+def picked(file, max_bytes):
+    """As many of the rays of a file as there is room for, at 24 bytes. They are drawn by flux, so that all weigh the
+    same."""
+    rays = read_tm25(file)
+    count = min(len(rays), max_bytes // PICKED_BYTES)
+    below = np.cumsum(rays.weight)
+    at = (np.arange(count) + np.random.default_rng(1).random(count)) / count * below[-1]
+    return rays[np.searchsorted(below, at, side="right").clip(0, len(rays) - 1)]
+
+
 class PickedRays:
-    """As many of the rays as there is room for, at 24 bytes: the usual way of making a ray file smaller."""
+    """Some of the rays, drawn again and again: the usual way of making a ray file smaller."""
 
     def compress(self, file, max_bytes, _folder):
-        rays = read_tm25(file)
-        count = max_bytes // 24
-        # By flux, so that all that are kept weigh the same.
-        random = np.random.default_rng(1)
-        below = np.cumsum(rays.weight)
-        at = (np.arange(count) + random.random(count)) / count * below[-1]
-        kept = rays[np.searchsorted(below, at, side="right").clip(0, len(rays) - 1)]
-        return Model(24 * count, lambda n, seed: self._again(kept, n, seed))
+        kept = picked(file, max_bytes)
+        return Model(PICKED_BYTES * len(kept), lambda n, seed: self._again(kept, n, seed))
 
     @staticmethod
     def _again(kept, count, seed):
         which = np.random.default_rng(seed).integers(len(kept), size=count)
         return Rays(kept.start[which], kept.direction[which], np.ones(count))
+
+
+class SpreadRays:
+    """The same rays, each spread over a cell of its own."""
+
+    def compress(self, file, max_bytes, _folder):
+        kept = picked(file, max_bytes)
+        return Model(PICKED_BYTES * len(kept), InterpolatedRays(kept).sample)
 
 
 class UniformLightField:
@@ -107,7 +122,7 @@ class UniformLightField:
 
 def methods(lucerna):
     return {"lucerna": Lucerna(lucerna, "adaptive"), "thesis": Lucerna(lucerna, "clusters"),
-            "light-field": UniformLightField(), "picked-rays": PickedRays()}
+            "light-field": UniformLightField(), "picked-rays": PickedRays(), "interpolated-rays": SpreadRays()}
 
 
 @dataclasses.dataclass(frozen=True)

@@ -26,25 +26,44 @@ def _axes_at(normal):
     return east, np.cross(normal, east)
 
 
-class LightField:
-    """Cells of equal étendue, `n` along each of four numbers: where a ray leaves the sphere, and its direction cosines
-    there."""
+class Sphere:
+    """The sphere that holds the starts of rays. A ray is four numbers in [0, 1) there, even over étendue: where it leaves
+    the sphere, and its direction cosines at that place."""
 
-    def __init__(self, rays, n):
-        self.n = n
-        start, direction, weight = (np.asarray(x, float) for x in (rays.start, rays.direction, rays.weight))
+    def __init__(self, rays):
+        start = np.asarray(rays.start, float)
         self.centre = 0.5 * (start.min(axis=0) + start.max(axis=0))
         self.radius = 1.0001 * np.linalg.norm(start - self.centre, axis=1).max() + 1e-9
+
+    def numbers(self, rays):
+        """A row a ray."""
+        start, direction = (np.asarray(x, float) for x in (rays.start, rays.direction))
         o = (start - self.centre) / self.radius
         b = np.sum(o * direction, axis=1)
         out = o + (np.sqrt(np.maximum(0.0, b * b - np.sum(o * o, axis=1) + 1.0)) - b)[:, None] * direction
         east, north = _axes_at(out)
         # The disk of direction cosines by radius squared and angle: even over its area.
         u, v = np.sum(direction * east, axis=1), np.sum(direction * north, axis=1)
-        numbers = np.stack([0.5 * (out[:, 2] + 1.0), np.arctan2(out[:, 1], out[:, 0]) / (2.0 * np.pi) % 1.0,
-                            u * u + v * v, np.arctan2(v, u) / (2.0 * np.pi) % 1.0], axis=-1)
-        at = np.minimum((numbers * n).astype(np.int64), n - 1)
-        light = np.bincount(np.ravel_multi_index(at.T, 4 * (n,)), weight, n**4)
+        return np.stack([0.5 * (out[:, 2] + 1.0), np.arctan2(out[:, 1], out[:, 0]) / (2.0 * np.pi) % 1.0,
+                         u * u + v * v, np.arctan2(v, u) / (2.0 * np.pi) % 1.0], axis=-1)
+
+    def rays(self, numbers):
+        """The other way, of equal flux."""
+        out = _sphere_from(numbers[:, 0], numbers[:, 1])
+        east, north = _axes_at(out)
+        r, turn = np.sqrt(numbers[:, 2]), 2.0 * np.pi * numbers[:, 3]
+        direction = ((r * np.cos(turn))[:, None] * east + (r * np.sin(turn))[:, None] * north
+                     + np.sqrt(np.maximum(0.0, 1.0 - r * r))[:, None] * out)
+        return Rays(self.centre + self.radius * out, direction, np.ones(len(numbers)))
+
+
+class LightField:
+    """Cells of equal étendue, `n` along each of the four numbers of a sphere."""
+
+    def __init__(self, rays, n):
+        self.n, self.sphere = n, Sphere(rays)
+        at = np.minimum((self.sphere.numbers(rays) * n).astype(np.int64), n - 1)
+        light = np.bincount(np.ravel_multi_index(at.T, 4 * (n,)), rays.weight, n**4)
         level = np.log(np.maximum(light / light.max(), 1e-300)) / np.log(STEP) + 255.0
         self.table = np.where(light > 0.0, np.maximum(1.0, np.rint(level)), 0.0).astype(np.uint8)
 
@@ -57,10 +76,5 @@ class LightField:
         light = np.where(self.table > 0, STEP ** self.table.astype(float), 0.0)
         below = np.cumsum(light)
         cell = np.searchsorted(below, random.random(count) * below[-1], side="right").clip(0, len(below) - 1)
-        numbers = (np.stack(np.unravel_index(cell, 4 * (self.n,)), axis=-1) + random.random((count, 4))) / self.n
-        out = _sphere_from(numbers[:, 0], numbers[:, 1])
-        east, north = _axes_at(out)
-        r, turn = np.sqrt(numbers[:, 2]), 2.0 * np.pi * numbers[:, 3]
-        direction = ((r * np.cos(turn))[:, None] * east + (r * np.sin(turn))[:, None] * north
-                     + np.sqrt(1.0 - r * r)[:, None] * out)
-        return Rays(self.centre + self.radius * out, direction, np.ones(count))
+        return self.sphere.rays((np.stack(np.unravel_index(cell, 4 * (self.n,)), axis=-1) + random.random((count, 4)))
+                                / self.n)

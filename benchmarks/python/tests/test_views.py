@@ -5,8 +5,9 @@ import math
 
 import numpy as np
 import pytest
-from lucerna_bench import compression, views
-from lucerna_bench.light_field import LightField
+from lucerna_bench import compression, interpolated_rays, views
+from lucerna_bench.interpolated_rays import InterpolatedRays
+from lucerna_bench.light_field import LightField, Sphere
 from lucerna_bench.programs import run
 from lucerna_bench.rays import Rays, read_tm25
 from lucerna_bench.views import NAMES, Views, compare
@@ -106,6 +107,51 @@ def test_light_field_holds_the_light():
     assert field.size_bytes == 12**4 + 64
 
 
+@pytest.mark.parametrize("kind", [Sphere, interpolated_rays.Plane])
+def test_surfaces_turn_rays_to_numbers_and_back(kind):
+    disk = lambertian_disk(1000, 1, centre=(1.0, 2.0, 3.0))
+    # Starts that are not all in one plane.
+    moved = Rays(disk.start + np.linspace(0.0, 0.5, 1000)[:, None] * disk.direction, disk.direction, disk.flux)
+    surface = kind(moved)
+    numbers = surface.numbers(moved)
+    again = surface.rays(numbers)
+    assert np.allclose(again.direction, disk.direction, atol=1e-9) and (again.flux == 1.0).all()
+    # The same lines, though they start on the surface.
+    assert np.allclose(np.cross(again.start - disk.start, disk.direction), 0.0, atol=1e-9)
+    assert np.allclose(surface.numbers(again), numbers, atol=1e-7)
+
+
+def test_a_plane_has_no_light_beyond_the_horizon():
+    plane = interpolated_rays.Plane(lambertian_disk(100, 1))
+    assert plane.rays(np.array([[0.0, 0.0, 0.6, 0.6], [0.0, 0.0, 0.9, 0.6]])).flux.tolist() == [1.0, 0.0]
+
+
+def test_cells_share_the_box_of_their_points():
+    points = np.random.default_rng(2).random((1001, 4))
+    found = interpolated_rays.cells(points)
+    assert ((found[:, 0] <= points) & (points <= found[:, 1])).all()
+    assert np.prod(found[:, 1] - found[:, 0], axis=1).sum() == pytest.approx(np.prod(np.ptp(points, axis=0)), rel=1e-12)
+    # No two cells overlap: each holds one point.
+    inside = ((points[:, None] > found[None, :, 0]) & (points[:, None] < found[None, :, 1])).all(axis=2)
+    assert (inside.sum(axis=1) <= 1).all()
+    less = interpolated_rays.drawn_in(found, points)
+    assert ((less[:, 0] <= points) & (points <= less[:, 1])).all()
+    assert (less[:, 0] >= found[:, 0]).all() and (less[:, 1] <= found[:, 1]).all()
+    inner = (found[:, 0] > points.min(axis=0)).all(axis=1) & (found[:, 1] < points.max(axis=0)).all(axis=1)
+    assert 20 < inner.sum() < 1001 and (less[inner] == found[inner]).all() and not (less[~inner] == found[~inner]).all()
+
+
+def test_spread_rays_are_nearer_than_the_rays_themselves():
+    disk = lambertian_disk(200_000, 1, centre=(1.0, 2.0, 3.0))
+    kept = disk[:4000]
+    again = np.random.default_rng(3).integers(4000, size=200_000)
+    picked = differences(disk, Rays(kept.start[again], kept.direction[again], np.ones(200_000)))
+    few, spread = (differences(disk, InterpolatedRays(disk[:n]).sample(200_000, 4)) for n in (250, 4000))
+    for name in ("far", "focus", "beam", "four_d"):
+        assert spread[name].excess < 0.7 * picked[name].excess
+        assert spread[name].excess < few[name].excess
+
+
 
 def test_the_task_is_read_and_damage_is_named(tasks, tmp_path):
     task = compression.read_compression(tasks.parent / "forward" / "LB-F2.json")
@@ -137,7 +183,8 @@ def test_models_are_measured_at_their_sizes(lucerna, tmp_path):
     task = compression.Compression([compression.Source("disk", "disk", ("--radius-mm", "1"))], [4000, 60000], 50_000, 1)
     found = compression.measure(task, task.sources[0], compression.methods(lucerna), lucerna, 100_000, 77, say=lambda _: None)
     # A model that more bytes leave as it is appears once.
-    assert list(dict.fromkeys(m.method for m in found)) == ["lucerna", "thesis", "light-field", "picked-rays"]
+    assert list(dict.fromkeys(m.method for m in found)) == ["lucerna", "thesis", "light-field", "picked-rays",
+                                                     "interpolated-rays"]
     assert len({(m.method, m.size_bytes) for m in found}) == len(found)
     assert all(0 < m.size_bytes <= m.max_bytes for m in found)
     worst = {m.method: {} for m in found}
