@@ -70,7 +70,8 @@ def test_callbacks_report_and_may_raise(lamp):
 def test_a_short_call_reports_its_end(lamp):
     steps = []
     lamp.trace(rays=1000, callback=steps.append)
-    assert [step.done for step in steps] == sorted({step.done for step in steps})
+    # A slow machine may report the last rays twice: when they are done, and at the end.
+    assert [step.done for step in steps] == sorted(step.done for step in steps)
     assert steps[-1].done == steps[-1].total == 1000
 
 
