@@ -3,7 +3,7 @@
 # but for check-quick and format.
 # CUDA=1 compiles the CUDA back end too (needs nvcc).
 .PHONY: reference demo test check check-quick fuzz bench benchmarks test-report test-site test-slow gallery docs program packages \
-        install deb api format clean python test-python test-mpi test-bench
+        install deb api format clean python test-python test-mpi test-bench bench-scorer bench-results
 
 BUILD := build/release
 
@@ -57,20 +57,38 @@ bench: program
 	$(BUILD)/bench/bench_read_write
 	$(BUILD)/bench/bench_quality led
 
-# Runs the benchmarks whose tables stand in docs/benchmarks, and writes tables and plots there (an hour, on an idle machine).
+# Runs the benchmarks whose tables stand in docs/benchmarks, and writes tables and plots there (an hour, on an idle machine);
+# then bench-results.
 benchmarks: program
 	scripts/packages.sh scripts/packages-benchmarks.txt
 	cmake --build --preset release --target benchmarks
 	scripts/benchmarks.py --build $(BUILD)
+	$(MAKE) bench-results
 
-# Lucerna Bench (benchmarks/): builds its scorer, which needs nothing of Lucerna; its tests, and those against the program.
-test-bench: program
+# Lucerna Bench (benchmarks/): its scorer, which needs nothing of Lucerna.
+SCORER := build/bench-scorer/lucerna-bench-score
+bench-scorer: packages
 	scripts/packages.sh scripts/packages-bench.txt
 	cmake -S benchmarks/scorer -B build/bench-scorer
-	cmake --build build/bench-scorer
+	cmake --build build/bench-scorer -j $(shell nproc)
+
+# Its tests, and those against the program.
+test-bench: program bench-scorer
 	ctest --test-dir build/bench-scorer --output-on-failure --no-tests=error
-	LUCERNA=$(abspath $(BUILD)/lucerna) LUCERNA_BENCH_SCORER=$(abspath build/bench-scorer)/lucerna-bench-score \
+	LUCERNA=$(abspath $(BUILD)/lucerna) LUCERNA_BENCH_SCORER=$(abspath $(SCORER)) \
 	  /usr/bin/python3 -m pytest -q benchmarks/python/tests
+
+# Makes and scores entries of Lucerna and baselines for all tasks, and the forward tasks, for the site. On two idle cores that is an
+# hour and a half of making and hours of scoring; what is made is kept in build/bench-results.
+BENCH_TIME ?= 30
+BENCH_RAYS ?= 1e8
+bench-results: program bench-scorer
+	/usr/bin/python3 benchmarks/run_entries.py --time $(BENCH_TIME) --rays $(BENCH_RAYS) --lucerna $(BUILD)/lucerna \
+	  --scorer $(SCORER) -o build/bench-results
+	/usr/bin/python3 benchmarks/run_forward.py tracing --lucerna $(BUILD)/lucerna --scorer $(SCORER) -o build/bench-results
+	/usr/bin/python3 benchmarks/run_forward.py compression --lucerna $(BUILD)/lucerna -o build/bench-results
+	mkdir -p docs/benchmarks/lucerna-bench
+	cp build/bench-results/*.md build/bench-results/*.svg docs/benchmarks/lucerna-bench/
 
 test-slow: program
 	cmake --build --preset release --target tests

@@ -32,16 +32,18 @@ def write_whole(path, text):
     return temporary.replace(path)
 
 
-def write_submission(folder, task, name, author, surfaces, stated, target_place=None):
+def write_submission(folder, task, name, author, surfaces, stated, target_place=None, light_table=None):
     """Writes submission.json (and the surfaces within it) to `folder`; its path.
 
     `surfaces`: a list of dicts with `name`, `role` ("mirror", "interface", "absorber"), `bspline` (a surface of
     this package) or `stl` (a file in the folder, with `normals`), and, where wanted, `place`, `flip`,
-    `refractive_index`. `task`: its name, as LB-6-led-oval."""
+    `refractive_index`. `task`: its name, as LB-6-led-oval. `light_table`: of LB-1, an LDT file in the folder instead of
+    surfaces, which are None then."""
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     submission = {"format": "lucerna-bench-submission", "version": 1, "task": task, "name": name, "author": author,
-                  "surfaces": surfaces, "stated": stated.as_json()}
+                  "stated": stated.as_json()}
+    submission |= {"surfaces": surfaces} if light_table is None else {"light_table": light_table}
     if target_place is not None:
         submission["target_place"] = target_place
     return write_whole(folder / "submission.json", json.dumps(submission, indent=1) + "\n")

@@ -36,11 +36,47 @@ def row(task, method, s):
     """The cells of one entry: what its score.json says, and no more."""
     error, stated = s["error_48"], s["stated"]
     cpu = "not stated" if stated["cpu_s"] is None else f"{stated['cpu_s']:.1f}"
+    if s["rays_from"] == "light table":
+        method += " (light table)"
     return [task, method if s["counts"] else f"{method} (does not count: {'; '.join(s['faults'])})",
             f"{percent(error['excess'])} +- {percent(error['standard_error'])}", percent(error["floor"]),
             percent(s["nmae"]["value"]), percent(s["efficiency_with_losses"]["value"]),
             percent(s["efficiency_without_losses"]["value"]), percent(s["outside_rectangle"]["value"]),
             str(stated["free_parameters"]), f"{stated['wall_s']:.1f}", cpu, stated["machine"], stated["program"]]
+
+
+def best_losses(scores):
+    """By task: the least loss of those that count."""
+    best = {}
+    for task, _, s in scores:
+        if s["counts"]:
+            best[task] = min(best.get(task, math.inf), loss(s)[0])
+    return best
+
+
+def overview(scores):
+    """A Markdown table: a row a task, a column a method. Errors with the light in the window, or the light alone where
+    that is what counts."""
+    found = {(task, method): s for task, method, s in scores}
+    methods = sorted({method for _, method, _ in scores}, key=[*COLOURS, *{m for _, m, _ in scores}].index)
+    best = best_losses(scores)
+    lines = ["| task | " + " | ".join(methods) + " |", "|---|" + "---|" * len(methods)]
+    for task in sorted({task for task, _, _ in scores}):
+        cells = []
+        for method in methods:
+            s = found.get((task, method))
+            text = "-" if s is None else _brief(s)
+            cells.append(f"**{text}**" if s and s["counts"] and loss(s)[0] == best[task] else text)
+        lines.append("| " + " | ".join([task, *cells]) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def _brief(s):
+    if not s["counts"]:
+        return "does not count"
+    light = f"{percent(s['efficiency_with_losses']['value'], 1)} light"
+    error = s["error_48"]
+    return f"{percent(error['excess'])} +- {percent(error['standard_error'])}, {light}" if s["headline"] == "error_48" else light
 
 
 def table(scores):
@@ -49,17 +85,14 @@ def table(scores):
     lines = ["<!-- written by benchmarks/run_entries.py -->", "",
              "Errors have their noise taken out. NMAE has it in. Light counts as shares of the source's flux.", "",
              "| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
-    best = {}
-    for task, _, s in scores:
-        if s["counts"]:
-            best[task] = min(best.get(task, math.inf), loss(s)[0])
+    best = best_losses(scores)
     for task, method, s in scores:
         cells = row(task, method, s)
         if s["counts"] and loss(s)[0] == best[task]:
             headline = 2 if s["headline"] == "error_48" else 5
             cells[headline] = f"**{cells[headline]}**"
         lines.append("| " + " | ".join(c.replace("|", "\\|") for c in cells) + " |")
-    lines += ["", "Scored with " + "; ".join(", ".join(x) for x in scored) + "."]
+    lines += ["", "Scored with:", "", *("- " + ", ".join(x) for x in scored)]
     return "\n".join(lines) + "\n"
 
 
@@ -104,7 +137,7 @@ def _mark(s, x, y, colour, method):
 
 
 def write_all(out):
-    """Writes FAMILY.md and FAMILY.svg of all that is scored below `out`; the files."""
+    """Writes FAMILY.md and FAMILY.svg of all that is scored below `out`, and overview.md of all families; the files."""
     out, scores, files = pathlib.Path(out), read_scores(out), []
     for family in sorted({family_of(task) for task, _, _ in scores}):
         ours = [s for s in scores if family_of(s[0]) == family]
@@ -112,4 +145,9 @@ def write_all(out):
                  f"{family}: light that does not arrive")
         page = f"# {family}\n\n![Errors by entry]({family}.svg)\n\n" + table(ours)
         files += [write_whole(out / f"{family}.md", page), write_whole(out / f"{family}.svg", plot(ours, title))]
+    if scores:
+        text = ("# Overview\n\n<!-- written by benchmarks/run_entries.py -->\n\nErrors at 48 boxes a side with their noise taken "
+                "out, and the share of the source's light\nthat arrives. The best of a task is bold. All figures stand on "
+                "the pages of the families.\n\n")
+        files.append(write_whole(out / "overview.md", text + overview(scores)))
     return files

@@ -96,8 +96,8 @@ def error(excess, standard_error=0.0, floor=0.0):
 
 def fake_score(**changed):
     share = lambda x: {"value": x, "standard_error": 0.0}
-    s = {"counts": True, "headline": "error_48", "faults": [], "rays": 1000, "seed": 77, "error_48": error(0.0123, 0.0004, 0.0056),
-         "nmae": share(0.0789), "efficiency_with_losses": share(0.8111), "efficiency_without_losses": share(0.9222),
+    s = {"counts": True, "headline": "error_48", "faults": [], "rays": 1000, "rays_from": "fresh", "seed": 77,
+         "error_48": error(0.0123, 0.0004, 0.0056), "nmae": share(0.0789), "efficiency_with_losses": share(0.8111), "efficiency_without_losses": share(0.9222),
          "outside_rectangle": share(0.0333), "run": {"machine": "scoring box"},
          "stated": {"free_parameters": 44, "wall_s": 60.25, "cpu_s": 118.5, "machine": "a box",
                     "program": "p, commit abc", "method": "m"}}
@@ -115,6 +115,7 @@ def test_tables_hold_what_the_scores_say():
     assert len(rows[0]) == len(tables.COLUMNS)
     assert rows[1][1] == "tree (does not count: too wide)" and rows[1][2] == "50.00 % +- 10.00 %"
     assert "seed 77" in text and "scoring box" in text
+    assert "| tree (light table) |" in tables.table([("LB-9-x", "tree", fake_score(rays_from="light table"))])
     unknown = fake_score()
     unknown["stated"]["cpu_s"] = None
     assert "not stated" in tables.table([("LB-9-x", "plain", unknown)])
@@ -150,12 +151,23 @@ def test_horns_have_their_target_at_their_end(run, tasks, tmp_path):
     assert scores["cma-es"]["efficiency_with_losses"]["value"] > 0.3
 
 
+def test_the_overview_has_a_row_a_task_and_a_column_a_method():
+    scores = [("LB-2a", "tree", fake_score(headline="efficiency_with_losses")),
+              ("LB-9-x", "plain", fake_score(error_48=error(0.5))), ("LB-9-x", "mine", fake_score(counts=False)),
+              ("LB-9-x", "lucerna", fake_score())]
+    assert tables.overview(scores).splitlines() == [
+        "| task | lucerna | plain | tree | mine |", "|---|---|---|---|---|",
+        "| LB-2a | - | - | **81.1 % light** | - |",
+        "| LB-9-x | **1.23 % +- 0.04 %, 81.1 % light** | 50.00 % +- 0.00 %, 81.1 % light | - | does not count |"]
+
+
 def test_families_have_a_page_each(tmp_path):
     for task in ("LB-8-a", "LB-9-b"):
         (tmp_path / task / "plain").mkdir(parents=True)
         (tmp_path / task / "plain" / "score.json").write_text(json.dumps(fake_score()))
     files = tables.write_all(tmp_path)
-    assert sorted(f.name for f in files) == ["LB-8.md", "LB-8.svg", "LB-9.md", "LB-9.svg"]
+    assert sorted(f.name for f in files) == ["LB-8.md", "LB-8.svg", "LB-9.md", "LB-9.svg", "overview.md"]
+    assert (tmp_path / "overview.md").read_text().endswith("| LB-9-b | **1.23 % +- 0.04 %, 81.1 % light** |\n")
     assert "LB-8-a" in (tmp_path / "LB-8.md").read_text() and "LB-9-b" not in (tmp_path / "LB-8.md").read_text()
 
 

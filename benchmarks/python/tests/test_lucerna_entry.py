@@ -226,6 +226,21 @@ def test_tables_are_the_targets(tasks, name, goal):
     assert np.allclose(table.at(u, v) / table.at(u, v)[0], wanted / wanted[0], atol=2e-3)
 
 
+def test_a_light_table_is_an_entry(scorer, lucerna, tasks, tmp_path):
+    """The target itself, as the LDT file of another program, is off by its sampling alone."""
+    task = read_task(tasks / "LB-1a-cos4-free.json")
+    table, off = photometry.sampled(task.target, task.is_round)
+    (tmp_path / "t.ies").write_text(table.ies(task.name), newline="")
+    subprocess.run([lucerna, "convert", tmp_path / "t.ies", tmp_path / "t.ldt"], check=True)
+    stated = Stated(free_parameters=0, wall_s=0, program="p", method="m")
+    file = write_submission(tmp_path, task.name, "n", "a", None, stated, light_table="t.ldt")
+    found = score(scorer, task.file, file, 1 << 20)
+    assert found["counts"] and found["rays_from"] == "light table" and found["limits"] == []
+    assert found["error_48"]["excess"] < off + 5.0 * found["error_48"]["standard_error"]
+    with pytest.raises(ValueError, match="--rays-from: found a light table, expected surfaces"):
+        score(scorer, task.file, file, 1 << 20, rays_from=tmp_path / "none.tm25ray")
+
+
 def test_tables_of_hidden_mirrors_are_handed_on(tasks):
     task = read_task(tasks / "LB-6-hidden-49.json")
     table, error = photometry.sampled(task.target, task.is_round)

@@ -134,6 +134,7 @@ std::string score_text(const Json& s) {
   out += stated_text(s["stated"]);
   out += line("  scored in %.1f s on %u threads, %s", s["run"]["seconds"].get<double>(),
               s["run"]["threads"].get<unsigned>(), s["run"]["machine"].get<std::string>().c_str());
+  if (s["rays_from"] == "light table") out += "  a light table: not traced, limits not checked\n";
   for (const Json& fault : s["faults"]) out += "  DOES NOT COUNT: " + fault.get<std::string>() + "\n";
   return out;
 }

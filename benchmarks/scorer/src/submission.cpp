@@ -5,6 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "light_table.h"
+
 namespace bench {
 
 namespace {
@@ -68,6 +70,20 @@ std::vector<Part> read_parts(const JsonNode& s, const Task& task) {
   return out;
 }
 
+std::vector<Part> read_all_parts(const JsonNode& surfaces, const Task& task) {
+  std::vector<Part> out;
+  for (const JsonNode& surface : surfaces.items()) {
+    for (Part& part : read_parts(surface, task)) out.push_back(std::move(part));
+  }
+  if (out.empty()) surfaces.fail("one surface or more");
+  if (out.size() > 1000) surfaces.fail("1000 surfaces at most");
+  for (const Part& p : out) {
+    if (p.role == Role::interface && p.refractive_index != out.front().refractive_index)
+      surfaces.fail("two refractive indices", "one index for all interfaces");
+  }
+  return out;
+}
+
 Stated read_stated(const JsonNode& s) {
   s.only({"free_parameters", "wall_s", "cpu_s", "machine", "program", "method"});
   Stated out;
@@ -84,33 +100,30 @@ Stated read_stated(const JsonNode& s) {
 
 Submission::Submission(const std::string& path, const Task& task) : file(path) {
   const JsonNode s = JsonNode::read(path);
-  s.only({"format", "version", "task", "name", "author", "surfaces", "target_place", "stated", "note"});
+  s.only({"format", "version", "task", "name", "author", "surfaces", "light_table", "target_place", "stated",
+          "note"});
   s.at("format").one_of({"lucerna-bench-submission"});
   s.at("version").whole(1, 1);
   s.at("task").one_of({task.id});
   name = s.at("name").text();
   author = s.at("author").text();
-  for (const JsonNode& surface : s.at("surfaces").items()) {
-    for (Part& part : read_parts(surface, task)) parts.push_back(std::move(part));
-  }
-  if (parts.empty()) s.at("surfaces").fail("one surface or more");
-  if (parts.size() > 1000) s.at("surfaces").fail("1000 surfaces at most");
-  for (const Part& p : parts) {
-    if (p.role == Role::interface && p.refractive_index != parts.front().refractive_index)
-      s.at("surfaces").fail("two refractive indices", "one index for all interfaces");
+  if (s.has("surfaces") == s.has("light_table")) s.fail("one of the keys surfaces and light_table");
+  if (s.has("light_table")) {
+    if (task.definition.at("target").at("kind").text() != "angle")
+      s.at("light_table").fail("surfaces: only two-dimensional tasks take a light table");
+    light_table = read_light_table(beside(s.at("light_table")));
+  } else {
+    parts = read_all_parts(s.at("surfaces"), task);
   }
   if (s.has("target_place")) {
     if (!task.free_target) s.at("target_place").fail("no target_place: this task fixes it");
     target_place = s.at("target_place").frame();
   }
   stated = read_stated(s.at("stated"));
+  if (light_table) return;
   std::vector<const Surface*> surfaces;
   for (const Part& p : parts) surfaces.push_back(p.surface.get());
   for (const Limit& l : task.limits) limits.push_back(check_limit(l, surfaces));
-}
-
-bool Submission::limits_held() const {
-  return std::all_of(limits.begin(), limits.end(), [](const LimitCheck& c) { return c.held; });
 }
 
 }  // namespace bench

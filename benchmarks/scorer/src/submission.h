@@ -37,11 +37,15 @@ struct Submission {
 
   std::string file, name, author;
   std::vector<Part> parts;
+  /// Instead of surfaces, of a two-dimensional task: its light, which is not traced.
+  std::unique_ptr<const Source> light_table;
   std::optional<Frame> target_place;
   Stated stated;
   /// How the task's limits are met.
   std::vector<LimitCheck> limits;
-  bool limits_held() const;
+
+  /// Whose light is traced: the task's, or the light table.
+  const Source& source(const Task& task) const { return light_table ? *light_table : *task.source; }
 };
 
 }  // namespace bench

@@ -104,8 +104,8 @@ inline Scored scored(const Json& task, const Json& submission, std::uint64_t ray
   const Submission s(folder.write("submission.json", submission), t);
   const Target target(t.definition.at("target"), s.target_place ? &*s.target_place : nullptr);
   const SurfaceScene scene(s.parts);
-  const Tally tally = trace(t, *t.source, scene, target, {rays, 7, threads});
-  const Score score = score_of(tally, target, whole_rays(rays, *t.source));
+  const Tally tally = trace(t, s.source(t), scene, target, {rays, 7, threads});
+  const Score score = score_of(tally, target, whole_rays(rays, s.source(t)));
   return {score, score_json(t, s, target, score, {})};
 }
 
