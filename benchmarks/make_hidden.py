@@ -5,8 +5,7 @@
     python3 benchmarks/make_hidden.py --lucerna build/release/lucerna --scorer benchmarks/build/lucerna-bench-score
 
 Writes tasks/LB-6-hidden-N.json and hidden/LB-6-hidden-N/submission.json, the mirror. A task that was published does not
-change: this is run once a task, and is here to be read. Those that are there were made with --rays 50000000
---score-rays 6000000, commit 7688f36."""
+change: this is run once a task, and is here to be read."""
 import argparse
 import csv
 import json

@@ -1,72 +1,110 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the frozen ray files of the tasks with the program `lucerna`, or checks those that are there.
+"""Writes the frozen ray files of the sources with the program `lucerna`, or checks those that are there.
 
-    python3 make_sources.py --lucerna lucerna --out sources      # writes and checks
-    python3 make_sources.py --out sources                        # checks the files in the folder
+    python3 make_sources.py --lucerna lucerna --out rays                  # writes and checks those of 1,000,000 rays
+    python3 make_sources.py --lucerna lucerna --out rays --files '*-10M*' # ... of 10,000,000 rays, 280 MB each
+    python3 make_sources.py --out rays                                    # checks the files in the folder
 
-Each file is compared with the task's SHA-256: that of its rays (the last 28 bytes per ray) must agree; that of the
-whole file also depends on the version of the program, which stands in the file's header, and is only reported."""
+Each file is compared with its SHA-256 in sources/sources.json: that of its rays (the last 28 bytes per ray) must agree;
+that of the whole file also depends on the version of the program, which stands in the file's header, and is only
+reported. The models (sources/*.nfl) are kept as they are: they are checked only."""
 import argparse
+import fnmatch
 import hashlib
 import json
 import pathlib
 import subprocess
 import sys
 
+HERE = pathlib.Path(__file__).resolve().parent
+SOURCES = HERE / "sources" / "sources.json"
 RAY_BYTES = 28
+MODEL_MAX_BYTES = "256k"
 
 
-def frozen_files(tasks):
-    """The `frozen_rays` tables of all tasks by file; two tasks with one file must agree on it."""
-    found = {}
-    for path in sorted(pathlib.Path(tasks).glob("*.json")):
-        frozen = json.loads(path.read_text()).get("frozen_rays")
-        if frozen is None:
-            continue
-        if found.setdefault(frozen["file"], frozen) != frozen:
-            raise ValueError(f"{path}: /frozen_rays: found another definition of {frozen['file']} than in a task before, "
-                             "expected the same")
-    return found
+def read_sources(file=SOURCES):
+    """By name: `kind`, `options` and `seed` of `lucerna make-source`, `files` of rays and the `model` of the largest."""
+    return json.loads(pathlib.Path(file).read_text())["sources"]
 
 
-def command_of(lucerna, frozen, out):
-    return [lucerna, "make-source", frozen["kind"], "-n", str(frozen["rays"]), "--seed", str(frozen["seed"]),
-            *frozen["options"], "--quiet", "-o", str(out)]
+def ray_files(sources, pattern="*"):
+    """By file name: its source and its entry in `files`."""
+    return {name: (source, frozen) for source in sources.values() for name, frozen in source["files"].items()
+            if fnmatch.fnmatch(name, pattern)}
+
+
+def command_of(lucerna, source, rays, out):
+    return [lucerna, "make-source", source["kind"], "-n", str(rays), "--seed", str(source["seed"]), *source["options"],
+            "--quiet", "-o", str(out)]
+
+
+def digests(path, rays):
+    """SHA-256 of the rays of a file and of the whole file."""
+    data = path.read_bytes()
+    return hashlib.sha256(data[-RAY_BYTES * rays:]).hexdigest(), hashlib.sha256(data).hexdigest()
 
 
 def check(path, frozen):
-    """What is wrong with a file, or nothing; and whether the whole file agrees."""
-    data = path.read_bytes()
-    rays = hashlib.sha256(data[-RAY_BYTES * frozen["rays"]:]).hexdigest()
+    """What is wrong with a file of rays, or nothing; and whether the whole file agrees."""
+    rays, whole = digests(path, frozen["rays"])
     if rays != frozen["rays_sha256"]:
         return f"{path}: rays: found SHA-256 {rays}, expected {frozen['rays_sha256']}", False
-    return None, hashlib.sha256(data).hexdigest() == frozen["sha256"]
+    return None, whole == frozen["sha256"]
+
+
+def check_model(name, source, folder=SOURCES.parent):
+    """What is wrong with the model of a source, or nothing."""
+    path = folder / f"{name}.nfl"
+    found = hashlib.sha256(path.read_bytes()).hexdigest() if path.exists() else "nothing"
+    expected = source["model"]["sha256"]
+    return None if found == expected else f"{path}: file: found SHA-256 {found}, expected {expected}"
+
+
+def freeze(lucerna, out):
+    """Makes all files and models anew, and writes down what they are: for a new version of the suite."""
+    whole = json.loads(SOURCES.read_text())
+    whole["made_by"] = f"lucerna {subprocess.run([lucerna, '--version'], capture_output=True, text=True, check=True).stdout.strip()}"
+    for name, source in whole["sources"].items():
+        for file, frozen in source["files"].items():
+            subprocess.run(command_of(lucerna, source, frozen["rays"], out / file), check=True)
+            frozen["rays_sha256"], frozen["sha256"] = digests(out / file, frozen["rays"])
+        model = SOURCES.parent / f"{name}.nfl"
+        subprocess.run([lucerna, "compress", str(out / source["model"]["of"]), "-o", str(model), "--max-bytes",
+                        MODEL_MAX_BYTES, "--quiet"], check=True)
+        source["model"]["sha256"] = hashlib.sha256(model.read_bytes()).hexdigest()
+        SOURCES.write_text(json.dumps(whole, indent=1) + "\n")
 
 
 def main():
-    here = pathlib.Path(__file__).resolve().parent
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--lucerna", help="the program; without it files are checked only")
     parser.add_argument("--out", required=True, help="folder of the ray files")
-    parser.add_argument("--tasks", default=here / "tasks", help="folder of the task files")
+    parser.add_argument("--files", default="*-1M.tm25ray", help="which files, with * for anything")
+    parser.add_argument("--freeze", action="store_true", help="writes the hashes of what is made to sources.json")
     options = parser.parse_args()
     out = pathlib.Path(options.out)
     if options.lucerna:
         out.mkdir(parents=True, exist_ok=True)
-    bad = 0
-    for name, frozen in frozen_files(options.tasks).items():
+    if options.freeze:
+        freeze(options.lucerna, out)
+    sources = read_sources()
+    wrong = [text for name, source in sources.items() if (text := check_model(name, source))]
+    for name, (source, frozen) in ray_files(sources, options.files).items():
         path = out / name
-        if options.lucerna:
-            subprocess.run(command_of(options.lucerna, frozen, path), check=True)
+        if options.lucerna and not options.freeze:
+            subprocess.run(command_of(options.lucerna, source, frozen["rays"], path), check=True)
         if not path.exists():
-            wrong, whole = f"{path}: file: found nothing, expected {frozen['rays']} rays", False
+            wrong.append(f"{path}: file: found nothing, expected {frozen['rays']} rays")
+            continue
+        text, whole = check(path, frozen)
+        if text:
+            wrong.append(text)
         else:
-            wrong, whole = check(path, frozen)
-        bad += wrong is not None
-        print(wrong or f"{path}: {frozen['rays']} rays, " +
-              ("as frozen" if whole else f"rays as frozen, header not that of {frozen['made_by']}"))
-    return 1 if bad else 0
+            print(f"{path}: {frozen['rays']} rays, " + ("as frozen" if whole else "rays as frozen, another header"))
+    for text in wrong:
+        print(text, file=sys.stderr)
+    return 1 if wrong else 0
 
 
 if __name__ == "__main__":

@@ -65,8 +65,8 @@ constexpr double kTolerance = 1e-4;
 }  // namespace
 
 Task::Task(const std::string& file) : definition(JsonNode::read(file)) {
-  definition.only({"format", "version", "task", "title", "note", "source", "frozen_rays", "optics", "limits",
-                   "target", "target_place", "headline", "reference"});
+  definition.only({"format", "version", "task", "title", "note", "source", "frozen_source", "optics",
+                   "limits", "target", "target_place", "headline", "reference"});
   definition.at("format").one_of({"lucerna-bench-task"});
   definition.at("version").whole(1, 1);
   id = definition.at("task").text();
