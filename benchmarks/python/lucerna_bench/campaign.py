@@ -111,7 +111,8 @@ def commit_of(folder):
     def git(*words):
         return subprocess.run(["git", *words], cwd=folder, capture_output=True, text=True, check=True).stdout.strip()
     try:
-        changed = git("status", "--porcelain", "--untracked-files=no")
+        # Pages of results are no change of what makes them.
+        changed = git("status", "--porcelain", "--untracked-files=no", ":/", ":(top,exclude)docs")
         return git("rev-parse", "--short", "HEAD") + (" with changes" if changed else "")
     except (OSError, subprocess.CalledProcessError):
         raise ValueError(f"{folder}: found no git checkout, expected one, or --commit TEXT") from None

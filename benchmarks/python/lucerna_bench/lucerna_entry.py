@@ -19,7 +19,8 @@ TROUGH_LENGTH_MM = 400.0
 COLLECTOR_RADIUS_MM = 50.0
 # Of LB-2 only the light counts.
 LIGHT_WEIGHT_OF_COLLECTOR = 100
-KEPT_FILES = ("project.toml", "reflector.toml", "lens.toml", "result.json", "history.csv")
+# Beside the project and its target, which are there before.
+KEPT_FILES = ("reflector.toml", "lens.toml", "result.json", "history.csv")
 
 
 def project(task: Task, folder):
@@ -115,7 +116,7 @@ def _collector(task, intervals=20):
     b2 = half_axis**2 - (0.5 * down) ** 2
     across = np.linspace(-radius, radius, 6 * intervals + 1)
     square = across**2 + across[:, None] ** 2
-    # Beyond the rim, where the ellipsoid ends, its height goes on as a parabola of r^2.
+    # Beyond the rim its height goes on as a parabola of r^2: the ellipsoid ends before the spline's corners.
     cosine = np.sqrt(1.0 - np.minimum(square, radius**2) / b2)
     beyond = np.maximum(0.0, square - radius**2) / b2
     depth = half_axis * (1.0 - cosine + beyond / (2.0 * cosine) + beyond**2 / (8.0 * cosine**3))
@@ -165,7 +166,7 @@ def design(lucerna, task, folder, time_s, threads=None, seed=1, device="cpu"):
 
 
 def keep_files(folder):
-    """Of a design's folder only the project, the result and the history are kept."""
+    """Of a design's folder only the optic, the result and the history are kept."""
     folder = pathlib.Path(folder)
     for name in KEPT_FILES:
         if (folder / "design" / name).exists():
