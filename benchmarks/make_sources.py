@@ -4,7 +4,7 @@
 
     python3 make_sources.py --lucerna lucerna --out rays                  # writes and checks those of 1,000,000 rays
     python3 make_sources.py --lucerna lucerna --out rays --files '*-10M*' # ... of 10,000,000 rays, 280 MB each
-    python3 make_sources.py --out rays                                    # checks the files in the folder
+    python3 make_sources.py --out rays                                    # checks those that must be in the folder
 
 Each file is compared with its SHA-256 in sources/sources.json: that of its rays (the last 28 bytes per ray) must agree;
 that of the whole file also depends on the version of the program, which stands in the file's header, and is only
@@ -14,10 +14,13 @@ import fnmatch
 import hashlib
 import json
 import pathlib
-import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE / "python"))
+from lucerna_bench.campaign import lucerna_version  # noqa: E402
+from lucerna_bench.programs import run  # noqa: E402
+
 SOURCES = HERE / "sources" / "sources.json"
 RAY_BYTES = 28
 MODEL_MAX_BYTES = "256k"
@@ -25,7 +28,10 @@ MODEL_MAX_BYTES = "256k"
 
 def read_sources(file=SOURCES):
     """By name: `kind`, `options` and `seed` of `lucerna make-source`, `files` of rays and the `model` of the largest."""
-    return json.loads(pathlib.Path(file).read_text())["sources"]
+    whole = json.loads(pathlib.Path(file).read_text())
+    if (whole.get("format"), whole.get("version")) != ("lucerna-bench-sources", 1):
+        raise ValueError(f"{file}: /format: found another format or version, expected lucerna-bench-sources, version 1")
+    return whole["sources"]
 
 
 def ray_files(sources, pattern="*"):
@@ -41,7 +47,7 @@ def command_of(lucerna, source, rays, out):
 
 def digests(path, rays):
     """SHA-256 of the rays of a file and of the whole file."""
-    data = path.read_bytes()
+    data = memoryview(path.read_bytes())
     return hashlib.sha256(data[-RAY_BYTES * rays:]).hexdigest(), hashlib.sha256(data).hexdigest()
 
 
@@ -56,22 +62,23 @@ def check(path, frozen):
 def check_model(name, source, folder=SOURCES.parent):
     """What is wrong with the model of a source, or nothing."""
     path = folder / f"{name}.nfl"
-    found = hashlib.sha256(path.read_bytes()).hexdigest() if path.exists() else "nothing"
-    expected = source["model"]["sha256"]
+    if not path.exists():
+        return f"{path}: file: found nothing, expected a model"
+    found, expected = hashlib.sha256(path.read_bytes()).hexdigest(), source["model"]["sha256"]
     return None if found == expected else f"{path}: file: found SHA-256 {found}, expected {expected}"
 
 
 def freeze(lucerna, out):
     """Makes all files and models anew, and writes down what they are: for a new version of the suite."""
     whole = json.loads(SOURCES.read_text())
-    whole["made_by"] = f"lucerna {subprocess.run([lucerna, '--version'], capture_output=True, text=True, check=True).stdout.strip()}"
+    # For readers: another version may make other models.
+    whole["made_by"] = lucerna_version(lucerna)
     for name, source in whole["sources"].items():
         for file, frozen in source["files"].items():
-            subprocess.run(command_of(lucerna, source, frozen["rays"], out / file), check=True)
+            run(command_of(lucerna, source, frozen["rays"], out / file))
             frozen["rays_sha256"], frozen["sha256"] = digests(out / file, frozen["rays"])
         model = SOURCES.parent / f"{name}.nfl"
-        subprocess.run([lucerna, "compress", str(out / source["model"]["of"]), "-o", str(model), "--max-bytes",
-                        MODEL_MAX_BYTES, "--quiet"], check=True)
+        run([lucerna, "compress", out / source["model"]["of"], "-o", model, "--max-bytes", MODEL_MAX_BYTES, "--quiet"])
         source["model"]["sha256"] = hashlib.sha256(model.read_bytes()).hexdigest()
         SOURCES.write_text(json.dumps(whole, indent=1) + "\n")
 
@@ -83,17 +90,31 @@ def main():
     parser.add_argument("--files", default="*-1M.tm25ray", help="which files, with * for anything")
     parser.add_argument("--freeze", action="store_true", help="writes the hashes of what is made to sources.json")
     options = parser.parse_args()
+    try:
+        return work(options)
+    except (ValueError, OSError) as e:
+        print(f"make_sources.py: {e}", file=sys.stderr)
+        return 1
+
+
+def work(options):
+    """The program's exit code."""
     out = pathlib.Path(options.out)
+    if options.freeze and not options.lucerna:
+        raise ValueError("--freeze: found no --lucerna, expected the program")
     if options.lucerna:
         out.mkdir(parents=True, exist_ok=True)
     if options.freeze:
         freeze(options.lucerna, out)
     sources = read_sources()
     wrong = [text for name, source in sources.items() if (text := check_model(name, source))]
-    for name, (source, frozen) in ray_files(sources, options.files).items():
+    files = ray_files(sources, "*" if options.freeze else options.files)
+    if not files:
+        raise ValueError(f"--files: found no file by {options.files}, expected some of {', '.join(ray_files(sources))}")
+    for name, (source, frozen) in files.items():
         path = out / name
         if options.lucerna and not options.freeze:
-            subprocess.run(command_of(options.lucerna, source, frozen["rays"], path), check=True)
+            run(command_of(options.lucerna, source, frozen["rays"], path))
         if not path.exists():
             wrong.append(f"{path}: file: found nothing, expected {frozen['rays']} rays")
             continue

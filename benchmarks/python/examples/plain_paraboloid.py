@@ -3,8 +3,8 @@
 """Enters the plain paraboloid in a task of LB-6: a baseline with one parameter, its focal length, which is found
 by golden section with the scorer itself.
 
-    python3 plain_paraboloid.py --scorer ../../build/lucerna-bench-score --task ../../tasks/LB-6-led-spot10.json \
-        --out entry --rays 200000
+    python3 benchmarks/python/examples/plain_paraboloid.py --scorer benchmarks/build/lucerna-bench-score \
+        --task benchmarks/tasks/LB-6-led-spot10.json --out entry --rays 200000
 """
 import argparse
 import pathlib
@@ -13,16 +13,14 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from lucerna_bench import Entry, height_field, placed  # noqa: E402
 from lucerna_bench.golden import golden_section  # noqa: E402
+from lucerna_bench.tasks import read_task  # noqa: E402
 
-DIAMETER_MM = 100.0
 
-
-def surfaces_of(parameters):
-    """The mirror above the source, opening towards -z, its focus in the source."""
+def surfaces_of(parameters, half):
+    """The mirror above the source, opening towards -z, its focus in the source; `half` of its diameter in mm."""
     focal_mm = float(parameters[0])
-    half = 0.5 * DIAMETER_MM
     mirror = height_field(lambda x, y: (x * x + y * y) / (4.0 * focal_mm), half, half, intervals=(1, 1), degree=2,
-                          trim={"kind": "circle", "diameter_mm": DIAMETER_MM})
+                          trim={"kind": "circle", "diameter_mm": 2.0 * half})
     return [{"name": "mirror", "role": "mirror", "bspline": mirror,
              "place": placed((0.0, 0.0, focal_mm), z_axis=(0.0, 0.0, -1.0))}]
 
@@ -36,9 +34,13 @@ def main():
     parser.add_argument("--steps", type=int, default=10, help="trials after the first two")
     parser.add_argument("--threads", type=int, default=None)
     options = parser.parse_args()
-    entry = Entry(options.task, surfaces_of, options.scorer, threads=options.threads)
-    # 18 to 40 mm: the mirror stays within the task's cylinder, z from -20 to 40 mm.
-    focal_mm = golden_section(lambda f: entry.cost([f], rays=options.rays), 18.0, 40.0,
+    task = read_task(options.task)
+    if task.kind != "mirror":
+        parser.error(f"--task: found {task.name}, expected a task of LB-6")
+    entry = Entry(options.task, lambda p: surfaces_of(p, task.room.half_mm), options.scorer, threads=options.threads)
+    # The mirrors that the task has room for.
+    low, high = task.room.focal_range_mm()
+    focal_mm = golden_section(lambda f: entry.cost([f], rays=options.rays), low + 1e-3, high - 1e-3,
                               lambda trials: trials >= options.steps + 2)
     file = entry.write(options.out, [focal_mm], name=f"plain paraboloid, focal length {focal_mm:.2f} mm",
                        author="Lucerna", program="examples/plain_paraboloid.py",

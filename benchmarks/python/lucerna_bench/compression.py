@@ -20,6 +20,8 @@ from .views import NAMES, Views, compare
 FORMAT = "lucerna-bench-compression"
 # Six floats of a ray whose flux is that of the others.
 PICKED_BYTES = 24
+# Four floats of one on a plane or a sphere.
+SPREAD_BYTES = 16
 
 
 @dataclasses.dataclass(frozen=True)
@@ -83,11 +85,10 @@ class Lucerna:
         return read_tm25(out)
 
 
-def picked(file, max_bytes):
-    """As many of the rays of a file as there is room for, at 24 bytes. They are drawn by flux, so that all weigh the
-    same."""
+def picked(file, count):
+    """So many of the rays of a file, or all. They are drawn by flux, so that all weigh the same."""
     rays = read_tm25(file)
-    count = min(len(rays), max_bytes // PICKED_BYTES)
+    count = min(len(rays), count)
     below = np.cumsum(rays.weight)
     at = (np.arange(count) + np.random.default_rng(1).random(count)) / count * below[-1]
     return rays[np.searchsorted(below, at, side="right").clip(0, len(rays) - 1)]
@@ -97,7 +98,7 @@ class PickedRays:
     """Some of the rays, drawn again and again: the usual way of making a ray file smaller."""
 
     def compress(self, file, max_bytes, _folder):
-        kept = picked(file, max_bytes)
+        kept = picked(file, max_bytes // PICKED_BYTES)
         return Model(PICKED_BYTES * len(kept), lambda n, seed: self._again(kept, n, seed))
 
     @staticmethod
@@ -107,11 +108,11 @@ class PickedRays:
 
 
 class SpreadRays:
-    """The same rays, each spread over a cell of its own."""
+    """Some of the rays, each spread over a cell of its own."""
 
     def compress(self, file, max_bytes, _folder):
-        kept = picked(file, max_bytes)
-        return Model(PICKED_BYTES * len(kept), InterpolatedRays(kept).sample)
+        kept = picked(file, (max_bytes - HEADER_BYTES) // SPREAD_BYTES)
+        return Model(SPREAD_BYTES * len(kept) + HEADER_BYTES, InterpolatedRays(kept).sample)
 
 
 class UniformLightField:

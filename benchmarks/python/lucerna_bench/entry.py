@@ -39,6 +39,8 @@ def write_submission(folder, task, name, author, surfaces, stated, target_place=
     this package) or `stl` (a file in the folder, with `normals`), and, where wanted, `place`, `flip`,
     `refractive_index`. `task`: its name, as LB-6-led-oval. `light_table`: of LB-1, an LDT file in the folder instead of
     surfaces, which are None then."""
+    if (surfaces is None) == (light_table is None):
+        raise ValueError(f"{folder}: found {'neither' if surfaces is None else 'both'} of surfaces and light_table, expected one")
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     submission = {"format": "lucerna-bench-submission", "version": 1, "task": task, "name": name, "author": author,
@@ -62,7 +64,7 @@ def score(scorer, task_file, submission_file, rays=100_000_000, seed=1, threads=
             command += ["--rays-from", str(rays_from)]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if not out.exists():
-            raise ValueError(done.stderr.strip() or f"{scorer}: exit {done.returncode} without a score")
+            raise ValueError(done.stderr.strip() or f"{' '.join(command)}: found exit {done.returncode} without a score")
         return json.loads(out.read_text())
 
 

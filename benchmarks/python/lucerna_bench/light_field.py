@@ -30,6 +30,9 @@ class Sphere:
     """The sphere that holds the starts of rays. A ray is four numbers in [0, 1) there, even over étendue: where it leaves
     the sphere, and its direction cosines at that place."""
 
+    # Two of the numbers are angles.
+    CYCLIC = (1, 3)
+
     def __init__(self, rays):
         start = np.asarray(rays.start, float)
         self.centre = 0.5 * (start.min(axis=0) + start.max(axis=0))

@@ -36,7 +36,7 @@ def row(task, method, s):
     """The cells of one entry: what its score.json says, and no more."""
     error, stated = s["error_48"], s["stated"]
     cpu = "not stated" if stated["cpu_s"] is None else f"{stated['cpu_s']:.1f}"
-    if s["rays_from"] == "light table":
+    if s["light_table"]:
         method += " (light table)"
     return [task, method if s["counts"] else f"{method} (does not count: {'; '.join(s['faults'])})",
             f"{percent(error['excess'])} +- {percent(error['standard_error'])}", percent(error["floor"]),
@@ -45,29 +45,39 @@ def row(task, method, s):
             str(stated["free_parameters"]), f"{stated['wall_s']:.1f}", cpu, stated["machine"], stated["program"]]
 
 
+def ranked(s):
+    """Is it an entry that counts, and not a light table, which nobody can verify?"""
+    return s["counts"] and not s["light_table"]
+
+
 def best_losses(scores):
-    """By task: the least loss of those that count."""
+    """By task: the least loss of those that are ranked."""
     best = {}
     for task, _, s in scores:
-        if s["counts"]:
+        if ranked(s):
             best[task] = min(best.get(task, math.inf), loss(s)[0])
     return best
+
+
+def _line(cells):
+    return "| " + " | ".join(c.replace("|", "\\|") for c in cells) + " |"
 
 
 def overview(scores):
     """A Markdown table: a row a task, a column a method. Errors with the light in the window, or the light alone where
     that is what counts."""
     found = {(task, method): s for task, method, s in scores}
-    methods = sorted({method for _, method, _ in scores}, key=[*COLOURS, *{m for _, m, _ in scores}].index)
+    names = {method for _, method, _ in scores}
+    methods = [*(m for m in COLOURS if m in names), *sorted(names - set(COLOURS))]
     best = best_losses(scores)
-    lines = ["| task | " + " | ".join(methods) + " |", "|---|" + "---|" * len(methods)]
+    lines = [_line(["task", *methods]), "|---|" + "---|" * len(methods)]
     for task in sorted({task for task, _, _ in scores}):
         cells = []
         for method in methods:
             s = found.get((task, method))
             text = "-" if s is None else _brief(s)
-            cells.append(f"**{text}**" if s and s["counts"] and loss(s)[0] == best[task] else text)
-        lines.append("| " + " | ".join([task, *cells]) + " |")
+            cells.append(f"**{text}**" if s and ranked(s) and loss(s)[0] == best[task] else text)
+        lines.append(_line([task, *cells]))
     return "\n".join(lines) + "\n"
 
 
@@ -76,7 +86,9 @@ def _brief(s):
         return "does not count"
     light = f"{percent(s['efficiency_with_losses']['value'], 1)} light"
     error = s["error_48"]
-    return f"{percent(error['excess'])} +- {percent(error['standard_error'])}, {light}" if s["headline"] == "error_48" else light
+    if s["headline"] == "error_48":
+        light = f"{percent(error['excess'])} +- {percent(error['standard_error'])}, {light}"
+    return light + (" (light table)" if s["light_table"] else "")
 
 
 def table(scores):
@@ -88,10 +100,10 @@ def table(scores):
     best = best_losses(scores)
     for task, method, s in scores:
         cells = row(task, method, s)
-        if s["counts"] and loss(s)[0] == best[task]:
+        if ranked(s) and loss(s)[0] == best[task]:
             headline = 2 if s["headline"] == "error_48" else 5
             cells[headline] = f"**{cells[headline]}**"
-        lines.append("| " + " | ".join(c.replace("|", "\\|") for c in cells) + " |")
+        lines.append(_line(cells))
     lines += ["", "Scored with:", "", *("- " + ", ".join(x) for x in scored)]
     return "\n".join(lines) + "\n"
 
@@ -147,7 +159,8 @@ def write_all(out):
         files += [write_whole(out / f"{family}.md", page), write_whole(out / f"{family}.svg", plot(ours, title))]
     if scores:
         text = ("# Overview\n\n<!-- written by benchmarks/run_entries.py -->\n\nErrors at 48 boxes a side with their noise taken "
-                "out, and the share of the source's light\nthat arrives. The best of a task is bold. All figures stand on "
-                "the pages of the families.\n\n")
+                "out, and the share of the source's light\nthat arrives. The least error of a task is bold, or the most "
+                "light where that is what is asked\nfor. An entry with a smaller error and less light is not the better "
+                "one. Noise, free parameters\nand seconds stand on the pages of the families.\n\n")
         files.append(write_whole(out / "overview.md", text + overview(scores)))
     return files

@@ -96,7 +96,7 @@ def error(excess, standard_error=0.0, floor=0.0):
 
 def fake_score(**changed):
     share = lambda x: {"value": x, "standard_error": 0.0}
-    s = {"counts": True, "headline": "error_48", "faults": [], "rays": 1000, "rays_from": "fresh", "seed": 77,
+    s = {"counts": True, "headline": "error_48", "faults": [], "rays": 1000, "light_table": False, "seed": 77,
          "error_48": error(0.0123, 0.0004, 0.0056), "nmae": share(0.0789), "efficiency_with_losses": share(0.8111), "efficiency_without_losses": share(0.9222),
          "outside_rectangle": share(0.0333), "run": {"machine": "scoring box"},
          "stated": {"free_parameters": 44, "wall_s": 60.25, "cpu_s": 118.5, "machine": "a box",
@@ -115,7 +115,7 @@ def test_tables_hold_what_the_scores_say():
     assert len(rows[0]) == len(tables.COLUMNS)
     assert rows[1][1] == "tree (does not count: too wide)" and rows[1][2] == "50.00 % +- 10.00 %"
     assert "seed 77" in text and "scoring box" in text
-    assert "| tree (light table) |" in tables.table([("LB-9-x", "tree", fake_score(rays_from="light table"))])
+    assert "| tree (light table) |" in tables.table([("LB-9-x", "tree", fake_score(light_table=True))])
     unknown = fake_score()
     unknown["stated"]["cpu_s"] = None
     assert "not stated" in tables.table([("LB-9-x", "plain", unknown)])
@@ -155,6 +155,10 @@ def test_the_overview_has_a_row_a_task_and_a_column_a_method():
     scores = [("LB-2a", "tree", fake_score(headline="efficiency_with_losses")),
               ("LB-9-x", "plain", fake_score(error_48=error(0.5))), ("LB-9-x", "mine", fake_score(counts=False)),
               ("LB-9-x", "lucerna", fake_score())]
+    table_of_light = fake_score(error_48=error(0.0001), light_table=True)
+    assert "| **1.23 % +- 0.04 %, 81.1 % light** | 0.01 % +- 0.00 %, 81.1 % light (light table) |" in tables.overview(
+        [("LB-1a", "lucerna", fake_score()), ("LB-1a", "a|b", table_of_light)])
+    assert "| a\\|b |" in tables.overview([("LB-1a", "a|b", table_of_light)])
     assert tables.overview(scores).splitlines() == [
         "| task | lucerna | plain | tree | mine |", "|---|---|---|---|---|",
         "| LB-2a | - | - | **81.1 % light** | - |",

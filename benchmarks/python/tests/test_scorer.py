@@ -143,13 +143,20 @@ def test_frozen_rays_are_those_of_the_emitter(scorer, lucerna, tasks, tmp_path, 
 
 def test_frozen_files_are_checked(tasks, tmp_path, monkeypatch, capsys):
     sources = make_sources.read_sources()
-    assert set(sources) == {json.loads(file.read_text()).get("frozen_source", "led") for file in tasks.glob("*.json")}
+    named = {file.stem: json.loads(file.read_text()).get("frozen_source") for file in tasks.glob("*.json")}
+    assert set(sources) == {name for name in named.values() if name}
+    assert all((name is None) == task.startswith("LB-1") for task, name in named.items())
     files = make_sources.ray_files(sources)
     assert {frozen["rays"] for _, frozen in files.values()} == {10**6, 10**7} and len(files) == 2 * len(sources)
     (tmp_path / "led-1M.tm25ray").write_bytes(b"TM25" + bytes(100))
     monkeypatch.setattr("sys.argv", ["make_sources.py", "--out", str(tmp_path), "--files", "[lf]*-1M*"])
     assert make_sources.main() == 1
     said = capsys.readouterr().err
+    monkeypatch.setattr("sys.argv", ["make_sources.py", "--out", str(tmp_path), "--files", "led-2M*"])
+    assert make_sources.main() == 1
+    assert "--files: found no file by led-2M*, expected some of" in capsys.readouterr().err
+    monkeypatch.setattr("sys.argv", ["make_sources.py", "--out", str(tmp_path), "--freeze"])
+    assert make_sources.main() == 1 and "--freeze: found no --lucerna" in capsys.readouterr().err
     assert "led-1M.tm25ray: rays: found SHA-256" in said and "filament-1M.tm25ray: file: found nothing, expected" in said
 
 
@@ -167,7 +174,7 @@ def test_frozen_models_are_those_of_the_repository(tmp_path):
         assert f"{name}.nfl: file: found SHA-256" in make_sources.check_model(name, source, tmp_path)
 
 
-@pytest.mark.parametrize("name", ["led", "disk-5", "filament"])
+@pytest.mark.parametrize("name", ["led", "disk-5", "filament", "rectangle-1x1", "rectangle-2x2", "rectangle-3x3"])
 def test_frozen_models_draw_the_light_of_the_emitter(scorer, lucerna, tasks, tmp_path, name):
     """Rays of the model against the scorer's own emitter, through a plain mirror that is not in focus."""
     task = next(d for file in sorted(tasks.glob("*.json")) if (d := json.loads(file.read_text())).get("frozen_source") == name)
@@ -177,9 +184,8 @@ def test_frozen_models_draw_the_light_of_the_emitter(scorer, lucerna, tasks, tmp
     fresh, _, _ = boxes_of(scorer, tmp_path / "a", scene, paraboloid(shift_mm=0.5))
     drawn, _, _ = boxes_of(scorer, tmp_path / "b", scene, paraboloid(shift_mm=0.5), "--rays-from",
                            str(tmp_path / "rays.tm25ray"))
-    # A model is no emitter: beyond noise it may be a little off, and far less than another mirror.
     moved, _, _ = boxes_of(scorer, tmp_path / "c", scene, paraboloid(shift_mm=0.25))
-    assert abs(deviation(fresh, drawn)) < 0.1 * deviation(moved, drawn)
+    assert abs(deviation(fresh, drawn)) < 5.0 < deviation(moved, drawn)
 
 
 def stl_of(focal_mm, radius_mm, rings, sectors):

@@ -137,8 +137,41 @@ def test_cells_share_the_box_of_their_points():
     less = interpolated_rays.drawn_in(found, points)
     assert ((less[:, 0] <= points) & (points <= less[:, 1])).all()
     assert (less[:, 0] >= found[:, 0]).all() and (less[:, 1] <= found[:, 1]).all()
+    # Axes that are cyclic have no edge.
+    whole = interpolated_rays.cells(points, (1, 3))
+    assert (interpolated_rays.drawn_in(whole, points, (1, 3))[:, :, [1, 3]] == whole[:, :, [1, 3]]).all()
+    assert whole[:, 0, [1, 3]].min() == 0.0 and whole[:, 1, [1, 3]].max() == 1.0
     inner = (found[:, 0] > points.min(axis=0)).all(axis=1) & (found[:, 1] < points.max(axis=0)).all(axis=1)
     assert 20 < inner.sum() < 1001 and (less[inner] == found[inner]).all() and not (less[~inner] == found[~inner]).all()
+
+
+def test_a_sphere_has_no_seam():
+    """Light of a sphere is as bright at the azimuth where numbers begin anew as elsewhere: 5 standard errors of 500 cells."""
+    random = np.random.default_rng(5)
+    way = random.normal(size=(4000, 3))
+    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    drawn = InterpolatedRays(Rays(np.zeros((4000, 3)) + 1e-3 * random.normal(size=(4000, 3)), way, np.ones(4000)))
+    assert isinstance(drawn.surface, Sphere)
+    out = drawn.sample(200_000, 6).direction
+    seam = np.mean(np.abs(np.arctan2(out[:, 1], out[:, 0])) < np.pi / 16.0)
+    assert seam == pytest.approx(1.0 / 16.0, abs=5.0 * math.sqrt(1.0 / 16.0 / 4000.0))
+
+
+def test_a_dome_is_interpolated_where_its_rays_are_narrowest():
+    """The rays of a disk, which start on a dome above it: the plane is that of the disk."""
+    disk = lambertian_disk(50_000, 1, centre=(0.0, 0.0, 2.0))
+    o = disk.start - [0.0, 0.0, 2.0]
+    b = np.sum(o * disk.direction, axis=1)
+    way = -b + np.sqrt(b * b - np.sum(o * o, axis=1) + 9.0)
+    dome = Rays(disk.start + way[:, None] * disk.direction, disk.direction, disk.flux)
+    drawn = InterpolatedRays(dome[:4000])
+    assert drawn.surface.z == pytest.approx(2.0, abs=0.03)
+    again = np.random.default_rng(3).integers(4000, size=100_000)
+    kept = dome[:4000]
+    picked, spread = (differences(dome, rays) for rays in
+                      (Rays(kept.start[again], kept.direction[again], np.ones(100_000)), drawn.sample(100_000, 4)))
+    for name in ("far", "focus", "beam", "four_d"):
+        assert spread[name].excess < 0.7 * picked[name].excess
 
 
 def test_spread_rays_are_nearer_than_the_rays_themselves():
@@ -150,7 +183,6 @@ def test_spread_rays_are_nearer_than_the_rays_themselves():
     for name in ("far", "focus", "beam", "four_d"):
         assert spread[name].excess < 0.7 * picked[name].excess
         assert spread[name].excess < few[name].excess
-
 
 
 def test_the_task_is_read_and_damage_is_named(tasks, tmp_path):

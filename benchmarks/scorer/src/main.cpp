@@ -92,7 +92,8 @@ int run(const Arguments& a) {
   const Target target(task.definition.at("target"), place);
   std::unique_ptr<Source> frozen;
   if (!a.rays_from.empty()) {
-    if (submission.light_table) throw UsageError("--rays-from: found a light table, expected surfaces");
+    if (submission.light_table)
+      throw InputError(a.submission, "/light_table", "a light table with --rays-from", "surfaces to trace");
     frozen = read_tm25(a.rays_from, task.source_place);
   }
   const Source& source = frozen ? *frozen : submission.source(task);
@@ -101,8 +102,7 @@ int run(const Arguments& a) {
   const SurfaceScene scene(submission.parts);
   const Tally tally = trace(task, source, scene, target, a.settings);
   const Score score = score_of(tally, target, whole_rays(a.settings.rays, source));
-  const std::string rays_from = frozen ? a.rays_from : submission.light_table ? "light table" : "fresh";
-  RunFacts facts{a.settings.seed, rays_from, a.settings.threads, 0.0, machine_name()};
+  RunFacts facts{a.settings.seed, frozen ? a.rays_from : "fresh", a.settings.threads, 0.0, machine_name()};
   facts.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const auto json = score_json(task, submission, target, score, facts);
   std::fputs(score_text(json).c_str(), stdout);

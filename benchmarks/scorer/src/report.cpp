@@ -84,6 +84,7 @@ Json score_json(const Task& task, const Submission& submission, const Target& ta
   const auto broken = faults(s, submission);
   out["counts"] = broken.empty();
   out["faults"] = broken;
+  out["light_table"] = submission.light_table != nullptr;
   out["rays"] = s.rays;
   out["rays_from"] = run.rays_from;
   out["seed"] = run.seed;
@@ -134,7 +135,7 @@ std::string score_text(const Json& s) {
   out += stated_text(s["stated"]);
   out += line("  scored in %.1f s on %u threads, %s", s["run"]["seconds"].get<double>(),
               s["run"]["threads"].get<unsigned>(), s["run"]["machine"].get<std::string>().c_str());
-  if (s["rays_from"] == "light table") out += "  a light table: not traced, limits not checked\n";
+  if (s["light_table"].get<bool>()) out += "  a light table: not traced, limits not checked\n";
   for (const Json& fault : s["faults"]) out += "  DOES NOT COUNT: " + fault.get<std::string>() + "\n";
   return out;
 }

@@ -11,12 +11,18 @@ namespace bench {
 
 namespace {
 
-/// Files are named from the folder of the submission, and stay in it.
+/// Files are named from the folder of the submission, and stay in it, also where links lead.
 std::string beside(const JsonNode& name) {
-  const std::filesystem::path given = name.text();
-  const bool climbs = std::find(given.begin(), given.end(), "..") != given.end();
-  if (given.empty() || given.is_absolute() || climbs) name.fail("a file in the folder of the submission");
-  return (std::filesystem::path(name.file()).parent_path() / given).string();
+  namespace fs = std::filesystem;
+  const fs::path given = name.text(), folder = fs::path(name.file()).parent_path(), file = folder / given;
+  std::error_code none;
+  const fs::path home = fs::weakly_canonical(folder.empty() ? "." : folder, none);
+  const fs::path real = fs::weakly_canonical(file, none);
+  const bool within = std::mismatch(home.begin(), home.end(), real.begin(), real.end()).first == home.end();
+  if (given.empty() || given.is_absolute() || !within) name.fail("a file in the folder of the submission");
+  if (fs::exists(file, none) && !fs::is_regular_file(file, none))
+    throw InputError(file.string(), "file", "a folder or a device", "a file");
+  return file.string();
 }
 
 /// One, or the faces of a STEP file.
@@ -107,7 +113,9 @@ Submission::Submission(const std::string& path, const Task& task) : file(path) {
   s.at("task").one_of({task.id});
   name = s.at("name").text();
   author = s.at("author").text();
-  if (s.has("surfaces") == s.has("light_table")) s.fail("one of the keys surfaces and light_table");
+  if (s.has("surfaces") == s.has("light_table"))
+    s.fail(s.has("surfaces") ? "both of surfaces and light_table" : "neither surfaces nor light_table",
+           "one of the two keys");
   if (s.has("light_table")) {
     if (task.definition.at("target").at("kind").text() != "angle")
       s.at("light_table").fail("surfaces: only two-dimensional tasks take a light table");

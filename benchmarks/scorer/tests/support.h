@@ -30,6 +30,7 @@ class TestFolder {
     std::ofstream(file, std::ios::binary) << bytes;
     return file;
   }
+  const std::filesystem::path& path() const { return path_; }
   std::string write(const std::string& name, const Json& json) const { return write(name, json.dump(1)); }
 
  private:
