@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace bench {
 
@@ -25,7 +24,6 @@ IntensityTable::IntensityTable(const JsonNode& t)
 }
 
 double IntensityTable::at(double u, double v) const {
-  constexpr double kDegree = std::numbers::pi / 180.0;
   const double gamma = std::asin(std::min(1.0, std::hypot(u, v))) / kDegree / gamma_step_deg_;
   const std::size_t last = rows_.front().size() - 1;
   if (gamma > static_cast<double>(last)) return 0.0;

@@ -4,25 +4,16 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
-#include <numbers>
 
 namespace bench {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 /// A ratio of light, in per cent, is often rounded.
 constexpr double kRatioTolerance = 0.01;
 /// Smaller intensities are no light: their squares would be none.
 constexpr double kDark = 1e-100;
-
-std::string shown(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", x);
-  return text;
-}
 
 /// Lines of an LDT file, one after another, each with its number.
 class LdtFile {

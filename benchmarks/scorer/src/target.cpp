@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "intensity_table.h"
 
@@ -11,7 +10,6 @@ namespace bench {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 /// Share of the flux that is cut off at each side of the rectangle.
 constexpr double kCut = 0.0025;
 /// Boxes with less of a whole one's measure are slivers at the horizon: they do not count.

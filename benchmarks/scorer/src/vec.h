@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 namespace bench {
+
+inline constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct Vec3 {
   double x = 0.0, y = 0.0, z = 0.0;

@@ -67,19 +67,15 @@ Json angle_task() {
       {{"kind", "angle"}, {"axis", "-z"}, {"function", "cosine_power"}, {"power", 4}, {"edge_deg", 40}});
 }
 
-/// Scores a table as a submission of it does.
-Scored scored_table(const std::string& text) {
-  const TestFolder folder;
+Json table_entry() {
   Json entry = submission_json({});
   entry.erase("surfaces");
   entry["light_table"] = "light.ldt";
-  folder.write("light.ldt", text);
-  const Task task(folder.write("task.json", angle_task()));
-  const Submission s(folder.write("submission.json", entry), task);
-  const Target target(task.definition.at("target"));
-  const SurfaceScene scene(s.parts);
-  const Score score = score_of(trace(task, s.source(task), scene, target, {kRays, 7, 2}), target, kRays);
-  return {score, score_json(task, s, target, score, {})};
+  return entry;
+}
+
+Scored scored_table(const std::string& text) {
+  return scored(angle_task(), table_entry(), kRays, 2, {{"light.ldt", text}});
 }
 
 TEST(LightTable, OfTheTargetHasItsError) {
@@ -186,15 +182,12 @@ TEST(LightTable, WhatIsWrongIsNamed) {
 
 TEST(LightTable, OnlyTasksOfTwoDimensionsTakeOne) {
   const TestFolder folder;
-  folder.write("t.ldt", ldt(0, 4, in_plane(cos4)));
-  Json entry = submission_json({});
-  entry["light_table"] = "t.ldt";
+  folder.write("light.ldt", ldt(0, 4, in_plane(cos4)));
+  Json entry = table_entry();
   const auto refused = [&](const Json& task, const Json& submission) {
     const Task t(folder.write("task.json", task));
     return refusal([&] { Submission(folder.write("submission.json", submission), t); });
   };
-  EXPECT_NE(refused(angle_task(), entry).find("found both of surfaces and light_table"), std::string::npos);
-  entry.erase("surfaces");
   EXPECT_EQ(refused(angle_task(), entry), "");
   const Json far = task_json({{"emitter", "disk"}, {"radius_mm", 1.0}},
                              {{"kind", "far_field"}, {"axis", "-z"}, {"function", "wall_washer"}});
@@ -211,6 +204,10 @@ TEST(LightTable, OnlyTasksOfTwoDimensionsTakeOne) {
   }
   entry["light_table"] = ".";
   EXPECT_NE(refused(angle_task(), entry).find("found a folder or a device"), std::string::npos);
+  entry["light_table"] = "light.ldt";
+  entry["surfaces"] = Json::array();
+  EXPECT_NE(refused(angle_task(), entry).find("found both of surfaces and light_table"), std::string::npos);
+  entry.erase("surfaces");
   entry.erase("light_table");
   EXPECT_NE(refused(angle_task(), entry).find("found neither surfaces nor light_table"), std::string::npos);
 }

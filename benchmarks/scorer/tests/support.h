@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -98,9 +99,11 @@ struct Scored {
   nlohmann::ordered_json json;
 };
 
-/// Scores a submission as the program does.
-inline Scored scored(const Json& task, const Json& submission, std::uint64_t rays, unsigned threads = 1) {
+/// Scores a submission as the program does. `files`: name and content of those beside it.
+inline Scored scored(const Json& task, const Json& submission, std::uint64_t rays, unsigned threads = 1,
+                     const std::map<std::string, std::string>& files = {}) {
   const TestFolder folder;
+  for (const auto& [name, bytes] : files) folder.write(name, bytes);
   const Task t(folder.write("task.json", task));
   const Submission s(folder.write("submission.json", submission), t);
   const Target target(t.definition.at("target"), s.target_place ? &*s.target_place : nullptr);
