@@ -19,10 +19,10 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE / "python"))
 from lucerna_bench.campaign import lucerna_version  # noqa: E402
-from lucerna_bench.programs import run  # noqa: E402
+from lucerna_bench.programs import make_source, run  # noqa: E402
+from lucerna_bench.rays import RAY_BYTES  # noqa: E402
 
 SOURCES = HERE / "sources" / "sources.json"
-RAY_BYTES = 28
 MODEL_MAX_BYTES = "256k"
 
 
@@ -40,15 +40,18 @@ def ray_files(sources, pattern="*"):
             if fnmatch.fnmatch(name, pattern)}
 
 
-def command_of(lucerna, source, rays, out):
-    return [lucerna, "make-source", source["kind"], "-n", str(rays), "--seed", str(source["seed"]), *source["options"],
-            "--quiet", "-o", str(out)]
+def write_rays(lucerna, source, rays, out):
+    make_source(lucerna, source["kind"], source["options"], rays, source["seed"], out)
+
+
+def sha256(data):
+    return hashlib.sha256(data).hexdigest()
 
 
 def digests(path, rays):
     """SHA-256 of the rays of a file and of the whole file."""
     data = memoryview(path.read_bytes())
-    return hashlib.sha256(data[-RAY_BYTES * rays:]).hexdigest(), hashlib.sha256(data).hexdigest()
+    return sha256(data[-RAY_BYTES * rays:]), sha256(data)
 
 
 def check(path, frozen):
@@ -64,7 +67,7 @@ def check_model(name, source, folder=SOURCES.parent):
     path = folder / f"{name}.nfl"
     if not path.exists():
         return f"{path}: file: found nothing, expected a model"
-    found, expected = hashlib.sha256(path.read_bytes()).hexdigest(), source["model"]["sha256"]
+    found, expected = sha256(path.read_bytes()), source["model"]["sha256"]
     return None if found == expected else f"{path}: file: found SHA-256 {found}, expected {expected}"
 
 
@@ -75,11 +78,11 @@ def freeze(lucerna, out):
     whole["made_by"] = lucerna_version(lucerna)
     for name, source in whole["sources"].items():
         for file, frozen in source["files"].items():
-            run(command_of(lucerna, source, frozen["rays"], out / file))
+            write_rays(lucerna, source, frozen["rays"], out / file)
             frozen["rays_sha256"], frozen["sha256"] = digests(out / file, frozen["rays"])
         model = SOURCES.parent / f"{name}.nfl"
         run([lucerna, "compress", out / source["model"]["of"], "-o", model, "--max-bytes", MODEL_MAX_BYTES, "--quiet"])
-        source["model"]["sha256"] = hashlib.sha256(model.read_bytes()).hexdigest()
+        source["model"]["sha256"] = sha256(model.read_bytes())
         SOURCES.write_text(json.dumps(whole, indent=1) + "\n")
 
 
@@ -106,15 +109,16 @@ def work(options):
         out.mkdir(parents=True, exist_ok=True)
     if options.freeze:
         freeze(options.lucerna, out)
+        return 0
     sources = read_sources()
     wrong = [text for name, source in sources.items() if (text := check_model(name, source))]
-    files = ray_files(sources, "*" if options.freeze else options.files)
+    files = ray_files(sources, options.files)
     if not files:
         raise ValueError(f"--files: found no file by {options.files}, expected some of {', '.join(ray_files(sources))}")
     for name, (source, frozen) in files.items():
         path = out / name
-        if options.lucerna and not options.freeze:
-            run(command_of(options.lucerna, source, frozen["rays"], path))
+        if options.lucerna:
+            write_rays(options.lucerna, source, frozen["rays"], path)
         if not path.exists():
             wrong.append(f"{path}: file: found nothing, expected {frozen['rays']} rays")
             continue

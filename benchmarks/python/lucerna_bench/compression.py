@@ -13,7 +13,7 @@ import numpy as np
 from .entry import write_whole
 from .interpolated_rays import InterpolatedRays
 from .light_field import HEADER_BYTES, LightField
-from .programs import run
+from .programs import make_source, run
 from .rays import Rays, read_tm25
 from .views import NAMES, Views, compare
 
@@ -33,8 +33,7 @@ class Source:
 
     def rays(self, lucerna, file, count, seed):
         """Draws a file of rays."""
-        run([lucerna, "make-source", self.kind, "-n", str(count), "--seed", str(seed), *self.options, "--quiet", "-o",
-             str(file)])
+        make_source(lucerna, self.kind, self.options, count, seed, file)
         return read_tm25(file)
 
 
@@ -143,7 +142,8 @@ class Measured:
 
 
 def measure(task, source, entrants, lucerna, test_rays, seed, say=print):
-    """All methods on one source, at all sizes that make a difference. `seed` gives the rays to compare with and must be new to all."""
+    """All methods on one source, at all sizes that make a difference. `seed` gives the rays to compare with and must be new
+    to all."""
     found = []
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)

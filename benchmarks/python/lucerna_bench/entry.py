@@ -40,7 +40,8 @@ def write_submission(folder, task, name, author, surfaces, stated, target_place=
     `refractive_index`. `task`: its name, as LB-6-led-oval. `light_table`: of LB-1, an LDT file in the folder instead of
     surfaces, which are None then."""
     if (surfaces is None) == (light_table is None):
-        raise ValueError(f"{folder}: found {'neither' if surfaces is None else 'both'} of surfaces and light_table, expected one")
+        found = "neither" if surfaces is None else "both"
+        raise ValueError(f"{folder}: found {found} of surfaces and light_table, expected one")
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     submission = {"format": "lucerna-bench-submission", "version": 1, "task": task, "name": name, "author": author,

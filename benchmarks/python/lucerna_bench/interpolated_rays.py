@@ -13,8 +13,10 @@ class Plane:
 
     CYCLIC = ()
 
-    def __init__(self, rays, steepest=0.5):
-        start, direction = (np.asarray(x[rays.direction[:, 2] > steepest], float) for x in (rays.start, rays.direction))
+    def __init__(self, rays):
+        # Not the flattest: they count by the square of their tangents.
+        steep = rays.direction[:, 2] > 0.5 * rays.direction[:, 2].max()
+        start, direction = (np.asarray(x[steep], float) for x in (rays.start, rays.direction))
         slope = direction[:, :2] / direction[:, 2:]
         foot = start[:, :2] - start[:, 2:] * slope
         spread = np.sum(np.var(slope, axis=0))

@@ -70,6 +70,11 @@ def _reflector(task, kind):
     shape = (f'family = "bspline"\ndiameter_mm = {width}\n' if kind == "mirror" else
              f'family = "trough"\npreset = "parabola"\naperture = "rectangle"\n'
              f"size_mm = [{width}, {TROUGH_LENGTH_MM}]\n")
+    return _above(task, shape, focal)
+
+
+def _above(task, shape, focal):
+    """A reflector above the source that opens to -z, with its focus in the source."""
     return (f'[[reflector]]\n{shape}focal_mm = {focal}\nposition_mm = [0, 0, {focal}]\naxis = "-z"\n'
             f'reflectance = {task.definition["optics"]["reflectance"]}\n')
 
@@ -122,9 +127,8 @@ def _collector(task, intervals=20):
     depth = half_axis * (1.0 - cosine + beyond / (2.0 * cosine) + beyond**2 / (8.0 * cosine**3))
     inverse = np.linalg.pinv(_cubic_pieces(across, -radius, radius, intervals))
     coefficients = inverse @ (depth - square / (4.0 * vertex)) @ inverse.T
-    return (f'[[reflector]]\nfamily = "bspline"\ndiameter_mm = {2.0 * radius}\nfocal_mm = {vertex}\n'
-            f"intervals = {2 * [intervals]}\ncoefficients_mm = {[float(c) for c in coefficients.ravel()]}\n"
-            f'position_mm = [0, 0, {vertex}]\naxis = "-z"\nreflectance = {task.definition["optics"]["reflectance"]}\n')
+    return _above(task, f'family = "bspline"\ndiameter_mm = {2.0 * radius}\nintervals = {2 * [intervals]}\n'
+                        f"coefficients_mm = {coefficients.ravel().tolist()}\n", vertex)
 
 
 def _plane_target(task, folder, place, cells=250, widened=1.25):

@@ -3,6 +3,11 @@
 import subprocess
 
 
+def make_source(lucerna, kind, options, rays, seed, out):
+    """Draws a file of rays of a kind of `lucerna make-source`."""
+    run([lucerna, "make-source", kind, "-n", rays, "--seed", seed, *options, "--quiet", "-o", out])
+
+
 def run(command):
     """Runs a program; ValueError with its words where it fails."""
     try:

@@ -96,7 +96,7 @@ def table(scores):
     scored = sorted({(f"{s['rays']:,} rays", f"seed {s['seed']}", s["run"]["machine"]) for _, _, s in scores})
     lines = ["<!-- written by benchmarks/run_entries.py -->", "",
              "Errors have their noise taken out. NMAE has it in. Light counts as shares of the source's flux.", "",
-             "| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
+             _line(COLUMNS), "|" + "---|" * len(COLUMNS)]
     best = best_losses(scores)
     for task, method, s in scores:
         cells = row(task, method, s)

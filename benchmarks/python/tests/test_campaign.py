@@ -2,6 +2,7 @@
 """Campaigns: what is made is kept, what is printed is what was scored, what is wrong is said."""
 import json
 import re
+import subprocess
 import sys
 
 import pytest
@@ -163,6 +164,23 @@ def test_the_overview_has_a_row_a_task_and_a_column_a_method():
         "| task | lucerna | plain | tree | mine |", "|---|---|---|---|---|",
         "| LB-2a | - | - | **81.1 % light** | - |",
         "| LB-9-x | **1.23 % +- 0.04 %, 81.1 % light** | 50.00 % +- 0.00 %, 81.1 % light | - | does not count |"]
+
+
+def test_pages_of_results_are_no_change_of_the_program(tmp_path):
+    def git(*words):
+        subprocess.run(["git", "-c", "user.name=n", "-c", "user.email=e", *words], cwd=tmp_path, check=True, capture_output=True)
+
+    git("init", "-q")
+    for name in ("docs/page.md", "benchmarks/code.py"):
+        (tmp_path / name).parent.mkdir()
+        (tmp_path / name).write_text("first")
+    git("add", "-A")
+    git("commit", "-qm", "first")
+    clean = campaign.commit_of(tmp_path / "benchmarks")
+    (tmp_path / "docs/page.md").write_text("second")
+    assert campaign.commit_of(tmp_path / "benchmarks") == clean and "with changes" not in clean
+    (tmp_path / "benchmarks/code.py").write_text("second")
+    assert campaign.commit_of(tmp_path / "benchmarks") == f"{clean} with changes"
 
 
 def test_families_have_a_page_each(tmp_path):

@@ -130,7 +130,7 @@ def test_frozen_rays_are_those_of_the_emitter(scorer, lucerna, tasks, tmp_path, 
     """Files of lucerna against the scorer's own emitters, through a plain mirror."""
     given = json.loads((tasks / f"{name}.json").read_text())
     source = make_sources.read_sources()[given["frozen_source"]]
-    subprocess.run(make_sources.command_of(lucerna, source, RAYS, tmp_path / "rays.tm25ray"), check=True)
+    make_sources.write_rays(lucerna, source, RAYS, tmp_path / "rays.tm25ray")
     task = {**disk_task(MIRROR, plane(-1000, 1, 600)), "source": given["source"]}
     fresh, _, _ = boxes_of(scorer, tmp_path / "a", task, paraboloid(shift_mm=0.5))
     read, _, found = boxes_of(scorer, tmp_path / "b", task, paraboloid(shift_mm=0.5), "--rays-from",
@@ -162,7 +162,7 @@ def test_frozen_files_are_checked(tasks, tmp_path, monkeypatch, capsys):
 
 def test_frozen_led_has_its_hash(lucerna, tmp_path):
     source, frozen = make_sources.ray_files(make_sources.read_sources())["led-1M.tm25ray"]
-    subprocess.run(make_sources.command_of(lucerna, source, frozen["rays"], tmp_path / "led.tm25ray"), check=True)
+    make_sources.write_rays(lucerna, source, frozen["rays"], tmp_path / "led.tm25ray")
     wrong, _ = make_sources.check(tmp_path / "led.tm25ray", frozen)
     assert wrong is None
 

@@ -121,6 +121,15 @@ def test_surfaces_turn_rays_to_numbers_and_back(kind):
     assert np.allclose(surface.numbers(again), numbers, atol=1e-7)
 
 
+def test_a_plane_of_flat_rays_is_found():
+    """All within 20 degrees of the horizon, through a ring in z = 1."""
+    random = np.random.default_rng(8)
+    turn, rise = 2.0 * np.pi * random.random(1000), np.radians(5.0 + 15.0 * random.random(1000))
+    way = np.stack([np.cos(rise) * np.cos(turn), np.cos(rise) * np.sin(turn), np.sin(rise)], axis=-1)
+    start = np.stack([-0.1 * np.sin(turn), 0.1 * np.cos(turn), np.ones(1000)], axis=-1)
+    assert interpolated_rays.Plane(Rays(start + way, way, np.ones(1000))).z == pytest.approx(1.0, abs=1e-3)
+
+
 def test_a_plane_has_no_light_beyond_the_horizon():
     plane = interpolated_rays.Plane(lambertian_disk(100, 1))
     assert plane.rays(np.array([[0.0, 0.0, 0.6, 0.6], [0.0, 0.0, 0.9, 0.6]])).flux.tolist() == [1.0, 0.0]
