@@ -78,8 +78,8 @@ test-bench: program bench-scorer
 	LUCERNA=$(abspath $(BUILD)/lucerna) LUCERNA_BENCH_SCORER=$(abspath $(SCORER)) \
 	  /usr/bin/python3 -m pytest -q benchmarks/python/tests
 
-# Makes and scores entries of Lucerna and baselines for all tasks, and the forward tasks, for the site. On two idle cores that is an
-# hour and a half of making and hours of scoring; what is made is kept in build/bench-results.
+# Makes and scores entries of Lucerna and baselines for all tasks, and the forward tasks, for the site. On two idle cores that is 50
+# minutes of making and hours of scoring. Entries are kept in build/bench-results, and are not made again for the same commit.
 BENCH_TIME ?= 30
 BENCH_RAYS ?= 1e8
 bench-results: program bench-scorer
