@@ -31,6 +31,8 @@ static_assert(kBlockRays <= kHitBatch);
 struct TaskSums {
   std::vector<double> flux;
   double weight = 0.0, reflected = 0.0, direct = 0.0, absorbed = 0.0, back = 0.0, lost = 0.0, bodies = 0.0;
+  /// What of the weight has sparse derivatives.
+  double derived = 0.0;
   /// Bins x coefficients, row by row; null without derivatives.
   double* jacobian = nullptr;
   std::size_t coefficients = 0;
@@ -337,7 +339,8 @@ void share_tasks(Peers* peers, std::size_t groups, const DesignShape& design, st
   if (peers == nullptr) return;
   const std::size_t each = tasks.size() / groups;
   const auto ends = [](TaskSums& t) {
-    return std::array{&t.weight, &t.reflected, &t.direct, &t.absorbed, &t.back, &t.lost, &t.bodies};
+    return std::array{&t.weight, &t.reflected, &t.direct, &t.absorbed,
+                      &t.back,   &t.lost,      &t.bodies, &t.derived};
   };
   share_items(
       peers, groups, state_key(design, bins, options),
@@ -407,14 +410,22 @@ Evaluation evaluate_family(const DesignShape& design, const Shape& shape, const 
   return e;
 }
 
+/// How many blocks of each task have sparse derivatives; one at least.
+std::uint64_t derived_blocks(const EvaluationOptions& options) {
+  constexpr std::uint64_t kRound = kBlockRays * kDesignTasks;
+  const std::uint64_t rays = options.derivative_rays == 0 ? options.rays : options.derivative_rays;
+  return std::clamp(rays, kRound, options.rays) / kRound;
+}
+
 /// With the derivatives in blocks.
 Evaluation evaluate_sparse(const DesignShape& design, const Reflectance& reflectance, const DesignRays& rays,
                            const TentBins& bins, const EvaluationOptions& options) {
   const auto& shape = std::get<BsplineShape>(design.family());
-  const std::uint64_t per_task = options.rays / kBlockRays / kDesignTasks;
+  const std::uint64_t per_task = options.rays / kBlockRays / kDesignTasks, derived = derived_blocks(options);
   const auto view = evaluation_view(shape, design.aperture(), reflectance, bins, options);
   const auto across = static_cast<std::uint32_t>(shape.row_x().intervals);
-  const std::size_t groups = jacobian_groups(options.rays), each = kDesignTasks / groups;
+  const std::size_t groups = jacobian_groups(derived * kBlockRays * kDesignTasks),
+                    each = kDesignTasks / groups;
   std::vector<SparseSums> blocks(groups,
                                  SparseSums(across * static_cast<std::uint32_t>(shape.row_y().intervals)));
   std::vector<SparseTaskSums> sums(kDesignTasks);
@@ -426,8 +437,18 @@ Evaluation evaluate_sparse(const DesignShape& design, const Reflectance& reflect
         sums[r].flux.assign(bins.size(), 0.0);
         sums[r].blocks = &blocks[group];
         sums[r].across = across;
-        for (std::uint64_t b = 0; b < per_task; ++b) tracer.add(rays.block(b * kDesignTasks + r), sums[r]);
+        for (std::uint64_t b = 0; b < derived; ++b) tracer.add(rays.block(b * kDesignTasks + r), sums[r]);
+        sums[r].derived = sums[r].weight;
       }
+    });
+  });
+  auto light_only = view;
+  light_only.derivatives = false;
+  parallel_blocks(derived < per_task ? own.size() * each : 0, 1, [&](std::size_t i, std::size_t) {
+    const std::size_t r = own.first * each + i;
+    with_tracer(light_only, rays, [&](auto& tracer) {
+      for (std::uint64_t b = derived; b < per_task; ++b)
+        tracer.add(rays.block(b * kDesignTasks + r), sums[r]);
     });
   });
   share_tasks(rays.peers(), groups, design, bins.size(), options, sums);
@@ -435,7 +456,9 @@ Evaluation evaluate_sparse(const DesignShape& design, const Reflectance& reflect
   Evaluation e = evaluation_of(all);
   e.rays = per_task * kDesignTasks * kBlockRays;
   if (rays.peers() != nullptr) blocks = exchanged_blocks(*rays.peers(), blocks, bins.size());
-  SparseDerivatives derivatives = sparse_derivatives(blocks, bins.size(), design, 1.0 / all.weight);
+  double weight = 0.0;
+  for (const TaskSums& task : sums) weight += task.derived;
+  SparseDerivatives derivatives = sparse_derivatives(blocks, bins.size(), design, 1.0 / weight);
   if (rays.peers() != nullptr) share_rows(*rays.peers(), derivatives);
   e.rows.swap(derivatives.rows);
   e.rows_noise = std::move(derivatives.noise);

@@ -26,6 +26,9 @@ struct EvaluationOptions {
   bool derivatives = true;
   /// The derivatives as `Evaluation::rows` and not as `jacobian`; free forms only.
   bool sparse = false;
+  /// Sparse derivatives are those of the light of the first so many rays; 0: of all. A search needs them less
+  /// exactly than the light, and they take most of the time. On a device they are always those of all.
+  std::uint64_t derivative_rays = 0;
   /// Light that misses the mirror counts too (it does in a luminaire; the hidden-reflector suite leaves it
   /// out, so that it cannot flatter the error).
   bool direct_light = true;

@@ -67,7 +67,7 @@ SparseDerivatives joined_rows(const std::vector<SentRows>& all, Eigen::Index bin
 
 std::uint64_t state_key(const DesignShape& shape, std::size_t bins, const EvaluationOptions& options) {
   StateKey key;
-  key.add(std::uint64_t{bins}).add(options.rays).add(options.rim_mm);
+  key.add(std::uint64_t{bins}).add(options.rays).add(options.derivative_rays).add(options.rim_mm);
   key.add(std::uint64_t{options.derivatives}).add(std::uint64_t{options.direct_light});
   for (const double p : shape.parameters()) key.add(p);
   return key.value();

@@ -16,8 +16,9 @@ SparseSums::Block& SparseSums::insert(std::uint64_t key, std::size_t at) {
     while (table_[at] != kEmpty) at = (at + 1) & mask_;
   }
   table_[at] = static_cast<std::uint32_t>(keys_.size());
+  if (keys_.size() % kChunk == 0) chunks_.emplace_back().reserve(kChunk);
   keys_.push_back(key);
-  return blocks_.emplace_back(Block{});
+  return chunks_.back().emplace_back(Block{});
 }
 
 void SparseSums::grow() {

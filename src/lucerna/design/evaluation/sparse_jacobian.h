@@ -28,7 +28,7 @@ class SparseSums {
     const std::uint64_t key = std::uint64_t{bin} * cells_ + cell;
     std::size_t at = slot(key);
     while (table_[at] != kEmpty) {
-      if (keys_[table_[at]] == key) return blocks_[table_[at]];
+      if (keys_[table_[at]] == key) return block_at(table_[at]);
       at = (at + 1) & mask_;
     }
     return insert(key, at);
@@ -38,12 +38,15 @@ class SparseSums {
   std::size_t size() const { return keys_.size(); }
   std::uint32_t bin(std::size_t i) const { return static_cast<std::uint32_t>(keys_[i] / cells_); }
   std::uint32_t cell(std::size_t i) const { return static_cast<std::uint32_t>(keys_[i] % cells_); }
-  const Block& at(std::size_t i) const { return blocks_[i]; }
+  const Block& at(std::size_t i) const { return chunks_[i / kChunk][i % kChunk]; }
 
  private:
+  /// Blocks that are allocated together; they never move, for there are many and they are wide.
+  static constexpr std::size_t kChunk = 256;
   static constexpr std::uint32_t kEmpty = ~std::uint32_t{0};
 
   std::size_t slot(std::uint64_t key) const { return (key * 0x9E3779B97F4A7C15ull >> 32) & mask_; }
+  Block& block_at(std::size_t i) { return chunks_[i / kChunk][i % kChunk]; }
   Block& insert(std::uint64_t key, std::size_t at);
   void grow();
 
@@ -51,7 +54,7 @@ class SparseSums {
   std::size_t mask_ = (std::size_t{1} << 12) - 1;
   std::vector<std::uint32_t> table_ = std::vector<std::uint32_t>(std::size_t{1} << 12, kEmpty);
   std::vector<std::uint64_t> keys_;
-  std::vector<Block> blocks_;
+  std::vector<std::vector<Block>> chunks_;
 };
 
 /// The derivatives that rays add up to, and how well these rays know them.

@@ -56,13 +56,15 @@ void FreeFormFit::keep_other_light_of(const DesignShape& shape) {
   other_light_ = problem_.other_light(shape, bins_, level_.rays).cwiseProduct(inside_);
 }
 
-FreeFormPoint FreeFormFit::at(DesignShape shape) const {
+FreeFormPoint FreeFormFit::at(DesignShape shape, bool derivatives) const {
   EvaluationOptions options;
   options.rays = level_.rays;
+  options.derivative_rays = level_.derivative_rays;
   options.direct_light = problem_.direct_light;
   options.rim_mm = kRimShare * shape.aperture().outer_radius_mm();
-  options.sparse = true;
+  options.derivatives = options.sparse = derivatives;
   Evaluation light = evaluate(shape, problem_.reflectance, *problem_.rays, bins_, options);
+  if (!derivatives) light.rows.resize(light.flux.size(), static_cast<Eigen::Index>(shape.parameter_count()));
   if (other_light_.size() > 0) light.flux += other_light_;
   SparseEquations equations = sparse_equations(light, target_, bins_, problem_.mode);
   equations *= error_weight();
@@ -98,11 +100,18 @@ Eigen::VectorXd FreeFormFit::move_within_limits(const FreeFormPoint& now,
   return move;
 }
 
-bool FreeFormFit::step(FreeFormPoint& now, double& lambda) const {
+bool FreeFormFit::step(FreeFormPoint& now, double& lambda, bool doubtful) const {
   const Eigen::VectorXd from = now.shape.parameters();
   const double longest = kMaxMove * now.shape.aperture().outer_radius_mm();
   const SparseSymmetric metric = sparse_step_metric(now.shape, now.equations);
-  const auto at_move = [&](const Eigen::VectorXd& move) { return at(now.shape.with(from + move)); };
+  const auto at_move = [&](const Eigen::VectorXd& move) {
+    DesignShape shape = now.shape.with(from + move);
+    if (doubtful) {
+      FreeFormPoint trial = at(shape, false);
+      if (!(trial.equations.cost < now.equations.cost)) return trial;
+    }
+    return at(std::move(shape));
+  };
   const auto tried = [&](const auto& move_of) {
     return levenberg_marquardt_step(now, move_of, lambda, longest, at_move);
   };

@@ -20,6 +20,8 @@ struct FreeFormLevel {
   int bins = 64;
   double widen = 1.25;
   std::uint64_t rays = std::uint64_t{1} << 18;
+  /// EvaluationOptions::derivative_rays.
+  std::uint64_t derivative_rays = 0;
   int max_steps = 6;
   /// Two accepted steps that gained less than this share of the error end the level.
   double min_gain = 0.02;
@@ -47,10 +49,12 @@ class FreeFormFit {
   /// From now on points have `FitProblem::other_light` of this shape.
   void keep_other_light_of(const DesignShape& shape);
 
-  FreeFormPoint at(DesignShape shape) const;
+  /// Without derivatives its equations have a cost only, in a third of the time.
+  FreeFormPoint at(DesignShape shape, bool derivatives = true) const;
 
-  /// Tries one step from `now`, which moves there if the cost falls; adapts the damping. True if it moved.
-  bool step(FreeFormPoint& now, double& lambda) const;
+  /// Tries one step from `now`, which moves there if the cost falls; adapts the damping. True if it moved. A
+  /// step that may well be refused (`doubtful`) is tried without derivatives first.
+  bool step(FreeFormPoint& now, double& lambda, bool doubtful = false) const;
 
   /// Error and noise of a point in these bins.
   BinError error(const FreeFormPoint& point) const;

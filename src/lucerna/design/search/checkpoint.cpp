@@ -13,7 +13,7 @@ namespace lucerna {
 namespace {
 
 constexpr const char* kMagic = "lucerna-design-checkpoint-9";
-constexpr const char* kSearchMagic = "lucerna-search-checkpoint-4";
+constexpr const char* kSearchMagic = "lucerna-search-checkpoint-5";
 /// More numbers than any design has; keeps a damaged count from asking for memory.
 constexpr std::size_t kMaxNumbers = 1 << 20;
 /// A square of so many intervals has about as many coefficients.
@@ -74,12 +74,14 @@ class Reader {
     m.transport.sign = value<double>();
     m.transport.vertex_distance_mm = value<double>();
     m.cost = value<double>();
+    m.error = value<double>();
     m.early_cost = value<double>();
     m.error_to_noise = value<double>();
     m.intervals_x = whole(1, kMaxIntervals);
     m.intervals_y = whole(1, kMaxIntervals);
     m.bins = whole(1, kMaxIntervals);
     m.derivative_noise = value<double>();
+    m.derivative_rays = value<std::uint64_t>();
     m.parameters = numbers("of");
     return m;
   }
@@ -127,9 +129,10 @@ void put(std::string& text, const char* name, const FitSnapshot& m) {
 }
 
 void put(std::string& text, const char* name, const FreeFormSnapshot& m) {
-  text += fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} ", name, m.candidate, m.level, m.transport.sign,
-                      m.transport.vertex_distance_mm, m.cost, m.early_cost, m.error_to_noise, m.intervals_x,
-                      m.intervals_y, m.bins, m.derivative_noise);
+  text +=
+      fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} ", name, m.candidate, m.level, m.transport.sign,
+                  m.transport.vertex_distance_mm, m.cost, m.error, m.early_cost, m.error_to_noise,
+                  m.intervals_x, m.intervals_y, m.bins, m.derivative_noise, m.derivative_rays);
   put(text, "of", m.parameters);
 }
 

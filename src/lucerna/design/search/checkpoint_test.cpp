@@ -78,10 +78,12 @@ FreeFormSnapshot any_candidate(Rng& rng) {
           any_double(rng),
           any_double(rng),
           any_double(rng),
+          any_double(rng),
           1 + static_cast<int>(100 * rng.uniform()),
           1 + static_cast<int>(100 * rng.uniform()),
           1 + static_cast<int>(100 * rng.uniform()),
           any_double(rng),
+          static_cast<std::uint64_t>(rng.uniform() * 0x1p63),
           any_doubles(rng)};
 }
 
@@ -89,11 +91,12 @@ void expect_same(const FreeFormSnapshot& a, const FreeFormSnapshot& b) {
   EXPECT_EQ(a.candidate, b.candidate);
   EXPECT_EQ(a.level, b.level);
   const auto numbers = [](const FreeFormSnapshot& m) {
-    return bits_of({m.transport.sign, m.transport.vertex_distance_mm, m.cost, m.early_cost, m.error_to_noise,
-                    m.derivative_noise});
+    return bits_of({m.transport.sign, m.transport.vertex_distance_mm, m.cost, m.error, m.early_cost,
+                    m.error_to_noise, m.derivative_noise});
   };
   EXPECT_EQ(numbers(a), numbers(b));
   EXPECT_EQ(a.bins, b.bins);
+  EXPECT_EQ(a.derivative_rays, b.derivative_rays);
   EXPECT_EQ(a.intervals_x, b.intervals_x);
   EXPECT_EQ(a.intervals_y, b.intervals_y);
   EXPECT_EQ(bits_of(a.parameters), bits_of(b.parameters));
@@ -197,9 +200,10 @@ TEST(Checkpoint, SearchStateOutOfRangeIsInputError) {
        std::vector<std::pair<std::string, std::string>>{{"now 7 3 ", "now 7 4 "},
                                                         {"now 7 3 ", "now 7 -1 "},
                                                         {"now 7 3 ", "now -2 3 "},
-                                                        {" 1 1 1 0 of", " 1 0 1 0 of"},
-                                                        {" 1 1 1 0 of", " 1 1 0 0 of"},
-                                                        {" 1 1 1 0 of", " 1 1 1 nan of"},
+                                                        {" 1 1 1 0 0 of", " 1 0 1 0 0 of"},
+                                                        {" 1 1 1 0 0 of", " 1 1 0 0 0 of"},
+                                                        {" 1 1 1 0 0 of", " 1 1 1 nan 0 of"},
+                                                        {" 1 1 1 0 0 of", " 1 1 1 0 -1 of"},
                                                         {"step 0", "step -1"},
                                                         {"begun 0", "begun 2147483647"}}) {
     EXPECT_THROW(parse_search_checkpoint(replaced(text, from, to), "key"), InputError) << to;

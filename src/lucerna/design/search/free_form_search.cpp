@@ -28,12 +28,15 @@ constexpr std::array<TransportChoice, 7> kAfterApproaches{
 constexpr std::array<TransportChoice, 2> kFacesBefore{{{-1.0, 1.0}, {1.0, 1.0}}};
 constexpr std::array<TransportChoice, 7> kFacesAfter{
     {{-1.0, 0.8}, {1.0, 0.8}, {-1.0, 1.25}, {1.0, 1.25}, {-1.0, 0.65}, {1.0, 0.65}, {1.0, 1.5}}};
-/// The approach is tried where the candidates before it stay this far from the target (relative error), for a
-/// point source's mirror is no guide for a source that is long or wide; and where the given mirror is the
-/// nearest of them. Further approaches, from perturbed copies, follow where none is near: they end in basins
-/// of their own, and how near they are once refined spreads by a factor of four in error.
+/// The approach is tried where the candidates before it stay kDoubtful from the target (relative error), for
+/// a point source's mirror is no guide for a source that is long or wide; and where the given mirror is the
+/// nearest of them. Further approaches, from perturbed copies, follow where the best is kFarError from it, or
+/// is an approach itself and not near: they end in basins of their own, and how near they are once refined
+/// spreads by a factor of four in error.
 constexpr int kApproach = 1 + static_cast<int>(kBeforeApproaches.size()), kApproaches = 8;
-constexpr double kFarError = 0.15;
+constexpr double kDoubtful = 0.05, kFarError = 0.15;
+/// An approach that came no nearer than this has too few knots for the target.
+constexpr double kFewKnotsError = 0.03;
 /// The first candidate after the approaches; after the given mirror, the approaches and all transports.
 constexpr int kNoApproach = kApproach + kApproaches;
 constexpr int kFirstCandidates = kNoApproach + static_cast<int>(kAfterApproaches.size());
@@ -77,6 +80,12 @@ constexpr double kSmoothing = 0.03;
 /// rays each: their noise then damps every step. Coarser bins hold more rays, and such a source blurs what is
 /// finer than they are.
 constexpr double kMaxDerivativeNoise = 0.3;
+/// Fewer of a level's rays have derivatives as long as no more than this of them is noise, over the rest:
+/// such steps take half the time, and lead as far. At most by this factor, for then light takes most of the
+/// time.
+constexpr double kDerivativeNoise = 0.06;
+constexpr unsigned kMaxFewer = 8;
+constexpr std::uint64_t kMinDerivativeRays = std::uint64_t{1} << 18;
 /// Least share of a level's bins, along each side.
 constexpr double kMinBins = 0.6;
 /// Share of its weight that roughness has on such a level: all of it costs as much there as an error of two
@@ -176,8 +185,9 @@ bool FreeFormSearch::worth_an_approach() const {
   const FreeFormSnapshot* best = best_of(0);
   if (!has_few_knots(given_) || fixed_to_few_knots() || best == nullptr) return false;
   if (problem_.rays->medium()) return false;  // the ladder of an approach has mirrors only
-  const double near = is_approach(*best) ? kNear : kFarError;
-  return best->candidate == 0 || best->cost > kErrorShare[0] * near * near;
+  const bool is_first = state_.begun <= kApproach;
+  const double near = is_first ? kDoubtful : is_approach(*best) ? kNear : kFarError;
+  return best->candidate == 0 || best->error > near;
 }
 
 bool FreeFormSearch::approach_is_alone() const {
@@ -260,8 +270,12 @@ const FreeFormSnapshot* FreeFormSearch::next_promotion() const {
   const FreeFormSnapshot* given = best_of(0);
   const bool near = state_.begun == 1 && given != nullptr && given->cost < kErrorShare[0] * kNear * kNear;
   const bool alone = approach_is_alone();
-  if (state_.begun < kFirstCandidates && !near && !alone && best_of(kEnd) == nullptr) return nullptr;
   const FreeFormSnapshot* rough = best_waiting(0);
+  if (state_.begun < kFirstCandidates && !near && !alone && best_of(kEnd) == nullptr) {
+    // The best of a few is fitted finely before the others begin, for a search that has little time.
+    const int few = worth_an_approach() ? kApproach + 1 : kApproach;
+    return state_.begun >= few && best_of(1) == nullptr ? rough : nullptr;
+  }
   const bool hopeful = rough != nullptr && rough->cost < kHopeless * best_of(0)->cost;
   if (hopeful && count(1) < (near ? 1 : kFine)) return rough;
   const FreeFormSnapshot* fine = best_waiting(1);
@@ -295,7 +309,8 @@ bool FreeFormSearch::knots_suffice(const FreeFormSnapshot& snapshot) const {
 
 FreeFormLevel FreeFormSearch::level_after(const FreeFormSnapshot& before, int number,
                                           const DesignShape& shape) const {
-  const FreeFormLevel l = level(number);
+  FreeFormLevel l = level(number);
+  l.derivative_rays = l.rays;
   if (number == 0) return l;
   // Noise goes with the number of pairs of a bin and a cell of knots that the rays are dealt to.
   const double bins = static_cast<double>(l.bins) / before.bins;
@@ -305,31 +320,48 @@ FreeFormLevel FreeFormSearch::level_after(const FreeFormSnapshot& before, int nu
   const double noise = before.derivative_noise * bins * bins * cells / rays;
   // 1 without noise.
   const double share = std::clamp(std::sqrt(kMaxDerivativeNoise / noise), kMinBins, 1.0);
-  return with_bins(l, static_cast<int>(std::lround(l.bins * share)));
+  l = with_bins(l, static_cast<int>(std::lround(l.bins * share)));
+  unsigned fewer = kMaxFewer;
+  while (fewer > 1 && fewer * noise * share * share > kDerivativeNoise) fewer /= 2;
+  l.derivative_rays = std::min(l.rays, std::max(l.rays / fewer, kMinDerivativeRays));
+  return l;
+}
+
+FreeFormLevel FreeFormSearch::begin_fit(const DesignShape& shape, const FreeFormSnapshot& snapshot,
+                                        Progress& progress) {
+  const FreeFormLevel l = level_after(snapshot, snapshot.level, shape);
+  fit_.emplace(problem_, l, progress);
+  fit_->keep_other_light_of(shape);
+  point_.emplace(fit_->at(shape));
+  ++state_.evaluations;
+  state_.total_rays += l.rays;
+  return l;
+}
+
+bool FreeFormSearch::has_too_few_knots(const FreeFormSnapshot& approach) const {
+  if (approach.level != 0 || !is_approach(approach) || fixed_to_few_knots()) return false;
+  const BinError error = fit_->error(*point_);
+  return error.relative_rms > std::hypot(error.floor, kFewKnotsError);
 }
 
 void FreeFormSearch::begin(const DesignShape& shape, const FreeFormSnapshot& snapshot, Progress& progress) {
-  FreeFormLevel l = level(snapshot.level);
   // Knots are refined, never coarsened, and only where something is left to gain.
-  const bool has = shape.intervals_x() >= l.intervals_x && shape.intervals_y() >= l.intervals_y;
-  const DesignShape fine = knots_suffice(snapshot) || has
-                               ? shape
-                               : shape.refined(std::max(shape.intervals_x(), l.intervals_x),
-                                               std::max(shape.intervals_y(), l.intervals_y));
-  l = level_after(snapshot, snapshot.level, fine);
-  fit_.emplace(problem_, l, progress);
-  fit_->keep_other_light_of(fine);
-  point_.emplace(fit_->at(fine));
-  ++state_.evaluations;
-  state_.total_rays += l.rays;
+  const FreeFormLevel with = level(snapshot.level);
+  const int nx = std::max(shape.intervals_x(), with.intervals_x);
+  const int ny = std::max(shape.intervals_y(), with.intervals_y);
+  const bool has = shape.intervals_x() == nx && shape.intervals_y() == ny;
+  const bool own = has || knots_suffice(snapshot);
+  FreeFormLevel l = begin_fit(own ? shape : shape.refined(nx, ny), snapshot, progress);
+  if (own && !has && has_too_few_knots(snapshot)) l = begin_fit(shape.refined(nx, ny), snapshot, progress);
   state_.now = snapshot;
   state_.now.early_cost = 0.0;
   state_.now.bins = l.bins;
-  state_.now.intervals_x = fine.intervals_x();
-  state_.now.intervals_y = fine.intervals_y();
+  state_.now.derivative_rays = l.derivative_rays;
+  state_.now.intervals_x = point_->shape.intervals_x();
+  state_.now.intervals_y = point_->shape.intervals_y();
   state_.step = 0;
   state_.refused = 0;
-  state_.lambda = std::clamp(state_.lambda, 1e-4, 1e-2);
+  state_.lambda = std::clamp(state_.lambda, 1e-4, 1.0);
   state_.costs = {point_->equations.cost};
 }
 
@@ -474,11 +506,13 @@ std::optional<FitRecord> FreeFormSearch::step(Progress& progress) {
 
 bool FreeFormSearch::advance(Progress& progress) {
   if (!point_) {  // taken up again in the middle of a level
-    fit_.emplace(problem_, with_bins(level(state_.now.level), state_.now.bins), progress);
+    FreeFormLevel l = with_bins(level(state_.now.level), state_.now.bins);
+    l.derivative_rays = state_.now.derivative_rays;
+    fit_.emplace(problem_, l, progress);
     fit_->keep_other_light_of(shape_of(state_.now));
     point_.emplace(fit_->at(shape_of(state_.now)));
   }
-  const bool accepted = fit_->step(*point_, state_.lambda);
+  const bool accepted = fit_->step(*point_, state_.lambda, state_.refused > 0);
   state_.lambda = std::max(state_.lambda, kMinLambda);
   ++state_.evaluations;
   ++state_.step;
@@ -493,13 +527,16 @@ FitRecord FreeFormSearch::measured(bool accepted) {
   const Eigen::VectorXd& p = point_->shape.parameters();
   state_.now.parameters.assign(p.begin(), p.end());
   const double of_noise = point_->equations.derivative_noise;
-  state_.now.derivative_noise = of_noise / std::max(1.0 - of_noise, 1e-3);
+  const double derived =
+      static_cast<double>(state_.now.derivative_rays) / static_cast<double>(level(state_.now.level).rays);
+  state_.now.derivative_noise = derived * of_noise / std::max(1.0 - of_noise, 1e-3);
   const double cost = point_->equations.cost, weight = fit_->error_weight();
-  const double noise = weight * error.floor * error.floor;
-  const double squared = weight * error.relative_rms * error.relative_rms;
+  const double squared = error.relative_rms * error.relative_rms, noise = error.floor * error.floor;
   const double excess = std::max(squared - noise, kMinCostShare * squared);
-  state_.now.cost = kErrorShare[static_cast<std::size_t>(state_.now.level)] * excess + (cost - squared);
-  state_.now.error_to_noise = std::sqrt(cost / std::max(noise, 1e-24));
+  state_.now.error = std::sqrt(excess);
+  state_.now.cost =
+      kErrorShare[static_cast<std::size_t>(state_.now.level)] * weight * excess + (cost - weight * squared);
+  state_.now.error_to_noise = std::sqrt(cost / std::max(weight * noise, 1e-24));
   if (state_.step == kEarlySteps) state_.now.early_cost = state_.now.cost;
   FitRecord record;
   record.accepted = accepted;

@@ -17,14 +17,15 @@ std::optional<DesignShape> free_form_guess(const FitProblem& problem, const Desi
                                            const TransportChoice& choice);
 
 /// Finds a free form by successive halving: candidates (the given mirror; a point source's mirrors of both
-/// signs at several vertex distances) are fitted roughly, the best of them finely, the best of these to the
-/// end. Then, as long as there is time, the best is fitted on with more rays, before neighbours of it where
-/// it is an approach or noise is a good part of its error, and after some of them elsewhere. A given mirror
-/// of few knots that is to have no more is first brought near the target (approach.h), any other of few knots
-/// where no mirror of a point source comes near; perturbed copies of it then too, until one is at the target.
-/// A given mirror keeps its knots as long as they bring it near the noise or the target. Knots are only ever
-/// refined. Every decision depends on the state alone: a search that is stopped after any step and taken up
-/// from its state continues bit-identically.
+/// signs at several vertex distances) are fitted roughly, the best of them finely (the best of the first few
+/// before the others begin), the best of these to the end. Then, as long as there is time, the best is fitted
+/// on with more rays, before neighbours of it where it is an approach or noise is a good part of its error,
+/// and after some of them elsewhere. A given mirror of few knots that is to have no more is first brought
+/// near the target (approach.h), any other of few knots where no mirror of a point source comes to it;
+/// perturbed copies of it then too, where all are far or the approach is the nearest, until one is at the
+/// target. A given mirror keeps its knots as long as they bring it near the noise or the target. Knots are
+/// only ever refined. Every decision depends on the state alone: a search that is stopped after any step and
+/// taken up from its state continues bit-identically.
 ///
 /// Where the problem's rays are shared with peers, the rough levels of the candidates to come are fitted by
 /// one process each, before their turn. The steps that follow repeat them, so that the search has the same
@@ -98,10 +99,14 @@ class FreeFormSearch {
   bool advance(Progress& progress);
   /// The point at work, in the state, as a line of the history.
   FitRecord measured(bool accepted);
+  /// Evaluates a shape on the level of a snapshot; returns the level as it is for the shape.
+  FreeFormLevel begin_fit(const DesignShape& shape, const FreeFormSnapshot& snapshot, Progress& progress);
+  /// Whether what an approach led to, just evaluated, is still far from the target.
+  bool has_too_few_knots(const FreeFormSnapshot& approach) const;
   /// `snapshot`: the candidate, its transport, and the level that begins.
   void begin(const DesignShape& shape, const FreeFormSnapshot& snapshot, Progress& progress);
   /// A level for a shape of that many knots: with fewer bins and less smoothing where derivatives would be
-  /// noise, as the snapshot's were.
+  /// noise, as the snapshot's were, and with derivatives of fewer rays where they would not.
   FreeFormLevel level_after(const FreeFormSnapshot& before, int number, const DesignShape& shape) const;
   void finish();
   bool level_ended() const;

@@ -19,15 +19,19 @@ struct FreeFormSnapshot {
   /// What candidates are compared by: the squared error less its noise (a share of it while the fit is
   /// rough), and what lost light, limits and roughness cost.
   double cost = 0.0;
+  /// Relative error, noise taken out.
+  double error = 0.0;
   /// What it was after the first few steps of the level; 0 before.
   double early_cost = 0.0;
   /// Root of the whole cost, missing light included, over the noise.
   double error_to_noise = 0.0;
   int intervals_x = 1, intervals_y = 1;
-  /// Bins across the widened rectangle: the level's, or fewer. And what of the derivatives was noise in them,
-  /// over the rest.
+  /// Bins across the widened rectangle: the level's, or fewer. And what of the derivatives would be noise in
+  /// them, over the rest, were they those of all rays.
   int bins = 1;
   double derivative_noise = 0.0;
+  /// FreeFormLevel::derivative_rays of the level.
+  std::uint64_t derivative_rays = 0;
   std::vector<double> parameters;
   bool exists() const { return candidate >= 0; }
 };

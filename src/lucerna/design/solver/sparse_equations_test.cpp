@@ -69,6 +69,25 @@ TEST(SparseJacobian, HasTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
+// The light of all rays, and the derivatives that the first of them have alone.
+TEST(SparseJacobian, MayBeThatOfFewerRays) {
+  const SparseScene s = scene();
+  EvaluationOptions options;
+  options.rays = 1 << 18;
+  options.derivative_rays = 1 << 16;
+  options.sparse = true;
+  options.rim_mm = 1.0;
+  const Evaluation both = evaluate(s.shape, Reflectance(0.9), s.rays, s.bins, options);
+  const Evaluation few = evaluated(s, true), all = evaluated(s, true, options.rays);
+  EXPECT_EQ(both.flux, all.flux);
+  EXPECT_EQ(both.variance, all.variance);
+  EXPECT_EQ(both.reflected, all.reflected);
+  EXPECT_EQ(Eigen::MatrixXd(both.rows), Eigen::MatrixXd(few.rows));
+  EXPECT_EQ(both.rows_noise, few.rows_noise);
+  options.derivative_rays = 1;  // a block of each task at least
+  EXPECT_GT(evaluate(s.shape, Reflectance(0.9), s.rays, s.bins, options).rows.norm(), 0.0);
+}
+
 // What the scatter of the rays adds to the squared rows: with it few rays have 1.4 times what sixteen times
 // the rays have. The scatter of the parts states up to half too much, for their rays are parts of one even
 // sequence.
