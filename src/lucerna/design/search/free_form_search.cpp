@@ -31,7 +31,7 @@ constexpr std::array<TransportChoice, 7> kFacesAfter{
 /// The approach is tried where the candidates before it stay kDoubtful from the target (relative error), for
 /// a point source's mirror is no guide for a source that is long or wide; and where the given mirror is the
 /// nearest of them. Further approaches, from perturbed copies, follow where the best is kFarError from it, or
-/// is an approach itself and not near: they end in basins of their own, and how near they are once refined
+/// is an approach itself and not at it: they end in basins of their own, and how near they are once refined
 /// spreads by a factor of four in error.
 constexpr int kApproach = 1 + static_cast<int>(kBeforeApproaches.size()), kApproaches = 8;
 constexpr double kDoubtful = 0.05, kFarError = 0.15;
@@ -66,6 +66,8 @@ constexpr double kNoiseShare = 0.1;
 constexpr std::array<double, kLevels> kErrorShare{0.3, 1.0, 1.0, 1.0};
 /// The given mirror keeps its own knots as long as a level ends below so many times the noise, or near.
 constexpr double kEnoughKnots = 2.0;
+/// Approaches follow until one is within kNear and so many times the noise: its family may hold the target.
+constexpr double kAtNoise = 1.15;
 /// A mirror that fits its own rays below their noise still costs so much of what it did.
 constexpr double kMinCostShare = 0.02;
 /// A given mirror that is this near (relative error) goes on alone.
@@ -185,8 +187,8 @@ bool FreeFormSearch::worth_an_approach() const {
   const FreeFormSnapshot* best = best_of(0);
   if (!has_few_knots(given_) || fixed_to_few_knots() || best == nullptr) return false;
   if (problem_.rays->medium()) return false;  // the ladder of an approach has mirrors only
-  const bool is_first = state_.begun <= kApproach;
-  const double near = is_first ? kDoubtful : is_approach(*best) ? kNear : kFarError;
+  if (is_approach(*best)) return best->error > kNear || best->error_to_noise > kAtNoise;
+  const double near = state_.begun <= kApproach ? kDoubtful : kFarError;
   return best->candidate == 0 || best->error > near;
 }
 
@@ -268,7 +270,8 @@ const FreeFormSnapshot* FreeFormSearch::next_promotion() const {
                          [&](const FreeFormSnapshot& m) { return m.level == level; });
   };
   const FreeFormSnapshot* given = best_of(0);
-  const bool near = state_.begun == 1 && given != nullptr && given->cost < kErrorShare[0] * kNear * kNear;
+  const bool near = state_.begun == 1 && given != nullptr &&
+                    given->cost < kErrorShare[0] * kNear * kNear && !given_is_stuck();
   const bool alone = approach_is_alone();
   const FreeFormSnapshot* rough = best_waiting(0);
   if (state_.begun < kFirstCandidates && !near && !alone && best_of(kEnd) == nullptr) {
@@ -392,7 +395,16 @@ void FreeFormSearch::begin_candidate(const FreeFormSnapshot& candidate, Progress
   begin(*start, candidate, progress);
 }
 
+bool FreeFormSearch::given_is_stuck() const {
+  if (!has_few_knots(given_) || fixed_to_few_knots() || problem_.rays->medium()) return false;
+  return std::any_of(state_.done.begin(), state_.done.end(), [](const FreeFormSnapshot& m) {
+    return m.candidate == 0 && m.level == 1 && m.error_to_noise > kEnoughKnots;
+  });
+}
+
 int FreeFormSearch::next_number(int number) const {
+  // So near, only its own family may come nearer.
+  if (number == 1 && given_is_stuck()) number = kApproach;
   return number >= kApproach && number < kNoApproach && !worth_an_approach() ? kNoApproach : number;
 }
 

@@ -61,6 +61,8 @@ class FreeFormSearch {
   static bool is_approach(const FreeFormSnapshot& snapshot);
   /// Whether the approach at work lags so far behind the best at its level that it may end.
   bool is_slow_approach() const;
+  /// Whether the given mirror was near, went on alone, and its few knots ended it above the noise.
+  bool given_is_stuck() const;
   /// Whether what the approaches led to is so much better that no mirror of a point source needs to be tried.
   bool approach_is_alone() const;
   /// Whether the given mirror has few knots and is to have no more.

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -255,8 +254,8 @@ TEST(FreeFormSearch, OfALongSourceTheGivenMirrorIsBroughtNear) {
   }
 }
 
-/// A search that has come to its third candidate; what the first three cost.
-FreeFormState three_candidates(const std::array<double, 3>& costs) {
+/// A search that has come to the end of its first candidates' rough levels; what these cost.
+FreeFormState candidates_of(const std::vector<double>& costs) {
   FreeFormState state;
   const DesignShape shape = plain();
   for (const double cost : costs) {
@@ -278,7 +277,7 @@ FreeFormState three_candidates(const std::array<double, 3>& costs) {
 TEST(FreeFormSearch, TheBestOfAFewIsFittedFinelyBeforeTheOthersBegin) {
   DesignRays rays = disk_rays();
   const FitProblem problem = oval_problem(rays);
-  const FreeFormState state = run(problem, plain(), 1, three_candidates({4e-3, 1e-4, 5e-3})).state();
+  const FreeFormState state = run(problem, plain(), 1, candidates_of({4e-3, 1e-4, 5e-3})).state();
   EXPECT_EQ(state.now.candidate, 1);
   EXPECT_EQ(state.now.level, 1);
 }
@@ -288,7 +287,7 @@ TEST(FreeFormSearch, TheBestOfAFewIsFittedFinelyBeforeTheOthersBegin) {
 TEST(FreeFormSearch, AGivenMirrorIsBroughtNearerWhereNoneIsAtTheTarget) {
   DesignRays rays = disk_rays();
   const FitProblem problem = oval_problem(rays);
-  FreeFormState state = run(problem, plain(), 1, three_candidates({4e-3, 3e-3, 5e-3})).state();
+  FreeFormState state = run(problem, plain(), 1, candidates_of({4e-3, 3e-3, 5e-3})).state();
   ASSERT_EQ(state.now.candidate, 3);
   EXPECT_FALSE(state.now.transport.exists());
   state.done.push_back(state.done.front());
@@ -302,12 +301,37 @@ TEST(FreeFormSearch, AGivenMirrorIsBroughtNearerWhereNoneIsAtTheTarget) {
   EXPECT_EQ(next.state().now.intervals_x, 8);
 }
 
+// Near, yet above the noise on the fine level: only its own family may come nearer, from other starts, until
+// one is at the noise.
+TEST(FreeFormSearch, AGivenMirrorThatIsStuckIsApproachedAtOnce) {
+  DesignRays rays = disk_rays();
+  const FitProblem problem = oval_problem(rays);
+  FreeFormState state = candidates_of({5e-6});
+  FreeFormSnapshot fine = state.done.front();
+  fine.level = 1;
+  fine.error_to_noise = 3.0;
+  state.done.push_back(fine);
+  state = run(problem, plain(), 1, state).state();
+  ASSERT_EQ(state.now.candidate, 3);
+  EXPECT_EQ(state.begun, 4);
+  for (const double over_noise : {1.3, 1.05}) {
+    FreeFormState next = state;
+    next.done.push_back(next.done.front());
+    next.done.back().candidate = 3;
+    next.done.back().cost = 2e-6;
+    next.done.back().error_to_noise = over_noise;
+    next.now = {};
+    next = run(problem, plain(), 1, next).state();
+    EXPECT_EQ(next.now.candidate == 4, over_noise > 1.2) << over_noise;
+  }
+}
+
 // Approaches from perturbed copies end in basins of their own, so that several are compared, as long as none
 // is at the target.
 TEST(FreeFormSearch, FurtherApproachesFollowUntilOneIsNear) {
   DesignRays rays = disk_rays();
   const FitProblem problem = oval_problem(rays);
-  FreeFormState state = three_candidates({3e-3, 4e-3, 5e-3});
+  FreeFormState state = candidates_of({3e-3, 4e-3, 5e-3});
   FreeFormSnapshot approach = state.done.front();
   approach.candidate = state.begun++;
   approach.cost = 2e-3;
@@ -327,6 +351,7 @@ TEST(FreeFormSearch, FurtherApproachesFollowUntilOneIsNear) {
   for (FreeFormSnapshot& m : state.done) {
     m.cost = std::min(m.cost, 2e-5);
     m.error = std::min(m.error, 8e-3);
+    m.error_to_noise = 1.0;
   }
   state = run(problem, plain(), 1, state).state();
   EXPECT_GT(state.begun, 11) << "no more approaches";
@@ -337,7 +362,7 @@ TEST(FreeFormSearch, AnApproachThatLagsBehindEndsEarly) {
   DesignRays rays = disk_rays();
   const FitProblem problem = oval_problem(rays);
   for (const double early : {1e-9, 1e9}) {
-    FreeFormState state = three_candidates({3e-3, 4e-3, 5e-3});
+    FreeFormState state = candidates_of({3e-3, 4e-3, 5e-3});
     FreeFormSnapshot best = state.done.front();
     best.candidate = 3;
     best.level = 1;
