@@ -270,8 +270,8 @@ const FreeFormSnapshot* FreeFormSearch::next_promotion() const {
                          [&](const FreeFormSnapshot& m) { return m.level == level; });
   };
   const FreeFormSnapshot* given = best_of(0);
-  const bool near = state_.begun == 1 && given != nullptr &&
-                    given->cost < kErrorShare[0] * kNear * kNear && !given_is_stuck();
+  const bool near = state_.begun == 1 && given != nullptr && given->cost < kErrorShare[0] * kNear * kNear &&
+                    !given_is_stuck();
   const bool alone = approach_is_alone();
   const FreeFormSnapshot* rough = best_waiting(0);
   if (state_.begun < kFirstCandidates && !near && !alone && best_of(kEnd) == nullptr) {
