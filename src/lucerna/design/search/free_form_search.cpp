@@ -10,6 +10,7 @@
 #include "lucerna/core/parallel/peers.h"
 #include "lucerna/design/evaluation/point_source.h"
 #include "lucerna/design/fit/approach.h"
+#include "lucerna/design/search/free_form_levels.h"
 #include "lucerna/random.h"
 
 namespace lucerna {
@@ -78,42 +79,12 @@ constexpr double kMinLambda = 1e-5;
 /// blurred by the source's size a rough surface costs no light. At a three-hundredth of it slopes jump by a
 /// degree from knot to knot, at the same error.
 constexpr double kSmoothing = 0.03;
-/// Of the derivatives' noise over the rest. A wide source lights many bins through each cell of knots, by few
-/// rays each: their noise then damps every step. Coarser bins hold more rays, and such a source blurs what is
-/// finer than they are.
-constexpr double kMaxDerivativeNoise = 0.3;
-/// Fewer of a level's rays have derivatives as long as no more than this of them is noise, over the rest:
-/// such steps take half the time, and lead as far. At most by this factor, for then light takes most of the
-/// time.
-constexpr double kDerivativeNoise = 0.06;
-constexpr unsigned kMaxFewer = 8;
-constexpr std::uint64_t kMinDerivativeRays = std::uint64_t{1} << 18;
-/// Least share of a level's bins, along each side.
-constexpr double kMinBins = 0.6;
-/// Share of its weight that roughness has on such a level: all of it costs as much there as an error of two
-/// per cent, and with a tenth ripples hide in the coarser bins.
-constexpr double kWideSmoothing = 0.3;
 /// Light that a start is made for, in rays.
 constexpr std::uint64_t kStartRays = std::uint64_t{1} << 19;
 constexpr int kStartBins = 36;
 /// That tell where the source is.
 constexpr std::uint64_t kUnitRays = std::uint64_t{1} << 14;
 constexpr double kStartWiden = 1.1;
-
-/// How finely each level fits; knots, smoothing and zones are the search's.
-const std::array<FreeFormLevel, kLevels> kLevel{{
-    {.bins = 64, .rays = 1 << 18, .max_steps = 8, .min_gain = 0.1},
-    {.bins = 84, .rays = 1 << 20, .max_steps = 25, .min_gain = 0.05},
-    {.bins = 108, .rays = 1 << 22, .max_steps = 25, .min_gain = 0.015},
-    {.bins = 120, .rays = 1 << 23, .max_steps = 40, .min_gain = 0.005},
-}};
-
-/// The level with so many bins, of which a wide source has fewer.
-FreeFormLevel with_bins(FreeFormLevel level, int bins) {
-  if (bins < level.bins) level.smoothing *= kWideSmoothing;
-  level.bins = bins;
-  return level;
-}
 
 /// Intervals along both sides where the longer has `max`.
 std::pair<int, int> intervals_of(const Aperture& a, int max) {
@@ -150,7 +121,7 @@ FreeFormSearch::FreeFormSearch(const FitProblem& problem, const DesignShape& giv
       state_(std::move(state)) {}
 
 FreeFormLevel FreeFormSearch::level(int number) const {
-  FreeFormLevel out = kLevel[static_cast<std::size_t>(number)];
+  FreeFormLevel out = free_form_level(number);
   const double half = 0.5 * std::max(problem_.rectangle.width(), problem_.rectangle.height());
   const int max = number == 0 ? std::min(kRoughIntervals, max_intervals_) : max_intervals_;
   std::tie(out.intervals_x, out.intervals_y) = intervals_of(given_.aperture(), max);
@@ -321,13 +292,7 @@ FreeFormLevel FreeFormSearch::level_after(const FreeFormSnapshot& before, int nu
                        (before.intervals_x * before.intervals_y);
   const double rays = static_cast<double>(l.rays) / static_cast<double>(level(number - 1).rays);
   const double noise = before.derivative_noise * bins * bins * cells / rays;
-  // 1 without noise.
-  const double share = std::clamp(std::sqrt(kMaxDerivativeNoise / noise), kMinBins, 1.0);
-  l = with_bins(l, static_cast<int>(std::lround(l.bins * share)));
-  unsigned fewer = kMaxFewer;
-  while (fewer > 1 && fewer * noise * share * share > kDerivativeNoise) fewer /= 2;
-  l.derivative_rays = std::min(l.rays, std::max(l.rays / fewer, kMinDerivativeRays));
-  return l;
+  return for_noise(l, noise);
 }
 
 FreeFormLevel FreeFormSearch::begin_fit(const DesignShape& shape, const FreeFormSnapshot& snapshot,
