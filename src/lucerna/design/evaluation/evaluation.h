@@ -22,12 +22,13 @@ inline constexpr double kRimShare = 0.02;
 /// What one evaluation traces.
 struct EvaluationOptions {
   std::uint64_t rays = 1 << 16;
-  /// Also the derivatives; about twice the time.
+  /// Also the derivatives; twice to seven times the time, the more so the wider the source.
   bool derivatives = true;
   /// The derivatives as `Evaluation::rows` and not as `jacobian`; free forms only.
   bool sparse = false;
-  /// Sparse derivatives are those of the light of the first so many rays; 0: of all. A search needs them less
-  /// exactly than the light, and they take most of the time. On a device they are always those of all.
+  /// Sparse derivatives are those of the light of the first so many rays (kDesignTasks blocks at least); 0:
+  /// of all. A search needs them less exactly than the light, and they take most of the time. On a device
+  /// they are always those of all.
   std::uint64_t derivative_rays = 0;
   /// Light that misses the mirror counts too (it does in a luminaire; the hidden-reflector suite leaves it
   /// out, so that it cannot flatter the error).

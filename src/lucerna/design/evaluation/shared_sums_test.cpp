@@ -103,6 +103,11 @@ TEST(SharedEvaluation, AlsoWithMorePartsThanPeers) {
   options.sparse = true;
   const Evaluation alone = evaluate(c.shape, Reflectance(0.9), rays, c.bins, options);
   EXPECT_EQ(peers_alike(3, c, rays, options, alone), 3);
+  options.derivative_rays = n / 2;
+  const Evaluation half = evaluate(c.shape, Reflectance(0.9), rays, c.bins, options);
+  EXPECT_EQ(peers_alike(3, c, rays, options, half), 3);
+  EXPECT_EQ(peers_alike(3, c, rays, options, alone), 0) << "derivatives of half the rays are others";
+  options.derivative_rays = 0;
   // The order of the parts is in the bits: the check can tell.
   options.rays = n / 2;
   EXPECT_EQ(peers_alike(3, c, rays, options, alone), 0);

@@ -70,9 +70,10 @@ FreeFormPoint FreeFormFit::at(DesignShape shape, bool derivatives) const {
   equations *= error_weight();
   if (zones_) zones_->add_to(light, equations);
   ResidualRows rows;
+  ResidualRows* const wanted = derivatives ? &rows : nullptr;
   equations.cost +=
-      smoothness_penalty(shape, smoothing_for(shape, level_.smoothing), kSmoothnessAtAxis, &rows);
-  if (problem_.limits) equations.cost += problem_.limits(shape, level_.rays, &rows);
+      smoothness_penalty(shape, smoothing_for(shape, level_.smoothing), kSmoothnessAtAxis, wanted);
+  if (problem_.limits) equations.cost += problem_.limits(shape, level_.rays, wanted);
   rows.add_to(equations);
   if (problem_.flux_weight > 0.0) {
     const double missing = 1.0 - inside_.dot(light.flux) / problem_.flux_reference;

@@ -154,10 +154,13 @@ bool FreeFormSearch::is_approach(const FreeFormSnapshot& snapshot) {
   return !snapshot.transport.exists() && snapshot.candidate >= kApproach;
 }
 
+bool FreeFormSearch::may_approach() const {
+  return has_few_knots(given_) && !fixed_to_few_knots() && !problem_.rays->medium();
+}
+
 bool FreeFormSearch::worth_an_approach() const {
   const FreeFormSnapshot* best = best_of(0);
-  if (!has_few_knots(given_) || fixed_to_few_knots() || best == nullptr) return false;
-  if (problem_.rays->medium()) return false;  // the ladder of an approach has mirrors only
+  if (best == nullptr || !may_approach()) return false;
   if (is_approach(*best)) return best->error > kNear || best->error_to_noise > kAtNoise;
   const double near = state_.begun <= kApproach ? kDoubtful : kFarError;
   return best->candidate == 0 || best->error > near;
@@ -295,19 +298,14 @@ FreeFormLevel FreeFormSearch::level_after(const FreeFormSnapshot& before, int nu
   return for_noise(l, noise);
 }
 
-FreeFormLevel FreeFormSearch::begin_fit(const DesignShape& shape, const FreeFormSnapshot& snapshot,
-                                        Progress& progress) {
-  const FreeFormLevel l = level_after(snapshot, snapshot.level, shape);
-  fit_.emplace(problem_, l, progress);
-  fit_->keep_other_light_of(shape);
+void FreeFormSearch::evaluate_at(const DesignShape& shape, std::uint64_t rays) {
   point_.emplace(fit_->at(shape));
   ++state_.evaluations;
-  state_.total_rays += l.rays;
-  return l;
+  state_.total_rays += rays;
 }
 
 bool FreeFormSearch::has_too_few_knots(const FreeFormSnapshot& approach) const {
-  if (approach.level != 0 || !is_approach(approach) || fixed_to_few_knots()) return false;
+  if (approach.level != 0 || !is_approach(approach) || !may_approach()) return false;
   const BinError error = fit_->error(*point_);
   return error.relative_rms > std::hypot(error.floor, kFewKnotsError);
 }
@@ -319,8 +317,13 @@ void FreeFormSearch::begin(const DesignShape& shape, const FreeFormSnapshot& sna
   const int ny = std::max(shape.intervals_y(), with.intervals_y);
   const bool has = shape.intervals_x() == nx && shape.intervals_y() == ny;
   const bool own = has || knots_suffice(snapshot);
-  FreeFormLevel l = begin_fit(own ? shape : shape.refined(nx, ny), snapshot, progress);
-  if (own && !has && has_too_few_knots(snapshot)) l = begin_fit(shape.refined(nx, ny), snapshot, progress);
+  const DesignShape first = own ? shape : shape.refined(nx, ny);
+  const FreeFormLevel l = level_after(snapshot, snapshot.level, first);
+  fit_.emplace(problem_, l, progress);
+  fit_->keep_other_light_of(first);
+  evaluate_at(first, l.rays);
+  // On the rough level, which is the same for any knots.
+  if (own && !has && has_too_few_knots(snapshot)) evaluate_at(shape.refined(nx, ny), l.rays);
   state_.now = snapshot;
   state_.now.early_cost = 0.0;
   state_.now.bins = l.bins;
@@ -361,7 +364,7 @@ void FreeFormSearch::begin_candidate(const FreeFormSnapshot& candidate, Progress
 }
 
 bool FreeFormSearch::given_is_stuck() const {
-  if (!has_few_knots(given_) || fixed_to_few_knots() || problem_.rays->medium()) return false;
+  if (!may_approach()) return false;
   return std::any_of(state_.done.begin(), state_.done.end(), [](const FreeFormSnapshot& m) {
     return m.candidate == 0 && m.level == 1 && m.error_to_noise > kEnoughKnots;
   });

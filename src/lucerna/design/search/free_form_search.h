@@ -57,6 +57,9 @@ class FreeFormSearch {
   /// Whether an approach of the given mirror may help: it has few knots, and came nearer than the candidates
   /// after it, or none came near; a further one, where none is at the target.
   bool worth_an_approach() const;
+  /// Whether the given mirror may be brought near as a candidate beside itself: it has few knots, is to have
+  /// more, and is no face of a lens, for the continuation of an approach has mirrors only.
+  bool may_approach() const;
   /// A given mirror that was brought near.
   static bool is_approach(const FreeFormSnapshot& snapshot);
   /// Whether the approach at work lags so far behind the best at its level that it may end.
@@ -101,8 +104,8 @@ class FreeFormSearch {
   bool advance(Progress& progress);
   /// The point at work, in the state, as a line of the history.
   FitRecord measured(bool accepted);
-  /// Evaluates a shape on the level of a snapshot; returns the level as it is for the shape.
-  FreeFormLevel begin_fit(const DesignShape& shape, const FreeFormSnapshot& snapshot, Progress& progress);
+  /// Makes a shape the point at work of the fit, and counts that.
+  void evaluate_at(const DesignShape& shape, std::uint64_t rays);
   /// Whether what an approach led to, just evaluated, is still far from the target.
   bool has_too_few_knots(const FreeFormSnapshot& approach) const;
   /// `snapshot`: the candidate, its transport, and the level that begins.

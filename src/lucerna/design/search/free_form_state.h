@@ -21,7 +21,7 @@ struct FreeFormSnapshot {
   double cost = 0.0;
   /// Relative error, noise taken out.
   double error = 0.0;
-  /// What it was after the first few steps of the level; 0 before.
+  /// The cost after the first few steps of the level; 0 before.
   double early_cost = 0.0;
   /// Root of the whole cost, missing light included, over the noise.
   double error_to_noise = 0.0;
