@@ -28,6 +28,12 @@ void Bspline::read_axis(const JsonNode& knots, Axis& axis) {
     if (inner && same > p)
       knots.fail(std::to_string(same) + " equal inner knots", "at most the degree: no gaps in the surface");
   }
+  for (std::size_t i = p; i < axis.count; ++i) {
+    if (axis.knots[i] == axis.knots[i + 1]) continue;
+    axis.breaks.push_back(axis.knots[i]);
+    axis.pieces.push_back(piece(axis, i));
+  }
+  axis.breaks.push_back(axis.knots[axis.count]);
 }
 
 Bspline::Bspline(const JsonNode& s) {
@@ -64,60 +70,81 @@ Bspline::Bspline(const JsonNode& s) {
     s.at("weights").fail(std::to_string(weights_.size()) + " weights", std::to_string(points_.size()));
 }
 
-std::vector<double> Bspline::breaks(std::size_t axis) const {
-  std::vector<double> out;
-  for (const double k : axes_[axis].knots) {
-    if (k >= low(axis) && k <= high(axis) && (out.empty() || k > out.back())) out.push_back(k);
+// By the recursion of C. de Boor, with polynomials for numbers.
+Bspline::Piece Bspline::piece(const Axis& axis, std::size_t span) {
+  const auto p = static_cast<std::size_t>(axis.degree);
+  const auto& k = axis.knots;
+  const double low = k[span], width = k[span + 1] - low;
+  Piece out;
+  out.first = span - p;
+  out.per_length = 1.0 / width;
+  auto& c = out.powers;
+  c[0][0] = 1.0;
+  for (std::size_t q = 1; q <= p; ++q) {
+    // Functions of degree q - 1 are span - q + 1 .. span; each goes to its two neighbours of degree q.
+    const auto lower = c;
+    c = {};
+    for (std::size_t i = 0; i < q; ++i) {
+      const double from = k[span - q + 1 + i], to = k[span + 1 + i];
+      for (std::size_t power = 0; power < q; ++power) {
+        const double share = lower[power][i] / (to - from);
+        c[power][i] += (to - low) * share;
+        c[power][i + 1] += (low - from) * share;
+        c[power + 1][i] -= width * share;
+        c[power + 1][i + 1] += width * share;
+      }
+    }
   }
   return out;
 }
 
-std::size_t Bspline::basis(const Axis& axis, double x, Basis& value, Basis& slope) {
+std::size_t Bspline::basis(const Axis& axis, double x, Numbers& value, Numbers& slope) {
   const auto p = static_cast<std::size_t>(axis.degree);
-  const auto& k = axis.knots;
-  const auto first = k.begin() + static_cast<std::ptrdiff_t>(p);
-  const auto last = k.begin() + static_cast<std::ptrdiff_t>(axis.count);
-  // The piece [k[span], k[span + 1]) with x in it, the last one for the end of the domain.
-  const auto above = std::upper_bound(first, last, x);
-  auto span = static_cast<std::size_t>(above - k.begin()) - 1;
-  while (span > p && k[span] == k[span + 1]) --span;
-  value.fill(0.0);
+  // The piece with x in it, the last one for the end of the domain.
+  const auto above = std::upper_bound(axis.breaks.begin() + 1, axis.breaks.end() - 1, x);
+  const auto k = static_cast<std::size_t>(above - axis.breaks.begin()) - 1;
+  const Piece& piece = axis.pieces[k];
+  const double t = (x - axis.breaks[k]) * piece.per_length;
+  value = piece.powers[p];
   slope.fill(0.0);
-  value[0] = 1.0;
-  for (std::size_t q = 1; q <= p; ++q) {
-    // Functions of degree q - 1 are span - q + 1 .. span; each goes to its two neighbours of degree q.
-    const Basis lower = value;
-    value.fill(0.0);
-    for (std::size_t i = 0; i < q; ++i) {
-      const double from = k[span - q + 1 + i], to = k[span + 1 + i], share = lower[i] / (to - from);
-      value[i] += (to - x) * share;
-      value[i + 1] += (x - from) * share;
-      if (q == p) {
-        slope[i] -= static_cast<double>(p) * share;
-        slope[i + 1] += static_cast<double>(p) * share;
-      }
+  for (std::size_t power = p; power-- > 0;) {
+    for (std::size_t i = 0; i <= p; ++i) {
+      slope[i] = slope[i] * t + value[i];
+      value[i] = value[i] * t + piece.powers[power][i];
     }
   }
-  return span - p;
+  for (std::size_t i = 0; i <= p; ++i) slope[i] *= piece.per_length;
+  return piece.first;
 }
 
 SurfaceJet Bspline::at(double u, double v) const {
-  Basis bu, du, bv, dv;
+  Numbers bu, du, bv, dv;
   const std::size_t i0 = basis(axes_[0], u, bu, du), j0 = basis(axes_[1], v, bv, dv);
+  const auto p = static_cast<std::size_t>(axes_[0].degree), q = static_cast<std::size_t>(axes_[1].degree);
   SurfaceJet jet;
   double w = 0.0, wu = 0.0, wv = 0.0;
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(axes_[0].degree); ++i) {
-    for (std::size_t j = 0; j <= static_cast<std::size_t>(axes_[1].degree); ++j) {
-      const std::size_t k = (i0 + i) * axes_[1].count + j0 + j;
-      const double weight = weights_.empty() ? 1.0 : weights_[k];
-      const double b = weight * bu[i] * bv[j], bdu = weight * du[i] * bv[j], bdv = weight * bu[i] * dv[j];
-      jet.point = jet.point + b * points_[k];
-      jet.by_u = jet.by_u + bdu * points_[k];
-      jet.by_v = jet.by_v + bdv * points_[k];
-      w += b;
-      wu += bdu;
-      wv += bdv;
+  for (std::size_t i = 0; i <= p; ++i) {
+    // A row's sums, as a function of v alone.
+    Vec3 row, row_by_v;
+    double weight = 0.0, weight_by_v = 0.0;
+    const std::size_t k0 = (i0 + i) * axes_[1].count + j0;
+    for (std::size_t j = 0; j <= q; ++j) {
+      double b = bv[j], slope = dv[j];
+      if (!weights_.empty()) {
+        b *= weights_[k0 + j];
+        slope *= weights_[k0 + j];
+        weight += b;
+        weight_by_v += slope;
+      }
+      row = row + b * points_[k0 + j];
+      row_by_v = row_by_v + slope * points_[k0 + j];
     }
+    jet.point = jet.point + bu[i] * row;
+    jet.by_u = jet.by_u + du[i] * row;
+    jet.by_v = jet.by_v + bu[i] * row_by_v;
+    w += bu[i] * weight;
+    wu += du[i] * weight;
+    wv += bu[i] * weight_by_v;
   }
   if (weights_.empty()) return jet;
   jet.point = (1.0 / w) * jet.point;

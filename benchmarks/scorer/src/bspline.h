@@ -30,18 +30,27 @@ class Bspline {
   double high(std::size_t axis) const { return axes_[axis].knots[axes_[axis].count]; }
   int degree(std::size_t axis) const { return axes_[axis].degree; }
   /// Ascending ends of the pieces of the domain along an axis.
-  std::vector<double> breaks(std::size_t axis) const;
+  const std::vector<double>& breaks(std::size_t axis) const { return axes_[axis].breaks; }
 
  private:
+  using Numbers = std::array<double, kMaxDegree + 1>;
+  /// The functions that are not 0 on a piece of the domain, as polynomials: [power][function], of where x
+  /// is from the piece's low end (0) to its high end (1).
+  struct Piece {
+    std::size_t first = 0;
+    double per_length = 0.0;
+    std::array<Numbers, kMaxDegree + 1> powers{};
+  };
   struct Axis {
     int degree = 0;
     std::size_t count = 0;
-    std::vector<double> knots;
+    std::vector<double> knots, breaks;
+    std::vector<Piece> pieces;
   };
-  using Basis = std::array<double, kMaxDegree + 1>;
   static void read_axis(const JsonNode& knots, Axis& axis);
+  static Piece piece(const Axis& axis, std::size_t span);
   /// Values and derivatives of the functions that are not 0 at x; the number of the first of them.
-  static std::size_t basis(const Axis& axis, double x, Basis& value, Basis& slope);
+  static std::size_t basis(const Axis& axis, double x, Numbers& value, Numbers& slope);
 
   std::array<Axis, 2> axes_;
   std::vector<Vec3> points_;

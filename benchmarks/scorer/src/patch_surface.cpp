@@ -24,28 +24,25 @@ class PatchSurface final : public Surface {
 
   const Triangles& triangles() const override { return mesh_; }
   bool whole(const std::array<std::uint32_t, 3>& t) const override {
-    return kept(u_[t[0]], v_[t[0]]) && kept(u_[t[1]], v_[t[1]]) && kept(u_[t[2]], v_[t[2]]);
+    return kept(t[0]) && kept(t[1]) && kept(t[2]);
   }
   std::vector<Vec3> extent() const override {
     if (!patch_->trimmed()) return mesh_.corners;
     std::vector<Vec3> out;
     for (std::size_t k = 0; k < mesh_.corners.size(); ++k) {
-      if (kept(u_[k], v_[k])) out.push_back(mesh_.corners[k]);
+      if (kept(k)) out.push_back(mesh_.corners[k]);
     }
     for (const auto& t : mesh_.triangles) {
       for (std::size_t i = 0; i < 3; ++i) {
         const std::uint32_t a = t[i], b = t[(i + 1) % 3];
-        if (kept(u_[a], v_[a]) && !kept(u_[b], v_[b])) out.push_back(rim(a, b));
+        if (kept(a) && !kept(b)) out.push_back(rim(a, b));
       }
     }
     return out;
   }
 
   bool refine(const Vec3& origin, const Vec3& direction, const FlatHit& flat, Hit& hit) const override {
-    const auto& c = mesh_.triangles[flat.triangle];
-    const double b0 = 1.0 - flat.b1 - flat.b2;
-    double u = b0 * u_[c[0]] + flat.b1 * u_[c[1]] + flat.b2 * u_[c[2]];
-    double v = b0 * v_[c[0]] + flat.b1 * v_[c[1]] + flat.b2 * v_[c[2]];
+    auto [u, v] = on_quad(flat);
     double t = flat.t;
     const Vec3 o = place_.local_point(origin), d = place_.local_vector(direction);
     SurfaceJet jet;
@@ -73,12 +70,23 @@ class PatchSurface final : public Surface {
  private:
   Vec3 point(double u, double v) const { return patch_->jet(u, v).point; }
   bool kept(double u, double v) const { return patch_->keeps(u, v, point(u, v)); }
+  bool kept(std::size_t corner) const { return kept_[corner] != 0; }
+  double u_of(std::size_t corner) const { return u_[corner / v_.size()]; }
+  double v_of(std::size_t corner) const { return v_[corner % v_.size()]; }
+  /// Of two triangles a quad, as `cut` makes them.
+  std::array<double, 2> on_quad(const FlatHit& flat) const {
+    const std::size_t quad = flat.triangle / 2, i = quad / (v_.size() - 1), j = quad % (v_.size() - 1);
+    const double both = flat.b1 + flat.b2;
+    const double by_u = flat.triangle % 2 == 0 ? both : flat.b1,
+                 by_v = flat.triangle % 2 == 0 ? flat.b2 : both;
+    return {u_[i] + by_u * (u_[i + 1] - u_[i]), v_[j] + by_v * (v_[j + 1] - v_[j])};
+  }
   /// Where the rim crosses the edge from a corner that is kept to one that is not.
   Vec3 rim(std::uint32_t kept_corner, std::uint32_t other) const {
     double in = 0.0, out = 1.0;
     const auto at = [&](double x) {
-      return std::array{(1.0 - x) * u_[kept_corner] + x * u_[other],
-                        (1.0 - x) * v_[kept_corner] + x * v_[other]};
+      return std::array{(1.0 - x) * u_of(kept_corner) + x * u_of(other),
+                        (1.0 - x) * v_of(kept_corner) + x * v_of(other)};
     };
     for (int step = 0; step < 40; ++step) {
       const double x = 0.5 * (in + out);
@@ -126,15 +134,17 @@ class PatchSurface final : public Surface {
       const std::size_t axis = both ? (at[0].size() <= at[1].size() ? 0 : 1) : cut_more[0] ? 0 : 1;
       at[axis] = grid(axis, pieces[axis] *= 2);
     }
-    for (const double u : at[0]) {
-      for (const double v : at[1]) {
-        u_.push_back(u);
-        v_.push_back(v);
-        mesh_.corners.push_back(place_.point(point(u, v)));
+    u_ = std::move(at[0]);
+    v_ = std::move(at[1]);
+    for (const double u : u_) {
+      for (const double v : v_) {
+        const Vec3 p = point(u, v);
+        kept_.push_back(patch_->keeps(u, v, p) ? 1 : 0);
+        mesh_.corners.push_back(place_.point(p));
       }
     }
-    const auto row = static_cast<std::uint32_t>(at[1].size());
-    for (std::uint32_t i = 0; i + 1 < at[0].size(); ++i) {
+    const auto row = static_cast<std::uint32_t>(v_.size());
+    for (std::uint32_t i = 0; i + 1 < u_.size(); ++i) {
       for (std::uint32_t j = 0; j + 1 < row; ++j) {
         const std::uint32_t k = i * row + j;
         mesh_.triangles.push_back({k, k + row, k + row + 1});
@@ -147,7 +157,10 @@ class PatchSurface final : public Surface {
   Frame place_;
   double size_ = 0.0;
   Triangles mesh_;
+  /// The lines of the quads' corners; a corner for each pair, along v first.
   std::vector<double> u_, v_;
+  /// By corner: is it within the trim?
+  std::vector<char> kept_;
 };
 
 }  // namespace

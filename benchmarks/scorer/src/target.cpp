@@ -16,14 +16,11 @@ constexpr double kCut = 0.0025;
 constexpr double kSliver = 0.01;
 constexpr int kTents = 181;
 
-/// Angles from the axis, degrees: across x, across y, and from the axis itself.
-struct Angles {
-  double x, y, gamma;
-};
-Angles angles(double u, double v) {
-  const double w = std::sqrt(std::max(0.0, 1.0 - u * u - v * v));
-  return {std::atan2(u, w) / kDegree, std::atan2(v, w) / kDegree, std::atan2(std::hypot(u, v), w) / kDegree};
-}
+double cosine(double u, double v) { return std::sqrt(std::max(0.0, 1.0 - u * u - v * v)); }
+/// Angles from the axis, degrees: across x (of u) or across y (of v), with the cosine; and from the axis
+/// itself.
+double across(double u, double cosine) { return std::atan2(u, cosine) / kDegree; }
+double from_axis(double u, double v) { return across(std::hypot(u, v), cosine(u, v)); }
 
 double gaussian(double angle, double beam) { return std::exp2(-std::pow(2.0 * angle / beam, 2)); }
 double soft_step(double x, double edge, double soft) {
@@ -32,13 +29,13 @@ double soft_step(double x, double edge, double soft) {
 
 /// Rises to 60 degrees on the side of +x, little on the other side.
 double wall_washer(double u, double v) {
-  const Angles a = angles(u, v);
-  const double rise = 0.25 + 0.75 / (1.0 + std::exp(-(a.x - 12.0) / 9.0));
-  return rise * soft_step(std::abs(a.x - 15.0), 48.0, 0.3) * std::exp2(-std::pow(a.y / 38.0, 2));
+  const double w = cosine(u, v), x = across(u, w), y = across(v, w);
+  const double rise = 0.25 + 0.75 / (1.0 + std::exp(-(x - 12.0) / 9.0));
+  return rise * soft_step(std::abs(x - 15.0), 48.0, 0.3) * std::exp2(-std::pow(y / 38.0, 2));
 }
 
 double batwing(double u, double v, double edge, double soft) {
-  const double gamma = angles(u, v).gamma;
+  const double gamma = from_axis(u, v);
   if (gamma >= 89.0) return 0.0;
   return std::pow(std::cos(kDegree * std::min(gamma, 75.0)), -3.0) * soft_step(gamma, edge, soft);
 }
@@ -113,12 +110,12 @@ void Target::read_function(const JsonNode& t) {
   } else if (name == "gaussian_beam") {
     const double bx = degrees("beam_x_deg"), by = degrees("beam_y_deg");
     density_ = [=](double u, double v) {
-      const Angles a = angles(u, v);
-      return gaussian(a.x, bx) * gaussian(a.y, by);
+      const double w = cosine(u, v);
+      return gaussian(across(u, w), bx) * gaussian(across(v, w), by);
     };
   } else if (name == "round_gaussian_beam") {
     const double beam = degrees("beam_deg");
-    density_ = [=](double u, double v) { return gaussian(angles(u, v).gamma, beam); };
+    density_ = [=](double u, double v) { return gaussian(from_axis(u, v), beam); };
   } else if (name == "batwing") {
     const double edge = degrees("edge_deg"), soft = t.at("soft").positive();
     density_ = [=](double u, double v) { return batwing(u, v, edge, soft); };
@@ -168,7 +165,7 @@ std::array<double, 2> Target::integral(const Rectangle& r, int points) const {
 }
 
 void Target::set_rectangle(const JsonNode& t) {
-  const int fine = is_angle() ? 1 << 17 : 2048, across = is_angle() ? 1 : fine;
+  const int fine = is_angle() ? 1 << 17 : 1024, across = is_angle() ? 1 : fine;
   std::vector<double> by_u(static_cast<std::size_t>(fine), 0.0), by_v(static_cast<std::size_t>(across), 0.0);
   const double du = 2.0 * half_[0] / fine, dv = is_angle() ? 0.0 : 2.0 * half_[1] / fine;
   double total = 0.0;

@@ -44,6 +44,38 @@ TEST(Bspline, BowlIsExact) {
   }
 }
 
+// Marsden's identity: with each point at the mean of its inner knots a spline of any degree is a straight
+// line, and with the mean of their products by pairs it is the square.
+TEST(Bspline, LinesAndSquaresAreExactOnUnevenKnots) {
+  for (int p = 2; p <= kMaxDegree; ++p) {
+    std::vector<double> knots(static_cast<std::size_t>(p) + 1, -1.0);
+    for (const double k : {-0.7, -0.1, -0.1, 0.6}) knots.push_back(k);
+    knots.insert(knots.end(), static_cast<std::size_t>(p) + 1, 1.5);
+    const auto count = knots.size() - static_cast<std::size_t>(p) - 1;
+    Json points = Json::array();
+    for (std::size_t i = 0; i < count; ++i) {
+      double sum = 0.0, squares = 0.0;
+      for (std::size_t j = i + 1; j <= i + static_cast<std::size_t>(p); ++j) {
+        sum += knots[j];
+        squares += knots[j] * knots[j];
+      }
+      const double pairs = (sum * sum - squares) / (p * (p - 1.0));
+      points.push_back({{sum / p, 0.0, pairs}, {sum / p, 1.0, pairs}});
+    }
+    const Bspline s(JsonNode(
+        "s.json",
+        Json{{"degree", {p, 1}}, {"knots_u", knots}, {"knots_v", {0, 0, 1, 1}}, {"points_mm", points}}));
+    for (double u = -1.0; u <= 1.5; u += 0.125) {
+      const SurfaceJet j = s.at(u, 0.25);
+      EXPECT_NEAR(j.point.x, u, 1e-13) << p;
+      EXPECT_NEAR(j.point.y, 0.25, 1e-13);
+      EXPECT_NEAR(j.point.z, u * u, 1e-13) << p;
+      EXPECT_NEAR(j.by_u.x, 1.0, 1e-12) << p;
+      EXPECT_NEAR(j.by_u.z, 2.0 * u, 1e-12) << p;
+    }
+  }
+}
+
 void expect_derivatives(const Bspline& s) {
   constexpr double h = 1e-6;
   for (const double u : {0.1, 0.299, 0.7, 1.5}) {
