@@ -52,7 +52,8 @@ def run(options):
     say = lambda text: print(text, flush=True)
     if options.what == "tracing":
         scorer = program("--scorer", options.scorer, HERE / "build" / "lucerna-bench-score")
-        entrants = {"scorer (Embree)": tracing.Scorer(scorer), "lucerna": tracing.LucernaTrace(lucerna)}
+        entrants = {"scorer": tracing.Scorer(scorer), "triangles (Embree)": tracing.Triangles(scorer),
+                    "lucerna": tracing.LucernaTrace(lucerna)}
         found = []
         for scene in chosen(tracing.scenes(HERE / "forward"), options.only):
             found += tracing.measure(scene, entrants, options.threads, options.seconds, options.rounds, say)

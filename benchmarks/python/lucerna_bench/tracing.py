@@ -16,6 +16,8 @@ import numpy as np
 from .entry import write_whole
 from .lucerna_entry import sources
 from .programs import run
+from .stl import disk_triangles, write_stl
+from .surfaces import heights_at
 
 BOXES = 48
 # Chi^2 is nearly normal with so many boxes: once in three million by chance.
@@ -60,6 +62,32 @@ class Scorer:
         run([self.program, scene.folder / "task.json", scene.folder / "submission.json", "--rays", str(rays), "--seed",
              str(seed), "--threads", str(threads), "--boxes", out])
         return column(out, "share")
+
+
+class Triangles(Scorer):
+    """The same with the mirror as triangles, so that Embree alone finds hits; normals are interpolated between corners."""
+
+    def __init__(self, program):
+        super().__init__(program)
+        self.made = {}
+
+    def shares(self, scene, rays, seed, threads, folder):
+        if scene.name not in self.made:
+            self.made[scene.name] = self.triangulated(scene, pathlib.Path(folder))
+        return super().shares(self.made[scene.name], rays, seed, threads, folder)
+
+    @staticmethod
+    def triangulated(scene, folder):
+        """The scene in a folder of its own."""
+        given = json.loads((scene.folder / "submission.json").read_text())
+        mirror = given["surfaces"][0]
+        sheet = mirror.pop("bspline")
+        write_stl(folder / "mirror.stl", disk_triangles(lambda x, y: heights_at(sheet, x, y),
+                                                        0.5 * sheet["trim"]["diameter_mm"]))
+        mirror.update(stl="mirror.stl", normals="interpolated")
+        (folder / "submission.json").write_text(json.dumps(given))
+        (folder / "task.json").write_text(json.dumps(scene.task))
+        return Scene(folder)
 
 
 class LucernaTrace:

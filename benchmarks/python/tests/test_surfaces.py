@@ -2,7 +2,7 @@
 """B-spline surfaces from functions, evaluated here by de Boor's algorithm, which the package does not use."""
 import numpy as np
 import pytest
-from lucerna_bench import cylinder_wall, extruded_profile, height_field
+from lucerna_bench import cylinder_wall, extruded_profile, height_field, stl
 
 
 def de_boor(knots, degree, coefficients, x):
@@ -62,3 +62,16 @@ def test_wall_is_round():
 def test_heights_that_are_not_finite_are_refused():
     with pytest.raises(ValueError, match="not finite"):
         height_field(lambda x, y: np.where(x < 0, np.nan, x), 1.0, 1.0)
+
+
+def test_triangles_cover_a_disk_with_normals_up(tmp_path):
+    t = stl.disk_triangles(lambda x, y: 0.01 * (x * x + y * y), 30.0, rings=20, sectors=40)
+    normals = np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0])
+    # The area of a regular polygon of 40 corners.
+    assert np.sum(normals[:, 2]) / 2 == pytest.approx(0.5 * 40 * 30.0**2 * np.sin(2 * np.pi / 40), rel=1e-12)
+    assert np.all(normals[:, 2] > 0.0)
+    assert np.allclose(t[..., 2], 0.01 * (t[..., 0] ** 2 + t[..., 1] ** 2))
+    stl.write_stl(tmp_path / "disk.stl", t)
+    data = (tmp_path / "disk.stl").read_bytes()
+    assert len(data) == 84 + 50 * len(t) and int.from_bytes(data[80:84], "little") == len(t)
+    assert np.frombuffer(data[84 + 50 * 7 + 12:84 + 50 * 7 + 48], "<f4") == pytest.approx(t[7].ravel(), rel=1e-6)
