@@ -16,6 +16,7 @@ import time
 
 from .entry import Stated, score, write_submission, write_whole
 from .methods import METHODS, Means, make
+from .tables import quality
 from .tasks import Task
 
 SEEDS = 9_000_000_000_000_000
@@ -86,9 +87,7 @@ class Campaign:
             return
         found = score(self.means.scorer, task.file, folder / "submission.json", self.rays, seed, self.means.threads)
         write_whole(file, json.dumps(found, indent=1) + "\n")
-        error = found["error_48"]
-        self.say(f"{task.name}: {method}: error {100 * error['excess']:.3f} +- {100 * error['standard_error']:.3f} %, "
-                 f"efficiency {100 * found['efficiency_with_losses']['value']:.2f} %"
+        self.say(f"{task.name}: {method}: {quality(found)}, efficiency {100 * found['efficiency_with_losses']['value']:.2f} %"
                  + ("" if found["counts"] else f", DOES NOT COUNT: {'; '.join(found['faults'])}"))
 
 

@@ -69,6 +69,15 @@ def score(scorer, task_file, submission_file, rays=100_000_000, seed=1, threads=
         return json.loads(out.read_text())
 
 
+def _shortfall(target, found):
+    """How far a road is from its limits, as the sum of shares of them; 1 more for every other fault."""
+    road, missed = found["road"], 0.0
+    for name in ("overall_uniformity", "lengthwise_uniformity"):
+        missed += max(0.0, 1.0 - road[name]["value"] / target[f"min_{name}"])
+    missed += max(0.0, road["threshold_increment"]["value"] / target["max_threshold_increment"] - 1.0)
+    return missed + sum("uniformity" not in fault and "increment" not in fault for fault in found["faults"])
+
+
 class Entry:
     """A function from parameters to surfaces as an entry: what an optimiser needs.
 
@@ -101,8 +110,11 @@ class Entry:
     def cost(self, parameters, rays=1_000_000, light_weight=0.0):
         """The task's headline figure, such that less is better. What does not count costs 1 more. Where the headline
         is an error, `light_weight` times the square of the share of light that is missing in the rectangle is added
-        to its square: without it an optimiser may throw away the light that does not fit."""
+        to its square: without it an optimiser may throw away the light that does not fit. By how much a road misses
+        its limits is added as shares of them, so that a search sees the way there."""
         found = self.figures(parameters, rays)
+        if found["road"] is not None:
+            return 1.0 - found["efficiency_with_losses"]["value"] + _shortfall(self.task["target"], found)
         fault = 0.0 if found["counts"] else 1.0
         if self.task["headline"] == "error_48":
             missing = 1.0 - found["in_rectangle"]["value"]

@@ -31,7 +31,7 @@ def project(task: Task, folder):
         text = (sources(task.source, task.file) + _collector(task) + _plane_target(task, folder, target_place(task))
                 + f"[design]\nlight_weight = {LIGHT_WEIGHT_OF_COLLECTOR}\n")
     elif kind in ("lens", "free-lens"):
-        text = (sources(task.source, task.file) + _lens(task) + _plane_target(task, folder, task.target["place"])
+        text = (sources(task.source, task.file) + _lens(task) + _plane_target(task, folder, task.lit["place"])
                 + _lens_design(task, kind))
     else:
         table, off = photometry.sampled(task.target, task.is_round)
@@ -133,7 +133,7 @@ def _collector(task, intervals=20):
 
 def _plane_target(task, folder, place, cells=250, widened=1.25):
     """An even rectangle or disk of light, in a window that is a quarter wider."""
-    t = task.target
+    t = task.lit
     half = [0.5 * widened * side for side in t.get("size_mm", 2 * [2.0 * t.get("radius_mm", 0.0)])]
     (folder / "target.csv").write_text(photometry.csv(photometry.lit_cells(t, half, cells)))
     return (f'[target]\nkind = "plane"\nfile = "target.csv"\nposition_mm = {place["origin_mm"]}\n'

@@ -2,7 +2,7 @@
 """Targets as files that Lucerna reads: IES LM-63 tables for directions, cells of a plane as CSV."""
 import numpy as np
 
-from .tasks import intensity
+from .tasks import intensity, ramp
 
 BOXES = 48
 
@@ -101,6 +101,7 @@ def lit_cells(target, half_mm, cells, parts=8):
         within = np.hypot(x, y[:, None]) <= target["radius_mm"]
     else:
         within = (np.abs(x) <= 0.5 * target["size_mm"][0]) & (np.abs(y[:, None]) <= 0.5 * target["size_mm"][1])
+        within = within * ramp(target, x)
     return within.reshape(cells, parts, cells, parts).mean(axis=(1, 3))
 
 

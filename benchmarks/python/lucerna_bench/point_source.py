@@ -23,7 +23,7 @@ import numpy as np
 from .photometry import target_rectangle
 from .shapes import LENS_INDEX, MARGIN_MM, free_lens_surfaces, horn_walls, lens_surfaces, mirror
 from .surfaces import _basis, _greville, _knots, _surface, heights_at, placed, revolved, spline_through
-from .tasks import intensity, source_directions
+from .tasks import intensity, ramp, source_directions
 
 # Every fortieth step is a point of a spline, the last one is.
 STEPS = 2001
@@ -280,13 +280,15 @@ class FreeFace(PointSurface):
         u, v, sine = u[inside], v[inside], sine[inside]
         # Lambertian light is even in direction cosines, outside as inside of the glass.
         flux = 1.0 - fresnel(np.arcsin(LENS_INDEX * sine), np.arcsin(sine))
-        far = task.target["place"]["origin_mm"][2] - self.bottom_mm - vertex_mm
-        x, y = (0.5 * side * ((np.arange(self.TARGET_CELLS) + 0.5) * 2.0 / self.TARGET_CELLS - 1.0)
-                for side in task.target["size_mm"])
+        middle = task.lit["place"]["origin_mm"]
+        far = middle[2] - self.bottom_mm - vertex_mm
+        x, y = (at + 0.5 * side * ((np.arange(self.TARGET_CELLS) + 0.5) * 2.0 / self.TARGET_CELLS - 1.0)
+                for at, side in zip(middle, task.lit["size_mm"]))
         x, y = (p.ravel() for p in np.meshgrid(x, y, indexing="ij"))
+        wanted = np.maximum(1e-6, ramp(task.lit, x - middle[0]))
         self.beam = np.stack([x, y, np.full_like(x, far)], axis=-1)
         self.beam /= np.linalg.norm(self.beam, axis=1, keepdims=True)
-        self._solve(np.stack([u, v, np.sqrt(1.0 - sine**2)], axis=-1), flux, np.ones(len(x)))
+        self._solve(np.stack([u, v, np.sqrt(1.0 - sine**2)], axis=-1), flux, wanted)
 
     @staticmethod
     def cost(cosine):

@@ -32,17 +32,25 @@ def percent(x, digits=2):
     return f"{100.0 * x:.{digits}f} %"
 
 
+def quality(s):
+    """How well the light is where it should be: the error, or what counts on a road."""
+    if s["road"] is None:
+        return f"{percent(s['error_48']['excess'])} +- {percent(s['error_48']['standard_error'])}"
+    road = {name: figure["value"] for name, figure in s["road"].items()}
+    return (f"Uo {road['overall_uniformity']:.3f}, Ul {road['lengthwise_uniformity']:.3f}, "
+            f"TI {percent(road['threshold_increment'], 1)}, {road['lm_per_cd_m2']:.0f} lm for 1 cd/m2")
+
+
 def row(task, method, s):
     """The cells of one entry: what its score.json says, and no more."""
-    error, stated = s["error_48"], s["stated"]
+    stated = s["stated"]
     cpu = "not stated" if stated["cpu_s"] is None else f"{stated['cpu_s']:.1f}"
     if s["light_table"]:
         method += " (light table)"
-    return [task, method if s["counts"] else f"{method} (does not count: {'; '.join(s['faults'])})",
-            f"{percent(error['excess'])} +- {percent(error['standard_error'])}", percent(error["floor"]),
-            percent(s["nmae"]["value"]), percent(s["efficiency_with_losses"]["value"]),
-            percent(s["efficiency_without_losses"]["value"]), percent(s["outside_rectangle"]["value"]),
-            str(stated["free_parameters"]), f"{stated['wall_s']:.1f}", cpu, stated["machine"], stated["program"]]
+    share = lambda figure, key="value": "-" if s[figure] is None else percent(s[figure][key])
+    return [task, method if s["counts"] else f"{method} (does not count: {'; '.join(s['faults'])})", quality(s),
+            share("error_48", "floor"), share("nmae"), share("efficiency_with_losses"), share("efficiency_without_losses"),
+            share("outside_rectangle"), str(stated["free_parameters"]), f"{stated['wall_s']:.1f}", cpu, stated["machine"], stated["program"]]
 
 
 def ranked(s):
@@ -85,9 +93,8 @@ def _brief(s):
     if not s["counts"]:
         return "does not count"
     light = f"{percent(s['efficiency_with_losses']['value'], 1)} light"
-    error = s["error_48"]
     if s["headline"] == "error_48":
-        light = f"{percent(error['excess'])} +- {percent(error['standard_error'])}, {light}"
+        light = f"{quality(s)}, {light}"
     return light + (" (light table)" if s["light_table"] else "")
 
 
@@ -139,6 +146,15 @@ def plot(scores, title):
             f'<rect width="{across}" height="{down}" fill="#ffffff"/>\n' + "\n".join(keys + shapes) + "\n</svg>\n")
 
 
+def plot_title(family, scores):
+    """What is drawn: errors, or of some tasks the light that does not arrive."""
+    of_light = sorted({task for task, _, s in scores if s["headline"] != "error_48"})
+    if len(of_light) == len({task for task, _, _ in scores}):
+        return f"{family}: light that does not arrive"
+    of_some = f"; of {', '.join(of_light)} light that does not arrive" if of_light else ""
+    return f"{family}: error at 48 boxes a side, noise taken out{of_some}"
+
+
 def _mark(s, x, y, colour, method):
     error, spread = loss(s)
     label = f"{method}: {percent(error)} +- {percent(spread)}"
@@ -153,10 +169,9 @@ def write_all(out):
     out, scores, files = pathlib.Path(out), read_scores(out), []
     for family in sorted({family_of(task) for task, _, _ in scores}):
         ours = [s for s in scores if family_of(s[0]) == family]
-        title = (f"{family}: error at 48 boxes a side, noise taken out" if ours[0][2]["headline"] == "error_48" else
-                 f"{family}: light that does not arrive")
         page = f"# {family}\n\n![Errors by entry]({family}.svg)\n\n" + table(ours)
-        files += [write_whole(out / f"{family}.md", page), write_whole(out / f"{family}.svg", plot(ours, title))]
+        picture = plot(ours, plot_title(family, ours))
+        files += [write_whole(out / f"{family}.md", page), write_whole(out / f"{family}.svg", picture)]
     if scores:
         text = ("# Overview\n\n<!-- written by benchmarks/run_entries.py -->\n\nErrors at 48 boxes a side with their noise taken "
                 "out, and the share of the source's light\nthat arrives. The least error of a task is bold, or the most "

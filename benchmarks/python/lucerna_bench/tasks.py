@@ -59,6 +59,21 @@ class Task:
         return self.definition["target"]
 
     @property
+    def lit(self):
+        """The light that an optic of one piece aims at: the target. Of a road it is a rectangle of light that falls
+        evenly within `ramp_mm` of its ends, over which the next lamp's rises: so the sum is even, and a shift does
+        not open a gap."""
+        t = self.target
+        if t["kind"] != "road":
+            return t
+        width_mm, place = t["lanes"] * t["lane_width_mm"], t["place"]
+        # Lanes lie side by side from the lamp's foot on.
+        middle = np.asarray(place["origin_mm"]) + 0.5 * width_mm * np.cross(place["z_axis"], place["x_axis"])
+        ramp_mm = 0.25 * t["spacing_mm"]
+        return {"kind": "plane", "function": "uniform_rectangle", "size_mm": [t["spacing_mm"] + ramp_mm, width_mm],
+                "ramp_mm": ramp_mm, "place": {**place, "origin_mm": middle.tolist()}}
+
+    @property
     def source(self):
         return self.definition["source"]
 
@@ -71,11 +86,11 @@ class Task:
             return "trough"
         if self.target["kind"] == "far_field" and self.definition["optics"]["roles"] == ["mirror"]:
             return "mirror"
-        return "lens" if self.target["function"] == "uniform_disk" and self.source["emitter"] == "disk" else "free-lens"
+        return "lens" if self.lit["function"] == "uniform_disk" and self.source["emitter"] == "disk" else "free-lens"
 
     @property
     def is_round(self):
-        return self.target["function"] in ("round_gaussian_beam", "batwing", "uniform_disk")
+        return self.lit["function"] in ("round_gaussian_beam", "batwing", "uniform_disk")
 
 
 def read_task(file):
@@ -106,6 +121,13 @@ def _room(file, limits):
     if half_mm is None:
         raise ValueError(f"{file}: /limits: found no room, expected inside_cylinder or inside_box")
     return Room(half_mm, low_mm, high_mm, lamp_mm)
+
+
+def ramp(lit, x):
+    """The share of even light that is left near its ends along x."""
+    if "ramp_mm" not in lit:
+        return np.ones_like(x)
+    return np.clip((0.5 * lit["size_mm"][0] - np.abs(x)) / lit["ramp_mm"], 0.0, 1.0)
 
 
 def intensity(target, u, v):

@@ -97,7 +97,7 @@ def error(excess, standard_error=0.0, floor=0.0):
 
 def fake_score(**changed):
     share = lambda x: {"value": x, "standard_error": 0.0}
-    s = {"counts": True, "headline": "error_48", "faults": [], "rays": 1000, "light_table": False, "seed": 77,
+    s = {"counts": True, "headline": "error_48", "faults": [], "rays": 1000, "light_table": False, "seed": 77, "road": None,
          "error_48": error(0.0123, 0.0004, 0.0056), "nmae": share(0.0789), "efficiency_with_losses": share(0.8111), "efficiency_without_losses": share(0.9222),
          "outside_rectangle": share(0.0333), "run": {"machine": "scoring box"},
          "stated": {"free_parameters": 44, "wall_s": 60.25, "cpu_s": 118.5, "machine": "a box",
@@ -143,6 +143,24 @@ def test_the_headline_decides_what_is_best():
     assert "| **90.00 %** |" in text and text.count("**") == 2
     svg = tables.plot([("LB-2a", "cma-es", more)], "title")
     assert "cma-es: 10.00 % +- 1.00 %" in svg
+
+
+def fake_road(**changed):
+    share = lambda x: {"value": x, "standard_error": 0.001}
+    road = {"lm_per_cd_m2": share(8123.4), "overall_uniformity": share(0.4567), "lengthwise_uniformity": share(0.7891),
+            "threshold_increment": share(0.0654)}
+    return fake_score(headline="efficiency_with_losses", road=road, error_48=None, nmae=None, outside_rectangle=None, **changed)
+
+
+def test_roads_have_figures_of_their_own():
+    text = tables.table([("LB-5a", "plain", fake_score()), ("LB-5b", "plain", fake_road())])
+    assert ("| LB-5b | plain | Uo 0.457, Ul 0.789, TI 6.5 %, 8123 lm for 1 cd/m2 | - | - | **81.11 %** | 92.22 % | - | 44 |"
+            in text)
+    assert "| LB-5b | **81.1 % light** |" in tables.overview([("LB-5b", "plain", fake_road())])
+    both = [("LB-5a", "plain", fake_score()), ("LB-5b", "plain", fake_road())]
+    assert tables.plot_title("LB-5", both) == ("LB-5: error at 48 boxes a side, noise taken out; of LB-5b light that does not "
+                                               "arrive")
+    assert tables.plot_title("LB-2", both[1:]) == "LB-2: light that does not arrive"
 
 
 def test_horns_have_their_target_at_their_end(run, tasks, tmp_path):

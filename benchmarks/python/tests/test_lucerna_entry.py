@@ -10,7 +10,7 @@ import pytest
 from lucerna_bench import Entry, Stated, lucerna_entry, photometry, placed, score, write_submission
 from lucerna_bench.shapes import Mirror
 from lucerna_bench.surfaces import heights_at, revolved, spline_through
-from lucerna_bench.tasks import intensity, read_task
+from lucerna_bench.tasks import intensity, ramp, read_task
 
 from test_scorer import RAYS, boxes_of, deviation, disk_task, lucerna_plane, plane
 from test_surfaces import at, de_boor
@@ -189,6 +189,19 @@ def test_tasks_that_are_entered(tasks):
         task = read_task(file)
         kinds.setdefault(task.kind, set()).add(task.family)
     assert kinds == ENTERED
+
+
+def test_a_road_is_aimed_at_by_light_that_the_next_lamp_adds_to(tasks, tmp_path):
+    task = read_task(tasks / "LB-5b.json")
+    assert task.lit["size_mm"] == [35000, 7000]
+    x = np.linspace(-14000.0, 14000.0, 57)
+    assert sum(ramp(task.lit, x + shift) for shift in (-28000.0, 0.0, 28000.0)) == pytest.approx(1.0)
+    # The road's y axis is the task's -y: z looks up to the lamp, x along the road.
+    assert task.lit["place"]["origin_mm"] == [0.0, -3500.0, 8000.0]
+    lucerna_entry.project(task, tmp_path)
+    target = tomllib.loads((tmp_path / "project.toml").read_text())["target"]
+    assert target["position_mm"] == [0.0, -3500.0, 8000.0] and target["normal"] == "-z"
+    assert target["size_mm"] == [43750.0, 8750.0]
 
 
 def test_a_collector_images_its_source_onto_the_target(scorer, tasks, tmp_path):

@@ -10,6 +10,8 @@ import sys
 import numpy as np
 import pytest
 from lucerna_bench import Entry, Stated, cylinder_wall, extruded_profile, height_field, placed, score, tracing, write_submission
+from lucerna_bench.shapes import FreeLens
+from lucerna_bench.tasks import read_task
 
 import make_sources
 
@@ -277,6 +279,20 @@ def test_costs_count_missing_light_and_faults(scorer, tasks):
     assert entry.cost([20.0], 20_000) == error
     assert entry.cost([20.0], 20_000, light_weight=0.3) == pytest.approx((error**2 + 0.3 * missing**2) ** 0.5, rel=1e-12)
     assert not entry.figures([45.0], 20_000)["counts"] and entry.cost([45.0], 20_000) > 1.0
+
+
+def test_costs_of_roads_see_the_way_to_their_limits(scorer, tasks):
+    file = tasks / "LB-5b.json"
+    entry = Entry(file, lambda p: FreeLens(read_task(file), p[0]).surfaces(), scorer)
+    found = entry.figures([3.0], 20_000)
+    road = {name: figure["value"] for name, figure in found["road"].items()}
+    assert not found["counts"] and found["error_48"] is None
+    missed = (max(0.0, 1.0 - road["overall_uniformity"] / 0.4) + max(0.0, 1.0 - road["lengthwise_uniformity"] / 0.6)
+              + max(0.0, road["threshold_increment"] / 0.15 - 1.0))
+    assert missed > 0.1
+    assert entry.cost([3.0], 20_000) == pytest.approx(1.0 - found["efficiency_with_losses"]["value"] + missed)
+    # A lens that is too high is one more fault.
+    assert entry.cost([13.5], 20_000) > 2.0 - entry.figures([13.5], 20_000)["efficiency_with_losses"]["value"]
 
 
 def test_example_enters_the_plain_paraboloid(scorer, tasks, tmp_path):

@@ -90,6 +90,8 @@ int run(const Arguments& a) {
   const Submission submission(a.submission, task);
   const Frame* place = submission.target_place ? &*submission.target_place : nullptr;
   const Target target(task.definition.at("target"), place);
+  if (target.road() && !a.boxes.empty())
+    throw UsageError("--boxes: found a task with a road, which has no boxes");
   std::unique_ptr<Source> frozen;
   if (!a.rays_from.empty()) {
     if (submission.light_table)

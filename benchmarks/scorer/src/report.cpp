@@ -36,6 +36,13 @@ Json limits_json(const Submission& submission) {
   return out;
 }
 
+Json road_json(const RoadScore& s) {
+  return {{"lm_per_cd_m2", json_of(s.lm_per_cd_m2)},
+          {"overall_uniformity", json_of(s.overall)},
+          {"lengthwise_uniformity", json_of(s.lengthwise)},
+          {"threshold_increment", json_of(s.threshold_increment)}};
+}
+
 Json balance_json(const Score& s) {
   return {{"mirrors", json_of(s.mirror)},         {"backs_of_mirrors", json_of(s.mirror_back)},
           {"absorbers", json_of(s.absorber)},     {"bulk", json_of(s.bulk)},
@@ -61,6 +68,28 @@ std::string share_line(const char* name, const Json& e) {
               100.0 * e["standard_error"].get<double>());
 }
 
+std::string errors_text(const Json& s) {
+  std::string out = error_line("error, 12 boxes a side", s["error_12"]) +
+                    error_line("error, 24 boxes a side", s["error_24"]) +
+                    error_line("error, 48 boxes a side", s["error_48"]);
+  out += share_line("worst box, of the peak", s["worst_box"]);
+  out += line("  %-28s %9.4f %%   (of a perfect optic by noise: %.4f %%)", "NMAE",
+              100.0 * s["nmae"]["value"].get<double>(), 100.0 * s["nmae"]["noise"].get<double>());
+  if (s["rsd"].is_null())
+    return out + "  RSD                          no meaning: the target is not uniform\n";
+  return out + line("  %-28s %9.4f %%   (with noise %.4f %%)", "RSD", 100.0 * s["rsd"]["value"].get<double>(),
+                    100.0 * s["rsd"]["with_noise"].get<double>());
+}
+
+std::string road_text(const Json& road) {
+  const auto& lm = road["lm_per_cd_m2"];
+  return line("  %-28s %9.1f +- %.1f lm", "of a lamp for 1 cd/m2", lm["value"].get<double>(),
+              lm["standard_error"].get<double>()) +
+         share_line("overall uniformity, Uo", road["overall_uniformity"]) +
+         share_line("lengthwise uniformity, Ul", road["lengthwise_uniformity"]) +
+         share_line("threshold increment, TI", road["threshold_increment"]);
+}
+
 std::string stated_text(const Json& s) {
   std::string out = line("  stated, not checked: %lld free parameters, %.6g s of wall time,",
                          s["free_parameters"].get<long long>(), s["wall_s"].get<double>());
@@ -81,26 +110,28 @@ Json score_json(const Task& task, const Submission& submission, const Target& ta
            {"headline", task.headline},
            {"name", submission.name},
            {"author", submission.author}};
-  const auto broken = faults(s, submission);
+  const auto broken = faults(s, submission, target);
   out["counts"] = broken.empty();
   out["faults"] = broken;
   out["light_table"] = submission.light_table != nullptr;
   out["rays"] = s.rays;
   out["rays_from"] = run.rays_from;
   out["seed"] = run.seed;
-  out["error_12"] = json_of(s.n12);
-  out["error_24"] = json_of(s.n24);
-  out["error_48"] = json_of(s.n48);
-  out["worst_box"] = json_of(s.n48.worst);
-  out["nmae"] = {{"value", s.nmae.value}, {"noise", s.nmae.noise}};
+  out["road"] = s.road ? road_json(*s.road) : Json();
+  const auto unless_road = [&](const Json& figure) { return s.road ? Json() : figure; };
+  out["error_12"] = unless_road(json_of(s.n12));
+  out["error_24"] = unless_road(json_of(s.n24));
+  out["error_48"] = unless_road(json_of(s.n48));
+  out["worst_box"] = unless_road(json_of(s.n48.worst));
+  out["nmae"] = unless_road({{"value", s.nmae.value}, {"noise", s.nmae.noise}});
   out["rsd"] = s.rsd ? Json{{"value", s.rsd->without_noise}, {"with_noise", s.rsd->raw}} : Json();
   out["efficiency_with_losses"] = json_of(s.efficiency);
   out["efficiency_without_losses"] = json_of(s.efficiency_lossless);
-  out["in_rectangle"] = json_of(s.in_rectangle);
-  out["outside_rectangle"] = json_of(s.outside);
-  out["outside_rectangle_direct"] = json_of(s.outside_direct);
+  out["in_rectangle"] = unless_road(json_of(s.in_rectangle));
+  out["outside_rectangle"] = unless_road(json_of(s.outside));
+  out["outside_rectangle_direct"] = unless_road(json_of(s.outside_direct));
   out["absorbed"] = balance_json(s);
-  out["rectangle"] = {{"low", target.low()}, {"high", target.high()}};
+  out["rectangle"] = unless_road({{"low", target.low()}, {"high", target.high()}});
   out["limits"] = limits_json(submission);
   out["stated"] = stated_json(submission.stated);
   out["run"] = {{"threads", run.threads}, {"seconds", run.seconds}, {"machine", run.machine}};
@@ -112,23 +143,14 @@ std::string score_text(const Json& s) {
                     s["name"].get<std::string>() + " (" + s["author"].get<std::string>() + ")\n";
   out += line("  %llu rays (%s, seed %llu)", s["rays"].get<unsigned long long>(),
               s["rays_from"].get<std::string>().c_str(), s["seed"].get<unsigned long long>());
-  out += error_line("error, 12 boxes a side", s["error_12"]) +
-         error_line("error, 24 boxes a side", s["error_24"]) +
-         error_line("error, 48 boxes a side", s["error_48"]);
-  out += share_line("worst box, of the peak", s["worst_box"]);
-  out += line("  %-28s %9.4f %%   (of a perfect optic by noise: %.4f %%)", "NMAE",
-              100.0 * s["nmae"]["value"].get<double>(), 100.0 * s["nmae"]["noise"].get<double>());
-  if (s["rsd"].is_null()) {
-    out += "  RSD                          no meaning: the target is not uniform\n";
-  } else {
-    out += line("  %-28s %9.4f %%   (with noise %.4f %%)", "RSD", 100.0 * s["rsd"]["value"].get<double>(),
-                100.0 * s["rsd"]["with_noise"].get<double>());
-  }
+  out += s["road"].is_null() ? errors_text(s) : road_text(s["road"]);
   out += share_line("efficiency, with losses", s["efficiency_with_losses"]);
   out += share_line("efficiency, without losses", s["efficiency_without_losses"]);
-  out += share_line("light in the rectangle", s["in_rectangle"]);
-  out += share_line("light beside it", s["outside_rectangle"]);
-  out += share_line("  of it, met no surface", s["outside_rectangle_direct"]);
+  if (s["road"].is_null()) {
+    out += share_line("light in the rectangle", s["in_rectangle"]);
+    out += share_line("light beside it", s["outside_rectangle"]);
+    out += share_line("  of it, met no surface", s["outside_rectangle_direct"]);
+  }
   for (const auto& [cause, share] : s["absorbed"].items()) {
     if (share["value"].get<double>() > 0.0) out += share_line(("taken by " + cause).c_str(), share);
   }

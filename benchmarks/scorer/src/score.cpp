@@ -30,6 +30,28 @@ Estimate share(const Tally& tally, std::uint64_t Sums::*part, std::uint64_t Sums
   return mean_of(values);
 }
 
+void set_errors(const Tally& tally, const Target& target, Score& s) {
+  s.boxes = {target.box_measure(), target.box_target(), shares(tally, &Replicate::box)};
+  s.n12 = box_error(merged(s.boxes, target.rows(), 12));
+  s.n24 = box_error(merged(s.boxes, target.rows(), 24));
+  s.n48 = box_error(s.boxes);
+  const auto cells = shares(tally, &Replicate::cell);
+  s.nmae =
+      absolute_error({std::vector<double>(target.cell_target().size(), 1.0), target.cell_target(), cells});
+  if (!target.is_uniform()) return;
+  std::vector<double> steady(target.cell_steady().begin(), target.cell_steady().end());
+  s.rsd = unevenness({steady, target.cell_target(), cells});
+}
+
+/// Beyond its limit by more than two standard errors?
+void require(const char* what, const Estimate& found, double limit, bool at_least,
+             std::vector<std::string>& out) {
+  const double margin = 2.0 * found.standard_error;
+  if (at_least ? found.mean + margin >= limit : found.mean - margin <= limit) return;
+  out.push_back(std::string(what) + ": found " + std::to_string(found.mean) + ", expected " +
+                std::to_string(limit) + (at_least ? " or more" : " at most"));
+}
+
 }  // namespace
 
 Score score_of(const Tally& tally, const Target& target, std::uint64_t rays) {
@@ -38,16 +60,10 @@ Score score_of(const Tally& tally, const Target& target, std::uint64_t rays) {
   }
   Score s;
   s.rays = rays;
-  s.boxes = {target.box_measure(), target.box_target(), shares(tally, &Replicate::box)};
-  s.n12 = box_error(merged(s.boxes, target.rows(), 12));
-  s.n24 = box_error(merged(s.boxes, target.rows(), 24));
-  s.n48 = box_error(s.boxes);
-  const auto cells = shares(tally, &Replicate::cell);
-  s.nmae =
-      absolute_error({std::vector<double>(target.cell_target().size(), 1.0), target.cell_target(), cells});
-  if (target.is_uniform()) {
-    std::vector<double> steady(target.cell_steady().begin(), target.cell_steady().end());
-    s.rsd = unevenness({steady, target.cell_target(), cells});
+  if (target.road()) {
+    s.road = target.road()->score(shares(tally, &Replicate::road));
+  } else {
+    set_errors(tally, target, s);
   }
   s.efficiency = share(tally, &Sums::window);
   s.efficiency_lossless = share(tally, &Sums::window_lossless);
@@ -66,7 +82,7 @@ Score score_of(const Tally& tally, const Target& target, std::uint64_t rays) {
   return s;
 }
 
-std::vector<std::string> faults(const Score& score, const Submission& submission) {
+std::vector<std::string> faults(const Score& score, const Submission& submission, const Target& target) {
   constexpr double kMaxLost = 1e-4;
   std::vector<std::string> out;
   for (const LimitCheck& c : submission.limits) {
@@ -83,6 +99,12 @@ std::vector<std::string> faults(const Score& score, const Submission& submission
     out.push_back("light that passes surfaces closely " + std::to_string(SurfaceScene::kMaxPassed) +
                   " times without a hit: found a share of " + std::to_string(score.near_misses.mean) +
                   ", expected 0.0001 at most");
+  if (score.road) {
+    require("overall uniformity", score.road->overall, target.road()->min_overall(), true, out);
+    require("lengthwise uniformity", score.road->lengthwise, target.road()->min_lengthwise(), true, out);
+    require("threshold increment", score.road->threshold_increment, target.road()->max_increment(), false,
+            out);
+  }
   return out;
 }
 

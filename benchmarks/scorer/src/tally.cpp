@@ -33,6 +33,7 @@ Tally::Tally(const Target& target) {
   for (Replicate& r : replicates_) {
     r.box.assign(target.box_measure().size(), 0);
     r.cell.assign(target.cell_target().size(), 0);
+    r.road.assign(target.road() ? target.road()->sums() : 0, 0);
   }
 }
 
@@ -53,6 +54,10 @@ void Tally::leaves(std::size_t replicate, const Landing& at, double weight, doub
   const std::uint64_t first = quanta(weight * at.share_of_first);
   if (at.cell[0] >= 0) r.cell[static_cast<std::size_t>(at.cell[0])] += at.cell[1] >= 0 ? first : q;
   if (at.cell[1] >= 0) r.cell[static_cast<std::size_t>(at.cell[1])] += q - first;
+  if (r.road.empty()) return;
+  for (const Deposit& d : at.deposits) {
+    if (d.sum >= 0) r.road[static_cast<std::size_t>(d.sum)] += quanta(weight * d.per_weight);
+  }
 }
 
 Tally& Tally::operator+=(const Tally& other) {
@@ -60,6 +65,7 @@ Tally& Tally::operator+=(const Tally& other) {
     for (const auto sum : kAllSums) replicates_[k].sums.*sum += other.replicates_[k].sums.*sum;
     add(other.replicates_[k].box, replicates_[k].box);
     add(other.replicates_[k].cell, replicates_[k].cell);
+    add(other.replicates_[k].road, replicates_[k].road);
   }
   return *this;
 }

@@ -26,7 +26,7 @@ struct Sums {
 /// Of one replicate.
 struct Replicate {
   Sums sums;
-  std::vector<std::uint64_t> box, cell;
+  std::vector<std::uint64_t> box, cell, road;
 };
 
 /// What a trace counts. A ray's weight 1 is 2^30 quanta: 2^33 rays fit.

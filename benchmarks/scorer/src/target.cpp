@@ -65,8 +65,16 @@ double quantile(const std::vector<double>& flux, double low, double high, double
 }  // namespace
 
 Target::Target(const JsonNode& t, const Frame* place) {
-  const std::string kind = t.at("kind").one_of({"far_field", "angle", "plane"});
-  kind_ = kind == "plane" ? Kind::plane : kind == "angle" ? Kind::angle : Kind::far_field;
+  const std::string kind = t.at("kind").one_of({"far_field", "angle", "plane", "road"});
+  kind_ = kind == "plane"   ? Kind::plane
+          : kind == "angle" ? Kind::angle
+          : kind == "road"  ? Kind::road
+                            : Kind::far_field;
+  if (kind_ == Kind::road) {
+    frame_ = t.at("place").frame();
+    road_.emplace(t, frame_.local_point({}).z);
+    return;
+  }
   if (kind_ == Kind::plane) {
     frame_ = place != nullptr ? *place : t.at("place").frame();
     if (t.has("max_angle_deg")) min_cosine_ = std::cos(kDegree * t.at("max_angle_deg").number_in(0.1, 90.0));
@@ -238,6 +246,10 @@ void Target::set_plane_cells(const JsonNode& t) {
 Landing Target::land(const Vec3& origin, const Vec3& direction) const {
   Landing out;
   Vec3 d = frame_.local_vector(direction);
+  if (road_) {
+    out.in_window = road_->land(frame_.local_point(origin), d, out.deposits);
+    return out;
+  }
   double u = d.x, v = d.y;
   if (kind_ == Kind::plane) {
     const Vec3 o = frame_.local_point(origin);

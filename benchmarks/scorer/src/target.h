@@ -3,9 +3,11 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "json_node.h"
+#include "road.h"
 #include "vec.h"
 
 namespace bench {
@@ -20,6 +22,8 @@ struct Landing {
   /// Cells of NMAE and RSD: two with their shares where the cells are tents, else one.
   std::array<int, 2> cell{-1, -1};
   double share_of_first = 1.0;
+  /// Of a road.
+  Deposits deposits;
 };
 
 /// A task's target with the boxes of its error and the cells of NMAE and RSD. Immutable; thread safe.
@@ -31,6 +35,7 @@ struct Landing {
 /// - `angle` (two-dimensional tasks): boxes of the sine of the angle phi from `axis` in the plane y = 0,
 ///   measured in rad; cells are 181 tents a degree apart.
 /// - `plane`: boxes of places, measured in mm2.
+/// - `road`: has no boxes and no cells, but sums of its own. The window is the carriageway.
 class Target {
  public:
   /// `place` replaces that of the file where the task leaves it free. Throws InputError.
@@ -56,9 +61,10 @@ class Target {
   /// Is the target one value all over its window, so that RSD has a meaning?
   bool is_uniform() const { return uniform_; }
   bool is_angle() const { return kind_ == Kind::angle; }
+  const std::optional<Road>& road() const { return road_; }
 
  private:
-  enum class Kind { far_field, angle, plane };
+  enum class Kind { far_field, angle, plane, road };
   using Density = std::function<double(double u, double v)>;
   struct Rectangle {
     std::array<double, 2> low, high;
@@ -77,6 +83,7 @@ class Target {
   Kind kind_;
   Frame frame_;
   Density density_;
+  std::optional<Road> road_;
   bool uniform_ = false, disk_ = false;
   double min_cosine_ = 0.0, edge_deg_ = 90.0;
   std::array<double, 2> half_{1.0, 1.0}, low_{-1.0, -1.0}, high_{1.0, 1.0};

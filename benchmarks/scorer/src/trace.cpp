@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMaxHits = 200;
 /// Weaker reflections of interfaces go on as often as they are weaker, with this weight.
-constexpr double kFaint = 1e-3;
+constexpr double kFaint = 0.05;
 
 /// Light on its way. `lossless`: its weight if nothing were lost; 0 for what an interface reflects partly.
 struct Path {

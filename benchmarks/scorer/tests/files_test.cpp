@@ -28,7 +28,7 @@ TEST(Tasks, AllAreWhole) {
     const Target target(task.definition.at("target"));
     double light = 0.0;
     for (const double f : target.box_target()) light += f;
-    EXPECT_GT(light, 0.0);
+    EXPECT_TRUE(light > 0.0 || target.road());
     if (task.id.starts_with("LB-1")) continue;
     EXPECT_TRUE(sources.has(task.definition.at("frozen_source").text()));
   }
