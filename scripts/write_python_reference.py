@@ -22,9 +22,9 @@ values of an `Objective` may be written. Numbers of rays may be written as `1e6`
 Objects may be shared between threads. Calls that compute release the interpreter's lock; what only
 copies arrays, compares or pickles holds it. Ctrl-C stops a call that takes a callback, and is
 raised behind any other: sampling into memory, comparing in memory and the figures of a trace are
-not cut short. A callback is called ten times a second at most; an exception of it stops the call
-and is raised. Processes have to be started by the method `spawn` or `forkserver`. In one that was
-forked, scenes, mirrors, traces and designs raise when they are used.
+not cut short. A callback is called ten times a second at most, and at the end; an exception of it
+stops the call and is raised. Processes have to be started by the method `spawn` or `forkserver`. In
+one that was forked, scenes, mirrors, traces and designs raise when they are used.
 
 Errors are `lucerna.InputError` for bad input, `OSError` for files and `TypeError` for arguments of
 a wrong type.

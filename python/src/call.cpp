@@ -114,13 +114,10 @@ std::optional<py::object> Watch::news() {
 namespace {
 
 /// Signals, then the callback. Throws what they raise.
-void attend(const py::object& callback, Watch& watch, bool& called, bool ended) {
+void attend(const py::object& callback, Watch& watch, bool ended) {
   if (!ended && PyErr_CheckSignals() != 0) throw py::error_already_set();
   if (callback.is_none()) return;
-  if (const std::optional<py::object> news = watch.news()) {
-    called = true;
-    callback(*news);
-  }
+  if (const std::optional<py::object> news = watch.news()) callback(*news);
 }
 
 }  // namespace
@@ -131,7 +128,7 @@ void run_watched(const py::object& callback, OnInterrupt on_interrupt,
   Watch watch;
   std::mutex mutex;
   std::condition_variable finished;
-  bool done = false, called = false;
+  bool done = false;
   std::exception_ptr failure;
   std::thread worker([&] {
     try {
@@ -151,9 +148,9 @@ void run_watched(const py::object& callback, OnInterrupt on_interrupt,
       ended = finished.wait_for(lock, kInterval, [&] { return done; });
     }
     // What is pressed after the end is for the interpreter, which raises it behind this call.
-    if (raised || (ended && (called || callback.is_none()))) continue;
+    if (raised || (ended && callback.is_none())) continue;
     try {
-      attend(callback, watch, called, ended);
+      attend(callback, watch, ended);
     } catch (py::error_already_set& error) {
       raised.emplace(std::move(error));
       watch.stop();

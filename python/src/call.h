@@ -75,9 +75,9 @@ class Watch final : public Progress {
 enum class OnInterrupt { raise, keep };
 
 /// Runs `work` on a thread of its own, without the interpreter's lock, and meanwhile handles signals and
-/// calls `callback` (None: nothing) ten times a second. Ctrl-C and an exception of the callback ask the work
-/// to stop; the latter is raised then, the former only with OnInterrupt::raise, where the work has no result
-/// or where it came to its end all the same.
+/// calls `callback` (None: nothing) ten times a second, and at the end. Ctrl-C and an exception of the
+/// callback ask the work to stop; the latter is raised then, the former only with OnInterrupt::raise, where
+/// the work has no result or where it came to its end all the same.
 void run_watched(const py::object& callback, OnInterrupt on_interrupt,
                  const std::function<void(Watch&)>& work);
 
