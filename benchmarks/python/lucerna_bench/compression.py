@@ -190,8 +190,8 @@ def write(out, measured, head):
     out = pathlib.Path(out)
     out.mkdir(parents=True, exist_ok=True)
     write_whole(out / "LB-F2.json", json.dumps({**head, "models": [dataclasses.asdict(m) for m in measured]}, indent=1) + "\n")
-    text = ["# LB-F2", "", f"{head['train_rays']:,} rays to make a model of, {head['test_rays']:,} others to compare with, "
+    text = ["# LB-F2", "", f"{head['train_rays']:,} rays to make a model of, {head['test_rays']:,} others to compare with,",
             f"seed {head['seed']}; {head['program']}, commit {head['commit']}; {head['machine']}.", "",
-            "Excess by view, with its standard error; in brackets the noise of the rays that the model was made of.", "",
-            table(measured)]
+            "Excess by view, with its standard error; in brackets the noise of the rays that the model was",
+            "made of. 0.01 is one per cent.", "", table(measured)]
     return write_whole(out / "LB-F2.md", "\n".join(text))
