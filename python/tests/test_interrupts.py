@@ -67,12 +67,14 @@ def test_callbacks_report_and_may_raise(lamp):
     assert [done for _, done, _ in steps] == sorted(done for _, done, _ in steps)
 
 
-def test_a_short_call_reports_its_end(lamp):
+@pytest.mark.parametrize("count", [1000, 5_000_000])
+def test_a_call_reports_its_end(lamp, count):
+    """However long it was, and though it was reported before."""
     steps = []
-    lamp.trace(rays=1000, callback=steps.append)
+    lamp.trace(rays=count, callback=steps.append)
     # A slow machine may report the last rays twice: when they are done, and at the end.
     assert [step.done for step in steps] == sorted(step.done for step in steps)
-    assert steps[-1].done == steps[-1].total == 1000
+    assert steps[-1].done == steps[-1].total == count
 
 
 def test_what_is_no_callback_raises(lamp):
