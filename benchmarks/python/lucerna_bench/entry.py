@@ -75,7 +75,7 @@ def _shortfall(target, found):
     for name in ("overall_uniformity", "lengthwise_uniformity"):
         missed += max(0.0, 1.0 - road[name]["value"] / target[f"min_{name}"])
     missed += max(0.0, road["threshold_increment"]["value"] / target["max_threshold_increment"] - 1.0)
-    return missed + sum("uniformity" not in fault and "increment" not in fault for fault in found["faults"])
+    return missed + len(found["faults"]) - sum(not limit["held"] for limit in road["limits"])
 
 
 class Entry:

@@ -36,7 +36,7 @@ def quality(s):
     """How well the light is where it should be: the error, or what counts on a road."""
     if s["road"] is None:
         return f"{percent(s['error_48']['excess'])} +- {percent(s['error_48']['standard_error'])}"
-    road = {name: figure["value"] for name, figure in s["road"].items()}
+    road = {name: figure["value"] for name, figure in s["road"].items() if name != "limits"}
     return (f"Uo {road['overall_uniformity']:.3f}, Ul {road['lengthwise_uniformity']:.3f}, "
             f"TI {percent(road['threshold_increment'], 1)}, {road['lm_per_cd_m2']:.0f} lm for 1 cd/m2")
 

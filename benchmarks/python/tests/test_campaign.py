@@ -148,7 +148,7 @@ def test_the_headline_decides_what_is_best():
 def fake_road(**changed):
     share = lambda x: {"value": x, "standard_error": 0.001}
     road = {"lm_per_cd_m2": share(8123.4), "overall_uniformity": share(0.4567), "lengthwise_uniformity": share(0.7891),
-            "threshold_increment": share(0.0654)}
+            "threshold_increment": share(0.0654), "limits": []}
     return fake_score(headline="efficiency_with_losses", road=road, error_48=None, nmae=None, outside_rectangle=None, **changed)
 
 

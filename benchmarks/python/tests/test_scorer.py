@@ -285,7 +285,8 @@ def test_costs_of_roads_see_the_way_to_their_limits(scorer, tasks):
     file = tasks / "LB-5b.json"
     entry = Entry(file, lambda p: FreeLens(read_task(file), p[0]).surfaces(), scorer)
     found = entry.figures([3.0], 20_000)
-    road = {name: figure["value"] for name, figure in found["road"].items()}
+    assert [limit["held"] for limit in found["road"]["limits"]] == [False, False, True]
+    road = {name: figure["value"] for name, figure in found["road"].items() if name != "limits"}
     assert not found["counts"] and found["error_48"] is None
     missed = (max(0.0, 1.0 - road["overall_uniformity"] / 0.4) + max(0.0, 1.0 - road["lengthwise_uniformity"] / 0.6)
               + max(0.0, road["threshold_increment"] / 0.15 - 1.0))

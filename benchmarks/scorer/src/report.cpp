@@ -29,18 +29,19 @@ Json stated_json(const Stated& s) {
   return out;
 }
 
-Json limits_json(const Submission& submission) {
+Json limits_json(const std::vector<LimitCheck>& limits) {
   Json out = Json::array();
-  for (const LimitCheck& c : submission.limits)
+  for (const LimitCheck& c : limits)
     out.push_back({{"limit", c.limit}, {"found", c.found}, {"allowed", c.allowed}, {"held", c.held}});
   return out;
 }
 
-Json road_json(const RoadScore& s) {
+Json road_json(const RoadScore& s, const std::vector<LimitCheck>& limits) {
   return {{"lm_per_cd_m2", json_of(s.lm_per_cd_m2)},
           {"overall_uniformity", json_of(s.overall)},
           {"lengthwise_uniformity", json_of(s.lengthwise)},
-          {"threshold_increment", json_of(s.threshold_increment)}};
+          {"threshold_increment", json_of(s.threshold_increment)},
+          {"limits", limits_json(limits)}};
 }
 
 Json balance_json(const Score& s) {
@@ -110,14 +111,14 @@ Json score_json(const Task& task, const Submission& submission, const Target& ta
            {"headline", task.headline},
            {"name", submission.name},
            {"author", submission.author}};
-  const auto broken = faults(s, submission, target);
+  const auto broken = faults(s, submission);
   out["counts"] = broken.empty();
   out["faults"] = broken;
   out["light_table"] = submission.light_table != nullptr;
   out["rays"] = s.rays;
   out["rays_from"] = run.rays_from;
   out["seed"] = run.seed;
-  out["road"] = s.road ? road_json(*s.road) : Json();
+  out["road"] = s.road ? road_json(*s.road, s.road_limits) : Json();
   const auto unless_road = [&](const Json& figure) { return s.road ? Json() : figure; };
   out["error_12"] = unless_road(json_of(s.n12));
   out["error_24"] = unless_road(json_of(s.n24));
@@ -132,7 +133,7 @@ Json score_json(const Task& task, const Submission& submission, const Target& ta
   out["outside_rectangle_direct"] = unless_road(json_of(s.outside_direct));
   out["absorbed"] = balance_json(s);
   out["rectangle"] = unless_road({{"low", target.low()}, {"high", target.high()}});
-  out["limits"] = limits_json(submission);
+  out["limits"] = limits_json(submission.limits);
   out["stated"] = stated_json(submission.stated);
   out["run"] = {{"threads", run.threads}, {"seconds", run.seconds}, {"machine", run.machine}};
   return out;

@@ -43,13 +43,17 @@ void set_errors(const Tally& tally, const Target& target, Score& s) {
   s.rsd = unevenness({steady, target.cell_target(), cells});
 }
 
-/// Beyond its limit by more than two standard errors?
-void require(const char* what, const Estimate& found, double limit, bool at_least,
-             std::vector<std::string>& out) {
+/// Not held where it is missed by more than two standard errors.
+LimitCheck check(const char* what, const Estimate& found, double limit, bool at_least) {
   const double margin = 2.0 * found.standard_error;
-  if (at_least ? found.mean + margin >= limit : found.mean - margin <= limit) return;
-  out.push_back(std::string(what) + ": found " + std::to_string(found.mean) + ", expected " +
-                std::to_string(limit) + (at_least ? " or more" : " at most"));
+  return {what, std::to_string(found.mean), std::to_string(limit) + (at_least ? " or more" : " at most"),
+          at_least ? found.mean + margin >= limit : found.mean - margin <= limit};
+}
+
+std::vector<LimitCheck> check_road(const RoadScore& found, const Road& road) {
+  return {check("overall uniformity", found.overall, road.min_overall(), true),
+          check("lengthwise uniformity", found.lengthwise, road.min_lengthwise(), true),
+          check("threshold increment", found.threshold_increment, road.max_increment(), false)};
 }
 
 }  // namespace
@@ -62,6 +66,7 @@ Score score_of(const Tally& tally, const Target& target, std::uint64_t rays) {
   s.rays = rays;
   if (target.road()) {
     s.road = target.road()->score(shares(tally, &Replicate::road));
+    s.road_limits = check_road(*s.road, *target.road());
   } else {
     set_errors(tally, target, s);
   }
@@ -82,11 +87,13 @@ Score score_of(const Tally& tally, const Target& target, std::uint64_t rays) {
   return s;
 }
 
-std::vector<std::string> faults(const Score& score, const Submission& submission, const Target& target) {
+std::vector<std::string> faults(const Score& score, const Submission& submission) {
   constexpr double kMaxLost = 1e-4;
   std::vector<std::string> out;
-  for (const LimitCheck& c : submission.limits) {
-    if (!c.held) out.push_back("limit " + c.limit + ": found " + c.found + ", expected " + c.allowed);
+  for (const auto* limits : {&submission.limits, &score.road_limits}) {
+    for (const LimitCheck& c : *limits) {
+      if (!c.held) out.push_back("limit " + c.limit + ": found " + c.found + ", expected " + c.allowed);
+    }
   }
   if (score.wrong_side.mean > kMaxLost)
     out.push_back("light at the wrong side of an interface: found a share of " +
@@ -99,12 +106,6 @@ std::vector<std::string> faults(const Score& score, const Submission& submission
     out.push_back("light that passes surfaces closely " + std::to_string(SurfaceScene::kMaxPassed) +
                   " times without a hit: found a share of " + std::to_string(score.near_misses.mean) +
                   ", expected 0.0001 at most");
-  if (score.road) {
-    require("overall uniformity", score.road->overall, target.road()->min_overall(), true, out);
-    require("lengthwise uniformity", score.road->lengthwise, target.road()->min_lengthwise(), true, out);
-    require("threshold increment", score.road->threshold_increment, target.road()->max_increment(), false,
-            out);
-  }
   return out;
 }
 

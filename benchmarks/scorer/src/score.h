@@ -17,6 +17,7 @@ struct Score {
   /// Where the target is uniform.
   std::optional<Unevenness> rsd;
   std::optional<RoadScore> road;
+  std::vector<LimitCheck> road_limits;
   Estimate efficiency, efficiency_lossless;
   Estimate in_rectangle, outside, outside_direct;
   Estimate mirror, mirror_back, absorber, bulk, interface, source, wrong_side, too_many_hits, near_misses;
@@ -30,6 +31,6 @@ Score score_of(const Tally& tally, const Target& target, std::uint64_t rays);
 /// Why a score does not count; empty where it does: limits that are not held, more than 1e-4 of the light at
 /// the wrong side of an interface, beyond the number of hits or of near misses; a road that is lit worse than
 /// it must be.
-std::vector<std::string> faults(const Score& score, const Submission& submission, const Target& target);
+std::vector<std::string> faults(const Score& score, const Submission& submission);
 
 }  // namespace bench

@@ -71,7 +71,7 @@ Target::Target(const JsonNode& t, const Frame* place) {
           : kind == "road"  ? Kind::road
                             : Kind::far_field;
   if (kind_ == Kind::road) {
-    frame_ = t.at("place").frame();
+    frame_ = place != nullptr ? *place : t.at("place").frame();
     road_.emplace(t, frame_.local_point({}).z);
     return;
   }
