@@ -11,15 +11,6 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-/// Any frame whose z axis is `normal`.
-Frame about(const Vec3& normal) {
-  Frame f;
-  f.z = normal;
-  f.x = unit(cross(std::abs(normal.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, normal));
-  f.y = cross(f.z, f.x);
-  return f;
-}
-
 /// Uniform on the unit disk.
 Vec3 on_disk(RayRandom& r) {
   const double radius = std::sqrt(r.uniform()), angle = kTurn * r.uniform();
@@ -30,7 +21,7 @@ Vec3 on_disk(RayRandom& r) {
 SourceRay lambertian(const Vec3& origin, const Vec3& normal, RayRandom& r) {
   Vec3 d = on_disk(r);
   d.z = std::sqrt(std::max(0.0, 1.0 - d.x * d.x - d.y * d.y));
-  return {origin, about(normal).vector(d), 1.0};
+  return {origin, frame_about(normal).vector(d), 1.0};
 }
 
 Vec3 on_sphere(RayRandom& r) {

@@ -15,6 +15,9 @@ namespace {
 constexpr int kMaxHits = 200;
 /// Weaker reflections of interfaces go on as often as they are weaker, with this weight.
 constexpr double kFaint = 0.05;
+/// Faces that meet in a curved edge end at chords of it, each at its own. A ray slips between chords that are
+/// up to a thousandth of a millimetre (kChordMm) apart; one that is this far beside it does not.
+constexpr double kBesideMm = 0.002;
 
 /// Light on its way. `lossless`: its weight if nothing were lost; 0 for what an interface reflects partly.
 struct Path {
@@ -51,7 +54,7 @@ class Tracer {
   void follow(Path p, RayRandom& random) {
     for (;; ++p.hits) {
       if (p.hits > kMaxHits) return add(sums().too_many_hits, p.weight);
-      const SurfaceScene::PartHit found = scene_.first_hit(p.origin, p.direction);
+      const SurfaceScene::PartHit found = next_hit(p);
       if (found.given_up) return add(sums().near_misses, p.weight);
       const double t = found.part != nullptr ? found.hit.t : std::numeric_limits<double>::infinity();
       if (p.hits > 0 && task_.source_body.hit(p.origin, p.direction, t)) return add(sums().source, p.weight);
@@ -60,6 +63,31 @@ class Tracer {
       p.origin = p.origin + t * p.direction;
       if (!interact(p, found, random)) return;
     }
+  }
+
+  /// The first hit, or that of a ray beside it, which `p` then becomes, where the first is on the wrong side.
+  SurfaceScene::PartHit next_hit(Path& p) const {
+    const SurfaceScene::PartHit found = scene_.first_hit(p.origin, p.direction);
+    if (right_side(p, found)) return found;
+    const Frame ray = frame_about(p.direction);
+    for (const Vec3& side : {ray.x, ray.y, -ray.x, -ray.y}) {
+      const Vec3 beside = p.origin + kBesideMm * side;
+      const SurfaceScene::PartHit other = scene_.first_hit(beside, p.direction);
+      if (other.given_up || !right_side(p, other)) continue;
+      p.origin = beside;
+      return other;
+    }
+    return found;
+  }
+
+  /// Can light in the medium of `p` meet this next?
+  static bool right_side(const Path& p, const SurfaceScene::PartHit& next) {
+    if (next.given_up) return true;
+    if (next.part == nullptr) return !p.inside;
+    return next.part->role != Role::interface || enters(p, next) != p.inside;
+  }
+  static bool enters(const Path& p, const SurfaceScene::PartHit& at) {
+    return dot(p.direction, at.hit.geometric) < 0.0;
   }
 
   void leave(const Path& p) {
@@ -76,13 +104,12 @@ class Tracer {
 
   /// False where the path ends.
   bool interact(Path& p, const SurfaceScene::PartHit& at, RayRandom& random) {
-    const double side = dot(p.direction, at.hit.geometric);
     if (at.part->role == Role::interface) return cross_interface(p, at, random);
     if (at.part->role == Role::absorber) {
       add(sums().absorber, p.weight);
       return false;
     }
-    if (side >= 0.0) {
+    if (!enters(p, at)) {
       add(sums().mirror_back, p.weight);
       return false;
     }
@@ -96,14 +123,14 @@ class Tracer {
   static Vec3 reflected(const Vec3& d, const Vec3& n) { return unit(d - 2.0 * dot(d, n) * n); }
 
   bool cross_interface(Path& p, const SurfaceScene::PartHit& at, RayRandom& random) {
-    const bool enters = dot(p.direction, at.hit.geometric) < 0.0;
-    if (enters == p.inside) {
+    if (!right_side(p, at)) {
       add(sums().wrong_side, p.weight);
       return false;
     }
     const double n = at.part->refractive_index;
-    const Vec3 normal = enters ? at.hit.normal : -at.hit.normal;
-    const Refraction r = refract(p.direction, normal, enters ? 1.0 : n, enters ? n : 1.0);
+    const bool in = enters(p, at);
+    const Vec3 normal = in ? at.hit.normal : -at.hit.normal;
+    const Refraction r = refract(p.direction, normal, in ? 1.0 : n, in ? n : 1.0);
     if (r.reflected >= 1.0) {
       p.direction = reflected(p.direction, normal);
       return true;
@@ -113,7 +140,7 @@ class Tracer {
     if (!o.fresnel) add(sums().interface, taken);
     if (o.fresnel) follow_reflection(p, reflected(p.direction, normal), taken, random);
     p.weight -= taken;
-    p.inside = enters;
+    p.inside = in;
     p.direction = r.direction;
     return p.lossless > 0.0 || survives(p.weight, random);
   }

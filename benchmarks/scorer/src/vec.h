@@ -37,4 +37,13 @@ struct Frame {
   Vec3 local_point(const Vec3& p) const { return local_vector(p - origin); }
 };
 
+/// Any frame whose z axis is `normal`, at the origin.
+inline Frame frame_about(const Vec3& normal) {
+  Frame f;
+  f.z = normal;
+  f.x = unit(cross(std::abs(normal.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, normal));
+  f.y = cross(f.z, f.x);
+  return f;
+}
+
 }  // namespace bench

@@ -241,6 +241,38 @@ TEST(Score, OpenLensDoesNotCount) {
   EXPECT_NE(found.json["faults"][0].get<std::string>().find("are the solids closed?"), std::string::npos);
 }
 
+/// A flat sheet at z, on [x_low, x_high], from `y_far` to the parabola y = x^2 / 1000: half of the top of a
+/// plate.
+Json half_top(double z, double x_low, double x_high, double y_far) {
+  Json s = face(z, 1.0);
+  Json points = Json::array();
+  const std::array<double, 3> x{x_low, 0.5 * (x_low + x_high), x_high},
+      x2{x_low * x_low, x_low * x_high, x_high * x_high};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Json seam{x[i], x2[i] / 1000.0, 0.0}, far{x[i], y_far, 0.0};
+    points.push_back(y_far > 0.0 ? Json{seam, far} : Json{far, seam});
+  }
+  s["bspline"] = {{"format", "lucerna-bench-surface"},
+                  {"version", 1},
+                  {"degree", {2, 1}},
+                  {"knots_u", {0, 0, 0, 1, 1, 1}},
+                  {"knots_v", {0, 0, 1, 1}},
+                  {"points_mm", points}};
+  return s;
+}
+
+// Two faces meet in a bent edge in full light, and each is cut into triangles at other places: some 10^-4 of
+// the light passes between their chords.
+TEST(Score, NoLightSlipsThroughASeam) {
+  Json task = glass_task("fresnel");
+  task["source"]["radius_mm"] = 0.1;
+  const std::vector<Json> plate{face(0.05, -1.0), half_top(1.05, -200.0, 200.0, -200.0),
+                                half_top(1.05, -200.0, 170.0, 200.0)};
+  const Scored found = scored(task, submission_json(plate), kRays);
+  EXPECT_EQ(found.score.wrong_side.mean, 0.0);
+  EXPECT_TRUE(found.json["counts"].get<bool>());
+}
+
 TEST(Score, LimitsThatAreBrokenDoNotCount) {
   Json task = task_json(kDisk, cosine(1.0));
   task["limits"] = {{{"kind", "inside_cylinder"}, {"radius_mm", 3000}, {"z_mm", {0, 5}}},
