@@ -76,7 +76,7 @@ TEST(StepOpenCascade, ReadsTheSameSurfaceAreaAndEnvelope) {
     Bnd_Box box;
     BRepBndLib::AddOptimal(shape, box, false, false);
     // Beneath a hole the box may hold what the trimmed surface does not.
-    double x0, y0, z0, x1, y1, z1;
+    double x0 = 0.0, y0 = 0.0, z0 = 0.0, x1 = 0.0, y1 = 0.0, z1 = 0.0;
     box.Get(x0, y0, z0, x1, y1, z1);
     for (const auto& [a, b] : {std::pair{x0, low.x}, std::pair{y0, low.y},
                                std::pair{z0, reflector.aperture.hole_radius_mm() > 0.0 ? z0 : low.z},
