@@ -99,7 +99,10 @@ class RankTrace {
 
   DistributedTrace run() {
     begin();
-    if (trace_chunks(whole_.last, kNever) == ChunksEnd::interrupted) return {std::nullopt, true};
+    if (trace_chunks(whole_.last, kNever) == ChunksEnd::interrupted) {
+      tell_of_parts();
+      return {std::nullopt, true};
+    }
     load_earlier();
     const Traced traced = count_all();
     std::optional<TraceResult> sum = sum_of_all(std::exchange(old_, {}), traced);
@@ -120,7 +123,10 @@ class RankTrace {
     for (;;) {
       const Clock::time_point by = before < kFirstRound ? kNever : end;
       const ChunksEnd how = trace_chunks(whole_.first + std::min(round, most), by);
-      if (how == ChunksEnd::interrupted) return {std::nullopt, true};
+      if (how == ChunksEnd::interrupted) {
+        tell_of_parts();
+        return {std::nullopt, true};
+      }
       const Traced traced = count_all();
       LUCERNA_CHECK(traced.last == whole_.first + traced.count, "{} rays up to {}", traced.count,
                     traced.last);
@@ -178,6 +184,9 @@ class RankTrace {
   void agree_on_scene() {
     const std::string mine = origin_.program_version + " " + mine_.sums.isa + " " + origin_.scene_id;
     agree_on_same(ranks_, "version, instruction set and project", mine);
+    agree_on_same(ranks_, "rays, seed and sequence",
+                  fmt::format("{}:{} {} {}", whole_.first, whole_.last, mine_.sums.seed,
+                              to_string(mine_.sums.sequence)));
   }
 
   /// Reads one part; what keeps it from being gone on with is an error, but damage is not.
@@ -194,7 +203,11 @@ class RankTrace {
           fmt::format("{}: is a part of another project, or of other input files", path.string()),
           ErrorCause::mismatch);
     }
-    check_addable(mine_.sums, stored.part.sums);
+    try {
+      check_addable(stored.part.sums, mine_.sums);
+    } catch (const InputError& e) {
+      throw InputError(fmt::format("{}: {}", path.string(), e.what()), e.cause());
+    }
     const auto& done = stored.part.done.all();
     if (done.front().first < whole_.first || done.back().last > whole_.last) {
       throw InputError(fmt::format("{}: has rays {}:{}, this run has {}:{}", path.string(),
@@ -350,7 +363,21 @@ class RankTrace {
   }
 
   void checkpoint() const {
-    if (!mine_.done.empty()) write_file(own_part_, encode_part(mine_, origin_));
+    if (mine_.done.empty()) return;
+    fs::create_directories(options_.parts);
+    write_file(own_part_, encode_part(mine_, origin_));
+  }
+
+  /// Where an interrupted run's rays are. Collective.
+  void tell_of_parts() {
+    std::uint64_t rays = earlier_.done.count();
+    std::string mine;
+    append(mine, mine_.done.count());
+    for (const std::string& one : gather_everywhere(ranks_, mine)) {
+      std::string_view bytes = one;
+      rays += take(bytes);
+    }
+    tell(fmt::format("interrupted: {} rays are traced; --resume goes on with them", rays));
   }
 
   /// The parts of earlier runs are dealt to the ranks; the first one has the trace that is gone on with.

@@ -18,7 +18,7 @@ namespace lucerna {
 using RangeTracer = std::function<TraceResult(const RayInterval& rays, Progress& progress)>;
 
 struct DistributedOptions {
-  /// Where ranks leave their parts; all of them see the same folder.
+  /// Where ranks leave their parts; all of them see the same folder, which is made when there is a part.
   std::filesystem::path parts;
   /// Rays that a rank takes at a time, a multiple of 512; 0: as many as keep all ranks busy to the end, 2^24
   /// at most. The result does not depend on it.

@@ -200,7 +200,7 @@ TEST_F(DistributedTraceTest, PartsOfOtherRunsAreRefusedOnAllRanks) {
     const Outcome o = run(3, 1024, 1 << 30, 0, seed);
     for (const std::string& e : o.errors) EXPECT_TRUE(e.find(why) != std::string::npos) << e;
   };
-  refused("seed", 2);
+  refused("0001-000000.part: the traces cannot be added: one has seed 1", 2);
   origin_.program_version = "2";
   refused("traced by lucerna 1, this is 2");
   origin_.program_version = "1";
@@ -350,6 +350,21 @@ TEST_F(DistributedTraceTest, RanksOfOtherVersionsOrProjectsAreRefused) {
     });
     for (const std::string& e : o.errors) EXPECT_TRUE(e.find("rank 2: has the version") == 0) << e;
   }
+}
+
+TEST_F(DistributedTraceTest, RanksOfOtherRaysOrSeedsAreRefusedAndLeaveNoFolder) {
+  const fs::path parts = dir_ / "parts";
+  for (const bool seed : {true, false}) {
+    const Outcome o = on_ranks(3, [&](Ranks& of) {
+      TraceResult empty = empty_trace(scene_, options(0, 5000));
+      if (of.rank() == 1) (seed ? empty.seed : empty.last_ray) = 77;
+      const RangeTracer none = [](const RayInterval&, Progress&) -> TraceResult { throw InputError("ran"); };
+      return trace_on_ranks(of, empty, none, origin_, {.parts = parts});
+    });
+    for (const std::string& e : o.errors)
+      EXPECT_TRUE(e.find("rank 1: has the rays, seed and sequence") == 0) << e;
+  }
+  EXPECT_FALSE(fs::exists(parts));
 }
 
 TEST_F(DistributedTraceTest, WhatFailsOnOneRankEndsAll) {

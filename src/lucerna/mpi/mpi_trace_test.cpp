@@ -120,6 +120,7 @@ TEST_F(MpiTraceTest, ASignalWritesAndExitsWithThreeMpi) {
     ::kill(ranks[1], signal);
     EXPECT_EQ(test::wait_for(run), 3) << log();
     EXPECT_FALSE(fs::is_empty(dir_ / out / "parts"));
+    EXPECT_NE(log().find("rays are traced; --resume goes on with them"), std::string::npos) << log();
     EXPECT_FALSE(fs::exists(dir_ / out / "result.json"));
     ASSERT_EQ(test::wait_for(start_ranks(3, out, {"--resume", "--threads", "1"})), 0) << log();
     EXPECT_NE(log().find("are there already"), std::string::npos) << log();
@@ -163,6 +164,11 @@ TEST_F(MpiTraceTest, ErrorsAreToldOnceAndEndAllMpi) {
   write_file(dir_ / "lamp.toml", kLamp);
   EXPECT_EQ(test::wait_for(start_ranks(2, "out", {"--chunk", "0"})), 2) << log();
   EXPECT_EQ(test::wait_for(start_ranks(2, "out", {"--no-such-option"})), 2) << log();
+  for (const char* seconds : {"0", "-1", "nan"})
+    EXPECT_EQ(test::wait_for(start_ranks(2, "out", {"--checkpoint", seconds})), 2) << log();
+  // A run that was refused is not in the way of the next one.
+  ASSERT_EQ(test::wait_for(start_ranks(2, "out", {})), 0) << log();
+  EXPECT_FALSE(fs::exists(dir_ / "out" / "parts"));
 }
 
 }  // namespace

@@ -49,6 +49,8 @@ DistributedOptions distributed_options(const MpiTraceArguments& a, Session& sess
     how.chunk_rays = (rays + kBlockRays - 1) / kBlockRays * kBlockRays;
   }
   how.checkpoint_s = parse_number(a.checkpoint);
+  if (!(how.checkpoint_s > 0.0))
+    throw UsageError(fmt::format("'{}' seconds between two writings: expected more than 0", a.checkpoint));
   how.note = [&session](const std::string& text) { session.note(text); };
   return how;
 }
@@ -58,7 +60,6 @@ void prepare(const MpiTraceArguments& a, const fs::path& parts, const Session& s
   prepare_folder(a.output, session.force || a.resume);
   require_writable(a.report);
   if (!a.resume) fs::remove_all(parts);
-  fs::create_directories(parts);
 }
 
 /// The trace in the folder, on the first rank; its seed and sequence on all.
@@ -104,19 +105,23 @@ DistributedNoise trace_all(const MpiTraceArguments& a, const Project& project, c
   return {NoiseTrace{std::move(*traced.result), 0.0, NoiseEnd::rays}, false};
 }
 
-/// What the first rank does once the light is counted.
-void write_results(const MpiTraceArguments& a, const Project& project, const TraceOrigin& origin,
+/// What the first rank does once the light is counted. Returns whether it was asked to stop on the way.
+bool write_results(const MpiTraceArguments& a, const Project& project, const TraceOrigin& origin,
                    const TraceResult& result, int ranks, Session& session) {
-  const TraceMetrics figures = session.timed("figures", [&] { return trace_metrics(result, project.scene); });
+  const TraceMetrics figures =
+      session.timed("figures", [&] { return trace_metrics(result, project.scene, {}, session.progress()); });
+  const bool stopped = session.progress().stop_requested();
+  if (stopped) note_interrupted_figures(session);
   const auto names =
       write_trace_output(a.output, result, origin, figures, trace_warnings(figures, project.scene), session);
   const double seconds = session.seconds("trace");
-  session.print_line(fmt::format("{}: {} rays in {:.3g} s, {:.3g} M rays/s ({}, {} ranks of {} threads)",
-                                 a.output, figures.ledger.rays, seconds,
-                                 1e-6 * static_cast<double>(figures.ledger.rays) / seconds, result.isa, ranks,
-                                 ThreadLimit::current()));
+  session.print_line(fmt::format(
+      "{}: {} rays in {:.3g} s, {:.3g} M rays/s ({}, {} ranks of {} threads); figures {:.3g} s", a.output,
+      figures.ledger.rays, seconds, 1e-6 * static_cast<double>(figures.ledger.rays) / seconds, result.isa,
+      ranks, ThreadLimit::current(), session.seconds("figures")));
   print_trace_summary(figures, names, session);
   if (!a.report.empty()) write_trace_report(a.report, a.output, project.scene, session);
+  return stopped;
 }
 
 void run_mpi_trace(const MpiTraceArguments& a, Session& session, Ranks& ranks) {
@@ -142,11 +147,13 @@ void run_mpi_trace(const MpiTraceArguments& a, Session& session, Ranks& ranks) {
   const DistributedNoise traced =
       session.timed("trace", [&] { return trace_all(a, project, origin, options, how, ranks, session); });
   if (traced.interrupted) throw Interrupted();
+  std::string end;
   together(ranks, [&] {
     if (!traced.result) return;
-    write_results(a, project, origin, traced.result->result, ranks.size(), session);
+    if (write_results(a, project, origin, traced.result->result, ranks.size(), session)) end = "stopped";
     fs::remove_all(how.parts);
   });
+  if (!ranks.broadcast(end).empty()) throw Interrupted();
 }
 
 }  // namespace

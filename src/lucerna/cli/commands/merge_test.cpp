@@ -80,8 +80,8 @@ TEST_F(MergeCli, SaysWhatDoesNotFit) {
   refuse("a e", "rays 500:1000 are in both a and e");
   refuse("a a", "rays 0:1000 are in both");
   refuse("a e d", "rays 500:1000 are in both a and e; rays 1500:3000 are missing between e and d");
-  refuse("a seed", "seed or sequence");
-  refuse("a random", "seed or sequence");
+  refuse("a seed", "one has seed 1 and sequence sobol, the other seed 2");
+  refuse("a random", "one has seed 1 and sequence sobol, the other seed 1 and sequence random");
   refuse("a none", "none: holds no trace.sums");
   StoredTrace other = read_trace_file(dir / "b" / kTraceFileName);
   other.result.isa = "abacus";

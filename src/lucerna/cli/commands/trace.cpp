@@ -52,14 +52,6 @@ NoiseTrace run_rays(const TraceArguments& a, const Scene& scene, const TraceOpti
   return traced;
 }
 
-/// Without the light that is followed backward, figures are those of `merge`.
-void note_interrupted(const NoiseTrace& traced, Session& session) {
-  session.note(traced.end == NoiseEnd::interrupted
-                   ? "interrupted: these are the rays that were traced, with the figures that they alone "
-                     "give; --resume goes on with them"
-                   : "interrupted: all rays were traced; the figures are those that they alone give");
-}
-
 void run_trace(const TraceArguments& a, Session& session, int& exit_code) {
   session.start();
   const TraceOptions options = trace_options(a);
@@ -75,7 +67,13 @@ void run_trace(const TraceArguments& a, Session& session, int& exit_code) {
   const TraceMetrics figures =
       session.timed("figures", [&] { return trace_metrics(result, project.scene, {}, session.progress()); });
   if (session.progress().stop_requested()) {
-    note_interrupted(traced, session);
+    if (traced.end == NoiseEnd::interrupted) {
+      session.note(
+          "interrupted: these are the rays that were traced, with the figures that they alone give; --resume "
+          "goes on with them");
+    } else {
+      note_interrupted_figures(session);
+    }
     exit_code = 3;
   }
   const auto names =

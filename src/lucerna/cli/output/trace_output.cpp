@@ -35,6 +35,10 @@ void note_noise(const std::string& of, const NoiseTrace& traced, double goal, Se
   }
 }
 
+void note_interrupted_figures(Session& session) {
+  session.note("interrupted: all rays were traced; the figures are those that they alone give");
+}
+
 void print_trace_summary(const TraceMetrics& figures, const std::vector<std::string>& names,
                          Session& session) {
   for (const std::string& line : trace_summary(figures)) session.print_line(line);

@@ -20,6 +20,9 @@ std::vector<std::string> write_trace_output(const std::string& folder, const Tra
 /// Says what of the noise that was asked for (`goal`) is missing, and why. `of`: begins the sentence.
 void note_noise(const std::string& of, const NoiseTrace& traced, double goal, Session& session);
 
+/// Without the light that is followed backward, figures are those of `merge`.
+void note_interrupted_figures(Session& session);
+
 /// The figures as text, and the files.
 void print_trace_summary(const TraceMetrics& figures, const std::vector<std::string>& names,
                          Session& session);

@@ -229,7 +229,13 @@ void check_addable(const TraceResult& a, const TraceResult& b) {
       throw InputError(fmt::format("the traces cannot be added: they differ in {}", what),
                        ErrorCause::mismatch);
   };
-  need(a.seed == b.seed && a.sequence == b.sequence, "seed or sequence");
+  if (a.seed != b.seed || a.sequence != b.sequence) {
+    throw InputError(
+        fmt::format("the traces cannot be added: one has seed {} and sequence {}, the other seed {} "
+                    "and sequence {}",
+                    a.seed, to_string(a.sequence), b.seed, to_string(b.sequence)),
+        ErrorCause::mismatch);
+  }
   need(a.max_bounces == b.max_bounces, "the limit of bounces");
   if (a.isa != b.isa) {
     throw InputError(
