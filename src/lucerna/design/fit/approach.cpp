@@ -27,7 +27,7 @@ Approached approach(const FitProblem& problem, const DesignShape& given, int res
   LUCERNA_CHECK(has_few_knots(given), "{} x {} intervals", given.intervals_x(), given.intervals_y());
   DesignShape start = given;
   if (restart != 0) {
-    start = perturbed(given, problem.perturbation * given.aperture().outer_radius_mm(),
+    start = perturbed(given, problem.perturbation * given.radius_mm(),
                       Rng(problem.seed, kStream + static_cast<std::uint64_t>(restart)));
   }
   FitProblem coarse = problem;

@@ -129,7 +129,7 @@ void Fit::take(const FitBranch& branch) {
       break;
   }
   if (branch.perturbation <= 0.0) return;
-  const double size_mm = branch.perturbation * shape_.aperture().outer_radius_mm();
+  const double size_mm = branch.perturbation * shape_.radius_mm();
   set_shape(perturbed(shape_, size_mm, Rng(problem_.seed, branch.stream)));
 }
 

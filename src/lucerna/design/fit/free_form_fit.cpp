@@ -31,10 +31,10 @@ constexpr double kLittleCost = 0.01;
 
 double smoothing_for(const DesignShape& shape, double level_smoothing) {
   const Aperture& a = shape.aperture();
-  const double step =
-      2.0 * std::max(a.half_x_mm() / shape.intervals_x(), a.half_y_mm() / shape.intervals_y());
+  const double along = shape.is_trough() ? 0.0 : a.half_y_mm() / shape.intervals_y();
+  const double step = 2.0 * std::max(a.half_x_mm() / shape.intervals_x(), along);
   return level_smoothing * (has_few_knots(shape) ? kFewKnots : 1.0) *
-         std::pow(kSmoothingStep * a.outer_radius_mm() / step, 4);
+         std::pow(kSmoothingStep * shape.radius_mm() / step, 4);
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ FreeFormPoint FreeFormFit::at(DesignShape shape, bool derivatives) const {
   options.rays = level_.rays;
   options.derivative_rays = level_.derivative_rays;
   options.direct_light = problem_.direct_light;
-  options.rim_mm = kRimShare * shape.aperture().outer_radius_mm();
+  options.rim_mm = kRimShare * shape.radius_mm();
   options.derivatives = options.sparse = derivatives;
   Evaluation light = evaluate(shape, problem_.reflectance, *problem_.rays, bins_, options);
   if (!derivatives) light.rows.resize(light.flux.size(), static_cast<Eigen::Index>(shape.parameter_count()));
@@ -103,7 +103,7 @@ Eigen::VectorXd FreeFormFit::move_within_limits(const FreeFormPoint& now,
 
 bool FreeFormFit::step(FreeFormPoint& now, double& lambda, bool doubtful) const {
   const Eigen::VectorXd from = now.shape.parameters();
-  const double longest = kMaxMove * now.shape.aperture().outer_radius_mm();
+  const double longest = kMaxMove * now.shape.radius_mm();
   const SparseSymmetric metric = sparse_step_metric(now.shape, now.equations);
   const auto at_move = [&](const Eigen::VectorXd& move) {
     DesignShape shape = now.shape.with(from + move);

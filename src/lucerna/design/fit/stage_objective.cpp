@@ -30,7 +30,7 @@ FitPoint StageObjective::at(DesignShape shape) const {
   EvaluationOptions options;
   options.rays = stage_.rays;
   options.direct_light = problem_.direct_light;
-  options.rim_mm = kRimShare * shape.aperture().outer_radius_mm();
+  options.rim_mm = kRimShare * shape.radius_mm();
   Evaluation light = evaluate(shape, problem_.reflectance, *problem_.rays, bins_, options);
   NormalEquations next = equations(shape, light);
   return {std::move(shape), std::move(light), std::move(next)};
@@ -52,7 +52,7 @@ NormalEquations StageObjective::equations(const DesignShape& shape, const Evalua
 
 LevenbergMarquardtStep StageObjective::step(FitPoint& now, double lambda) const {
   const Eigen::VectorXd from = now.shape.parameters();
-  const double longest = kLongestStep * now.shape.aperture().outer_radius_mm();
+  const double longest = kLongestStep * now.shape.radius_mm();
   const auto metric = step_metric(now.shape, now.equations);
   return levenberg_marquardt_step(
       now, [&](double damping) { return damped_step(now.equations, metric, damping); }, lambda, longest,

@@ -42,6 +42,11 @@ double blur_rad(const DesignRays& rays, const PointSource& source, const DesignS
   return std::sqrt(square / weight) / distance;
 }
 
+/// A mirror of revolution or a trough, moved along its axis.
+DesignShape with_vertex(const DesignShape& shape, double vertex_mm) {
+  return shape.with((shape.parameters().array() + (vertex_mm - shape.at(0.0, 0.0).z_mm)).matrix());
+}
+
 /// The shape as given, and of revolution moved so that its vertex is so far from the source, over the
 /// mirror's radius. Which distance suits a target cannot be told before: near mirrors catch more, far ones
 /// blur less.
@@ -49,10 +54,8 @@ std::vector<DesignShape> at_vertex_distances(const DesignShape& shape, const Vec
   constexpr double kOverRadius[] = {0.3, 0.45, 0.7, 1.0};
   std::vector<DesignShape> out{shape};
   if (!shape.is_revolution()) return out;
-  for (const double distance : kOverRadius) {
-    const double vertex = source_mm.z - distance * shape.aperture().outer_radius_mm();
-    out.push_back(shape.with((shape.parameters().array() + (vertex - shape.at(0.0, 0.0).z_mm)).matrix()));
-  }
+  for (const double distance : kOverRadius)
+    out.push_back(with_vertex(shape, source_mm.z - distance * shape.radius_mm()));
   return out;
 }
 
@@ -60,7 +63,9 @@ std::vector<DesignShape> at_vertex_distances(const DesignShape& shape, const Vec
 
 std::vector<DirectedFlux> target_light(const FitProblem& problem, const DesignShape& shape) {
   problem.rays->grow(kGuessRays);
-  const TentBins bins = rebinned(problem.bins, 1.0, problem.bins.is_rings() ? 240 : 16);
+  // Of a trough's light only the angle across counts.
+  const int count = problem.bins.is_rings() ? 240 : shape.is_trough() ? 64 : 16;
+  const TentBins bins = rebinned(problem.bins, 1.0, count);
   Eigen::VectorXd flux = problem.target(bins);
   if (problem.direct_light) {
     EvaluationOptions options = plain_options(problem, kGuessRays);
@@ -97,6 +102,15 @@ double fit_cost(const FitProblem& problem, const DesignShape& shape, const Evalu
   if (problem.limits) cost += problem.limits(shape, e.rays, nullptr);
   const double missing = 1.0 - e.flux.sum() / problem.flux_reference;
   return cost + problem.flux_weight * missing * missing;
+}
+
+std::optional<DesignShape> trough_guess(const FitProblem& problem, const DesignShape& family,
+                                        const TransportChoice& choice) {
+  problem.rays->grow(kGuessRays);
+  const PointSource source = point_source(*problem.rays, kGuessRays);
+  const DesignShape at = with_vertex(family, source.at_mm.z - choice.vertex_distance_mm);
+  return trough_balance(family, source, target_light(problem, at), choice.vertex_distance_mm,
+                        choice.sign < 0.0);
 }
 
 std::vector<InitialGuess> initial_guesses(const FitProblem& problem, const DesignShape& shape,

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "lucerna/design/evaluation/window.h"
 #include "lucerna/design/fit/fit_problem.h"
+#include "lucerna/design/initial/transport_guess.h"
 
 namespace lucerna {
 
@@ -26,6 +28,11 @@ double fit_cost(const FitProblem& problem, const DesignShape& shape, const Evalu
 /// first `rays` of the problem's rays, which must be there. Thread safe.
 double fit_cost(const FitProblem& problem, const DesignShape& shape, const TentBins& bins,
                 const Eigen::VectorXd& target, std::uint64_t rays);
+
+/// The trough that a point source would need for the target, with the knots of `family`; nothing where there
+/// is none (trough_balance). `choice.sign` -1: light of one side goes out to that side; +1: the rays cross.
+std::optional<DesignShape> trough_guess(const FitProblem& problem, const DesignShape& family,
+                                        const TransportChoice& choice);
 
 /// Where a fit may begin: the given shape, and what a point source would need (zero_etendue.h) with the
 /// vertex where it is given and at other distances, the cheapest first in a third of the problem's bins. The

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 
 #include "lucerna/design/initial/supporting_paraboloids.h"
 
@@ -154,36 +153,46 @@ ProfilePoints trough_side(const Gamma& gamma, double side, double half_x, double
   return points;
 }
 
-/// Flux balance in the plane across a trough: two solutions, from side to side in the same or in turned
-/// order.
-std::vector<DesignShape> trough_balance(const DesignShape& family, const PointSource& source,
-                                        std::span<const DirectedFlux> light) {
-  const double vertex = family.at(0.0, 0.0).z_mm, distance = source.at_mm.z - vertex;
-  if (!(distance > 0.0)) return {};
+}  // namespace
+
+std::optional<DesignShape> trough_balance(const DesignShape& family, const PointSource& source,
+                                          std::span<const DirectedFlux> light, double distance_mm,
+                                          bool same_order) {
+  const double vertex = source.at_mm.z - distance_mm;
   const Cumulative from_source(source.light, [](const Direction& d) { return std::atan2(d.x(), -d.z()); });
   const Cumulative target_flux(light, [](const Direction& d) { return seen_along_y(d); });
   const double half_x = family.aperture().half_x_mm();
+  double left = -1.0, right = 1.0;  // angles of the rims, from the vertex; found by iteration
+  ProfilePoints minus, plus;
+  for (int round = 0; round < 12; ++round) {
+    const double begin = from_source.below(left), all = from_source.below(right) - begin;
+    if (!(all > 0.0)) return std::nullopt;
+    const auto gamma = [&](double theta) {
+      const double share = std::clamp((from_source.below(theta) - begin) / all, 0.0, 1.0);
+      return target_flux.angle_of((same_order ? share : 1.0 - share) * target_flux.total());
+    };
+    double to_left = 0.05, to_right = 0.05;
+    minus = trough_side(gamma, -1.0, half_x, distance_mm, source.at_mm.x, source.at_mm.z, to_left);
+    plus = trough_side(gamma, 1.0, half_x, distance_mm, source.at_mm.x, source.at_mm.z, to_right);
+    left = 0.5 * (left - to_left);
+    right = 0.5 * (right + to_right);
+  }
+  const auto on_minus = height_of(minus, half_x), on_plus = height_of(plus, half_x);
+  if (!on_minus || !on_plus) return std::nullopt;
+  return family.through(
+      [&](double x, double) { return vertex + (x < 0.0 ? (*on_minus)(-x) : (*on_plus)(x)); });
+}
+
+namespace {
+
+std::vector<DesignShape> trough_balances(const DesignShape& family, const PointSource& source,
+                                         std::span<const DirectedFlux> light) {
+  const double distance = source.at_mm.z - family.at(0.0, 0.0).z_mm;
   std::vector<DesignShape> shapes;
-  for (const bool same : {true, false}) {
-    double left = -1.0, right = 1.0;  // angles of the rims, from the vertex; found by iteration
-    ProfilePoints minus, plus;
-    for (int round = 0; round < 12; ++round) {
-      const double begin = from_source.below(left), all = from_source.below(right) - begin;
-      if (!(all > 0.0)) return shapes;
-      const auto gamma = [&](double theta) {
-        const double share = std::clamp((from_source.below(theta) - begin) / all, 0.0, 1.0);
-        return target_flux.angle_of((same ? share : 1.0 - share) * target_flux.total());
-      };
-      double to_left = 0.05, to_right = 0.05;
-      minus = trough_side(gamma, -1.0, half_x, distance, source.at_mm.x, source.at_mm.z, to_left);
-      plus = trough_side(gamma, 1.0, half_x, distance, source.at_mm.x, source.at_mm.z, to_right);
-      left = 0.5 * (left - to_left);
-      right = 0.5 * (right + to_right);
-    }
-    const auto on_minus = height_of(minus, half_x), on_plus = height_of(plus, half_x);
-    if (!on_minus || !on_plus) continue;
-    shapes.push_back(family.through(
-        [&](double x, double) { return vertex + (x < 0.0 ? (*on_minus)(-x) : (*on_plus)(x)); }));
+  for (const bool same_order : {true, false}) {
+    if (!(distance > 0.0)) break;
+    if (const auto shape = trough_balance(family, source, light, distance, same_order))
+      shapes.push_back(*shape);
   }
   return shapes;
 }
@@ -196,7 +205,7 @@ std::vector<DesignShape> zero_etendue_shapes(const DesignShape& family, const Po
   for (const DirectedFlux& l : target_flux) total += l.flux;
   if (!(total > 0.0)) return {};
   if (family.is_revolution()) return flux_balance(family, source, target_flux);
-  if (family.is_trough()) return trough_balance(family, source, target_flux);
+  if (family.is_trough()) return trough_balances(family, source, target_flux);
   return supporting_paraboloids(family, source, target_flux, blur_rad);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,5 +27,11 @@ namespace lucerna {
 /// step and leaves the envelope as smooth as `blur_rad` (Sinkhorn's iteration). Two solutions.
 std::vector<DesignShape> zero_etendue_shapes(const DesignShape& family, const PointSource& source,
                                              std::span<const DirectedFlux> target_flux, double blur_rad);
+
+/// The trough's solution with its vertex so far (> 0) from the source. `same_order`: light of one side goes
+/// out to that side, else the rays cross. Nothing where it folds over or does not fill the aperture.
+std::optional<DesignShape> trough_balance(const DesignShape& family, const PointSource& source,
+                                          std::span<const DirectedFlux> target_flux, double distance_mm,
+                                          bool same_order);
 
 }  // namespace lucerna

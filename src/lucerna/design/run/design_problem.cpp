@@ -153,8 +153,8 @@ void put_shaped_first(Project& project, const TomlReader& root, TomlReader& desi
 
 /// Zones are fitted by the search of free forms alone.
 void check_zones_family(const TomlReader& root, const DesignProblem& problem) {
-  if (problem.target.zones == nullptr || uses_free_form_search(problem)) return;
   const DesignShape& start = problem.start;
+  if (problem.target.zones == nullptr || (uses_free_form_search(problem) && !start.is_trough())) return;
   const std::string found = start.is_revolution() ? "family = \"revolution\""
                             : start.is_trough()   ? "family = \"trough\""
                                                   : fmt::format("optimizer = \"{}\"", problem.optimizer.name);

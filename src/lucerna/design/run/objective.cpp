@@ -74,7 +74,7 @@ struct Objective::Problem {
     out.rays = rays.size();
     out.derivatives = derivatives;
     out.direct_light = fit.direct_light;
-    out.rim_mm = options.rim_mm.value_or(kRimShare * at.aperture().outer_radius_mm());
+    out.rim_mm = options.rim_mm.value_or(kRimShare * at.radius_mm());
     return out;
   }
 

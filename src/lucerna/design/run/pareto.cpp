@@ -61,11 +61,10 @@ std::vector<ParetoPoint> front(const std::vector<ParetoPoint>& all) {
 /// Mirrors to begin with: the one that was found, and those of the choices.
 std::vector<DesignShape> guesses(const FitProblem& fit, const DesignShape& found) {
   std::vector<DesignShape> out{found};
-  const Aperture& a = found.aperture();
   const int n = std::max(kIntervals, std::max(found.intervals_x(), found.intervals_y()));
-  const DesignShape family = DesignShape::bspline(found.focal_mm(), a, n, n, found.symmetry());
+  const DesignShape family = found.refined(n, found.is_trough() ? found.intervals_y() : n);
   for (const TransportChoice& c : kChoices) {
-    const auto start = free_form_guess(fit, family, {c.sign, c.vertex_distance_mm * a.outer_radius_mm()});
+    const auto start = free_form_guess(fit, family, {c.sign, c.vertex_distance_mm * found.radius_mm()});
     if (start) out.push_back(*start);
   }
   return out;

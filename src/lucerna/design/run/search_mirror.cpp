@@ -100,8 +100,7 @@ void search_coarse_to_fine(const SearchRun& run, FitProblem& fit_data, DesignRes
 }  // namespace
 
 bool uses_free_form_search(const DesignProblem& problem) {
-  const DesignShape& start = problem.start;
-  return !start.is_revolution() && !start.is_trough() && problem.optimizer.name == "auto";
+  return !problem.start.is_revolution() && problem.optimizer.name == "auto";
 }
 
 void search_mirror(const SearchRun& run, FitProblem& fit, DesignResult& result) {

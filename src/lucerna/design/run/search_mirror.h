@@ -17,8 +17,8 @@ struct SearchRun {
   const DesignObserver& observer;
 };
 
-/// Whether a problem's mirror is searched among candidates in fine bins (free_form_search.h): a free form,
-/// unless the project names an optimizer. Else least squares goes from coarse to fine (fit.h).
+/// Whether a problem's mirror is searched among candidates in fine bins (free_form_search.h): a free form or
+/// a trough, unless the project names an optimizer. Else least squares goes from coarse to fine (fit.h).
 bool uses_free_form_search(const DesignProblem& problem);
 
 /// Searches the problem's mirror from the start or from the options' checkpoint until nothing is left to

@@ -10,6 +10,7 @@
 #include "lucerna/core/parallel/peers.h"
 #include "lucerna/design/evaluation/point_source.h"
 #include "lucerna/design/fit/approach.h"
+#include "lucerna/design/initial/initial_guesses.h"
 #include "lucerna/design/search/free_form_levels.h"
 #include "lucerna/random.h"
 
@@ -29,6 +30,10 @@ constexpr std::array<TransportChoice, 7> kAfterApproaches{
 constexpr std::array<TransportChoice, 2> kFacesBefore{{{-1.0, 1.0}, {1.0, 1.0}}};
 constexpr std::array<TransportChoice, 7> kFacesAfter{
     {{-1.0, 0.8}, {1.0, 0.8}, {-1.0, 1.25}, {1.0, 1.25}, {-1.0, 0.65}, {1.0, 0.65}, {1.0, 1.5}}};
+/// Of a trough, over half its width: both orders of rays.
+constexpr std::array<TransportChoice, 2> kTroughsBefore{{{-1.0, 0.75}, {1.0, 1.0}}};
+constexpr std::array<TransportChoice, 7> kTroughsAfter{
+    {{-1.0, 0.5}, {1.0, 0.75}, {-1.0, 0.4}, {-1.0, 0.33}, {-1.0, 0.25}, {-1.0, 0.18}, {-1.0, 1.0}}};
 /// The approach is tried where the candidates before it stay kDoubtful from the target (relative error), for
 /// a point source's mirror is no guide for a source that is long or wide; and where the given mirror is the
 /// nearest of them. Further approaches, from perturbed copies, follow where the best is kFarError from it, or
@@ -95,7 +100,7 @@ std::pair<int, int> intervals_of(const Aperture& a, int max) {
 
 /// What the first candidates' vertex distances are told in: a mirror's radius, a lens face's own distance.
 double distance_unit_mm(const FitProblem& problem, const DesignShape& given) {
-  if (!problem.rays->medium()) return given.aperture().outer_radius_mm();
+  if (!problem.rays->medium()) return given.radius_mm();
   problem.rays->grow(kUnitRays);
   return point_source(*problem.rays, kUnitRays).at_mm.z - given.at(0.0, 0.0).z_mm;
 }
@@ -104,6 +109,7 @@ double distance_unit_mm(const FitProblem& problem, const DesignShape& given) {
 
 std::optional<DesignShape> free_form_guess(const FitProblem& problem, const DesignShape& family,
                                            const TransportChoice& choice) {
+  if (family.is_trough()) return trough_guess(problem, family, choice);
   problem.rays->grow(kStartRays);
   const TentBins bins = graded_bins(problem.rectangle, problem.mirror_from_world, kStartBins, kStartWiden, 0);
   return transport_guess(
@@ -124,7 +130,12 @@ FreeFormLevel FreeFormSearch::level(int number) const {
   FreeFormLevel out = free_form_level(number);
   const double half = 0.5 * std::max(problem_.rectangle.width(), problem_.rectangle.height());
   const int max = number == 0 ? std::min(kRoughIntervals, max_intervals_) : max_intervals_;
-  std::tie(out.intervals_x, out.intervals_y) = intervals_of(given_.aperture(), max);
+  if (given_.is_trough()) {
+    out.intervals_x = max;
+    out.intervals_y = given_.intervals_y();
+  } else {
+    std::tie(out.intervals_x, out.intervals_y) = intervals_of(given_.aperture(), max);
+  }
   out.rays = std::min(out.rays, max_rays_);
   out.smoothing = problem_.rectangle.is_plane ? kSmoothing : kSmoothing / (half * half);
   if (const auto& medium = problem_.rays->medium()) {
@@ -139,10 +150,14 @@ FreeFormLevel FreeFormSearch::level(int number) const {
 
 TransportChoice FreeFormSearch::first_choice(int number) const {
   if (number >= kApproach && number < kNoApproach) return {};
-  const bool is_lens = problem_.rays->medium().has_value(), before = number < kApproach;
-  const auto i = static_cast<std::size_t>(number - (before ? 1 : kNoApproach));
-  const TransportChoice& c = before ? (is_lens ? kFacesBefore : kBeforeApproaches)[i]
-                                    : (is_lens ? kFacesAfter : kAfterApproaches)[i];
+  const bool is_lens = problem_.rays->medium().has_value(), is_trough = given_.is_trough();
+  const TransportChoice c =
+      number < kApproach ? (is_lens     ? kFacesBefore
+                            : is_trough ? kTroughsBefore
+                                        : kBeforeApproaches)[static_cast<std::size_t>(number - 1)]
+                         : (is_lens     ? kFacesAfter
+                            : is_trough ? kTroughsAfter
+                                        : kAfterApproaches)[static_cast<std::size_t>(number - kNoApproach)];
   return {c.sign, c.vertex_distance_mm * unit_mm_};
 }
 
@@ -194,8 +209,7 @@ std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormSnapshot& snap
   // The first approach begins with the given mirror itself, later ones with perturbed copies.
   if (!snapshot.transport.exists()) return approached(snapshot.candidate - kApproach);
   const FreeFormLevel rough = level(0);
-  const DesignShape family = DesignShape::bspline(given_.focal_mm(), given_.aperture(), rough.intervals_x,
-                                                  rough.intervals_y, given_.symmetry());
+  const DesignShape family = given_.refined(rough.intervals_x, rough.intervals_y);
   std::optional<DesignShape> guess = free_form_guess(problem_, family, snapshot.transport);
   if (guess && problem_.within) guess = problem_.within(*guess);
   return guess;

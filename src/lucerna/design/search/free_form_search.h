@@ -16,16 +16,16 @@ namespace lucerna {
 std::optional<DesignShape> free_form_guess(const FitProblem& problem, const DesignShape& family,
                                            const TransportChoice& choice);
 
-/// Finds a free form by successive halving: candidates (the given mirror; a point source's mirrors of both
-/// signs at several vertex distances) are fitted roughly, the best of them finely (the best of the first few
-/// before the others begin), the best of these to the end. Then, as long as there is time, the best is fitted
-/// on with more rays, before neighbours of it where it is an approach or noise is a good part of its error,
-/// and after some of them elsewhere. A given mirror of few knots that is to have no more is first brought
-/// near the target (approach.h), any other of few knots where no mirror of a point source comes to it;
-/// perturbed copies of it then too, where all are far or the approach is the nearest, until one is at the
-/// target. A given mirror keeps its knots as long as they bring it near the noise or the target. Knots are
-/// only ever refined. Every decision depends on the state alone: a search that is stopped after any step and
-/// taken up from its state continues bit-identically.
+/// Finds a free form or a trough by successive halving: candidates (the given mirror; a point source's
+/// mirrors of both signs at several vertex distances) are fitted roughly, the best of them finely (the best
+/// of the first few before the others begin), the best of these to the end. Then, as long as there is time,
+/// the best is fitted on with more rays, before neighbours of it where it is an approach or noise is a good
+/// part of its error, and after some of them elsewhere. A given mirror of few knots that is to have no more
+/// is first brought near the target (approach.h), any other of few knots where no mirror of a point source
+/// comes to it; perturbed copies of it then too, where all are far or the approach is the nearest, until one
+/// is at the target. A given mirror keeps its knots as long as they bring it near the noise or the target.
+/// Knots are only ever refined. Every decision depends on the state alone: a search that is stopped after any
+/// step and taken up from its state continues bit-identically.
 ///
 /// Where the problem's rays are shared with peers, the rough levels of the candidates to come are fitted by
 /// one process each, before their turn. The steps that follow repeat them, so that the search has the same

@@ -106,7 +106,7 @@ SearchSpace search_space(const DesignShape& about, const ContinuationSchedule& s
   const int max = about.is_revolution() ? 8 : 3;
   const int nx = std::min(max, schedule.last().intervals_x), ny = std::min(max, schedule.last().intervals_y);
   const DesignShape shape = about.refined(nx, about.is_revolution() ? about.intervals_y() : ny);
-  const double half = kReach * shape.aperture().outer_radius_mm();
+  const double half = kReach * shape.radius_mm();
   return {shape, {shape.parameters(), Eigen::VectorXd::Constant(shape.parameters().size(), half)}};
 }
 

@@ -43,6 +43,8 @@ class DesignShape {
   const std::variant<RevolutionShape, BsplineShape>& family() const { return shape_; }
   const Aperture& aperture() const { return aperture_; }
   double focal_mm() const;
+  /// What lengths are measured by: the aperture's outer radius; of a trough half its width.
+  double radius_mm() const { return is_trough() ? aperture_.half_x_mm() : aperture_.outer_radius_mm(); }
   ShapeSymmetry symmetry() const { return symmetry_; }
 
   std::size_t parameter_count() const { return static_cast<std::size_t>(parameters_.size()); }
