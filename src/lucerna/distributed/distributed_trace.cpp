@@ -377,7 +377,7 @@ class RankTrace {
       std::string_view bytes = one;
       rays += take(bytes);
     }
-    tell(fmt::format("interrupted: {} rays are traced; --resume goes on with them", rays));
+    tell(fmt::format("interrupted: {} rays are traced and kept", rays));
   }
 
   /// The parts of earlier runs are dealt to the ranks; the first one has the trace that is gone on with.

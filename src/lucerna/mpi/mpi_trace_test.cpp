@@ -120,7 +120,7 @@ TEST_F(MpiTraceTest, ASignalWritesAndExitsWithThreeMpi) {
     ::kill(ranks[1], signal);
     EXPECT_EQ(test::wait_for(run), 3) << log();
     EXPECT_FALSE(fs::is_empty(dir_ / out / "parts"));
-    EXPECT_NE(log().find("rays are traced; --resume goes on with them"), std::string::npos) << log();
+    EXPECT_NE(log().find("rays are traced and kept"), std::string::npos) << log();
     EXPECT_FALSE(fs::exists(dir_ / out / "result.json"));
     ASSERT_EQ(test::wait_for(start_ranks(3, out, {"--resume", "--threads", "1"})), 0) << log();
     EXPECT_NE(log().find("are there already"), std::string::npos) << log();

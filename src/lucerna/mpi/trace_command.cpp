@@ -146,7 +146,10 @@ void run_mpi_trace(const MpiTraceArguments& a, Session& session, Ranks& ranks) {
   if (from) how.from = &*from;
   const DistributedNoise traced =
       session.timed("trace", [&] { return trace_all(a, project, origin, options, how, ranks, session); });
-  if (traced.interrupted) throw Interrupted();
+  if (traced.interrupted) {
+    session.note("--resume goes on with the rays that are kept");
+    throw Interrupted();
+  }
   std::string end;
   together(ranks, [&] {
     if (!traced.result) return;

@@ -34,6 +34,8 @@ constexpr std::array<TransportChoice, 7> kFacesAfter{
 constexpr std::array<TransportChoice, 2> kTroughsBefore{{{-1.0, 0.75}, {1.0, 1.0}}};
 constexpr std::array<TransportChoice, 7> kTroughsAfter{
     {{-1.0, 0.5}, {1.0, 0.75}, {-1.0, 0.4}, {-1.0, 0.33}, {-1.0, 0.25}, {-1.0, 0.18}, {-1.0, 1.0}}};
+/// A trough's few parameters are known from fewer rays, above the rough level.
+constexpr std::uint64_t kFewerRaysOfTroughs = 4;
 /// The approach is tried where the candidates before it stay kDoubtful from the target (relative error), for
 /// a point source's mirror is no guide for a source that is long or wide; and where the given mirror is the
 /// nearest of them. Further approaches, from perturbed copies, follow where the best is kFarError from it, or
@@ -133,6 +135,7 @@ FreeFormLevel FreeFormSearch::level(int number) const {
   if (given_.is_trough()) {
     out.intervals_x = max;
     out.intervals_y = given_.intervals_y();
+    if (number > 0) out.rays /= kFewerRaysOfTroughs;
   } else {
     std::tie(out.intervals_x, out.intervals_y) = intervals_of(given_.aperture(), max);
   }
