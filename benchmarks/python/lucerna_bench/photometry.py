@@ -2,7 +2,7 @@
 """Targets as files that Lucerna reads: IES LM-63 tables for directions, cells of a plane as CSV."""
 import numpy as np
 
-from .tasks import intensity, ramp
+from .tasks import illuminance, intensity
 
 BOXES = 48
 
@@ -94,15 +94,10 @@ def sampled(target, is_round, goal=5e-4):
 
 
 def lit_cells(target, half_mm, cells, parts=8):
-    """Shares of the cells of a window (half its sides, as many cells along each) that a disk or rectangle of even light
-    covers. Rows are along y, their cells along x."""
+    """Mean illuminance of the cells of a window (half its sides, as many cells along each). Rows are along y, their cells
+    along x."""
     x, y = ((np.arange(cells * parts) + 0.5) * 2.0 * half / (cells * parts) - half for half in half_mm)
-    if target["function"] == "uniform_disk":
-        within = np.hypot(x, y[:, None]) <= target["radius_mm"]
-    else:
-        within = (np.abs(x) <= 0.5 * target["size_mm"][0]) & (np.abs(y[:, None]) <= 0.5 * target["size_mm"][1])
-        within = within * ramp(target, x)
-    return within.reshape(cells, parts, cells, parts).mean(axis=(1, 3))
+    return illuminance(target, x, y[:, None]).reshape(cells, parts, cells, parts).mean(axis=(1, 3))
 
 
 def csv(cells):

@@ -23,7 +23,7 @@ import numpy as np
 from .photometry import target_rectangle
 from .shapes import LENS_INDEX, MARGIN_MM, free_lens_surfaces, horn_walls, lens_surfaces, mirror
 from .surfaces import _basis, _greville, _knots, _surface, heights_at, placed, revolved, spline_through
-from .tasks import intensity, ramp, source_directions
+from .tasks import illuminance, intensity, source_directions
 
 # Every fortieth step is a point of a spline, the last one is.
 STEPS = 2001
@@ -266,7 +266,7 @@ class FreeMirror(PointSurface):
 
 
 class FreeFace(PointSurface):
-    """The outer face of a lens with a flat entry, for a rectangle of even light. The source lies at the flat face:
+    """The outer face of a lens with a flat entry, for light on a rectangle. The source lies at the flat face:
     within the glass its light comes from one point, in directions within the critical angle."""
 
     def __init__(self, task, sign, vertex_mm):
@@ -285,7 +285,9 @@ class FreeFace(PointSurface):
         x, y = (at + 0.5 * side * ((np.arange(self.TARGET_CELLS) + 0.5) * 2.0 / self.TARGET_CELLS - 1.0)
                 for at, side in zip(middle, task.lit["size_mm"]))
         x, y = (p.ravel() for p in np.meshgrid(x, y, indexing="ij"))
-        wanted = np.maximum(1e-6, ramp(task.lit, x - middle[0]))
+        # The plane's y axis by its z and x axis.
+        side_y = np.cross(task.lit["place"]["z_axis"], task.lit["place"]["x_axis"])[1]
+        wanted = np.maximum(1e-6, illuminance(task.lit, x - middle[0], side_y * (y - middle[1])))
         self.beam = np.stack([x, y, np.full_like(x, far)], axis=-1)
         self.beam /= np.linalg.norm(self.beam, axis=1, keepdims=True)
         self._solve(np.stack([u, v, np.sqrt(1.0 - sine**2)], axis=-1), flux, wanted)

@@ -9,6 +9,8 @@ import re
 
 import numpy as np
 
+from .road import Road
+
 
 @dataclasses.dataclass(frozen=True)
 class Room:
@@ -60,18 +62,16 @@ class Task:
 
     @property
     def lit(self):
-        """The light that an optic of one piece aims at: the target. Of a road it is a rectangle of light that falls
-        evenly within `ramp_mm` of its ends, over which the next lamp's rises: so the sum is even, and a shift does
-        not open a gap."""
+        """The light that an optic of one piece aims at: the target. Of a road it is the light of a lamp that makes its
+        luminance even."""
         t = self.target
         if t["kind"] != "road":
             return t
-        width_mm, place = t["lanes"] * t["lane_width_mm"], t["place"]
+        road, place = Road(t), t["place"]
         # Lanes lie side by side from the lamp's foot on.
-        middle = np.asarray(place["origin_mm"]) + 0.5 * width_mm * np.cross(place["z_axis"], place["x_axis"])
-        ramp_mm = 0.25 * t["spacing_mm"]
-        return {"kind": "plane", "function": "uniform_rectangle", "size_mm": [t["spacing_mm"] + ramp_mm, width_mm],
-                "ramp_mm": ramp_mm, "place": {**place, "origin_mm": middle.tolist()}}
+        middle = np.asarray(place["origin_mm"]) + 0.5 * road.size_mm[1] * np.cross(place["z_axis"], place["x_axis"])
+        return {"kind": "plane", "function": "even_luminance", "size_mm": road.size_mm, "road": road,
+                "place": {**place, "origin_mm": middle.tolist()}}
 
     @property
     def source(self):
@@ -123,11 +123,14 @@ def _room(file, limits):
     return Room(half_mm, low_mm, high_mm, lamp_mm)
 
 
-def ramp(lit, x):
-    """The share of even light that is left near its ends along x."""
-    if "ramp_mm" not in lit:
-        return np.ones_like(x)
-    return np.clip((0.5 * lit["size_mm"][0] - np.abs(x)) / lit["ramp_mm"], 0.0, 1.0)
+def illuminance(lit, x, y):
+    """Relative illuminance that is wanted on a plane, at places in mm from its middle along its axes."""
+    x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+    if lit["function"] == "uniform_disk":
+        return (np.hypot(x, y) <= lit["radius_mm"]).astype(float)
+    if lit["function"] == "even_luminance":
+        return lit["road"].illuminance(x, y + 0.5 * lit["size_mm"][1])
+    return ((np.abs(x) <= 0.5 * lit["size_mm"][0]) & (np.abs(y) <= 0.5 * lit["size_mm"][1])).astype(float)
 
 
 def intensity(target, u, v):

@@ -10,7 +10,7 @@ import pytest
 from lucerna_bench import Entry, Stated, lucerna_entry, photometry, placed, score, write_submission
 from lucerna_bench.shapes import Mirror
 from lucerna_bench.surfaces import heights_at, revolved, spline_through
-from lucerna_bench.tasks import intensity, ramp, read_task
+from lucerna_bench.tasks import intensity, read_task
 
 from test_scorer import RAYS, boxes_of, deviation, disk_task, lucerna_plane, plane
 from test_surfaces import at, de_boor
@@ -191,17 +191,33 @@ def test_tasks_that_are_entered(tasks):
     assert kinds == ENTERED
 
 
-def test_a_road_is_aimed_at_by_light_that_the_next_lamp_adds_to(tasks, tmp_path):
+def test_a_road_is_aimed_at_by_light_that_makes_its_luminance_even(tasks, tmp_path):
     task = read_task(tasks / "LB-5b.json")
     assert task.lit["size_mm"] == [35000, 7000]
-    x = np.linspace(-14000.0, 14000.0, 57)
-    assert sum(ramp(task.lit, x + shift) for shift in (-28000.0, 0.0, 28000.0)) == pytest.approx(1.0)
+    road = task.lit["road"]
+    # CIE 144, R3: r below the lamp; at tan gamma 1 towards the observer, across and away.
+    assert road.luminance_coefficient(0.0, 0.0, 0) == pytest.approx(0.0294)
+    for x, y, r in [(-8000.0, 0.0, 0.0362), (0.0, 8000.0, 0.0100), (8000.0, 0.0, 0.0100)]:
+        assert road.luminance_coefficient(x, y, 0) / 2.0**1.5 == pytest.approx(r, rel=0.02)
+    x, y = np.meshgrid(np.linspace(-13900.0, 14100.0, 57), np.linspace(100.0, 6900.0, 18))
+    luminance = sum(road.illuminance(x + shift, y) * road.luminance_coefficient(x + shift, y, k)
+                    for shift in (-28000.0, 0.0, 28000.0) for k in (0, 1))
+    assert luminance == pytest.approx(luminance.mean())
+    even = sum(np.where(road.share(x + shift) > 0.0, road.luminance_coefficient(x + shift, y, 0), 0.0)
+               for shift in (-28000.0, 0.0, 28000.0))
+    assert even.min() < 0.3 * even.max(), "even light makes an uneven luminance"
     # The road's y axis is the task's -y: z looks up to the lamp, x along the road.
     assert task.lit["place"]["origin_mm"] == [0.0, -3500.0, 8000.0]
     lucerna_entry.project(task, tmp_path)
     target = tomllib.loads((tmp_path / "project.toml").read_text())["target"]
     assert target["position_mm"] == [0.0, -3500.0, 8000.0] and target["normal"] == "-z"
     assert target["size_mm"] == [43750.0, 8750.0]
+    # Less light where it comes towards the observers, from -x; none beside the road.
+    cells = np.loadtxt(tmp_path / "target.csv", delimiter=",")
+    before, behind = cells[:, 60:80].sum(), cells[:, 170:190].sum()
+    assert 0.0 < before < 0.5 * behind
+    assert cells[:20].max() == cells[-20:].max() == 0.0
+    assert cells[215, 72] > 2.0 * cells[35, 72], "and more in the far lane, for it is aside of their way"
 
 
 def test_a_collector_images_its_source_onto_the_target(scorer, tasks, tmp_path):
