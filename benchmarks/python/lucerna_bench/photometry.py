@@ -101,4 +101,5 @@ def lit_cells(target, half_mm, cells, parts=8):
 
 
 def csv(cells):
-    return "".join(",".join(f"{x:.6g}" for x in row) + "\n" for row in cells)
+    """Lucerna's table of a plane, whose first row is that of the highest y."""
+    return "".join(",".join(f"{x:.6g}" for x in row) + "\n" for row in cells[::-1])

@@ -212,8 +212,8 @@ def test_a_road_is_aimed_at_by_light_that_makes_its_luminance_even(tasks, tmp_pa
     target = tomllib.loads((tmp_path / "project.toml").read_text())["target"]
     assert target["position_mm"] == [0.0, -3500.0, 8000.0] and target["normal"] == "-z"
     assert target["size_mm"] == [43750.0, 8750.0]
-    # Less light where it comes towards the observers, from -x; none beside the road.
-    cells = np.loadtxt(tmp_path / "target.csv", delimiter=",")
+    # Less light where it comes towards the observers, from -x; none beside the road. The file begins at the highest y.
+    cells = np.loadtxt(tmp_path / "target.csv", delimiter=",")[::-1]
     before, behind = cells[:, 60:80].sum(), cells[:, 170:190].sum()
     assert 0.0 < before < 0.5 * behind
     assert cells[:20].max() == cells[-20:].max() == 0.0
