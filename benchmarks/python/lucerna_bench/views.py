@@ -9,6 +9,8 @@ import numpy as np
 from .rays import Rays
 
 HELD = 0.99
+# Along a side of a square window.
+MOST_CELLS = 64
 NAMES = ("far", "near", "focus", "beam", "four_d")
 
 
@@ -30,9 +32,10 @@ class Window:
         seen = np.isfinite(xy).all(axis=1)
         xy, weight = xy[seen], weight[seen]
         centre = np.array([weighted_quantile(xy[:, k], weight, 0.5) for k in (0, 1)])
-        off = np.abs(xy - centre).max(axis=1)
-        # Rays through one point differ by the rounding of floats.
-        return Window(centre, max(weighted_quantile(off, weight, HELD), 1e-4 * max(1.0, np.abs(centre).max())))
+        half, least = (weighted_quantile(np.abs(xy - centre).max(axis=1), weight, HELD),
+                       1e-4 * max(1.0, np.abs(centre).max()))
+        # Rays through one point differ by the rounding of floats, and must not lie on the edge of two cells.
+        return Window(centre, half) if half > least else Window(centre - least / MOST_CELLS, least)
 
     def cells(self, xy, n):
         """The cell of each place, row by row; n * n is outside."""

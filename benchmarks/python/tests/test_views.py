@@ -78,6 +78,20 @@ def test_equal_sources_differ_by_noise_only(axis):
     assert other["far"].excess < 5.0 * other["far"].standard_error
 
 
+def test_rays_through_a_point_do_not_lie_on_the_edge_of_two_cells():
+    """Rounding to one side or the other is no difference of two sources."""
+    d = np.random.default_rng(5).normal(size=(20_000, 3))
+    d /= np.linalg.norm(d, axis=1, keepdims=True)
+    aside = np.full((1, 3), 3e-8)
+    weight = np.ones(len(d))
+    reference, other = Rays(d - aside, d, weight), Rays(d + aside, d, weight)
+    views = Views(reference)
+    one, two = views.shares(reference), views.shares(other)
+    for view in ("focus", "beam", "four_d"):
+        # All but rays that run along the plane; with the point on an edge it is 0.9.
+        assert np.abs(two[view][0] - one[view][0]).sum() < 0.1, view
+
+
 def test_light_that_a_view_does_not_see_is_missing():
     disk = lambertian_disk(20_000, 1)
     v = Views(disk)
