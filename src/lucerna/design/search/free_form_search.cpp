@@ -21,19 +21,24 @@ namespace {
 constexpr int kLevels = kFreeFormLevels, kEnd = 2, kMoreRays = 3;
 /// Knots of the rough level, at most.
 constexpr int kRoughIntervals = 32;
-/// The first candidates, over the aperture's radius: mirrors that spread light near the source, and mirrors
-/// whose rays cross farther from it. Others catch too little light or become walls.
-constexpr std::array<TransportChoice, 2> kBeforeApproaches{{{-1.0, 0.33}, {-1.0, 0.27}}};
-constexpr std::array<TransportChoice, 7> kAfterApproaches{
-    {{-1.0, 0.21}, {-1.0, 0.45}, {1.0, 0.75}, {1.0, 0.92}, {1.0, 0.33}, {1.0, 0.27}, {1.0, 0.45}}};
-/// Of the last face of a lens: both signs at the given face's distance from the source, then beside it.
-constexpr std::array<TransportChoice, 2> kFacesBefore{{{-1.0, 1.0}, {1.0, 1.0}}};
-constexpr std::array<TransportChoice, 7> kFacesAfter{
-    {{-1.0, 0.8}, {1.0, 0.8}, {-1.0, 1.25}, {1.0, 1.25}, {-1.0, 0.65}, {1.0, 0.65}, {1.0, 1.5}}};
-/// Of a trough, over half its width: both orders of rays.
-constexpr std::array<TransportChoice, 2> kTroughsBefore{{{-1.0, 0.75}, {1.0, 1.0}}};
-constexpr std::array<TransportChoice, 7> kTroughsAfter{
-    {{-1.0, 0.5}, {1.0, 0.75}, {-1.0, 0.4}, {-1.0, 0.33}, {-1.0, 0.25}, {-1.0, 0.18}, {-1.0, 1.0}}};
+/// The first candidates, those before the approaches and those after them; distances over `distance_unit_mm`.
+struct FirstChoices {
+  std::array<TransportChoice, 2> before;
+  std::array<TransportChoice, 7> after;
+};
+/// Mirrors that spread light near the source, and mirrors whose rays cross farther from it. Others catch too
+/// little light or become walls.
+constexpr FirstChoices kMirrors{
+    {{{-1.0, 0.33}, {-1.0, 0.27}}},
+    {{{-1.0, 0.21}, {-1.0, 0.45}, {1.0, 0.75}, {1.0, 0.92}, {1.0, 0.33}, {1.0, 0.27}, {1.0, 0.45}}}};
+/// The last face of a lens: both signs at the given face's distance from the source, then beside it.
+constexpr FirstChoices kFaces{
+    {{{-1.0, 1.0}, {1.0, 1.0}}},
+    {{{-1.0, 0.8}, {1.0, 0.8}, {-1.0, 1.25}, {1.0, 1.25}, {-1.0, 0.65}, {1.0, 0.65}, {1.0, 1.5}}}};
+/// Troughs of both orders of rays.
+constexpr FirstChoices kTroughs{
+    {{{-1.0, 0.75}, {1.0, 1.0}}},
+    {{{-1.0, 0.5}, {1.0, 0.75}, {-1.0, 0.4}, {-1.0, 0.33}, {-1.0, 0.25}, {-1.0, 0.18}, {-1.0, 1.0}}}};
 /// A trough's few parameters are known from fewer rays, above the rough level.
 constexpr std::uint64_t kFewerRaysOfTroughs = 4;
 /// The approach is tried where the candidates before it stay kDoubtful from the target (relative error), for
@@ -41,13 +46,13 @@ constexpr std::uint64_t kFewerRaysOfTroughs = 4;
 /// nearest of them. Further approaches, from perturbed copies, follow where the best is kFarError from it, or
 /// is an approach itself and not at it: they end in basins of their own, and how near they are once refined
 /// spreads by a factor of four in error.
-constexpr int kApproach = 1 + static_cast<int>(kBeforeApproaches.size()), kApproaches = 8;
+constexpr int kApproach = 1 + static_cast<int>(kMirrors.before.size()), kApproaches = 8;
 constexpr double kDoubtful = 0.05, kFarError = 0.15;
 /// An approach that came no nearer than this has too few knots for the target.
 constexpr double kFewKnotsError = 0.03;
 /// The first candidate after the approaches; after the given mirror, the approaches and all transports.
 constexpr int kNoApproach = kApproach + kApproaches;
-constexpr int kFirstCandidates = kNoApproach + static_cast<int>(kAfterApproaches.size());
+constexpr int kFirstCandidates = kNoApproach + static_cast<int>(kMirrors.after.size());
 /// How many of them are fitted finely.
 constexpr int kFine = 3;
 /// A neighbour of the best goes on where its cost is at most so many times the best's at that level.
@@ -100,7 +105,8 @@ std::pair<int, int> intervals_of(const Aperture& a, int max) {
           std::max(4, static_cast<int>(std::lround(max * y / longer)))};
 }
 
-/// What the first candidates' vertex distances are told in: a mirror's radius, a lens face's own distance.
+/// What the first candidates' vertex distances are told in: a mirror's radius, half a trough's width, a lens
+/// face's own distance.
 double distance_unit_mm(const FitProblem& problem, const DesignShape& given) {
   if (!problem.rays->medium()) return given.radius_mm();
   problem.rays->grow(kUnitRays);
@@ -153,14 +159,9 @@ FreeFormLevel FreeFormSearch::level(int number) const {
 
 TransportChoice FreeFormSearch::first_choice(int number) const {
   if (number >= kApproach && number < kNoApproach) return {};
-  const bool is_lens = problem_.rays->medium().has_value(), is_trough = given_.is_trough();
-  const TransportChoice c =
-      number < kApproach ? (is_lens     ? kFacesBefore
-                            : is_trough ? kTroughsBefore
-                                        : kBeforeApproaches)[static_cast<std::size_t>(number - 1)]
-                         : (is_lens     ? kFacesAfter
-                            : is_trough ? kTroughsAfter
-                                        : kAfterApproaches)[static_cast<std::size_t>(number - kNoApproach)];
+  const FirstChoices& first = problem_.rays->medium() ? kFaces : given_.is_trough() ? kTroughs : kMirrors;
+  const TransportChoice c = number < kApproach ? first.before[static_cast<std::size_t>(number - 1)]
+                                               : first.after[static_cast<std::size_t>(number - kNoApproach)];
   return {c.sign, c.vertex_distance_mm * unit_mm_};
 }
 

@@ -127,7 +127,7 @@ constexpr std::array kKeys{
     ProjectKey{"detector", "format", Type::word, kAny, "tm25 zemax-binary zemax-text lighttools-binary lighttools-ascii speos mcpl asap text", "\"tm25\"", "Rays: format of the file."},
 
     ProjectKey{"target", "kind", Type::word, kAny, "far-field plane", "\"far-field\"", "Intensity by direction, or illuminance on a plane."},
-    ProjectKey{"target", "file", Type::file, kAny, "", "none", "IES or EULUMDAT; for a plane .csv (lx) or .png. Needed unless a zone has a minimum."},
+    ProjectKey{"target", "file", Type::file, kAny, "", "none", "IES or EULUMDAT; for a plane .csv (lx, first row at the highest y) or .png. Needed unless a zone has a minimum."},
     ProjectKey{"target", "mode", Type::word, kAny, "shape absolute", "\"shape\"", "Whether the scale of the light is free or counts too."},
     ProjectKey{"target", "white_lx", Type::number, kAboveZero, "", "required for a .png with mode absolute", "Illuminance of a picture's white."},
     ProjectKey{"target", "position_mm", Type::vector, kAny, "", "required for a plane", "Centre of the plane's rectangle."},

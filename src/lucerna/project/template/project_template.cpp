@@ -228,7 +228,7 @@ bins = "hard"                 # tent: a ray counts for its four neighbours; smoo
 #[design.tolerances]
 #source_shift_mm = 0.2
 
-# Or: the illuminance on a plane, as a .csv (lx) or a .png (white_lx is the illuminance of its white).
+# Or: the illuminance on a plane, as a .csv (lx, its first row at the highest y) or a .png (white_lx: the illuminance of its white).
 #[target]
 #kind = "plane"
 #file = "wanted.png"
