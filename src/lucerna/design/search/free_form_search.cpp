@@ -39,7 +39,7 @@ constexpr FirstChoices kFaces{
 constexpr FirstChoices kTroughs{
     {{{-1.0, 0.75}, {1.0, 1.0}}},
     {{{-1.0, 0.5}, {1.0, 0.75}, {-1.0, 0.4}, {-1.0, 0.33}, {-1.0, 0.25}, {-1.0, 0.18}, {-1.0, 1.0}}}};
-/// A trough's few parameters are known from fewer rays, above the rough level.
+/// A trough's few parameters are known from fewer rays.
 constexpr std::uint64_t kFewerRaysOfTroughs = 4;
 /// The approach is tried where the candidates before it stay kDoubtful from the target (relative error), for
 /// a point source's mirror is no guide for a source that is long or wide; and where the given mirror is the
@@ -141,7 +141,7 @@ FreeFormLevel FreeFormSearch::level(int number) const {
   if (given_.is_trough()) {
     out.intervals_x = max;
     out.intervals_y = given_.intervals_y();
-    if (number > 0) out.rays /= kFewerRaysOfTroughs;
+    out.rays /= kFewerRaysOfTroughs;
   } else {
     std::tie(out.intervals_x, out.intervals_y) = intervals_of(given_.aperture(), max);
   }

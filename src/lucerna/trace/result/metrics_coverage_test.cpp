@@ -160,8 +160,9 @@ TEST(MetricsCoverageStatistical, IntervalsHoldTheTruth) {
 }
 
 // 200 seeds: 95 % holds in 169 or fewer with a chance of 1e-8, 90 % in one of two hundred. The mean over some
-// twenty figures, correlated ones among them, scatters by a half to one per cent.
-TEST(MetricsCoverageSlow, ParaboloidHolds) { check({"parabola", 200, 1 << 18, 1 << 25}, 0.85, 0.93, 0.97); }
+// twenty figures, correlated ones among them, scatters by a half to one per cent. The paraboloid's lobe is
+// narrower than a kernel, as above: no upper bound.
+TEST(MetricsCoverageSlow, ParaboloidHolds) { check({"parabola", 200, 1 << 18, 1 << 25}, 0.85, 0.93, 1.0); }
 TEST(MetricsCoverageSlow, WideFreeFormHolds) { check({"oval", 200, 1 << 20, 1 << 26}, 0.85, 0.93, 0.97); }
 TEST(MetricsCoverageSlow, BatwingHolds) { check({"batwing", 200, 1 << 18, 1 << 25}, 0.85, 0.93, 0.97); }
 
