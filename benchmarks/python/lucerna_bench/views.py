@@ -105,10 +105,10 @@ class Views:
         if view == "near":
             return np.where(d[:, 2] > 0.0, self.near.cells(self._crossing(o, d, self.near_z), 32), -1), 32 * 32 + 1
         if view == "focus":
-            return self.on_focus.cells(self._crossing(o, d, 0.0), 64), 64 * 64 + 1
+            return self.on_focus.cells(self._crossing(o, d, 0.0), MOST_CELLS), MOST_CELLS**2 + 1
         if view == "beam":
             beam = self._beam(o, d)
-            return np.where(np.isfinite(beam[:, 0]), self.on_beam.cells(beam, 64), -1), 64 * 64 + 1
+            return np.where(np.isfinite(beam[:, 0]), self.on_beam.cells(beam, MOST_CELLS), -1), MOST_CELLS**2 + 1
         place, way = self.on_focus.cells(self._crossing(o, d, 0.0), 8), self.across.cells(d[:, :2], 8)
         return np.where((place == 64) | (way == 64), 64 * 64, place * 64 + way), 64 * 64 + 1
 

@@ -99,10 +99,7 @@ class RankTrace {
 
   DistributedTrace run() {
     begin();
-    if (trace_chunks(whole_.last, kNever) == ChunksEnd::interrupted) {
-      tell_of_parts();
-      return {std::nullopt, true};
-    }
+    if (trace_chunks(whole_.last, kNever) == ChunksEnd::interrupted) return {std::nullopt, true};
     load_earlier();
     const Traced traced = count_all();
     std::optional<TraceResult> sum = sum_of_all(std::exchange(old_, {}), traced);
@@ -123,10 +120,7 @@ class RankTrace {
     for (;;) {
       const Clock::time_point by = before < kFirstRound ? kNever : end;
       const ChunksEnd how = trace_chunks(whole_.first + std::min(round, most), by);
-      if (how == ChunksEnd::interrupted) {
-        tell_of_parts();
-        return {std::nullopt, true};
-      }
+      if (how == ChunksEnd::interrupted) return {std::nullopt, true};
       const Traced traced = count_all();
       LUCERNA_CHECK(traced.last == whole_.first + traced.count, "{} rays up to {}", traced.count,
                     traced.last);
@@ -328,6 +322,7 @@ class RankTrace {
       error = e.what();
     }
     agree(ranks_, error);
+    if (end == ChunksEnd::interrupted) tell_of_kept_rays();
     // Every rank has taken one number more than there were chunks.
     numbers_before_ += chunks.size() + stride();
     traced_to_ = asked.last;
@@ -368,8 +363,8 @@ class RankTrace {
     write_file(own_part_, encode_part(mine_, origin_));
   }
 
-  /// Where an interrupted run's rays are. Collective.
-  void tell_of_parts() {
+  /// How many rays an interrupted run leaves. Collective.
+  void tell_of_kept_rays() {
     std::uint64_t rays = earlier_.done.count();
     std::string mine;
     append(mine, mine_.done.count());
