@@ -1,46 +1,61 @@
 #!/bin/sh
-# On a machine with a CUDA compiler and device: builds, runs the tests labelled gpu, compute-sanitizer where it is
-# installed, and the benchmark; prints what belongs in docs/benchmarks/gpu.md. Usage: scripts/gpu_check.sh [BUILD FOLDER]
+# On a machine with a CUDA device: builds, runs the tests labelled gpu, compute-sanitizer where it is installed, and the
+# benchmarks; prints what belongs in docs/benchmarks/gpu.md. What was built elsewhere is checked by the steps after the build.
+# Usage: scripts/gpu_check.sh [BUILD FOLDER [build] [tests] [sanitizer] [bench] [design] [program]]
 set -eu
 cd "$(dirname "$0")/.."
 build=${1:-build/cuda}
+[ $# -eq 0 ] || shift
+steps=${*:-build tests sanitizer bench design program}
+wants() { case " $steps " in *" $1 "*) true ;; *) false ;; esac; }
 
-cmake --preset release -B "$build" -DLUCERNA_CUDA=ON
+if wants build; then
+  cmake --preset release -B "$build" -DLUCERNA_CUDA=ON
+  start=$(date +%s)
+  cmake --build "$build" --target trace_tests design_tests bench_gpu bench_real_targets lucerna_cli
+  echo "build: $(($(date +%s) - start)) s on $(nproc) cores"
+fi
 build=$(cd "$build" && pwd)
-start=$(date +%s)
-cmake --build "$build" --target trace_tests design_tests bench_gpu bench_real_targets lucerna_cli
-echo "build: $(($(date +%s) - start)) s on $(nproc) cores"
 
 echo "== device"
 if command -v nvidia-smi >/dev/null; then
   nvidia-smi --query-gpu=name,driver_version,memory.total,clocks.max.sm --format=csv,noheader
 fi
 
-echo "== tests"
-"$build/tests/trace_tests" --gtest_filter='*Gpu.*'
-"$build/tests/design_tests" --gtest_filter='*Gpu.*'
-
-echo "== compute-sanitizer"
-sanitizer=$(command -v compute-sanitizer || ls /usr/local/cuda/bin/compute-sanitizer 2>/dev/null || true)
-if [ -n "$sanitizer" ]; then
-  # Ranges and models: every kernel, few rays; the ten million rays would take hours here.
-  for tool in memcheck racecheck initcheck; do
-    "$sanitizer" --tool "$tool" --error-exitcode 9 "$build/tests/trace_tests" \
-      --gtest_filter='DeviceTraceGpu.TreesAre*:DeviceTraceGpu.SmallScene*'
-    "$sanitizer" --tool "$tool" --error-exitcode 9 "$build/tests/design_tests" \
-      --gtest_filter='DeviceEvaluatorGpu.FewRays*'
-  done
-else
-  echo "not installed"
+if wants tests; then
+  echo "== tests"
+  "$build/tests/trace_tests" --gtest_filter='*Gpu.*'
+  "$build/tests/design_tests" --gtest_filter='*Gpu.*'
 fi
 
-echo "== bench_gpu"
-"$build/bench/bench_gpu" "${RAYS_M:-1000}"
+if wants sanitizer; then
+  echo "== compute-sanitizer"
+  sanitizer=$(command -v compute-sanitizer || ls /usr/local/cuda/bin/compute-sanitizer 2>/dev/null || true)
+  if [ -n "$sanitizer" ]; then
+    # Ranges and models: every kernel, few rays; the ten million rays would take hours here.
+    for tool in memcheck racecheck initcheck; do
+      "$sanitizer" --tool "$tool" --error-exitcode 9 "$build/tests/trace_tests" \
+        --gtest_filter='DeviceTraceGpu.TreesAre*:DeviceTraceGpu.SmallScene*'
+      "$sanitizer" --tool "$tool" --error-exitcode 9 "$build/tests/design_tests" \
+        --gtest_filter='DeviceEvaluatorGpu.FewRays*'
+    done
+  else
+    echo "not installed"
+  fi
+fi
 
-echo "== a design with 400 coefficients, on the CPU and on the device"
-"$build/bench/bench_real_targets" hidden n400 --targets 1 --device cpu
-"$build/bench/bench_real_targets" hidden n400 --targets 1 --device cuda
+if wants bench; then
+  echo "== bench_gpu"
+  "$build/bench/bench_gpu" "${RAYS_M:-1000}"
+fi
 
+if wants design; then
+  echo "== a design with 400 coefficients, on the CPU and on the device"
+  "$build/bench/bench_real_targets" hidden n400 --targets 1 --device cpu
+  "$build/bench/bench_real_targets" hidden n400 --targets 1 --device cuda
+fi
+
+wants program || exit 0
 echo "== the same through the program"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

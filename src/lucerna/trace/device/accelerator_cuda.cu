@@ -37,8 +37,7 @@ __global__ void rebuild_level_kernel(const __grid_constant__ HierarchyView h, in
 
 /// One block of kThreads threads.
 __global__ void bounds_kernel(const __grid_constant__ HierarchyView h, std::size_t leaves) {
-  __shared__ double lows[kThreads], highs[kThreads];
-  __shared__ float gradient_bound[kThreads];
+  __shared__ double lows[kThreads], highs[kThreads], gradient_bound[kThreads];
   FieldBounds bounds = no_bounds();
   for (std::size_t i = threadIdx.x; i < leaves; i += kThreads) widen(bounds, h, i);
   lows[threadIdx.x] = bounds.low;

@@ -209,7 +209,7 @@ void DeviceScene::rebuild(std::size_t m) {
   bands_[m] = {bounds.low, bounds.high};
   mirrors_[m].field.low = static_cast<float>(bounds.low);
   mirrors_[m].field.high = static_cast<float>(bounds.high);
-  mirrors_[m].field.gradient_bound = bounds.gradient_bound;
+  mirrors_[m].field.gradient_bound = static_cast<float>(bounds.gradient_bound);
   if (device_mirrors_ == nullptr) return;
   accelerator_.upload(0, device_mirrors_ + m, &mirrors_[m], sizeof(MirrorView));
   accelerator_.wait(0);

@@ -140,7 +140,7 @@ struct LaunchView {
 /// What a height field's leaves hold together, over its quadric (HeightField).
 struct FieldBounds {
   double low = 0.0, high = 0.0;
-  float gradient_bound = 0.0F;
+  double gradient_bound = 0.0;  ///< double, so that nothing between the members is copied unwritten
 };
 
 /// The tree over a height field, to be made again from its vertices.

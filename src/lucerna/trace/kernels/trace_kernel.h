@@ -304,7 +304,7 @@ LUCERNA_HD inline void rebuild_node(const HierarchyView& h, int level, std::size
 }
 
 /// Bounds of nothing, to be widened.
-LUCERNA_HD inline FieldBounds no_bounds() { return {DBL_MAX, -DBL_MAX, 0.0F}; }
+LUCERNA_HD inline FieldBounds no_bounds() { return {DBL_MAX, -DBL_MAX, 0.0}; }
 
 LUCERNA_HD inline void widen(FieldBounds& bounds, const FieldBounds& by) {
   bounds.low = by.low < bounds.low ? by.low : bounds.low;
@@ -316,12 +316,12 @@ LUCERNA_HD inline void widen(FieldBounds& bounds, const FieldBounds& by) {
 /// Widens `bounds` by what leaf `i` of a field holds.
 LUCERNA_HD inline void widen(FieldBounds& bounds, const HierarchyView& h, std::size_t i) {
   const FieldNode& leaf = h.nodes[i];
-  bounds.gradient_bound =
-      h.gradient_bound[i] > bounds.gradient_bound ? h.gradient_bound[i] : bounds.gradient_bound;
+  const double gradient_bound = static_cast<double>(h.gradient_bound[i]);
+  bounds.gradient_bound = gradient_bound > bounds.gradient_bound ? gradient_bound : bounds.gradient_bound;
   if (leaf.e < 0.0F) return;
   const double reach = static_cast<double>(field_reach(leaf, h.step_x, h.step_y));
   const double a = static_cast<double>(leaf.a);
-  widen(bounds, {a - reach, a + reach, 0.0F});
+  widen(bounds, {a - reach, a + reach, 0.0});
 }
 
 }  // namespace
