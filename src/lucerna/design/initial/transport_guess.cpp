@@ -27,8 +27,15 @@ constexpr int kMeridians = 96, kPlaces = 160, kPlacesForEdges = 64;
 constexpr double kBeyondRim = 1.04;
 /// A mirror that turns back before so much of its radius is none.
 constexpr double kMinRimReach = 0.85;
-/// The same of a lens's face, where light of a flat source does not come to the rim at all.
-constexpr double kMinFaceReach = 0.4;
+/// A lens's face that lets less of the light within out is none. Light of a flat source need not come to the
+/// rim.
+constexpr double kMinFaceShare = 0.7;
+/// Directions with less than this share of the densest cell's light are beside the light.
+constexpr double kBesideLight = 0.01;
+/// A face is followed so much farther from the axis than a point source's light, over its angle: light of a
+/// wide source goes there too. Beyond, it levels off within a share of the rim's radius, so that it stays
+/// within its limits; its places there have a share of a lit one's weight.
+constexpr double kBeyondLight = 1.15, kLevelWithin = 0.1, kUnlitWeight = 0.1, kSteepest = 1.0;
 /// Weight of a third difference of coefficients against that of a point: nothing where there are points.
 constexpr double kSmoothness = 1e-4;
 
@@ -37,6 +44,11 @@ double rim_mm(const Aperture& a, double cos_phi, double sin_phi) {
   if (a.shape() == ApertureShape::circle) return a.half_x_mm();
   return std::min(a.half_x_mm() / std::max(std::abs(cos_phi), 1e-9),
                   a.half_y_mm() / std::max(std::abs(sin_phi), 1e-9));
+}
+
+Vec3 meridian(int m) {
+  const double phi = 2.0 * std::numbers::pi * m / kMeridians;
+  return {std::cos(phi), std::sin(phi), 0.0};
 }
 
 /// Angles from -z, by azimuth, between which the source's light hits the mirror.
@@ -53,9 +65,27 @@ struct Catch {
   double widest() const { return *std::max_element(rim.begin(), rim.end()); }
 };
 
-Vec3 meridian(int m) {
-  const double phi = 2.0 * std::numbers::pi * m / kMeridians;
-  return {std::cos(phi), std::sin(phi), 0.0};
+/// The widest angle from -z of cells that are not beside the light, and half of a cell more.
+std::array<double, kMeridians> widest_light(const std::vector<DirectedFlux>& cells, double half_cell) {
+  double densest = 0.0;
+  for (const DirectedFlux& c : cells) densest = std::max(densest, c.flux);
+  std::array<double, kMeridians> out{};
+  for (const DirectedFlux& c : cells) {
+    if (c.flux < kBesideLight * densest) continue;
+    const Vec3 d = c.direction.vec();
+    const double theta = std::acos(std::clamp(-d.z, -1.0, 1.0)) + half_cell;
+    const double across = std::hypot(d.x, d.y);
+    // A cell stands for the meridians that it covers.
+    const double covers = across > half_cell ? half_cell / across : std::numbers::pi;
+    for (int m = 0; m < kMeridians; ++m) {
+      const Vec3 along = meridian(m);
+      const double beside =
+          std::abs(std::atan2(along.x * d.y - along.y * d.x, along.x * d.x + along.y * d.y));
+      double& widest = out[static_cast<std::size_t>(m)];
+      if (beside <= covers) widest = std::max(widest, theta);
+    }
+  }
+  return out;
 }
 
 /// That of the paraboloid about the source.
@@ -72,6 +102,8 @@ Catch first_catch(const Aperture& a, double distance) {
 /// The light that is caught, in cells of the stereographic plane about -z; and the bins that the rest lights.
 struct SplitLight {
   std::vector<DirectedFlux> caught;
+  /// The widest angle from -z at which light is, by azimuth.
+  std::array<double, kMeridians> widest{};
   double caught_share = 0.0;
   Eigen::VectorXd direct;
 };
@@ -118,6 +150,7 @@ SplitLight split(const TransportProblem& problem, const Vec3& source, const Catc
     out.caught_share += c.flux / all;
   }
   out.direct /= all;
+  out.widest = widest_light(out.caught, 0.5 * cell);
   return out;
 }
 
@@ -149,8 +182,23 @@ struct Outline {
   double reach = 1.0;
 };
 
+/// Takes a meridian that ends within the rim on to it, level but for the slope that it ended with (at most
+/// kSteepest: where light meets the face at the limit of total reflection it ends like a wall).
+void level_off(const Vec3& along, double rim, std::vector<SurfacePointWeight>& points) {
+  if (points.size() < 2) return;
+  const auto radius = [](const SurfacePointWeight& p) { return std::hypot(p.x_mm, p.y_mm); };
+  const SurfacePointWeight before = points[points.size() - 2], last = points.back();
+  const double from = radius(last), step = rim / kPlacesForEdges, within = kLevelWithin * rim;
+  const double slope = std::clamp((last.z_mm - before.z_mm) / (from - radius(before)), -kSteepest, kSteepest);
+  for (double r = from + step; r < kBeyondRim * rim + step; r += step) {
+    const double z = last.z_mm + slope * within * (1.0 - std::exp((from - r) / within));
+    points.push_back({r * along.x, r * along.y, z, kUnlitWeight * r * step});
+  }
+}
+
+/// `widest`: as far as a face is followed, by azimuth; null for a mirror.
 Outline outline(const PointTransport& transport, const Aperture& aperture, const Vec3& source,
-                double distance, int places) {
+                double distance, int places, const std::array<double, kMeridians>* widest) {
   const double scale = distance / transport.radius(Direction::from({0.0, 0.0, -1.0}));
   struct Meridian {
     std::vector<SurfacePointWeight> points;
@@ -161,9 +209,10 @@ Outline outline(const PointTransport& transport, const Aperture& aperture, const
     const double rim = rim_mm(aperture, along.x, along.y), hole = aperture.hole_radius_mm();
     Meridian out;
     double r_before = 0.0, theta_before = 0.0;
-    constexpr double kMaxAngle = 0.9 * std::numbers::pi;
+    double max_angle = 0.9 * std::numbers::pi;
+    if (widest != nullptr) max_angle = std::min(max_angle, kBeyondLight * (*widest)[m]);
     for (int k = 0; k < places; ++k) {
-      const double theta = kMaxAngle * (k + 0.5) / places;
+      const double theta = max_angle * (k + 0.5) / places;
       const Direction d = Direction::from_unit(std::sin(theta) * along + Vec3{0.0, 0.0, -std::cos(theta)});
       const Vec3 at = source + (scale * transport.radius(d)) * d.vec();
       const double r = std::hypot(at.x, at.y);
@@ -178,6 +227,7 @@ Outline outline(const PointTransport& transport, const Aperture& aperture, const
     }
     out.reach = r_before / rim;
     if (out.rim == 0.0) out.rim = theta_before;  // what it would catch up to where it ends
+    if (widest != nullptr) level_off(along, rim, out.points);
     return out;
   };
   const auto meridians = parallel_map_blocks<Meridian>(kMeridians, 1, follow);
@@ -278,11 +328,13 @@ std::optional<DesignShape> transport_guess(const TransportProblem& problem, cons
                                    round > 0 ? &guess : nullptr, medium ? 1.0 / medium->index : 1.0);
     potentials(to.bins) = transport.potentials();
     const bool last = round + 1 == kTransportRounds;
-    mirror =
-        outline(transport, aperture, source, choice.vertex_distance_mm, last ? kPlaces : kPlacesForEdges);
+    mirror = outline(transport, aperture, source, choice.vertex_distance_mm, last ? kPlaces : kPlacesForEdges,
+                     medium ? &light.widest : nullptr);
     edges = mirror->edges;
   }
-  if (mirror->reach < (medium ? kMinFaceReach : kMinRimReach)) return std::nullopt;
+  const bool too_small =
+      medium ? split(problem, source, edges).caught_share < kMinFaceShare : mirror->reach < kMinRimReach;
+  if (too_small) return std::nullopt;
   return fitted_to_points(family, mirror->points);
 }
 

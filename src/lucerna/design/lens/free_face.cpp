@@ -135,6 +135,9 @@ namespace {
 /// Where the project does not say more: of a body that stays closed.
 constexpr double kMinThickness_mm = 0.05;
 
+/// max(0, x) with a bend of about one in place of the corner.
+double softplus(double x) { return std::max(x, 0.0) + std::log1p(std::exp(-std::abs(x))); }
+
 /// Between which heights of a design a face is to be at a distance from the axis: the lens's turned over.
 HeightBounds height_bounds(const LensLimits& limits, const FaceSeat& seat, double x, double y) {
   const double low = limits.max_height_mm ? -(seat.lowest_mm() + *limits.max_height_mm)
@@ -160,12 +163,15 @@ ShapeLimits face_limits(const LensLimits& limits, const FaceSeat& seat, const De
 }
 
 DesignShape within_limits(const LensLimits& limits, const FaceSeat& seat, const DesignShape& face) {
-  /// Of what a spline through cut heights swings beyond them.
+  /// Of what a spline through bent heights swings beyond them.
   constexpr double kRoom = 0.1;
+  // Heights are bent over about a step between knots: a spline through sharply cut ones swings.
+  const double bend = face.radius_mm() / face.intervals_x();
+  const auto below = [&](double z, double high) { return high - bend * softplus((high - z) / bend); };
   return face.through([&](double x, double y) {
     const HeightBounds b = height_bounds(limits, seat, x, y);
-    const double high = b.high_mm - kRoom;
-    return std::clamp(face.at(x, y).z_mm, std::min(b.low_mm + kRoom, high), high);
+    const double high = b.high_mm - kRoom, low = std::min(b.low_mm + kRoom, high);
+    return std::max(low, below(-below(-face.at(x, y).z_mm, -low), high));
   });
 }
 

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint64_t kLightRays = std::uint64_t{1} << 16;
 
 /// Light that goes other ways is looked at by so much fewer rays than the light that is fitted.
-constexpr std::uint64_t kFewerRays = 2;
+constexpr std::uint64_t kFewerRays = 8;
 
 /// Share of the source's flux that is within the medium.
 double share_within(const DesignRays& rays, std::uint64_t count) {

@@ -8,7 +8,11 @@
 #include <numbers>
 #include <string>
 
+#include "lucerna/design/evaluation/evaluation.h"
+#include "lucerna/design/fit/graded_bins.h"
+#include "lucerna/design/initial/transport_guess.h"
 #include "lucerna/design/lens/lens_design.h"
+#include "lucerna/design/lens/lens_validation.h"
 #include "lucerna/design/shape/perturbed.h"
 #include "lucerna/error.h"
 #include "lucerna/intensity.h"
@@ -159,6 +163,55 @@ TEST(FreeFace, LimitsAreThoseOfTheWholeLens) {
   EXPECT_TRUE(check_face_limits(limits, seat, cut)[1].held);
 }
 
+// A start may be far beyond its limits; what a search begins with costs little there, and is the start
+// itself where that is within them.
+TEST(FreeFace, HeightsAreBentWithinTheirLimits) {
+  const LensProblem problem = dome();
+  const FaceSeat seat = face_seat(problem.start);
+  LensLimits limits;
+  limits.max_height_mm = 8.0;
+  limits.min_thickness_mm = 0.5;
+  // From 6 mm over the base's middle it falls below the base.
+  const DesignShape steep =
+      face_of(problem.start, 24).through([](double x, double y) { return -9.5 + 1.4 * std::hypot(x, y); });
+  const ShapeLimits cost = face_limits(limits, seat, steep, kFitRings);
+  EXPECT_GT(cost.cost(steep, nullptr), 100.0);
+  const DesignShape bent = within_limits(limits, seat, steep);
+  EXPECT_LT(cost.cost(bent, nullptr), 0.01);
+  EXPECT_NEAR(bent.at(2.0, 0.0).z_mm, steep.at(2.0, 0.0).z_mm, 0.05);
+}
+
+// A wide lens with a flat base: light within its cone comes to a third of the rim only. The point source's
+// face sends it on all the same, and levels off beside it.
+TEST(FreeFace, APointSourcesFaceNeedsNoLightAtItsRim) {
+  const std::string text =
+      dome_with(kDomeText, "outline_mm = [[0, 3.5], [3, 3.2], [9, 3], [9, 5], [6, 7.6], [3, 9.1], [0, 9.6]]",
+                "outline_mm = [[0, 0.5], [30, 0.5], [30, 2.5], [20, 7], [10, 10], [0, 11]]");
+  ProjectMemory memory;
+  memory.targets["beam.ldt"] = oval_up();
+  const LensProblem problem = lens_problem(
+      parse_project(dome_with(text, "free_sides = 3", "free_sides = 2"), "lens.toml", memory), "lens.toml");
+  const Frame world_from_design = problem.world_from_lens * lens_from_design();
+  DesignRays rays(problem.project.scene.sources, world_from_design.inverse(), 1);
+  rays.refract(problem.medium, into_lens(problem.start, problem.medium));
+  rays.grow(std::uint64_t{1} << 17);
+  const TentBins bins =
+      graded_bins(target_rectangle(problem.target), world_from_design.inverse(), 36, 1.1, 0);
+  const DesignShape family = face_of(problem.start, 32);
+  const TransportProblem transport{
+      &rays, rays.size(), 1.0, false, target_flux(problem.target, world_from_design, 1.0)(bins), bins};
+  const auto face = transport_guess(transport, family, {-1.0, 11.0});
+  ASSERT_TRUE(face);
+  EvaluationOptions options;
+  options.rays = rays.size();
+  options.derivatives = options.direct_light = false;
+  const Evaluation light = evaluate(*face, Reflectance(1.0), rays, bins, options);
+  EXPECT_GT(light.flux.sum(), 0.75) << "of the light within the lens goes where it is wanted";
+  EXPECT_LT(light.lost + light.back, 0.02);
+  // Level: as high at the rim as where the light ends, but for its last slope.
+  EXPECT_NEAR(face->at(29.0, 0.0).z_mm, face->at(20.0, 0.0).z_mm, 1.0);
+}
+
 TEST(FreeFace, SaysWhichFacesCannotBeOne) {
   const std::string dome_text = kDomeText;
   EXPECT_EQ(dome_refusal(dome_text), "");
@@ -180,6 +233,16 @@ TEST(FreeFace, SaysWhichFacesCannotBeOne) {
             std::string::npos);
   EXPECT_NE(dome_refusal(dome_text + "[design.limits]\nmax_diameter_mm = 17\n").find("max_diameter_mm = 17"),
             std::string::npos);
+}
+
+TEST(FreeFace, LightThatMissesCountsWhereLensesAreCompared) {
+  DesignError even, lit;
+  even.c48.excess = 0.05;
+  even.in_rectangle.mean = 0.1;
+  lit.c48.excess = 0.10;
+  lit.in_rectangle.mean = 0.8;
+  EXPECT_LT(error_with_light(lit, 0.1), error_with_light(even, 0.1));
+  EXPECT_NEAR(error_with_light(even, 0.0), 0.05, 1e-12) << "without weight the error alone";
 }
 
 // The design ends nearer to a target that no lens of revolution has, within its limits; what is traced has

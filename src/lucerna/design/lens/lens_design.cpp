@@ -58,8 +58,10 @@ LensFitResult fitted(const LensProblem& problem, const LensFitOptions& options, 
   return fit_lens(problem, options, rays, watch);
 }
 
-bool is_better(const BoxErrorEstimate& given, const BoxErrorEstimate& found) {
-  return given.excess + 2.0 * std::hypot(given.standard_error, found.standard_error) < found.excess;
+bool given_is_better(const LensProblem& problem, const DesignError& given, const DesignError& found) {
+  const double light_weight = problem.free_face ? problem.free_face->light_weight : 0.0;
+  const double noise = 2.0 * std::hypot(given.c48.standard_error, found.c48.standard_error);
+  return error_with_light(given, light_weight) + noise < error_with_light(found, light_weight);
 }
 
 void add_lens_remarks(LensResult& result) {
@@ -114,7 +116,7 @@ LensResult design_lens(const LensProblem& problem, const LensOptions& options, P
   const auto given_limits = check_lens_limits(problem.limits, problem.start, signs);
   const bool given_holds =
       std::all_of(given_limits.begin(), given_limits.end(), [](const LimitCheck& c) { return c.held; });
-  if (given_holds && is_better(given.error.c48, result.error.c48)) {
+  if (given_holds && given_is_better(problem, given.error, result.error)) {
     result.lens = {problem.start};
     result.limits = given_limits;
     set_findings(check(result.lens, options.validation_rays, left_s), result);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <vector>
 
 #include "lucerna/core/parallel/counted_progress.h"
@@ -39,6 +40,10 @@ double seconds_since_start(std::chrono::steady_clock::time_point begin) {
 }
 
 }  // namespace
+
+double error_with_light(const DesignError& error, double light_weight) {
+  return std::hypot(error.c48.excess, std::sqrt(light_weight) * (1.0 - error.in_rectangle.mean));
+}
 
 LensValidation validate_lens(const Scene& scene, const ErrorBoxes& boxes, std::span<const double> target,
                              TargetMode mode, std::uint64_t seed, std::uint64_t max_rays, double max_s,

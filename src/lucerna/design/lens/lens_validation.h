@@ -21,6 +21,11 @@ struct LensValidation {
   double seconds = 0.0;
 };
 
+/// What is made small, from the error as it is printed: the root of its square and of what light costs that
+/// misses the target's rectangle, `light_weight` times the squared share. A lens that spreads its light
+/// evenly everywhere has a small error, and lights nothing.
+double error_with_light(const DesignError& error, double light_weight);
+
 /// Traces the scene's sources through its solids (LensBlocks), with all
 /// reflections at all boundaries by chance, into the cells of the boxes: 16 replicates of independent
 /// Owen-scrambled Sobol sequences. Rays are doubled from 2^18 to `max_rays`, or until the floor is half of
