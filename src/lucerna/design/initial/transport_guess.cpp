@@ -35,7 +35,7 @@ constexpr double kBesideLight = 0.01;
 /// A face is followed so much farther from the axis than a point source's light, over its angle: light of a
 /// wide source goes there too. Beyond, it levels off within a share of the rim's radius, so that it stays
 /// within its limits; its places there have a share of a lit one's weight.
-constexpr double kBeyondLight = 1.15, kLevelWithin = 0.1, kUnlitWeight = 0.1, kSteepest = 1.0;
+constexpr double kBeyondLight = 1.3, kLevelWithin = 0.2, kUnlitWeight = 0.1, kSteepest = 1.0;
 /// Weight of a third difference of coefficients against that of a point: nothing where there are points.
 constexpr double kSmoothness = 1e-4;
 

@@ -14,8 +14,9 @@ namespace {
 /// Rays that tell what enters the lens and how much of it the given face lets through.
 constexpr std::uint64_t kLightRays = std::uint64_t{1} << 16;
 
-/// Light that goes other ways is looked at by so much fewer rays than the light that is fitted.
-constexpr std::uint64_t kFewerRays = 8;
+/// Light that goes other ways is looked at by so much fewer rays than the light that is fitted: on the levels
+/// that end a search its noise would be most of what is left.
+constexpr std::uint64_t kFewerRays = 8, kFewerRaysAtEnd = 2, kRaysAtEnd = std::uint64_t{1} << 22;
 
 /// Share of the source's flux that is within the medium.
 double share_within(const DesignRays& rays, std::uint64_t count) {
@@ -58,7 +59,8 @@ FitProblem face_problem(const LensProblem& problem, const LensFitOptions& option
   };
   fit.other_light = [&problem, within, seed = options.seed](const DesignShape& face, const TentBins& bins,
                                                             std::uint64_t count) -> Eigen::VectorXd {
-    return other_light(problem, face, bins, count / kFewerRays, seed) / within;
+    const std::uint64_t fewer = count < kRaysAtEnd ? kFewerRays : kFewerRaysAtEnd;
+    return other_light(problem, face, bins, count / fewer, seed) / within;
   };
   fit.rectangle = target_rectangle(problem.target);
   fit.mirror_from_world = world_from_design.inverse();

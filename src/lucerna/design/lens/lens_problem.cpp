@@ -121,11 +121,31 @@ toml::table& lens_table(Project& project) {
   return *toml_tables(project)["body"].as_array()->get(0)->as_table();
 }
 
+DesignTarget target_of_lens(TomlReader& reader, Project& project) {
+  const Scene& scene = project.scene;
+  return read_target(reader, scene.sources.front().rays->flux_unit(), total_flux(scene.sources),
+                     scene.solids.front().world_from_solid.origin_mm(), project);
+}
+
 }  // namespace
 
 bool is_lens_design(const Project& project) {
   const toml::table* const design = toml_tables(project)["design"].as_table();
   return design != nullptr && design->contains("free_sides");
+}
+
+bool is_finished_lens(const Project& project) {
+  const toml::table& tables = toml_tables(project);
+  return tables.contains("target") && !tables.contains("design") && project.scene.solids.size() == 1 &&
+         project.scene.solids.front().face != nullptr;
+}
+
+DesignTarget finished_lens_target(Project& project, const std::filesystem::path& path) {
+  // A copy: reading the target adds to the project.
+  const toml::table tables = toml_tables(project);
+  TomlReader root(tables, path.string(), "");
+  auto reader = root.table("target");
+  return target_of_lens(*reader, project);
 }
 
 LensProblem lens_problem(Project project, const std::filesystem::path& path) {
@@ -162,9 +182,7 @@ LensProblem lens_problem(Project project, const std::filesystem::path& path) {
       design->fail("free_sides", e.what());
     }
   }();
-  DesignTarget target =
-      read_target(*target_reader, project.scene.sources.front().rays->flux_unit(),
-                  total_flux(project.scene.sources), solid.world_from_solid.origin_mm(), project);
+  DesignTarget target = target_of_lens(*target_reader, project);
   if (target.zones != nullptr)
     root.fail("target", "found zones, which only free-form mirrors are designed for");
   const MediumView medium{solid.refractive_index, solid.absorption_per_mm};

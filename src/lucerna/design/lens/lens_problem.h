@@ -45,6 +45,14 @@ bool is_lens_design(const Project& project);
 /// detectors of every design (add_design_detectors).
 LensProblem lens_problem(Project project, const std::filesystem::path& path);
 
+/// Whether a project is the result of a design with a free-form face: it has a [target] for its one lens, and
+/// no [design], for such a lens is none to begin with.
+bool is_finished_lens(const Project& project);
+
+/// The [target] of such a project. The project gets the target's file as an input. Throws InputError as
+/// lens_problem does.
+DesignTarget finished_lens_target(Project& project, const std::filesystem::path& path);
+
 /// The bins of the last stages: rings half as wide as the boxes of the error where the target turns about the
 /// lens's axis, else 48 x 48.
 TentBins lens_window(const LensProblem& problem);

@@ -11,6 +11,7 @@
 #include "lucerna/design/evaluation/point_source.h"
 #include "lucerna/design/fit/approach.h"
 #include "lucerna/design/initial/initial_guesses.h"
+#include "lucerna/design/search/first_choices.h"
 #include "lucerna/design/search/free_form_levels.h"
 #include "lucerna/random.h"
 
@@ -21,25 +22,6 @@ namespace {
 constexpr int kLevels = kFreeFormLevels, kEnd = 2, kMoreRays = 3;
 /// Knots of the rough level, at most.
 constexpr int kRoughIntervals = 32;
-/// The first candidates, those before the approaches and those after them; distances over `distance_unit_mm`.
-struct FirstChoices {
-  std::array<TransportChoice, 2> before;
-  std::array<TransportChoice, 7> after;
-};
-/// Mirrors that spread light near the source, and mirrors whose rays cross farther from it. Others catch too
-/// little light or become walls.
-constexpr FirstChoices kMirrors{
-    {{{-1.0, 0.33}, {-1.0, 0.27}}},
-    {{{-1.0, 0.21}, {-1.0, 0.45}, {1.0, 0.75}, {1.0, 0.92}, {1.0, 0.33}, {1.0, 0.27}, {1.0, 0.45}}}};
-/// The last face of a lens, at the given face's distance from the source and beside it. Faces whose rays
-/// cross are good for narrow beams only.
-constexpr FirstChoices kFaces{
-    {{{-1.0, 1.0}, {-1.0, 1.25}}},
-    {{{1.0, 1.0}, {-1.0, 0.8}, {-1.0, 1.5}, {1.0, 1.25}, {-1.0, 0.65}, {1.0, 0.8}, {1.0, 1.5}}}};
-/// Troughs of both orders of rays.
-constexpr FirstChoices kTroughs{
-    {{{-1.0, 0.75}, {1.0, 1.0}}},
-    {{{-1.0, 0.5}, {1.0, 0.75}, {-1.0, 0.4}, {-1.0, 0.33}, {-1.0, 0.25}, {-1.0, 0.18}, {-1.0, 1.0}}}};
 /// A trough's few parameters are known from fewer rays.
 constexpr std::uint64_t kFewerRaysOfTroughs = 4;
 /// The approach is tried where the candidates before it stay kDoubtful from the target (relative error), for
@@ -47,13 +29,15 @@ constexpr std::uint64_t kFewerRaysOfTroughs = 4;
 /// nearest of them. Further approaches, from perturbed copies, follow where the best is kFarError from it, or
 /// is an approach itself and not at it: they end in basins of their own, and how near they are once refined
 /// spreads by a factor of four in error.
-constexpr int kApproach = 1 + static_cast<int>(kMirrors.before.size()), kApproaches = 8;
+constexpr int kApproach = 1 + static_cast<int>(std::tuple_size_v<decltype(FirstChoices::before)>),
+              kApproaches = 8;
 constexpr double kDoubtful = 0.05, kFarError = 0.15;
 /// An approach that came no nearer than this has too few knots for the target.
 constexpr double kFewKnotsError = 0.03;
 /// The first candidate after the approaches; after the given mirror, the approaches and all transports.
 constexpr int kNoApproach = kApproach + kApproaches;
-constexpr int kFirstCandidates = kNoApproach + static_cast<int>(kMirrors.after.size());
+constexpr int kFirstCandidates =
+    kNoApproach + static_cast<int>(std::tuple_size_v<decltype(FirstChoices::after)>);
 /// How many of them are fitted finely.
 constexpr int kFine = 3;
 /// A neighbour of the best goes on where its cost is at most so many times the best's at that level.
@@ -88,9 +72,11 @@ constexpr double kMinCostShare = 0.02;
 constexpr double kNear = 0.01;
 /// Least damping: with less, knots that little light tells of fit its noise.
 constexpr double kMinLambda = 1e-5;
-/// A finer level of a lens's face ends only where steps gain so much less: they are short, for the face is
-/// near a source that is wide beside its knots.
-constexpr double kFaceGain = 0.3;
+/// A lens's face is near a source that is wide beside the knots of finer levels. Steps there are short, and
+/// gain little after such as were refused: a level ends where twice as many steps as elsewhere gain so much
+/// less.
+constexpr double kFaceGain = 0.6;
+constexpr std::size_t kSteps = 2, kFaceSteps = 4;
 /// Weight of roughness where slopes are measured in half widths of the target's rectangle: where the light is
 /// blurred by the source's size a rough surface costs no light. At a three-hundredth of it slopes jump by a
 /// degree from knot to knot, at the same error.
@@ -164,7 +150,7 @@ FreeFormLevel FreeFormSearch::level(int number) const {
 
 TransportChoice FreeFormSearch::first_choice(int number) const {
   if (number >= kApproach && number < kNoApproach) return {};
-  const FirstChoices& first = problem_.rays->medium() ? kFaces : given_.is_trough() ? kTroughs : kMirrors;
+  const FirstChoices& first = first_choices(problem_.rays->medium().has_value(), given_.is_trough());
   const TransportChoice c = number < kApproach ? first.before[static_cast<std::size_t>(number - 1)]
                                                : first.after[static_cast<std::size_t>(number - kNoApproach)];
   return {c.sign, c.vertex_distance_mm * unit_mm_};
@@ -476,7 +462,8 @@ bool FreeFormSearch::level_ended() const {
     return true;
   }
   if (is_slow_approach()) return true;
-  return c.size() >= 3 && std::sqrt(c.back()) > (1.0 - l.min_gain) * std::sqrt(c[c.size() - 3]);
+  const std::size_t steps = problem_.rays->medium() && state_.now.level > 0 ? kFaceSteps : kSteps;
+  return c.size() > steps && std::sqrt(c.back()) > (1.0 - l.min_gain) * std::sqrt(c[c.size() - 1 - steps]);
 }
 
 void FreeFormSearch::forget_what_cannot_win() {

@@ -237,16 +237,20 @@ void write_design_report(const std::filesystem::path& folder, const std::filesys
   const auto history = read_history(read_file(csv, kMaxHistoryBytes), csv.string());
   std::optional<DesignProblem> mirror;
   std::optional<LensProblem> lens;
+  std::optional<Project> finished;
+  std::optional<DesignTarget> target;
   DesignReportOptions options;
   try {
     Project given = read_project(project);
-    if (is_lens_design(given)) {
+    if (is_finished_lens(given)) {
+      target.emplace(finished_lens_target(finished.emplace(std::move(given)), project));
+    } else if (is_lens_design(given)) {
       lens.emplace(lens_problem(std::move(given), project));
     } else {
       mirror.emplace(design_problem(std::move(given), project));
     }
-    options.target = lens ? &lens->target : &mirror->target;
-    options.scene = lens ? &lens->project.scene : &mirror->project.scene;
+    options.target = target ? &*target : lens ? &lens->target : &mirror->target;
+    options.scene = finished ? &finished->scene : lens ? &lens->project.scene : &mirror->project.scene;
   } catch (const InputError& e) {
     options.no_problem = e.what();
   }

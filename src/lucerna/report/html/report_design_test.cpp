@@ -162,6 +162,28 @@ TEST(ReportDesign, PlaneTargetsAreComparedOnTheirRectangle) {
                 1e-3f * (std::abs(found[i]) + std::abs(wanted[i])) + 1e-3f);
 }
 
+// Such a lens has no [design] any more: nothing of its face could be designed on.
+TEST(ReportDesign, FinishedFreeFormLensesAreComparedAndShown) {
+  const test::TempDir dir;
+  write_file(dir / "wanted.csv", "1,2,1\n2,4,2\n1,2,1\n");
+  make_design(dir, "");
+  std::string flat = "[0";
+  for (int i = 1; i < 49; ++i) flat += ", 0";
+  write_file(dir / "project.toml",
+             "[[source]]\nkind = 'disk'\nradius_mm = 0.5\n[[body]]\nrole = 'solid'\nmaterial = 'pmma'\n"
+             "outline_mm = [[0, -6], [8, -6], [8, -3]]\n[body.face]\nhalf_mm = 8\nintervals = [4, 4]\n"
+             "coefficients_mm = " +
+                 flat +
+                 "]\n[[detector]]\nkind = 'far-field'\n"
+                 "[target]\nkind = 'plane'\nfile = 'wanted.csv'\nposition_mm = [0, 0, -1000]\n"
+                 "normal = '+z'\nsize_mm = [300, 300]\n");
+  const std::string html = report_of(dir);
+  EXPECT_EQ(test::html_fault(html), "");
+  EXPECT_FALSE(has(html, "There is no comparison"));
+  EXPECT_FALSE(has(html, "There is no 3D view"));
+  EXPECT_EQ(test::embedded(html, "grids").size(), 4u);
+}
+
 TEST(ReportDesign, SaysWhyThereIsNoTarget) {
   const test::TempDir dir;
   make_design(dir, "[target]\nfile = 'gone.ldt'\n");
