@@ -36,6 +36,8 @@ constexpr double kBesideLight = 0.01;
 /// wide source goes there too. Beyond, it levels off within a share of the rim's radius, so that it stays
 /// within its limits; its places there have a share of a lit one's weight.
 constexpr double kBeyondLight = 1.3, kLevelWithin = 0.2, kUnlitWeight = 0.1, kSteepest = 1.0;
+/// Beyond the light it is followed as long as it is no steeper than that.
+constexpr double kWall = 3.0;
 /// Weight of a third difference of coefficients against that of a point: nothing where there are points.
 constexpr double kSmoothness = 1e-4;
 
@@ -217,6 +219,8 @@ Outline outline(const PointTransport& transport, const Aperture& aperture, const
       const Vec3 at = source + (scale * transport.radius(d)) * d.vec();
       const double r = std::hypot(at.x, at.y);
       if (r <= r_before) break;  // it turns back inwards
+      const bool beyond = widest != nullptr && theta > (*widest)[m] && !out.points.empty();
+      if (beyond && std::abs(at.z - out.points.back().z_mm) > kWall * (r - r_before)) break;
       const double per = (theta - theta_before) / (r - r_before);
       if (r_before < hole && r >= hole) out.hole = theta_before + (hole - r_before) * per;
       if (r_before < rim && r >= rim) out.rim = theta_before + (rim - r_before) * per;
