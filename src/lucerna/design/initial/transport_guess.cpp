@@ -34,7 +34,7 @@ constexpr double kMinFaceShare = 0.7;
 constexpr double kBesideLight = 0.01;
 /// A face is followed so much farther from the axis than a point source's light, over its angle: light of a
 /// wide source goes there too. Beyond, it levels off within a share of the rim's radius, so that it stays
-/// within its limits; its places there have a share of a lit one's weight.
+/// within its limits: from kSteepest at most. Its places there have a share of a lit one's weight.
 constexpr double kBeyondLight = 1.3, kLevelWithin = 0.2, kUnlitWeight = 0.1, kSteepest = 1.0;
 /// Beyond the light it is followed as long as it is no steeper than that.
 constexpr double kWall = 3.0;
@@ -67,7 +67,8 @@ struct Catch {
   double widest() const { return *std::max_element(rim.begin(), rim.end()); }
 };
 
-/// The widest angle from -z of cells that are not beside the light, and half of a cell more.
+/// The widest angle from -z of cells that are not beside the light, by azimuth, and half of a cell more at
+/// least (told in the stereographic plane).
 std::array<double, kMeridians> widest_light(const std::vector<DirectedFlux>& cells, double half_cell) {
   double densest = 0.0;
   for (const DirectedFlux& c : cells) densest = std::max(densest, c.flux);
@@ -104,8 +105,8 @@ Catch first_catch(const Aperture& a, double distance) {
 /// The light that is caught, in cells of the stereographic plane about -z; and the bins that the rest lights.
 struct SplitLight {
   std::vector<DirectedFlux> caught;
-  /// The widest angle from -z at which light is, by azimuth.
-  std::array<double, kMeridians> widest{};
+  /// Half of a cell of the stereographic plane.
+  double half_cell = 0.0;
   double caught_share = 0.0;
   Eigen::VectorXd direct;
 };
@@ -152,7 +153,7 @@ SplitLight split(const TransportProblem& problem, const Vec3& source, const Catc
     out.caught_share += c.flux / all;
   }
   out.direct /= all;
-  out.widest = widest_light(out.caught, 0.5 * cell);
+  out.half_cell = 0.5 * cell;
   return out;
 }
 
@@ -331,9 +332,11 @@ std::optional<DesignShape> transport_guess(const TransportProblem& problem, cons
     const PointTransport transport(light.caught, to.flux, choice.sign, 0.5 * source_cell * bin,
                                    round > 0 ? &guess : nullptr, medium ? 1.0 / medium->index : 1.0);
     potentials(to.bins) = transport.potentials();
+    std::optional<std::array<double, kMeridians>> widest;
+    if (medium) widest = widest_light(light.caught, light.half_cell);
     const bool last = round + 1 == kTransportRounds;
     mirror = outline(transport, aperture, source, choice.vertex_distance_mm, last ? kPlaces : kPlacesForEdges,
-                     medium ? &light.widest : nullptr);
+                     widest ? &*widest : nullptr);
     edges = mirror->edges;
   }
   const bool too_small =

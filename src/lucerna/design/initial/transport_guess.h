@@ -33,8 +33,8 @@ struct TransportProblem {
 /// The free form that would throw the source's light as prescribed, were the source a point: the light that
 /// the aperture catches (less what enters its hole) is transported onto the target (less the light that
 /// passes the mirror), in rounds, because what it catches follows from the shape. `family` says aperture,
-/// knots and symmetry. Nothing where the source is not in front of such a mirror or no light is left for it.
-/// About two processor seconds.
+/// knots and symmetry. Nothing where the source is not in front of such a mirror or no light is left for it,
+/// or where a lens's face catches too little of the light within. About two processor seconds.
 std::optional<DesignShape> transport_guess(const TransportProblem& problem, const DesignShape& family,
                                            const TransportChoice& choice);
 

@@ -54,7 +54,7 @@ inline constexpr int kFitRings = 48, kCheckRings = 100;
 /// The limits on a lens as those on its free face, on so many circles.
 ShapeLimits face_limits(const LensLimits& limits, const FaceSeat& seat, const DesignShape& start, int rings);
 
-/// The face with its heights cut to what the limits allow.
+/// The face with its heights bent to what the limits allow, over about a step between knots.
 DesignShape within_limits(const LensLimits& limits, const FaceSeat& seat, const DesignShape& face);
 
 /// Every limit that is set, as found on a fine grid.

@@ -243,14 +243,18 @@ void write_design_report(const std::filesystem::path& folder, const std::filesys
   try {
     Project given = read_project(project);
     if (is_finished_lens(given)) {
-      target.emplace(finished_lens_target(finished.emplace(std::move(given)), project));
+      finished.emplace(std::move(given));
+      options.target = &target.emplace(finished_lens_target(*finished, project));
+      options.scene = &finished->scene;
     } else if (is_lens_design(given)) {
       lens.emplace(lens_problem(std::move(given), project));
+      options.target = &lens->target;
+      options.scene = &lens->project.scene;
     } else {
       mirror.emplace(design_problem(std::move(given), project));
+      options.target = &mirror->target;
+      options.scene = &mirror->project.scene;
     }
-    options.target = target ? &*target : lens ? &lens->target : &mirror->target;
-    options.scene = finished ? &finished->scene : lens ? &lens->project.scene : &mirror->project.scene;
   } catch (const InputError& e) {
     options.no_problem = e.what();
   }
