@@ -7,6 +7,13 @@ cd "$(dirname "$0")/.."
 build=${1:-build/cuda}
 [ $# -eq 0 ] || shift
 steps=${*:-build tests sanitizer bench design program}
+for step in $steps; do
+  case $step in build | tests | sanitizer | bench | design | program) ;; *)
+    echo "found step '$step', expected build, tests, sanitizer, bench, design or program" >&2
+    exit 2
+    ;;
+  esac
+done
 wants() { case " $steps " in *" $1 "*) true ;; *) false ;; esac; }
 
 if wants build; then
