@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace bench {
 
@@ -34,6 +35,8 @@ void Bspline::read_axis(const JsonNode& knots, Axis& axis) {
     axis.pieces.push_back(piece(axis, i));
   }
   axis.breaks.push_back(axis.knots[axis.count]);
+  axis.pieces_per_length =
+      static_cast<double>(axis.pieces.size()) / (axis.breaks.back() - axis.breaks.front());
 }
 
 Bspline::Bspline(const JsonNode& s) {
@@ -98,15 +101,21 @@ Bspline::Piece Bspline::piece(const Axis& axis, std::size_t span) {
   return out;
 }
 
-std::size_t Bspline::basis(const Axis& axis, double x, Numbers& value, Numbers& slope) {
-  const auto p = static_cast<std::size_t>(axis.degree);
-  // The piece with x in it, the last one for the end of the domain.
-  const auto above = std::upper_bound(axis.breaks.begin() + 1, axis.breaks.end() - 1, x);
-  const auto k = static_cast<std::size_t>(above - axis.breaks.begin()) - 1;
+template <class Degree>
+std::size_t Bspline::basis(const Axis& axis, Degree p, double x, Numbers& value, Numbers& slope) {
+  // The piece with x in it, the last one for the end of the domain: by a guess that is right for even knots.
+  const auto& breaks = axis.breaks;
+  const double place = (x - breaks.front()) * axis.pieces_per_length;
+  const auto last = static_cast<double>(axis.pieces.size() - 1);
+  std::size_t k = place > 0.0 ? static_cast<std::size_t>(std::min(place, last)) : 0;
+  while (k > 0 && x < breaks[k]) --k;
+  while (k + 1 < axis.pieces.size() && x >= breaks[k + 1]) ++k;
   const Piece& piece = axis.pieces[k];
-  const double t = (x - axis.breaks[k]) * piece.per_length;
-  value = piece.powers[p];
-  slope.fill(0.0);
+  const double t = (x - breaks[k]) * piece.per_length;
+  for (std::size_t i = 0; i <= p; ++i) {
+    value[i] = piece.powers[p][i];
+    slope[i] = 0.0;
+  }
   for (std::size_t power = p; power-- > 0;) {
     for (std::size_t i = 0; i <= p; ++i) {
       slope[i] = slope[i] * t + value[i];
@@ -118,35 +127,51 @@ std::size_t Bspline::basis(const Axis& axis, double x, Numbers& value, Numbers& 
 }
 
 SurfaceJet Bspline::at(double u, double v) const {
-  Numbers bu, du, bv, dv;
-  const std::size_t i0 = basis(axes_[0], u, bu, du), j0 = basis(axes_[1], v, bv, dv);
+  if (!weights_.empty()) return rational(u, v);
   const auto p = static_cast<std::size_t>(axes_[0].degree), q = static_cast<std::size_t>(axes_[1].degree);
+  constexpr std::integral_constant<std::size_t, 3> kCubic;
+  return p == kCubic && q == kCubic ? plain(kCubic, kCubic, u, v) : plain(p, q, u, v);
+}
+
+template <class Degree>
+SurfaceJet Bspline::plain(Degree p, Degree q, double u, double v) const {
+  Numbers bu, du, bv, dv;
+  const std::size_t i0 = basis(axes_[0], p, u, bu, du), j0 = basis(axes_[1], q, v, bv, dv);
   SurfaceJet jet;
-  double w = 0.0, wu = 0.0, wv = 0.0;
   for (std::size_t i = 0; i <= p; ++i) {
     // A row's sums, as a function of v alone.
     Vec3 row, row_by_v;
-    double weight = 0.0, weight_by_v = 0.0;
-    const std::size_t k0 = (i0 + i) * axes_[1].count + j0;
+    const Vec3* points = &points_[(i0 + i) * axes_[1].count + j0];
     for (std::size_t j = 0; j <= q; ++j) {
-      double b = bv[j], slope = dv[j];
-      if (!weights_.empty()) {
-        b *= weights_[k0 + j];
-        slope *= weights_[k0 + j];
-        weight += b;
-        weight_by_v += slope;
-      }
-      row = row + b * points_[k0 + j];
-      row_by_v = row_by_v + slope * points_[k0 + j];
+      row = row + bv[j] * points[j];
+      row_by_v = row_by_v + dv[j] * points[j];
     }
     jet.point = jet.point + bu[i] * row;
     jet.by_u = jet.by_u + du[i] * row;
     jet.by_v = jet.by_v + bu[i] * row_by_v;
-    w += bu[i] * weight;
-    wu += du[i] * weight;
-    wv += bu[i] * weight_by_v;
   }
-  if (weights_.empty()) return jet;
+  return jet;
+}
+
+SurfaceJet Bspline::rational(double u, double v) const {
+  const auto p = static_cast<std::size_t>(axes_[0].degree), q = static_cast<std::size_t>(axes_[1].degree);
+  Numbers bu, du, bv, dv;
+  const std::size_t i0 = basis(axes_[0], p, u, bu, du), j0 = basis(axes_[1], q, v, bv, dv);
+  SurfaceJet jet;
+  double w = 0.0, wu = 0.0, wv = 0.0;
+  for (std::size_t i = 0; i <= p; ++i) {
+    for (std::size_t j = 0; j <= q; ++j) {
+      const std::size_t k = (i0 + i) * axes_[1].count + j0 + j;
+      const double b = bu[i] * bv[j] * weights_[k], by_u = du[i] * bv[j] * weights_[k],
+                   by_v = bu[i] * dv[j] * weights_[k];
+      jet.point = jet.point + b * points_[k];
+      jet.by_u = jet.by_u + by_u * points_[k];
+      jet.by_v = jet.by_v + by_v * points_[k];
+      w += b;
+      wu += by_u;
+      wv += by_v;
+    }
+  }
   jet.point = (1.0 / w) * jet.point;
   jet.by_u = (1.0 / w) * (jet.by_u - wu * jet.point);
   jet.by_v = (1.0 / w) * (jet.by_v - wv * jet.point);

@@ -46,11 +46,18 @@ class Bspline {
     std::size_t count = 0;
     std::vector<double> knots, breaks;
     std::vector<Piece> pieces;
+    double pieces_per_length = 0.0;
   };
   static void read_axis(const JsonNode& knots, Axis& axis);
   static Piece piece(const Axis& axis, std::size_t span);
-  /// Values and derivatives of the functions that are not 0 at x; the number of the first of them.
-  static std::size_t basis(const Axis& axis, double x, Numbers& value, Numbers& slope);
+  /// Values and derivatives of the functions that are not 0 at x; the number of the first of them. Degrees
+  /// are numbers that are known to the compiler (std::integral_constant) or not: most splines are cubic, and
+  /// much faster so.
+  template <class Degree>
+  static std::size_t basis(const Axis& axis, Degree p, double x, Numbers& value, Numbers& slope);
+  template <class Degree>
+  SurfaceJet plain(Degree p, Degree q, double u, double v) const;
+  SurfaceJet rational(double u, double v) const;
 
   std::array<Axis, 2> axes_;
   std::vector<Vec3> points_;

@@ -45,11 +45,10 @@ Json road_json(const RoadScore& s, const std::vector<LimitCheck>& limits) {
 }
 
 Json balance_json(const Score& s) {
-  return {{"mirrors", json_of(s.mirror)},         {"backs_of_mirrors", json_of(s.mirror_back)},
-          {"absorbers", json_of(s.absorber)},     {"bulk", json_of(s.bulk)},
-          {"interfaces", json_of(s.interface)},   {"source", json_of(s.source)},
-          {"wrong_side", json_of(s.wrong_side)},  {"too_many_hits", json_of(s.too_many_hits)},
-          {"near_misses", json_of(s.near_misses)}};
+  return {{"mirrors", json_of(s.mirror)},        {"backs_of_mirrors", json_of(s.mirror_back)},
+          {"absorbers", json_of(s.absorber)},    {"bulk", json_of(s.bulk)},
+          {"interfaces", json_of(s.interface)},  {"source", json_of(s.source)},
+          {"wrong_side", json_of(s.wrong_side)}, {"too_many_hits", json_of(s.too_many_hits)}};
 }
 
 template <class... T>

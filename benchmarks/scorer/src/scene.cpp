@@ -45,44 +45,53 @@ void SurfaceScene::attach(const Part& part, unsigned id) {
   for (const auto& t : mesh.triangles) {
     for (const std::uint32_t k : t) *index++ = k;
   }
+  rtcSetGeometryIntersectFilterFunction(g, &SurfaceScene::look_at);
   rtcCommitGeometry(g);
   rtcAttachGeometryByID(scene_.get(), g, id);
   rtcReleaseGeometry(g);
 }
 
-SurfaceScene::PartHit SurfaceScene::first_hit(const Vec3& o, const Vec3& d) const {
+/// What Embree hands to `look_at` along one ray: a context is where it begins.
+struct SurfaceScene::Search {
   RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  float near = 0.0F;
-  for (int passed = 0; passed < kMaxPassed; ++passed) {
-    RTCRayHit q{};
-    q.ray.org_x = static_cast<float>(o.x);
-    q.ray.org_y = static_cast<float>(o.y);
-    q.ray.org_z = static_cast<float>(o.z);
-    q.ray.dir_x = static_cast<float>(d.x);
-    q.ray.dir_y = static_cast<float>(d.y);
-    q.ray.dir_z = static_cast<float>(d.z);
-    q.ray.tnear = near;
-    q.ray.tfar = std::numeric_limits<float>::infinity();
-    q.ray.mask = 0xFFFFFFFFU;
-    q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_.get(), &context, &q);
-    if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    const Part& part = parts_[q.hit.geomID];
-    const FlatHit flat{q.hit.primID, q.ray.tfar, q.hit.u, q.hit.v};
-    Hit hit;
-    if (part.surface->refine(o, d, flat, hit) && hit.t > kLift * size_) {
-      if (part.flip) {
-        hit.normal = -hit.normal;
-        hit.geometric = -hit.geometric;
-      }
-      return {&part, hit, false};
-    }
-    near = std::nextafter(q.ray.tfar + 1e-7F * static_cast<float>(size_),
-                          std::numeric_limits<float>::infinity());
+  const SurfaceScene* scene;
+  Vec3 origin, direction;
+  PartHit nearest;
+};
+
+void SurfaceScene::look_at(const RTCFilterFunctionNArguments* args) {
+  auto& search = *reinterpret_cast<Search*>(args->context);
+  const RTCHit at = rtcGetHitFromHitN(args->hit, args->N, 0);
+  const FlatHit flat{at.primID, RTCRayN_tfar(args->ray, args->N, 0), at.u, at.v};
+  const Part& part = search.scene->parts_[at.geomID];
+  Hit hit;
+  if (part.surface->refine(search.origin, search.direction, flat, hit) && hit.t > kLift * search.scene->size_)
+    search.nearest = {&part, hit};
+  else
+    args->valid[0] = 0;
+}
+
+SurfaceScene::PartHit SurfaceScene::first_hit(const Vec3& o, const Vec3& d) const {
+  Search search{{}, this, o, d, {}};
+  rtcInitIntersectContext(&search.context);
+  RTCRayHit q{};
+  q.ray.org_x = static_cast<float>(o.x);
+  q.ray.org_y = static_cast<float>(o.y);
+  q.ray.org_z = static_cast<float>(o.z);
+  q.ray.dir_x = static_cast<float>(d.x);
+  q.ray.dir_y = static_cast<float>(d.y);
+  q.ray.dir_z = static_cast<float>(d.z);
+  q.ray.tfar = std::numeric_limits<float>::infinity();
+  q.ray.mask = 0xFFFFFFFFU;
+  q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(scene_.get(), &search.context, &q);
+  PartHit& found = search.nearest;
+  if (found.part != nullptr && found.part->flip) {
+    found.hit.normal = -found.hit.normal;
+    found.hit.geometric = -found.hit.geometric;
   }
-  return {nullptr, {}, true};
+  return found;
 }
 
 }  // namespace bench

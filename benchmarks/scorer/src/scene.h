@@ -19,11 +19,7 @@ class SurfaceScene {
   struct PartHit {
     const Part* part = nullptr;
     Hit hit;
-    /// No part, and yet not nothing: the search ended after kMaxPassed flat hits whose surfaces were missed.
-    bool given_up = false;
   };
-  /// Flat hits that are looked at along a ray: those whose surface is missed are passed.
-  static constexpr int kMaxPassed = 64;
   /// The first hit farther than a millionth of the scene's size; a null part for none. Normals are turned
   /// where the part says `flip`.
   PartHit first_hit(const Vec3& origin, const Vec3& direction) const;
@@ -33,6 +29,10 @@ class SurfaceScene {
     void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
     void operator()(RTCScene s) const { rtcReleaseScene(s); }
   };
+  struct Search;
+  /// Called by Embree for each triangle nearer than those before: keeps the hit with its surface, if there is
+  /// one.
+  static void look_at(const RTCFilterFunctionNArguments* args);
   void attach(const Part& part, unsigned id);
 
   const std::vector<Part>& parts_;

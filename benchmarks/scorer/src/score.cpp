@@ -83,7 +83,6 @@ Score score_of(const Tally& tally, const Target& target, std::uint64_t rays) {
   s.source = share(tally, &Sums::source);
   s.wrong_side = share(tally, &Sums::wrong_side);
   s.too_many_hits = share(tally, &Sums::too_many_hits);
-  s.near_misses = share(tally, &Sums::near_misses);
   return s;
 }
 
@@ -102,10 +101,6 @@ std::vector<std::string> faults(const Score& score, const Submission& submission
   if (score.too_many_hits.mean > kMaxLost)
     out.push_back("light that hits surfaces 200 times: found a share of " +
                   std::to_string(score.too_many_hits.mean) + ", expected 0.0001 at most");
-  if (score.near_misses.mean > kMaxLost)
-    out.push_back("light that passes surfaces closely " + std::to_string(SurfaceScene::kMaxPassed) +
-                  " times without a hit: found a share of " + std::to_string(score.near_misses.mean) +
-                  ", expected 0.0001 at most");
   return out;
 }
 

@@ -20,7 +20,7 @@ struct Score {
   std::vector<LimitCheck> road_limits;
   Estimate efficiency, efficiency_lossless;
   Estimate in_rectangle, outside, outside_direct;
-  Estimate mirror, mirror_back, absorber, bulk, interface, source, wrong_side, too_many_hits, near_misses;
+  Estimate mirror, mirror_back, absorber, bulk, interface, source, wrong_side, too_many_hits;
   std::uint64_t rays = 0;
   CellLight boxes;
 };

@@ -23,8 +23,7 @@ constexpr std::array kAllSums{&Sums::emitted,
                               &Sums::interface,
                               &Sums::source,
                               &Sums::wrong_side,
-                              &Sums::too_many_hits,
-                              &Sums::near_misses};
+                              &Sums::too_many_hits};
 static_assert(sizeof(Sums) == kAllSums.size() * sizeof(std::uint64_t), "a sum is missing in the list");
 
 }  // namespace

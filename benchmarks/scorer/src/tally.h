@@ -18,9 +18,8 @@ struct Sums {
   std::uint64_t emitted = 0, left = 0, left_direct = 0;
   std::uint64_t window = 0, window_lossless = 0, rectangle = 0, rectangle_direct = 0;
   std::uint64_t mirror = 0, mirror_back = 0, absorber = 0, bulk = 0, interface = 0, source = 0;
-  /// Rays that came to an interface from the wrong side, those of too many hits, and those that passed so
-  /// many surfaces closely that the search for the next hit was given up.
-  std::uint64_t wrong_side = 0, too_many_hits = 0, near_misses = 0;
+  /// Rays that came to an interface from the wrong side, and those of too many hits.
+  std::uint64_t wrong_side = 0, too_many_hits = 0;
 };
 
 /// Of one replicate.
