@@ -10,6 +10,7 @@ import time
 
 import numpy as np
 
+from . import curves
 from .entry import write_whole
 from .interpolated_rays import InterpolatedRays
 from .light_field import HEADER_BYTES, LightField
@@ -186,12 +187,14 @@ def table(measured):
 
 
 def write(out, measured, head):
-    """LB-F2.json with all numbers and LB-F2.md with the table; the page."""
+    """LB-F2.json with all numbers, LB-F2.svg with the curves and LB-F2.md with the table; the page."""
     out = pathlib.Path(out)
     out.mkdir(parents=True, exist_ok=True)
     write_whole(out / "LB-F2.json", json.dumps({**head, "models": [dataclasses.asdict(m) for m in measured]}, indent=1) + "\n")
     text = ["# LB-F2", "", f"{head['train_rays']:,} rays to make a model of, {head['test_rays']:,} others to compare with,",
             f"seed {head['seed']}; {head['program']}, commit {head['commit']}; {head['machine']}.", "",
             "Excess by view, with its standard error; in brackets the noise of the rays that the model was",
-            "made of. 0.01 is one per cent.", "", table(measured)]
+            "made of. 0.01 is one per cent.", "", "![Excess by bytes](LB-F2.svg)", "",
+            "Dashed: that noise. Excess below 0.1 % is drawn there.", "", table(measured)]
+    write_whole(out / "LB-F2.svg", curves.plot(measured))
     return write_whole(out / "LB-F2.md", "\n".join(text))

@@ -251,6 +251,7 @@ def test_models_are_measured_at_their_sizes(lucerna, tmp_path):
     page = compression.write(tmp_path, found, {"train_rays": 50_000, "test_rays": 100_000, "seed": 77, "program": "p",
                                                "commit": "c", "machine": "m"})
     assert page.read_text().count("| disk |") == len(found)
+    assert (tmp_path / "LB-F2.svg").read_text().count(" bytes, ") == len(found) * len(found[0].views)
     kept = json.loads((tmp_path / "LB-F2.json").read_text())
     assert kept["models"][0]["views"]["far"]["excess"] == found[0].views["far"].excess
 
