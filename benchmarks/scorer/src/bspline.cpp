@@ -11,6 +11,8 @@ namespace {
 
 /// Farther points are no optic, and too large for float32 to be of use.
 constexpr double kFarthestMm = 1e6;
+/// Of an axis of parameters, and the least share of it for a piece: others have no accurate polynomials.
+constexpr double kLeastDomain = 1e-6, kLargestDomain = 1e9, kLeastShare = 1e-9;
 
 }  // namespace
 
@@ -29,8 +31,14 @@ void Bspline::read_axis(const JsonNode& knots, Axis& axis) {
     if (inner && same > p)
       knots.fail(std::to_string(same) + " equal inner knots", "at most the degree: no gaps in the surface");
   }
+  const double domain = axis.knots[axis.count] - axis.knots[p];
+  if (!(domain >= kLeastDomain && domain <= kLargestDomain)) knots.fail("a domain from 1e-6 to 1e9 wide");
   for (std::size_t i = p; i < axis.count; ++i) {
     if (axis.knots[i] == axis.knots[i + 1]) continue;
+    if (axis.knots[i + 1] - axis.knots[i] < kLeastShare * domain)
+      knots.fail("a piece between knots " + std::to_string(i + 1) + " and " + std::to_string(i + 2) +
+                     " of less than 1e-9 of the domain",
+                 "knots that are the same, or farther apart");
     axis.breaks.push_back(axis.knots[i]);
     axis.pieces.push_back(piece(axis, i));
   }
@@ -66,11 +74,16 @@ Bspline::Bspline(const JsonNode& s) {
     read_axis(s.at(a == 0 ? "knots_u" : "knots_v"), axes_[a]);
   }
   if (!s.has("weights")) return;
-  for (const JsonNode& row : s.at("weights").items()) {
-    for (const JsonNode& w : row.items()) weights_.push_back(w.positive());
+  const auto weight_rows = s.at("weights").items();
+  if (weight_rows.size() != axes_[0].count)
+    s.at("weights").fail(std::to_string(weight_rows.size()) + " rows of weights",
+                         std::to_string(axes_[0].count));
+  for (const JsonNode& row : weight_rows) {
+    const auto weights = row.items();
+    if (weights.size() != axes_[1].count)
+      row.fail(std::to_string(weights.size()) + " weights", std::to_string(axes_[1].count));
+    for (const JsonNode& w : weights) weights_.push_back(w.positive());
   }
-  if (weights_.size() != points_.size())
-    s.at("weights").fail(std::to_string(weights_.size()) + " weights", std::to_string(points_.size()));
 }
 
 // By the recursion of C. de Boor, with polynomials for numbers.
@@ -103,13 +116,14 @@ Bspline::Piece Bspline::piece(const Axis& axis, std::size_t span) {
 
 template <class Degree>
 std::size_t Bspline::basis(const Axis& axis, Degree p, double x, Numbers& value, Numbers& slope) {
-  // The piece with x in it, the last one for the end of the domain: by a guess that is right for even knots.
+  // The piece with x in it, the last one for the end of the domain. For even knots the guess is right.
   const auto& breaks = axis.breaks;
   const double place = (x - breaks.front()) * axis.pieces_per_length;
   const auto last = static_cast<double>(axis.pieces.size() - 1);
   std::size_t k = place > 0.0 ? static_cast<std::size_t>(std::min(place, last)) : 0;
-  while (k > 0 && x < breaks[k]) --k;
-  while (k + 1 < axis.pieces.size() && x >= breaks[k + 1]) ++k;
+  if (x < breaks[k] || x >= breaks[k + 1])
+    k = static_cast<std::size_t>(std::upper_bound(breaks.begin() + 1, breaks.end() - 1, x) - breaks.begin()) -
+        1;
   const Piece& piece = axis.pieces[k];
   const double t = (x - breaks[k]) * piece.per_length;
   for (std::size_t i = 0; i <= p; ++i) {

@@ -41,6 +41,9 @@ class SplinePatch final : public Patch {
   explicit SplinePatch(const JsonNode& s) : spline_(s), trim_(s) {
     if (spline_.breaks(0).size() * spline_.breaks(1).size() > kMaxQuads)
       s.at("points_mm").fail("too many pieces", "at most " + std::to_string(kMaxQuads));
+    if (trim_.any() && kept_share() < kLeastKept)
+      s.at("trim").fail("less than a hundredth of the surface within it",
+                        "a surface that ends near its trim: limits see it by a grid");
   }
   SurfaceJet jet(double& u, double& v) const override {
     u = std::clamp(u, spline_.low(0), spline_.high(0));
@@ -53,6 +56,20 @@ class SplinePatch final : public Patch {
   bool keeps(double, double, const Vec3& point) const override { return trim_.keeps(point); }
 
  private:
+  /// Of a grid of parameters, what lies within the trim.
+  double kept_share() const {
+    constexpr int kSide = 100;
+    int kept = 0;
+    for (int i = 0; i < kSide * kSide; ++i) {
+      const auto at = [&](std::size_t axis, int k) {
+        return spline_.low(axis) + (spline_.high(axis) - spline_.low(axis)) * (k + 0.5) / kSide;
+      };
+      kept += trim_.keeps(spline_.at(at(0, i % kSide), at(1, i / kSide)).point) ? 1 : 0;
+    }
+    return kept / static_cast<double>(kSide * kSide);
+  }
+
+  static constexpr double kLeastKept = 0.01;
   Bspline spline_;
   Trim trim_;
 };

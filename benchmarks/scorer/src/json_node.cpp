@@ -16,13 +16,23 @@ std::string list_of(const std::vector<std::string>& words) {
   return out;
 }
 
+/// Values in values: what follows copies them, level by level.
+constexpr int kDeepest = 50;
+
 }  // namespace
 
 JsonNode JsonNode::read(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw InputError(file, "file", "nothing that can be opened", "a JSON file");
   try {
-    return {file, nlohmann::json::parse(in)};
+    const auto no_deeper = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
+      if (depth > kDeepest)
+        throw InputError(file, "file", "lists or objects more than 50 deep", "50 at most");
+      return true;
+    };
+    return {file, nlohmann::json::parse(in, no_deeper)};
+  } catch (const nlohmann::json::out_of_range&) {
+    throw InputError(file, "file", "a number beyond 1e308", "numbers that a double holds");
   } catch (const nlohmann::json::parse_error& e) {
     throw InputError(file, "byte " + std::to_string(e.byte), "text that is no JSON", "JSON (RFC 8259)");
   }

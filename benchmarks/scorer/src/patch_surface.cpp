@@ -11,6 +11,9 @@ namespace {
 /// Pieces into which knot intervals are cut, until flat ones are as near as this, or there are so many.
 constexpr double kChordMm = 1e-3;
 constexpr std::size_t kMinSteps = 128;
+/// Edges are looked at in so many places until they are cut into more pieces than this.
+constexpr int kFirstPlaces = 7;
+constexpr std::size_t kFirstPieces = 2;
 /// Newton's method ends at this distance between ray and surface.
 constexpr double kExactMm = 1e-10;
 
@@ -105,14 +108,32 @@ class PatchSurface final : public Surface {
     out.back() = ends.back();
     return out;
   }
-  /// Largest distance of the middle of an edge along an axis from the surface.
-  double chord(const std::vector<double>& along, const std::vector<double>& across, std::size_t axis) const {
+  /// Largest distance of an edge along an axis from the surface, by `places` within it: few of them can all
+  /// lie on a polynomial that leaves the edge.
+  double chord(const std::vector<double>& along, const std::vector<double>& across, std::size_t axis,
+               int places) const {
     double worst = 0.0;
     for (std::size_t k = 1; k < along.size(); ++k) {
       for (const double w : across) {
         const auto at = [&](double x) { return axis == 0 ? point(x, w) : point(w, x); };
-        const Vec3 flat = 0.5 * (at(along[k - 1]) + at(along[k]));
-        worst = std::max(worst, length(at(0.5 * (along[k - 1] + along[k])) - flat));
+        const Vec3 from = at(along[k - 1]), to = at(along[k]);
+        for (int i = 1; i <= places; ++i) {
+          const double t = static_cast<double>(i) / (places + 1);
+          const Vec3 flat = from + t * (to - from);
+          worst = std::max(worst, length(at(along[k - 1] + t * (along[k] - along[k - 1])) - flat));
+        }
+      }
+    }
+    return worst;
+  }
+  /// Largest distance of the middle of a quad from that of the diagonal that cuts it: of a surface that is
+  /// straight along an axis and yet twisted.
+  double twist(const std::vector<double>& u, const std::vector<double>& v) const {
+    double worst = 0.0;
+    for (std::size_t i = 1; i < u.size(); ++i) {
+      for (std::size_t j = 1; j < v.size(); ++j) {
+        const Vec3 flat = 0.5 * (point(u[i - 1], v[j - 1]) + point(u[i], v[j]));
+        worst = std::max(worst, length(point(0.5 * (u[i - 1] + u[i]), 0.5 * (v[j - 1] + v[j])) - flat));
       }
     }
     return worst;
@@ -123,7 +144,10 @@ class PatchSurface final : public Surface {
     const auto coarse = [&](std::size_t axis) {
       // Trimmed surfaces have steps that their rims can be found between.
       if (patch_->trimmed() && at[axis].size() < kMinSteps) return true;
-      return !patch_->straight(axis) && chord(at[axis], grid(1 - axis, 2), axis) > kChordMm;
+      // A quad's middle is as far off as the chords of its curved sides, too.
+      if (patch_->straight(axis)) return twist(at[0], at[1]) > 2.0 * kChordMm;
+      const int places = pieces[axis] <= kFirstPieces ? kFirstPlaces : 1;
+      return chord(at[axis], grid(1 - axis, 2), axis, places) > kChordMm;
     };
     std::array<bool, 2> cut_more{true, true};
     while (2 * at[0].size() * at[1].size() <= kMaxQuads) {

@@ -20,6 +20,8 @@ SurfaceScene::SurfaceScene(const std::vector<Part>& parts)
       device_(rtcNewDevice("threads=1")),
       scene_(device_ ? rtcNewScene(device_.get()) : nullptr) {
   if (!device_ || !scene_) throw std::runtime_error("Embree gives no device");
+  if (rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED) == 0)
+    throw std::runtime_error("this Embree was built without filter functions");
   for (unsigned i = 0; i < parts.size(); ++i) attach(parts[i], i);
   rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
   rtcCommitScene(scene_.get());

@@ -17,6 +17,7 @@
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
 #include <algorithm>
+#include <mutex>
 #include <set>
 
 #include "patch.h"
@@ -75,6 +76,8 @@ class FacePatch final : public Patch {
   bool straight(std::size_t) const override { return !Handle(Geom_Plane)::DownCast(surface_).IsNull(); }
   bool trimmed() const override { return true; }
   bool keeps(double u, double v, const Vec3&) const override {
+    // It keeps its place in a list of wires, so it is no function for two threads at once.
+    const std::lock_guard lock(guard_);
     return within_.Perform(gp_Pnt2d(u, v)) != TopAbs_OUT;
   }
   double side() const override { return reversed_ ? -1.0 : 1.0; }
@@ -82,6 +85,7 @@ class FacePatch final : public Patch {
  private:
   Handle(Geom_Surface) surface_;
   bool reversed_;
+  mutable std::mutex guard_;
   BRepTopAdaptor_FClass2d within_;
   std::array<double, 2> low_{}, high_{};
 };

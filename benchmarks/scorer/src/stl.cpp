@@ -4,7 +4,6 @@
 #include <cstring>
 #include <fstream>
 #include <map>
-#include <numbers>
 #include <sstream>
 
 #include "surface.h"
@@ -26,6 +25,13 @@ std::string file_bytes(const std::string& file) {
   std::ostringstream out;
   out << in.rdbuf();
   return out.str();
+}
+
+/// Of an interpolated normal from its facet.
+constexpr double kFarthestNormalDeg = 5.0;
+
+std::string shown_point(const Vec3& p) {
+  return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) + ") mm";
 }
 
 constexpr std::size_t kHead = 84, kRecord = 50;
@@ -66,6 +72,12 @@ class StlWords {
     ++at_;
   }
   Vec3 vec() { return {number(), number(), number()}; }
+  bool at_end() const { return at_ == words_.size(); }
+  /// `endsolid` may be followed by any words on its line.
+  void skip_line() {
+    const std::size_t line = words_[at_ - 1].second;
+    while (at_ < words_.size() && words_[at_].second == line) ++at_;
+  }
   /// `solid` may be followed by any words.
   void skip_to(const std::string& a, const std::string& b) {
     while (at_ < words_.size() && !next_is(a) && !next_is(b)) ++at_;
@@ -90,11 +102,8 @@ class StlWords {
   std::size_t at_ = 0;
 };
 
-std::vector<Facet> text_facets(const std::string& file, const std::string& text) {
-  StlWords words(file, text);
-  std::vector<Facet> out;
-  words.expect("solid");
-  words.skip_to("facet", "endsolid");
+/// The facets of one `solid`.
+void add_solid(StlWords& words, std::vector<Facet>& out) {
   while (words.next_is("facet")) {
     Facet f;
     words.expect("facet");
@@ -110,10 +119,20 @@ std::vector<Facet> text_facets(const std::string& file, const std::string& text)
     words.expect("endfacet");
     out.push_back(f);
   }
-  words.expect("endsolid");
-  return out;
 }
 
+std::vector<Facet> text_facets(const std::string& file, const std::string& text) {
+  StlWords words(file, text);
+  std::vector<Facet> out;
+  do {
+    words.expect("solid");
+    words.skip_to("facet", "endsolid");
+    add_solid(words, out);
+    words.expect("endsolid");
+    words.skip_line();
+  } while (!words.at_end());
+  return out;
+}
 bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 std::vector<Facet> read_facets(const std::string& file) {
@@ -137,13 +156,17 @@ std::vector<Facet> read_facets(const std::string& file) {
 
 class StlSurface final : public Surface {
  public:
-  StlSurface(const std::vector<Facet>& facets, const Frame& place, double crease_deg) {
+  StlSurface(const std::string& file, const std::vector<Facet>& facets, const Frame& place,
+             double crease_deg) {
     weld(facets, place);
     for (const auto& t : mesh_.triangles) {
       const auto& c = mesh_.corners;
       flat_.push_back(unit(cross(c[t[1]] - c[t[0]], c[t[2]] - c[t[0]])));
     }
-    if (crease_deg > 0.0) smooth(std::cos(crease_deg * std::numbers::pi / 180.0));
+    if (crease_deg > 0.0) smooth(std::cos(crease_deg * kDegree));
+    for (std::size_t k = 0; k < smooth_.size(); ++k) {
+      for (const Vec3& n : smooth_[k]) require_near(file, k, n);
+    }
   }
 
   const Triangles& triangles() const override { return mesh_; }
@@ -177,6 +200,16 @@ class StlSurface final : public Surface {
       mesh_.triangles.push_back(t);
     }
   }
+  /// Normals that lean far from a facet are no longer those of any surface near it: such a mesh could gather
+  /// light as no optic does.
+  void require_near(const std::string& file, std::size_t triangle, const Vec3& normal) const {
+    const double off_deg = std::acos(std::clamp(dot(normal, flat_[triangle]), -1.0, 1.0)) / kDegree;
+    if (off_deg > kFarthestNormalDeg)
+      throw InputError(file,
+                       "a facet with corner " + shown_point(mesh_.corners[mesh_.triangles[triangle][0]]),
+                       "an interpolated normal " + std::to_string(off_deg) + " degrees off",
+                       "5 degrees at most: smaller facets, less crease_deg, or facet normals");
+  }
   double corner_angle(std::size_t triangle, std::size_t i) const {
     const auto& t = mesh_.triangles[triangle];
     const Vec3& p = mesh_.corners[t[i]];
@@ -209,7 +242,7 @@ class StlSurface final : public Surface {
 }  // namespace
 
 std::unique_ptr<Surface> read_stl(const std::string& file, const Frame& place, double crease_deg) {
-  return std::make_unique<StlSurface>(read_facets(file), place, crease_deg);
+  return std::make_unique<StlSurface>(file, read_facets(file), place, crease_deg);
 }
 
 }  // namespace bench

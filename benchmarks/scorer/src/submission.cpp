@@ -52,7 +52,8 @@ constexpr double kFarthestMm = 1e6;
 
 void check_extent(const Surface& surface, const JsonNode& s) {
   for (const Vec3& p : surface.triangles().corners) {
-    if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kFarthestMm))
+    const auto near = [](double x) { return std::abs(x) <= kFarthestMm; };
+    if (!(near(p.x) && near(p.y) && near(p.z)))
       s.fail("a surface that reaches beyond 1e6 mm", "one within 1e6 mm of the origin");
   }
 }

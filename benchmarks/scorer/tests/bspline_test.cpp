@@ -129,7 +129,15 @@ TEST(Bspline, RefusesWhatIsNoSurface) {
             std::string::npos);
   EXPECT_NE(message("points_mm", {{{0, 0, 0}}, {{0, 0, 0}, {1, 1, 1}}}).find("/points_mm/1: found 2 points"),
             std::string::npos);
-  EXPECT_NE(message("weights", {{1, 1}}).find("found 2 weights, expected 30"), std::string::npos);
+  EXPECT_NE(message("weights", {{1, 1}}).find("found 1 rows of weights, expected 6"), std::string::npos);
+  Json ragged(6, Json(5, 1.0));
+  ragged[1].push_back(1.0);
+  EXPECT_NE(message("weights", ragged).find("/weights/1: found 6 weights, expected 5"), std::string::npos);
+  EXPECT_NE(message("knots_v", {0, 0, 0, 1e-310, 0.5, 1, 1, 1}).find("less than 1e-9 of the domain"),
+            std::string::npos);
+  EXPECT_NE(
+      message("knots_v", {-1e308, -1e308, -1e308, 0, 0.5, 1e308, 1e308, 1e308}).find("a domain from 1e-6"),
+      std::string::npos);
 }
 
 // Hits are those of the surface, not of the triangles: a line meets z = c r^2 where the quadratic says.
@@ -162,6 +170,55 @@ TEST(BsplineSurface, TrianglesOfDeepSurfacesAreNotThin) {
   }
   EXPECT_LT(along_x, 0.5);
   EXPECT_LT(along_y, 0.5);
+}
+
+/// A hit straight down at x, y on a sheet 50 wide.
+double height_hit(const Json& sheet, double x, double y) {
+  const TestFolder folder;
+  const Task task(folder.write(
+      "t.json", task_json({{"emitter", "point"}},
+                          {{"kind", "far_field"}, {"axis", "-z"}, {"function", "wall_washer"}})));
+  const Submission s(folder.write("s.json", submission_json({mirror_json(sheet, place(0.0))})), task);
+  const SurfaceScene scene(s.parts);
+  const auto found = scene.first_hit({x, y, 60}, {0, 0, -1});
+  return found.part == nullptr ? std::nan("") : 60.0 - found.hit.t;
+}
+
+// Straight along both axes and yet no plane: two triangles would miss most of it.
+TEST(BsplineSurface, TwistedSheetsAreCutFinely) {
+  Json sheet = bowl_json(0.0, 25.0);
+  sheet["degree"] = {1, 1};
+  sheet["knots_u"] = sheet["knots_v"] = {-25, -25, 25, 25};
+  sheet["points_mm"] = {{{-25, -25, 5}, {-25, 25, -5}}, {{25, -25, -5}, {25, 25, 5}}};
+  for (const double x : {-20.0, -3.0, 14.0}) {
+    for (const double y : {-18.0, 2.0, 22.0}) EXPECT_NEAR(height_hit(sheet, x, y), 5.0 * x * y / 625.0, 1e-9);
+  }
+}
+
+// One piece whose middle, and whose ends, lie on a line.
+TEST(BsplineSurface, OddProfilesAreCutFinely) {
+  const double c = 1e-4, h = 25.0;
+  // c (x^3 - h^2 x) in the Bernstein basis over [-h, h].
+  const double b = 4.0 / 3.0 * c * h * h * h;
+  Json sheet = bowl_json(0.0, h);
+  sheet["degree"] = {3, 1};
+  sheet["knots_u"] = {-h, -h, -h, -h, h, h, h, h};
+  sheet["knots_v"] = {-h, -h, h, h};
+  const double x[4] = {-h, -h / 3, h / 3, h}, z[4] = {0.0, b, -b, 0.0};
+  sheet["points_mm"] = Json::array();
+  for (int i = 0; i < 4; ++i) sheet["points_mm"].push_back({{x[i], -h, z[i]}, {x[i], h, z[i]}});
+  for (const double at : {-14.0, -2.0, 9.0, 20.0})
+    EXPECT_NEAR(height_hit(sheet, at, 3.0), c * (at * at * at - h * h * at), 1e-9) << at;
+}
+
+// Limits see a trimmed surface by a grid, so it must not be lost in a sheet.
+TEST(BsplineSurface, ASmallTrimOfALargeSheetIsRefused) {
+  Json sheet = bowl_json(0.0, 1000.0);
+  sheet["trim"] = {{"kind", "circle"}, {"diameter_mm", 100.0}};
+  EXPECT_NE(refusal([&] {
+              read_bspline(JsonNode("s.json", sheet), Frame());
+            }).find("/trim: found less than a hundredth"),
+            std::string::npos);
 }
 
 TEST(BsplineSurface, TrimTakesAway) {

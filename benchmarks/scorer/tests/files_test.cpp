@@ -96,6 +96,15 @@ TEST(Submissions, TextThatIsNoJsonIsRefusedWithItsByte) {
   const std::string file = folder.write("mine.json", std::string("{\"format\": }"));
   EXPECT_EQ(refusal([&] { Submission(file, task); }),
             file + ": byte 12: found text that is no JSON, expected JSON (RFC 8259)");
+  const auto said = [&](const std::string& text) {
+    return refusal([&] { Submission(folder.write("mine.json", text), task); });
+  };
+  EXPECT_EQ(said("{\"name\": 1e999}"),
+            file + ": file: found a number beyond 1e308, expected numbers that a double holds");
+  const std::string deep = "{\"name\": " + std::string(100'000, '[') + std::string(100'000, ']') + "}";
+  EXPECT_EQ(said(deep), file + ": file: found lists or objects more than 50 deep, expected 50 at most");
+  EXPECT_EQ(said("{\"name\": " + std::string(100'000, '[')),
+            file + ": file: found lists or objects more than 50 deep, expected 50 at most");
 }
 
 TEST(Tasks, BrokenOnesAreRefused) {

@@ -308,7 +308,7 @@ Json folded(int layers) {
 
 // Triangles whose surface is trimmed away are passed, however many.
 TEST(Score, LightPassesAnyNumberOfTrimmedLayers) {
-  const Score s = scored(task_json(kDisk, cosine(1.0, "+z")), folded(200), 1 << 14).score;
+  const Score s = scored(task_json(kDisk, cosine(1.0, "+z")), folded(201), 1 << 14).score;
   EXPECT_GT(s.in_rectangle.mean + s.outside.mean, 0.9);
   // All light ends somewhere.
   EXPECT_NEAR(s.in_rectangle.mean + s.outside.mean + s.mirror.mean + s.mirror_back.mean, 1.0, 1e-9);

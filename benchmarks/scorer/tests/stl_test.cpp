@@ -80,7 +80,7 @@ Facets roof(double angle_deg) {
 // At the ridge the interpolated normal is the mean of both; beyond the crease angle it is the facet's.
 TEST(Stl, NormalsAreInterpolatedBelowTheCrease) {
   const TestFolder folder;
-  const std::string file = folder.write("roof.stl", binary(roof(20.0), 2));
+  const std::string file = folder.write("roof.stl", binary(roof(8.0), 2));
   const auto tilt = [&](double crease) {
     Hit hit;
     const auto s = read_stl(file, Frame(), crease);
@@ -88,8 +88,32 @@ TEST(Stl, NormalsAreInterpolatedBelowTheCrease) {
     return hit.normal.x;
   };
   EXPECT_NEAR(tilt(30.0), 0.0, 1e-12);
-  EXPECT_NEAR(tilt(10.0), std::sin(10.0 * std::acos(-1.0) / 180.0), 1e-6);
-  EXPECT_NEAR(tilt(0.0), std::sin(10.0 * std::acos(-1.0) / 180.0), 1e-6);
+  EXPECT_NEAR(tilt(5.0), std::sin(4.0 * kDegree), 1e-6);
+  EXPECT_NEAR(tilt(0.0), std::sin(4.0 * kDegree), 1e-6);
+}
+
+// Teeth too fine to see, wide ones and steep ones: flat as a whole, but with interpolated normals a prism.
+TEST(Stl, NormalsFarFromTheirFacetAreRefused) {
+  const TestFolder folder;
+  const std::string file = folder.write("roof.stl", binary(roof(20.0), 2));
+  EXPECT_NE(refusal([&] { read_stl(file, Frame(), 30.0); }).find("an interpolated normal 10.0000"),
+            std::string::npos);
+  EXPECT_EQ(refusal([&] { read_stl(file, Frame(), 0.0); }), "");
+  EXPECT_EQ(refusal([&] { read_stl(file, Frame(), 15.0); }), "");
+}
+
+TEST(Stl, AllSolidsOfATextAreRead) {
+  const TestFolder folder;
+  const auto solid = [](const std::string& z) {
+    return "solid solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 " + z + "\nvertex 1 0 " + z +
+           "\nvertex 0 1 " + z + "\nendloop\nendfacet\nendsolid solid\n";
+  };
+  const auto read = [&](const std::string& text) {
+    return read_stl(folder.write("a.stl", text), Frame(), 0.0);
+  };
+  EXPECT_EQ(read(solid("0") + solid("1"))->triangles().triangles.size(), 2u);
+  EXPECT_NE(refusal([&] { read(solid("0") + "facet normal"); }).find("line 10: found facet, expected solid"),
+            std::string::npos);
 }
 
 }  // namespace
