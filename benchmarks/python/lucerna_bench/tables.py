@@ -9,7 +9,8 @@ from .entry import write_whole
 from .tasks import family_of
 
 COLUMNS = ["task", "entry", "error +- standard error, n = 48", "noise", "NMAE", "efficiency with losses",
-           "without losses", "light outside", "free parameters", "wall s", "processor s", "made on", "program, commit"]
+           "without losses", "light outside", "free parameters", "wall s", "processor s", "made on", "program, commit",
+           "scored with"]
 COLOURS = {"lucerna": "#c0392b", "plain": "#7f8c8d", "point-source": "#2980b9", "cma-es": "#27ae60", "tree": "#8e44ad"}
 
 
@@ -50,7 +51,8 @@ def row(task, method, s):
     share = lambda figure, key="value": "-" if s[figure] is None else percent(s[figure][key])
     return [task, method if s["counts"] else f"{method} (does not count: {'; '.join(s['faults'])})", quality(s),
             share("error_48", "floor"), share("nmae"), share("efficiency_with_losses"), share("efficiency_without_losses"),
-            share("outside_rectangle"), str(stated["free_parameters"]), f"{stated['wall_s']:.1f}", cpu, stated["machine"], stated["program"]]
+            share("outside_rectangle"), str(stated["free_parameters"]), f"{stated['wall_s']:.1f}", cpu, stated["machine"], stated["program"],
+            f"{s['rays']:,} rays, seed {s['seed']}"]
 
 
 def ranked(s):
@@ -100,7 +102,7 @@ def _brief(s):
 
 def table(scores):
     """The Markdown page of a family."""
-    scored = sorted({(f"{s['rays']:,} rays", f"seed {s['seed']}", s["run"]["machine"]) for _, _, s in scores})
+    machines = sorted({s["run"]["machine"] for _, _, s in scores})
     lines = ["<!-- written by benchmarks/run_entries.py -->", "",
              "Errors have their noise taken out. NMAE has it in. Light counts as shares of the source's flux.", "",
              _line(COLUMNS), "|" + "---|" * len(COLUMNS)]
@@ -111,7 +113,7 @@ def table(scores):
             headline = 2 if s["headline"] == "error_48" else 5
             cells[headline] = f"**{cells[headline]}**"
         lines.append(_line(cells))
-    lines += ["", "Scored with:", "", *("- " + ", ".join(x) for x in scored)]
+    lines += ["", f"Scored on: {'; '.join(machines)}."]
     return "\n".join(lines) + "\n"
 
 

@@ -112,7 +112,7 @@ def test_tables_hold_what_the_scores_say():
     lines = [line for line in text.splitlines() if line.startswith("| LB-9-x")]
     rows = [[c.strip() for c in line.strip("|").split(" | ")] for line in lines]
     assert rows[0] == ["LB-9-x", "lucerna", "**1.23 % +- 0.04 %**", "0.56 %", "7.89 %", "81.11 %", "92.22 %", "3.33 %",
-                       "44", "60.2", "118.5", "a box", "p, commit abc"]
+                       "44", "60.2", "118.5", "a box", "p, commit abc", "1,000 rays, seed 77"]
     assert len(rows[0]) == len(tables.COLUMNS)
     assert rows[1][1] == "tree (does not count: too wide)" and rows[1][2] == "50.00 % +- 10.00 %"
     assert "seed 77" in text and "scoring box" in text
