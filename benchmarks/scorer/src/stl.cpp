@@ -28,7 +28,7 @@ std::string file_bytes(const std::string& file) {
 }
 
 /// Of an interpolated normal from its facet.
-constexpr double kFarthestNormalDeg = 5.0;
+constexpr double kFarthestNormalDeg = 10.0;
 
 std::string shown_point(const Vec3& p) {
   return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) + ") mm";
@@ -208,26 +208,27 @@ class StlSurface final : public Surface {
       throw InputError(file,
                        "a facet with corner " + shown_point(mesh_.corners[mesh_.triangles[triangle][0]]),
                        "an interpolated normal " + std::to_string(off_deg) + " degrees off",
-                       "5 degrees at most: smaller facets, less crease_deg, or facet normals");
+                       "10 degrees at most: smaller facets, less crease_deg, or facet normals");
   }
-  double corner_angle(std::size_t triangle, std::size_t i) const {
+  double area(std::size_t triangle) const {
     const auto& t = mesh_.triangles[triangle];
-    const Vec3& p = mesh_.corners[t[i]];
-    const Vec3 a = unit(mesh_.corners[t[(i + 1) % 3]] - p), b = unit(mesh_.corners[t[(i + 2) % 3]] - p);
-    return std::acos(std::clamp(dot(a, b), -1.0, 1.0));
+    const Vec3& a = mesh_.corners[t[0]];
+    return 0.5 * length(cross(mesh_.corners[t[1]] - a, mesh_.corners[t[2]] - a));
   }
+  /// By areas: so the normals' mean is that of the sheet as a whole, and teeth too fine to see send light
+  /// where a flat sheet would.
   void smooth(double min_cosine) {
     std::vector<std::vector<std::pair<std::uint32_t, double>>> around(mesh_.corners.size());
     for (std::size_t k = 0; k < mesh_.triangles.size(); ++k) {
-      for (std::size_t i = 0; i < 3; ++i)
-        around[mesh_.triangles[k][i]].emplace_back(static_cast<std::uint32_t>(k), corner_angle(k, i));
+      for (const std::uint32_t corner : mesh_.triangles[k])
+        around[corner].emplace_back(static_cast<std::uint32_t>(k), area(k));
     }
     smooth_.resize(mesh_.triangles.size());
     for (std::size_t k = 0; k < mesh_.triangles.size(); ++k) {
       for (std::size_t i = 0; i < 3; ++i) {
         Vec3 sum;
-        for (const auto& [other, angle] : around[mesh_.triangles[k][i]]) {
-          if (dot(flat_[k], flat_[other]) >= min_cosine) sum = sum + angle * flat_[other];
+        for (const auto& [other, weight] : around[mesh_.triangles[k][i]]) {
+          if (dot(flat_[k], flat_[other]) >= min_cosine) sum = sum + weight * flat_[other];
         }
         smooth_[k][i] = unit(sum);
       }

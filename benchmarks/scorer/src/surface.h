@@ -52,7 +52,8 @@ double distance(const Surface& surface, const Vec3& from);
 
 /// An STL file, binary or text (3D Systems 1989). The corners' order gives the normals, stored ones must not
 /// point against it. With `crease_deg` > 0 normals are interpolated between corners: those of the facets that
-/// meet there within that angle, weighted by their angles at the corner. With 0 facets are flat.
+/// meet there within that angle, weighted by their areas; no more than 10 degrees off a facet. With 0 facets
+/// are flat.
 std::unique_ptr<Surface> read_stl(const std::string& file, const Frame& place, double crease_deg);
 
 /// The faces of a STEP file, read by OpenCASCADE, one by one; they are traced themselves. Normals are those
