@@ -264,7 +264,8 @@ TentBins target_window(const DesignProblem& problem) {
 
 namespace {
 
-std::string placement(const DesignProblem& problem, const char* key) {
+/// A line of the given mirror that is not its shape; empty if it has none.
+std::string given_key(const DesignProblem& problem, const char* key) {
   const auto* reflectors = toml_tables(problem.project)["reflector"].as_array();
   const auto* table = reflectors != nullptr ? reflectors->get(0)->as_table() : nullptr;
   const auto* node = table != nullptr ? table->get(key) : nullptr;
@@ -306,8 +307,9 @@ std::string reflector_toml(const DesignProblem& problem, const DesignShape& shap
                         2.0 * aperture.half_y_mm());
   }
   text += fmt::format("hole_diameter_mm = {}\n", 2.0 * aperture.hole_radius_mm());
-  for (const char* key : {"position_mm", "axis", "turn_deg", "reflectance", "slope_error_mrad"}) {
-    text += placement(problem, key);
+  for (const char* key :
+       {"position_mm", "axis", "turn_deg", "reflectance", "metal", "wavelength_nm", "slope_error_mrad"}) {
+    text += given_key(problem, key);
   }
   return text;
 }

@@ -331,6 +331,29 @@ TEST(DesignProblem, RefusesWhatLightPassesBeforeItsTimeIsSpent) {
   }
 }
 
+TEST(DesignProblem, TheWrittenMirrorHasTheGivenSurface) {
+  const TempDir folder;
+  write_target(folder.path());
+  const auto read = [&](const std::string& text) {
+    write_file(folder / "project.toml", text);
+    return design_problem(read_project(folder / "project.toml"), folder / "project.toml");
+  };
+  for (const char* surface :
+       {"metal = \"silver\"\nwavelength_nm = 450\n", "reflectance = [[0, 0.9], [60, 0.8]]\n"}) {
+    std::string given_mirror = mirror("family = \"revolution\"\npreset = \"parabola\"\nfocal_mm = 8\n");
+    const std::string plain = "reflectance = 0.9\n";
+    given_mirror.replace(given_mirror.find(plain), plain.size(), surface);
+    const DesignProblem p =
+        read(kSource + given_mirror + "slope_error_mrad = 3\n[target]\nfile = \"target.ies\"\n");
+    const DesignProblem again = read(project_text(with_shape(p, p.start)));
+    const PlacedReflector &given = p.project.scene.reflectors[0], &kept = again.project.scene.reflectors[0];
+    EXPECT_LT(given.reflectance.at(1.0), 1.0);
+    for (const double cosine : {0.1, 0.5, 1.0})
+      EXPECT_EQ(kept.reflectance.at(cosine), given.reflectance.at(cosine));
+    EXPECT_EQ(kept.slope_error_mrad, 3.0);
+  }
+}
+
 TEST(DesignProblem, RefusesATargetBehindTheMirror) {
   const TempDir folder;
   write_target(folder.path());
