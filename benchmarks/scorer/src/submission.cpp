@@ -16,8 +16,9 @@ std::string beside(const JsonNode& name) {
   namespace fs = std::filesystem;
   const fs::path given = name.text(), folder = fs::path(name.file()).parent_path(), file = folder / given;
   std::error_code none;
-  const fs::path home = fs::weakly_canonical(folder.empty() ? "." : folder, none);
-  const fs::path real = fs::weakly_canonical(file, none);
+  // Of what is not there, only an absolute path has a canonical one.
+  const fs::path home = fs::weakly_canonical(fs::absolute(folder.empty() ? "." : folder), none);
+  const fs::path real = fs::weakly_canonical(fs::absolute(file), none);
   const bool within = std::mismatch(home.begin(), home.end(), real.begin(), real.end()).first == home.end();
   if (given.empty() || given.is_absolute() || !within) name.fail("a file in the folder of the submission");
   if (fs::exists(file, none) && !fs::is_regular_file(file, none))
