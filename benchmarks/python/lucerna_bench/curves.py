@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Error against bytes of small models: an SVG with a row of panels a source, a panel a view, a line a method."""
 import html
-import math
 
+from .log_axis import Axis
 from .views import NAMES
 
 COLOURS = {"lucerna": "#c0392b", "thesis": "#8e44ad", "light-field": "#2980b9", "picked-rays": "#7f8c8d",
@@ -10,23 +10,6 @@ COLOURS = {"lucerna": "#c0392b", "thesis": "#8e44ad", "light-field": "#2980b9", 
 LEFT, TOP, WIDE, HIGH, GAP = 120, 46, 130, 96, 12
 # Excess below this is drawn at it: noise leaves nothing of it.
 LEAST = 1e-3
-
-
-class Axis:
-    """A logarithmic one, from decade to decade of what is on it."""
-
-    def __init__(self, values, low_px, high_px):
-        self.low = math.floor(math.log10(min(values)))
-        self.high = max(self.low + 1, math.ceil(math.log10(max(values)) - 1e-9))
-        self.low_px, self.high_px = low_px, high_px
-
-    def __call__(self, value):
-        share = (math.log10(value) - self.low) / (self.high - self.low)
-        return self.low_px + (self.high_px - self.low_px) * share
-
-    @property
-    def decades(self):
-        return [10.0**k for k in range(self.low, self.high + 1)]
 
 
 def plot(measured):

@@ -6,6 +6,7 @@ import math
 import pathlib
 
 from .entry import write_whole
+from .log_axis import Axis
 from .tasks import family_of
 
 COLUMNS = ["task", "entry", "error +- standard error, n = 48", "noise", "NMAE", "efficiency with losses",
@@ -122,16 +123,15 @@ def plot(scores, title):
     tasks = sorted({task for task, _, _ in scores})
     methods = [m for m in COLOURS if any(m == method for _, method, _ in scores)]
     errors = [max(1e-5, loss(s)[0]) for _, _, s in scores]
-    low = math.floor(math.log10(min(errors)))
-    high = max(low + 1, math.ceil(math.log10(max(errors))))
     left, width, high_px, top = 16 + 7 * max(map(len, tasks)), 420, 26, 40
-    x = lambda e: left + width * (math.log10(max(10.0**low, e)) - low) / (high - low)
+    axis = Axis(errors, left, left + width)
+    x = lambda e: axis(max(axis.decades[0], e))
     bottom = top + high_px * len(tasks)
     shapes = []
-    for k in range(low, high + 1):
-        at = x(10.0**k)
+    for decade in axis.decades:
+        at = x(decade)
         shapes += [f'<line x1="{at:.1f}" y1="{top - 4}" x2="{at:.1f}" y2="{bottom}" stroke="#dddddd"/>',
-                   f'<text x="{at:.1f}" y="{bottom + 14}" text-anchor="middle">{100 * 10.0**k:g} %</text>']
+                   f'<text x="{at:.1f}" y="{bottom + 14}" text-anchor="middle">{100 * decade:g} %</text>']
     for i, task in enumerate(tasks):
         y = top + high_px * (i + 0.5)
         shapes.append(f'<text x="{left - 8}" y="{y + 4:.1f}" text-anchor="end">{html.escape(task)}</text>')

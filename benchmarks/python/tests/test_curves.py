@@ -4,7 +4,7 @@ import re
 import xml.etree.ElementTree as xml
 
 import pytest
-from lucerna_bench import curves
+from lucerna_bench import curves, log_axis
 from lucerna_bench.compression import Measured
 from lucerna_bench.views import NAMES, Difference
 
@@ -48,6 +48,6 @@ def test_a_panel_a_source_and_view_and_names_are_escaped():
 
 @pytest.mark.parametrize("values, decades", [([1, 10], [1, 10]), ([3], [1, 10]), ([2, 2000], [1, 10, 100, 1000, 10000])])
 def test_axes_end_at_decades(values, decades):
-    axis = curves.Axis(values, 0, 100)
+    axis = log_axis.Axis(values, 0, 100)
     assert axis.decades == pytest.approx(decades)
     assert (axis(decades[0]), axis(decades[-1])) == pytest.approx((0, 100))
