@@ -200,6 +200,7 @@ const std::map<std::string, std::string> kPublicHeaders{
     {"reflector.h", "optics"},
     {"detectors.h", "trace"},
     {"project.h", "project"},
+    {"scatter.h", "trace"},
     {"scene.h", "trace"},
     {"trace.h", "trace"},
     {"trace_metrics.h", "trace"},

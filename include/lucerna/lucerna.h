@@ -34,6 +34,7 @@
 #include "lucerna/rays.h"
 #include "lucerna/reflector.h"
 #include "lucerna/report.h"
+#include "lucerna/scatter.h"
 #include "lucerna/scene.h"
 #include "lucerna/source.h"
 #include "lucerna/source_model.h"

@@ -16,6 +16,7 @@
 #include "lucerna/host_device.h"
 #include "lucerna/mesh.h"
 #include "lucerna/reflector.h"
+#include "lucerna/scatter.h"
 #include "lucerna/source.h"
 
 #pragma GCC visibility push(default)
@@ -96,6 +97,8 @@ struct Body {
   double smooth_below_deg = 0.0;
   /// As PlacedReflector::slope_error_mrad, on both sides.
   double slope_error_mrad = 0.0;
+  /// As PlacedReflector::scatter, on both sides.
+  Scatter scatter;
 };
 
 /// Throws InputError unless the body has triangles, 0 <= smooth_below_deg <= 180 and 0 <= slope_error_mrad <=
@@ -168,12 +171,18 @@ struct Solid {
   /// this it is a curve without kinks through its corners (a C2 cubic spline); 0: all sides are straight. At
   /// most 180.
   double smooth_below_deg = 20.0;
+  /// How the surface scatters what it reflects and what it lets through, about the direction of a smooth one.
+  Scatter scatter;
+  /// Of an outline: the sides that scatter, each with all of its face, from one edge to the next; empty for
+  /// all. Side 0 leads from the first corner to the second; `face` is that from the last corner on.
+  std::vector<std::size_t> scatter_sides;
 };
 
 /// Throws InputError naming what is out of its range, and for a surface that is open or partly turned, or an
 /// outline as solid_of_revolution refuses it, or whose curve crosses itself. With a face, for an outline that
 /// is not as `face` says, or turns into the wall by no more than `smooth_below_deg`, and a face that is not
-/// finite, is not above the outline at one of 64 x 64 points, or has its rim not above the wall's lower end.
+/// finite, is not above the outline at one of 64 x 64 points, or has its rim not above the wall's lower end;
+/// and for scatter_sides of a mesh, of a body without lobes, that are not there or lie on the axis.
 /// O(triangles log triangles + corners^2).
 void check(const Solid& solid);
 /// How far the triangles of an outline may leave it, over its size, where they are only shown.
@@ -220,6 +229,8 @@ struct PlacedReflector {
   /// Standard deviation of the surface normal's tilt about each of two perpendicular axes, Gaussian; >= 0.
   /// Every reflection draws its own tilt.
   double slope_error_mrad = 0.0;
+  /// How what is returned is scattered, about the direction that a tilted normal mirrors it to.
+  Scatter scatter;
 };
 
 /// All that light can hit, and what looks at it. Plain data; `trace` checks it.

@@ -34,6 +34,10 @@ void check_alone(const TomlReader& root, const Scene& scene) {
                           scene.solids.size(), scene.solids.empty() ? "" : ", of triangles or several"),
               ErrorCause::unsupported);
   }
+  if (!scene.solids.front().scatter_sides.empty())
+    root.fail("body",
+              "found `scatter_sides` of a lens that is to be shaped, expected lobes on all of it or none",
+              ErrorCause::unsupported);
   if (scene.solids.front().face) {
     root.fail("body",
               "found a solid with a [body.face], expected one of revolution, whose `free_sides` are shaped",

@@ -55,8 +55,7 @@ class FormMaker {
     if (runs.empty()) throw InputError("the outline has no edge: expected faces that edges or the axis end");
     std::vector<bool> free;
     for (const OutlineRun& run : runs) {
-      bool is_free = false;
-      for (std::size_t i = run.from; i < run.to; ++i) is_free = is_free || free_side[i % given.size()];
+      const bool is_free = free_side[run.from % given.size()];
       free.push_back(is_free);
       add_run(given, run, is_free, intervals);
     }
@@ -128,29 +127,14 @@ class FormMaker {
   std::size_t count_ = 0;
 };
 
-/// By sides of the counter-clockwise outline.
-std::vector<bool> free_sides_of(std::span<const OutlinePoint> given, const Corners& turned,
-                                std::span<const std::size_t> sides) {
-  const std::size_t n = given.size();
-  const bool is_turned = given.front() != turned.front() || given[1] != turned[1];
-  std::vector<bool> out(n, false);
-  for (const std::size_t side : sides) {
-    if (side >= n) throw InputError(fmt::format("side {} of an outline of {} sides", side, n));
-    if (given[side][0] == 0.0 && given[(side + 1) % n][0] == 0.0)
-      throw InputError(fmt::format("side {} lies on the axis and makes no face", side));
-    // Side i of a reversed outline leads from corner n - 1 - i back to n - 2 - i.
-    out[is_turned ? (2 * n - 2 - side) % n : side] = true;
-  }
-  return out;
-}
-
 }  // namespace
 
 LensShape::LensShape(std::span<const OutlinePoint> outline_mm, double smooth_below_deg,
                      std::span<const std::size_t> free_sides, int intervals) {
   static_cast<void>(outline_sides(outline_mm, smooth_below_deg, kCoarse * outline_reach_mm(outline_mm)));
   const Corners corners = counter_clockwise(outline_mm);
-  FormMaker made(corners, smooth_below_deg, free_sides_of(outline_mm, corners, free_sides), intervals);
+  FormMaker made(corners, smooth_below_deg, sides_of_faces(outline_mm, smooth_below_deg, free_sides),
+                 intervals);
   if (made.form.parameters == 0) throw InputError("no side of the outline is free to be shaped");
   form_ = std::make_shared<const LensForm>(std::move(made.form));
   *this = with(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(form_->parameters)));

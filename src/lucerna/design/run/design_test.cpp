@@ -339,7 +339,9 @@ TEST(DesignProblem, TheWrittenMirrorHasTheGivenSurface) {
     return design_problem(read_project(folder / "project.toml"), folder / "project.toml");
   };
   for (const char* surface :
-       {"metal = \"silver\"\nwavelength_nm = 450\n", "reflectance = [[0, 0.9], [60, 0.8]]\n"}) {
+       {"metal = \"silver\"\nwavelength_nm = 450\n", "reflectance = [[0, 0.9], [60, 0.8]]\n",
+        "reflectance = 0.8\nscatter = [{ model = \"gaussian\", share = 0.2, sigma = 0.05 }]\n",
+        "data_sheet = { total = 0.8, diffuse = 0.2 }\n"}) {
     std::string given_mirror = mirror("family = \"revolution\"\npreset = \"parabola\"\nfocal_mm = 8\n");
     const std::string plain = "reflectance = 0.9\n";
     given_mirror.replace(given_mirror.find(plain), plain.size(), surface);
@@ -351,6 +353,9 @@ TEST(DesignProblem, TheWrittenMirrorHasTheGivenSurface) {
     for (const double cosine : {0.1, 0.5, 1.0})
       EXPECT_EQ(kept.reflectance.at(cosine), given.reflectance.at(cosine));
     EXPECT_EQ(kept.slope_error_mrad, 3.0);
+    const Direction up = Direction::from({0.0, 0.0, 1.0}), aside = Direction::from({0.3, 0.0, 1.0});
+    EXPECT_EQ(kept.scatter.brdf(up, up, aside), given.scatter.brdf(up, up, aside));
+    EXPECT_EQ(given.scatter.empty(), std::string(surface).find("0.2") == std::string::npos);
   }
 }
 

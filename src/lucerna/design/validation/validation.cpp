@@ -130,8 +130,8 @@ class Meshes {
   std::shared_ptr<const MeshHitFinder> direct_, returning_;
 };
 
-bool has_slope_errors(const Scene& scene) {
-  const auto has = [](const auto& thing) { return thing.slope_error_mrad > 0.0; };
+bool is_rough(const Scene& scene) {
+  const auto has = [](const auto& thing) { return is_rough(finish_of(thing)); };
   return std::any_of(scene.reflectors.begin(), scene.reflectors.end(), has) ||
          std::any_of(scene.bodies.begin(), scene.bodies.end(), has);
 }
@@ -147,7 +147,7 @@ class BatchTracer {
         boxes_(boxes),
         zones_(zones),
         world_from_local_(meshes.local_from_world().inverse()),
-        keyed_(has_slope_errors(scene)) {}
+        keyed_(is_rough(scene)) {}
 
   /// Adds the rays of a block of numbers to the batch, and traces it when it is full.
   void add_block(std::uint64_t block, BoxSums& sums) {
@@ -280,7 +280,7 @@ class BatchTracer {
       return false;
     }
     const Direction face = Direction::from_unit(normal);
-    return reflect_off(i, mirror.reflectance.at(towards), mirror.slope_error_mrad, {0.0, 0, face, face},
+    return reflect_off(i, mirror.reflectance.at(towards), finish_of(mirror), {0.0, 0, face, face},
                        sums.absorbed);
   }
 
@@ -291,10 +291,10 @@ class BatchTracer {
     const BodyHit hit =
         body_hit(d, 0.0, mesh, meshes_.normal(mesh, triangle), meshes_.corners(mesh, triangle),
                  static_cast<double>(hits_.u[i]), static_cast<double>(hits_.v[i]));
-    return reflect_off(i, body.reflectance.at(-dot(d, hit.normal)), body.slope_error_mrad, hit, sums.bodies);
+    return reflect_off(i, body.reflectance.at(-dot(d, hit.normal)), finish_of(body), hit, sums.bodies);
   }
 
-  bool reflect_off(std::size_t i, double reflectance, double slope_error_mrad, const BodyHit& hit,
+  bool reflect_off(std::size_t i, double reflectance, const SurfaceFinish& finish, const BodyHit& hit,
                    double& absorbed) {
     absorbed += (1.0 - reflectance) * flux_[i];
     flux_[i] *= reflectance;
@@ -302,7 +302,7 @@ class BatchTracer {
     const Direction d = Direction::from(direction(i));
     const Vec3 at =
         origin(i) + static_cast<double>(hits_.t[i]) * d.vec() + meshes_.lift_mm() * hit.face.vec();
-    set(i, at, reflected_off(slope_error_mrad, d, hit, key_[i]));
+    set(i, at, reflected_off(finish, d, hit, key_[i]));
     return true;
   }
 
@@ -317,7 +317,7 @@ class BatchTracer {
   MeshRays rays_;
   MeshHits hits_;
   double flux_[kMeshBatch], spare_flux_[kMeshBatch];
-  /// Kept only where slope errors are drawn.
+  /// Kept only where chance decides where a reflection goes.
   bool keyed_;
   ReflectionKey key_[kMeshBatch], spare_key_[kMeshBatch];
   static constexpr std::uint32_t kSortSide = 128;

@@ -81,7 +81,9 @@ OutlineCurve ring_through(const Points& corners) {
     run.push_back(corners[(i + n * kOverlap - kOverlap) % n]);
   const OutlineCurve curve = spline_through(run, {}, {});
   const auto first = curve.begin() + kOverlap;
-  return {first, first + static_cast<std::ptrdiff_t>(n)};
+  OutlineCurve out(first, first + static_cast<std::ptrdiff_t>(n));
+  for (std::size_t i = 0; i < n; ++i) out[i].corner = i;
+  return out;
 }
 
 /// All of a closed outline: a piece a side, without those along the axis.
@@ -165,6 +167,30 @@ std::vector<OutlineSide> outline_sides(std::span<const OutlinePoint> corners_mm,
   return straight_pieces(curve, tolerance_mm);
 }
 
+std::vector<bool> sides_of_faces(std::span<const OutlinePoint> given, double smooth_below_deg,
+                                 std::span<const std::size_t> sides) {
+  const std::size_t n = given.size();
+  const Points turned = counter_clockwise(given);
+  const bool is_turned = outline_area(given) < 0.0;
+  std::vector<bool> named(n, false);
+  for (const std::size_t side : sides) {
+    if (side >= n) throw InputError(fmt::format("side {} of an outline of {} sides", side, n));
+    if (given[side][0] == 0.0 && given[(side + 1) % n][0] == 0.0)
+      throw InputError(fmt::format("side {} lies on the axis and makes no face", side));
+    // Side i of a reversed outline leads from corner n - 1 - i back to n - 2 - i.
+    named[is_turned ? (2 * n - 2 - side) % n : side] = true;
+  }
+  const std::vector<OutlineRun> runs = outline_runs(turned, smooth_below_deg);
+  if (runs.empty()) return std::vector<bool>(n, !sides.empty());
+  std::vector<bool> out(n, false);
+  for (const OutlineRun& run : runs) {
+    bool any = false;
+    for (std::size_t i = run.from; i < run.to; ++i) any = any || named[i % n];
+    for (std::size_t i = run.from; i < run.to; ++i) out[i % n] = any;
+  }
+  return out;
+}
+
 std::vector<OutlineRun> outline_runs(std::span<const OutlinePoint> corners_mm, double smooth_below_deg) {
   const RunEnds ends(corners_mm, smooth_below_deg);
   const std::size_t n = corners_mm.size();
@@ -188,8 +214,11 @@ std::vector<OutlineRun> outline_runs(std::span<const OutlinePoint> corners_mm, d
 
 std::vector<OutlinePiece<double>> run_curve(std::span<const OutlinePoint> corners_mm, const OutlineRun& run) {
   Points points;
-  for (std::size_t i = run.from; i <= run.to; ++i) points.push_back(corners_mm[i % corners_mm.size()]);
-  return spline_through(points, run.start, run.end);
+  const std::size_t n = corners_mm.size();
+  for (std::size_t i = run.from; i <= run.to; ++i) points.push_back(corners_mm[i % n]);
+  OutlineCurve out = spline_through(points, run.start, run.end);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].corner = (run.from + i) % n;
+  return out;
 }
 
 int straight_pieces_of(const OutlinePiece<double>& piece, double tolerance_mm) {
@@ -214,7 +243,7 @@ void add_sides(const OutlinePiece<double>& piece, int n, std::vector<OutlineSide
   for (int k = 1; k <= n; ++k) {
     const double u = static_cast<double>(k - 1) / n, v = static_cast<double>(k) / n;
     const OutlinePoint to = k == n ? piece.to : point(v);
-    if (norm(to - from) > 0.0) sides.push_back({from, to, normal(u), normal(v)});
+    if (norm(to - from) > 0.0) sides.push_back({from, to, normal(u), normal(v), piece.corner});
     from = to;
   }
 }

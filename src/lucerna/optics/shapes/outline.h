@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,8 @@ double turn_deg(std::span<const OutlinePoint> corners_mm, std::size_t i);
 /// ends.
 struct OutlineSide {
   OutlinePoint from, to, from_normal, to_normal;
+  /// The corner of the counter-clockwise outline at which the side that it is a piece of begins.
+  std::size_t corner = 0;
 };
 
 /// The outline in straight pieces, counter-clockwise, without those along the axis. Between corners that turn
@@ -35,6 +38,13 @@ struct OutlineSide {
 /// Throws InputError as check_outline does, and for a spline that crosses itself.
 std::vector<OutlineSide> outline_sides(std::span<const OutlinePoint> corners_mm, double smooth_below_deg,
                                        double tolerance_mm);
+
+/// By corners of the counter-clockwise outline: does the side that begins there belong to a face, from one
+/// edge or the axis to the next, of which one of `sides` is a part? These are numbered from 0 as
+/// `corners_mm` has them, side 0 from the first corner to the second. Throws InputError for a side that is
+/// not there or lies on the axis.
+std::vector<bool> sides_of_faces(std::span<const OutlinePoint> corners_mm, double smooth_below_deg,
+                                 std::span<const std::size_t> sides);
 
 /// The largest distance of a corner from the origin, mm.
 double outline_reach_mm(std::span<const OutlinePoint> corners_mm);

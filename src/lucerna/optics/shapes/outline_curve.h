@@ -29,6 +29,8 @@ inline constexpr CurveEnd kOnAxis{SplineEnd::natural, SplineEnd::flat};
 template <class T>
 struct OutlinePiece {
   std::array<T, 2> from, to, from_slope, to_slope;
+  /// As OutlineSide has it.
+  std::size_t corner = 0;
 };
 
 /// The spline through points over the length of the chords; two points are joined by a straight side.
@@ -69,7 +71,7 @@ struct OutlineRun {
 /// and on the axis, without those along the axis; in order. Empty for an outline that is smooth all about.
 std::vector<OutlineRun> outline_runs(std::span<const OutlinePoint> corners_mm, double smooth_below_deg);
 
-/// The curve of a run of these corners, a piece a side.
+/// The curve of a run of these corners, a piece a side, each with its corner.
 std::vector<OutlinePiece<double>> run_curve(std::span<const OutlinePoint> corners_mm, const OutlineRun& run);
 
 /// The point of a piece, the first and the second derivative there over 0 to 1.

@@ -118,5 +118,44 @@ TEST(Outline, ACurveThatCrossesItselfIsRefused) {
             std::string::npos);
 }
 
+// A plate with a rim, a curved top of three sides, and its axis, numbered either way round.
+TEST(SidesOfFaces, AreWholeFacesInTheGivenOrder) {
+  const std::vector<OutlinePoint> plate{{0, 0}, {10, 0}, {10, 2}, {7, 3}, {4, 3.5}, {0, 3.7}};
+  std::vector<OutlinePoint> reversed(plate.rbegin(), plate.rend());
+  using Flags = std::vector<bool>;
+  const auto of = [](const std::vector<OutlinePoint>& corners, std::size_t side) {
+    return sides_of_faces(corners, 30.0, std::vector{side});
+  };
+  EXPECT_EQ(of(plate, 0), (Flags{true, false, false, false, false, false}));
+  for (const std::size_t side : {2u, 3u, 4u})
+    EXPECT_EQ(of(plate, side), (Flags{false, false, true, true, true, false})) << side;
+  // Reversed, its sides are: 0 to 2 the top, 3 the rim, 4 below.
+  EXPECT_EQ(of(reversed, 4), of(plate, 0));
+  EXPECT_EQ(of(reversed, 3), of(plate, 1));
+  EXPECT_EQ(of(reversed, 0), of(plate, 2));
+  EXPECT_THROW((void)of(plate, 5), InputError) << "along the axis";
+  EXPECT_THROW((void)of(plate, 6), InputError);
+}
+
+TEST(OutlineSides, KnowTheirCorner) {
+  const std::vector<OutlinePoint> plate{{0, 0}, {10, 0}, {10, 2}, {7, 3}, {4, 3.5}, {0, 3.7}};
+  std::vector<bool> seen(plate.size(), false);
+  for (const OutlineSide& s : outline_sides(plate, 30.0, 1e-6)) {
+    seen[s.corner] = true;
+    if (s.from == plate[s.corner]) continue;
+    EXPECT_GT(s.corner, 1u) << "straight sides are one piece";
+  }
+  EXPECT_EQ(seen, (std::vector<bool>{true, true, true, true, true, false}));
+  std::vector<OutlinePoint> ring;  // smooth all about
+  for (int i = 0; i < 12; ++i)
+    ring.push_back({5.0 + std::cos(i * std::numbers::pi / 6.0), std::sin(i * std::numbers::pi / 6.0)});
+  std::size_t corner = 0;
+  for (const OutlineSide& s : outline_sides(ring, 40.0, 1e-4)) {
+    if (s.corner != corner) ++corner;
+    EXPECT_EQ(s.corner, corner);
+  }
+  EXPECT_EQ(corner, 11u);
+}
+
 }  // namespace
 }  // namespace lucerna

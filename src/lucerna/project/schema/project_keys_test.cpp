@@ -82,12 +82,13 @@ TEST(ProjectKeys, WordsAreThoseThatTheLibraryKnows) {
 // parser reads is looked for in their text.
 TEST(ProjectKeys, EachIsReadSomewhere) {
   std::string parsers;
-  for (const char* file : {"project/sections/project.cpp", "project/sections/project_source.cpp",
-                           "project/sections/project_reflector.cpp", "project/sections/project_body.cpp",
-                           "project/sections/project_detector.cpp", "design/run/design_problem.cpp",
-                           "design/problem/design_limits.cpp", "design/problem/target.cpp",
-                           "design/lens/lens_problem.cpp", "design/lens/lens_limits.cpp",
-                           "design/problem/target_zone.cpp", "design/validation/tolerances.cpp"}) {
+  for (const char* file :
+       {"project/sections/project.cpp", "project/sections/project_source.cpp",
+        "project/sections/project_reflector.cpp", "project/sections/project_body.cpp",
+        "project/sections/project_detector.cpp", "project/sections/project_surface.cpp",
+        "design/run/design_problem.cpp", "design/problem/design_limits.cpp", "design/problem/target.cpp",
+        "design/lens/lens_problem.cpp", "design/lens/lens_limits.cpp", "design/problem/target_zone.cpp",
+        "design/validation/tolerances.cpp"}) {
     parsers += read_file(test::source_dir() / "src/lucerna" / file, 1 << 20);
   }
   for (const ProjectKey& k : project_keys()) {

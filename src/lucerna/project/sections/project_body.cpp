@@ -11,33 +11,6 @@
 
 namespace lucerna::project_parts {
 
-namespace {
-
-constexpr double kWavelengthNm = 555.0;
-
-Reflectance read_metal(TomlReader& reader) {
-  if (reader.has("reflectance")) reader.fail("reflectance", "found `metal` too, which says what it is");
-  const std::string metal = reader.required_word("metal");
-  const double wavelength_nm = reader.number("wavelength_nm", kWavelengthNm);
-  return at_key(reader, "wavelength_nm", [&] { return metal_reflectance(metal, wavelength_nm); });
-}
-
-}  // namespace
-
-Reflectance read_reflectance(TomlReader& reader) {
-  if (reader.has("metal")) return read_metal(reader);
-  if (reader.has("wavelength_nm")) reader.fail("wavelength_nm", "belongs to `metal`, which is not there");
-  return at_key(reader, "reflectance", [&] {
-    if (!reader.has_array("reflectance")) return Reflectance(reader.number("reflectance", 1.0));
-    std::vector<Reflectance::Entry> table;
-    const auto pairs = reader.pairs("reflectance");
-    for (const auto& [angle, value] : *pairs) table.push_back({angle, value});
-    return Reflectance(std::move(table));
-  });
-}
-
-double read_slope_error(TomlReader& reader) { return reader.number("slope_error_mrad", 0.0); }
-
 std::shared_ptr<const Mesh> read_mesh_file(TomlReader& reader, Project& project) {
   const auto file = reader.file("file");
   if (!file) reader.missing("file", "an .stl or .obj file");
@@ -163,7 +136,15 @@ Solid read_solid(TomlReader& reader, Project& project) {
   solid.refractive_index = medium.refractive_index;
   solid.absorption_per_mm = read_absorption_per_mm(reader, medium);
   solid.smooth_below_deg = reader.number("smooth_below_deg", solid.smooth_below_deg);
-  at_key(reader, solid.face ? "face" : "role", [&] { check(solid); });
+  solid.scatter = read_scatter(reader);
+  const auto rough = reader.number_or_numbers("scatter_sides");
+  if (rough && solid.scatter.empty())
+    reader.fail("scatter_sides", "belongs to `scatter`, which is not there");
+  if (rough && solid.mesh) reader.fail("scatter_sides", "belongs to `outline_mm`, which is not there");
+  if (rough && rough->empty()) reader.fail("scatter_sides", "found an empty list, expected numbers of sides");
+  for (const double side : rough.value_or(std::vector<double>()))
+    solid.scatter_sides.push_back(static_cast<std::size_t>(side));
+  at_key(reader, rough ? "scatter_sides" : solid.face ? "face" : "role", [&] { check(solid); });
   return solid;
 }
 
@@ -190,10 +171,13 @@ void read_body(TomlReader reader, Project& project) {
   body.world_from_body = read_placement(reader);
   body.only_returning_light = role == "lamp";
   if (role == "mirror") {
-    body.reflectance = read_reflectance(reader);
-    body.slope_error_mrad = read_slope_error(reader);
+    MirrorSurface surface = read_mirror_surface(reader, project);
+    body.reflectance = std::move(surface.reflectance);
+    body.slope_error_mrad = surface.slope_error_mrad;
+    body.scatter = std::move(surface.scatter);
   }
-  for (const char* key : {"reflectance", "metal", "wavelength_nm", "slope_error_mrad"}) {
+  for (const char* key :
+       {"reflectance", "metal", "wavelength_nm", "slope_error_mrad", "scatter", "data_sheet"}) {
     if (role != "mirror" && reader.has(key))
       reader.fail(key, fmt::format("belongs to role = \"mirror\"; this is {}", role));
   }

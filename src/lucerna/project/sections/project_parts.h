@@ -36,11 +36,22 @@ PlacedSource read_source(TomlReader reader, Project& project, Progress& progress
 /// `file` with `scale` (mm per unit of the file): a mesh that belongs to the project.
 std::shared_ptr<const Mesh> read_mesh_file(TomlReader& reader, Project& project);
 
-/// A number, or [[angle of incidence in degrees, value], ...].
-Reflectance read_reflectance(TomlReader& reader);
+/// At which a refractive index is taken where a table does not say.
+inline constexpr double kWavelengthNm = 555.0;
 
-/// `slope_error_mrad`, 0 to 1000; 0 if it is not there.
-double read_slope_error(TomlReader& reader);
+/// What light meets at a mirror.
+struct MirrorSurface {
+  Reflectance reflectance{1.0};
+  double slope_error_mrad = 0.0;
+  Scatter scatter;
+};
+
+/// The lobes of [[scatter]]; none where it is not there.
+Scatter read_scatter(TomlReader& reader);
+
+/// `reflectance` or `metal` with [[scatter]], or [data_sheet]; `slope_error_mrad`. What a data sheet makes
+/// assume is one of the project's warnings.
+MirrorSurface read_mirror_surface(TomlReader& reader, Project& project);
 
 /// The cause of loss that a body is: `name`, by default its file's name without the ending
 /// (-2, -3, ... where that is taken); `otherwise` if it has no file.

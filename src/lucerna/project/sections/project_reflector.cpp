@@ -181,8 +181,10 @@ void read_mesh_mirror(TomlReader& reader, Project& project) {
   Body body;
   body.name = read_cause(reader, project.scene, "body");
   body.world_from_body = read_placement(reader);
-  body.reflectance = read_reflectance(reader);
-  body.slope_error_mrad = read_slope_error(reader);
+  MirrorSurface surface = read_mirror_surface(reader, project);
+  body.reflectance = std::move(surface.reflectance);
+  body.slope_error_mrad = surface.slope_error_mrad;
+  body.scatter = std::move(surface.scatter);
   const bool smooth = reader.flag("smooth_normals").value_or(false);
   if (!smooth && reader.has("crease_deg")) reader.fail("crease_deg", "needs smooth_normals = true");
   if (smooth) body.smooth_below_deg = reader.number("crease_deg", 30.0);
@@ -221,8 +223,10 @@ void read_reflector(TomlReader reader, Project& project) {
   PlacedReflector placed;
   placed.world_from_reflector = read_placement(reader);
   placed.reflector = read_family(reader, family, project);
-  placed.reflectance = read_reflectance(reader);
-  placed.slope_error_mrad = read_slope_error(reader);
+  MirrorSurface surface = read_mirror_surface(reader, project);
+  placed.reflectance = std::move(surface.reflectance);
+  placed.slope_error_mrad = surface.slope_error_mrad;
+  placed.scatter = std::move(surface.scatter);
   reader.finish();
   project.scene.reflectors.push_back(std::move(placed));
 }

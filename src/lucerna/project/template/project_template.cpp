@@ -46,6 +46,8 @@ axis = "-z"                   # the mirror opens downward
 turn_deg = 0.0
 reflectance = 0.92
 slope_error_mrad = 0.0        # Gaussian tilt of the normal, standard deviation about each of two axes
+#scatter = [{ model = "lambert", share = 0.05 }, { model = "gaussian", share = 0.3, sigma = 0.02 }]   # of what it returns
+# Or, instead of reflectance and scatter: data_sheet = { total = 0.87, diffuse = 0.12, gloss_60 = 450 }
 
 # A profile as points [r, z] from the vertex to the rim, a spline through them; reflectance over the angle of incidence.
 #[[reflector]]
@@ -165,6 +167,8 @@ slope_error_mrad = 0.0        # Gaussian tilt of the normal, standard deviation 
 #outline_mm = [[0, 0], [20, 0], [20, 2], [0, 6]]
 #refractive_index = 1.49       # or material = "pmma", wavelength_nm = 555
 #absorption_per_mm = 0.0005
+#scatter_sides = 2             # a frosted face
+#scatter = [{ model = "gaussian", share = 1.0, sigma = 0.2 }]
 #position_mm = [0, 0, -40]
 
 # ---- detectors: any number at once; the name names the files ----

@@ -48,6 +48,7 @@ std::string no_backward_reason(const Scene& scene) {
   for (const PlacedReflector& r : scene.reflectors) {
     if (r.reflector.curve) return "a mirror is a swept curve";
     if (faceted(r.reflector) != nullptr) return "a mirror is faceted";
+    if (!r.scatter.empty()) return "a mirror scatters";
   }
   for (const Body& b : scene.bodies) {
     if (b.reflectance.max() > 0.0) return "a body reflects";

@@ -26,11 +26,12 @@ namespace {
   [[maybe_unused]] const auto& [sources, mirrors, far_fields, planes, luminances, rays, bodies, glasses,
                                 solids] = scene;
   for (const PlacedReflector& placed : mirrors) {
-    [[maybe_unused]] const auto& [reflector, frame, reflectance, slope_error_mrad] = placed;
+    [[maybe_unused]] const auto& [reflector, frame, reflectance, slope_error_mrad, scatter] = placed;
     [[maybe_unused]] const auto& [surface, aperture, curve] = reflector;
   }
   for (const Body& body : bodies) {
-    [[maybe_unused]] const auto& [name, mesh, frame, reflectance, only_returning, smooth_deg, slope] = body;
+    [[maybe_unused]] const auto& [name, mesh, frame, reflectance, only_returning, smooth_deg, slope,
+                                  scatter] = body;
   }
   for (const CoverGlass& glass : glasses) {
     [[maybe_unused]] const auto& [name, aperture, thickness_mm, index, absorption, frame] = glass;
@@ -86,6 +87,13 @@ DeviceScene::DeviceScene(Accelerator& accelerator, const Scene& scene, const Ray
   add_detectors(scene);
 }
 
+template <class Mirror>
+SurfaceFinish DeviceScene::put_finish(const Mirror& mirror) {
+  SurfaceFinish finish = finish_of(mirror);
+  finish.lobes = put(finish.lobes, finish.lobe_count);
+  return finish;
+}
+
 void DeviceScene::add_bodies(const Scene& scene) {
   if (scene.bodies.empty()) return;
   std::vector<BodyView> bodies;
@@ -95,8 +103,7 @@ void DeviceScene::add_bodies(const Scene& scene) {
     const auto& table = body.reflectance.table();
     const std::vector<Vec3> corners = smooth_normals(body);
     bodies.push_back({put(table.data(), table.size()), static_cast<std::uint32_t>(table.size()),
-                      body.slope_error_mrad,
-                      corners.empty() ? nullptr : put(corners.data(), corners.size())});
+                      put_finish(body), corners.empty() ? nullptr : put(corners.data(), corners.size())});
   }
   const auto tree = [&](bool returning) {
     const TriangleBvh made(scene.bodies, returning);
@@ -157,7 +164,7 @@ void DeviceScene::add_mirror(const PlacedReflector& placed, int cells) {
   const auto& table = placed.reflectance.table();
   m.reflectance = put(table.data(), table.size());
   m.reflectance_entries = static_cast<std::uint32_t>(table.size());
-  m.slope_error_rad = 1e-3 * placed.slope_error_mrad;
+  m.finish = put_finish(placed);
   const Reflector& reflector = placed.reflector;
   HierarchyView h;
   if (reflector.curve) {

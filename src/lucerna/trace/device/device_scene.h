@@ -38,6 +38,9 @@ class DeviceScene {
  private:
   template <class T>
   const T* put(const T* data, std::size_t n);
+  /// With its lobes.
+  template <class Mirror>
+  SurfaceFinish put_finish(const Mirror& mirror);
   SourceView source_view(const PlacedSource& source, double ray_flux);
   void add_mirror(const PlacedReflector& placed, int cells);
   /// Uploads a field and makes `view` of it; its tree is still to be made.

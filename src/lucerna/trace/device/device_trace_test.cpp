@@ -57,6 +57,15 @@ Scene exact_scene_of(const Reflector& mirror) {
   return scene;
 }
 
+TEST(DeviceTrace, ScatteredLightIsTheCpusToTheBit) {
+  Scene scene = test::with_glasses(scene_of(cylinder()));
+  scene.reflectors[0].scatter = Scatter({lambert_lobe(0.2), abg_lobe(0.01, 1e-4, 2.0)});
+  scene.reflectors[1].scatter = Scatter({gaussian_lobe(0.6, 0.05)});
+  const TraceResult device = trace_on(emulated(), scene, kScalar);
+  expect_same(trace(scene, kScalar), device);
+  expect_closed(device);
+}
+
 TEST(DeviceTrace, MirrorsThatAreNoHeightFieldAreTheCpusToTheBit) {
   for (const Reflector& family : test::exact_families()) {
     for (const Scene& scene : {scene_of(cylinder(), family), exact_scene_of(family)}) {

@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "lucerna/scene.h"
+#include "lucerna/trace/engines/surface_finish.h"
 #include "lucerna/trace/kernels/body_kernel.h"
 
 namespace lucerna {
 
 inline Direction reflected_off(const Body& body, const Direction& direction, const BodyHit& hit,
                                const ReflectionKey& key) {
-  return reflected_off(body.slope_error_mrad, direction, hit, key);
+  return reflected_off(finish_of(body), direction, hit, key);
 }
 
 /// Three normals a triangle, in the luminaire frame, if the body is smooth; else none.

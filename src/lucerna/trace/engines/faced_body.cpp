@@ -2,7 +2,6 @@
 #include "lucerna/trace/engines/faced_body.h"
 
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 #include "lucerna/optics/shapes/faced_outline.h"
@@ -11,8 +10,6 @@ namespace lucerna {
 
 namespace {
 
-/// The part that is the face; sides of the outline are counted from 0.
-constexpr std::int32_t kFacePart = std::numeric_limits<std::int32_t>::max();
 /// Wall and face overlap by so much at the rim, over the radius: no ray slips through between them.
 constexpr double kOverlap = 1e-10;
 /// Cells of the face's quadtree, 2^this a side.
@@ -24,7 +21,7 @@ std::vector<OutlineSide> closed_sides(std::span<const OutlinePoint> corners_mm, 
   std::vector<OutlineSide> out = faced_base_sides(corners_mm, smooth_below_deg, tolerance_mm);
   const OutlinePoint& low = corners_mm[corners_mm.size() - 2];
   const double radius = low[0], top = face.range({-radius, radius, -radius, radius}).high_mm;
-  out.push_back({low, {radius, top}, {1.0, 0.0}, {1.0, 0.0}});
+  out.push_back({low, {radius, top}, {1.0, 0.0}, {1.0, 0.0}, corners_mm.size() - 2});
   return out;
 }
 
@@ -37,15 +34,19 @@ Reflector face_within(std::shared_ptr<const HeightSurface> face, double radius_m
 FacedBody::FacedBody(std::span<const OutlinePoint> corners_mm,
                      const std::shared_ptr<const HeightSurface>& face, double smooth_below_deg,
                      double tolerance_mm)
-    : FacedBody(closed_sides(corners_mm, *face, smooth_below_deg, tolerance_mm), face, corners_mm.back()[0]) {
-}
+    : FacedBody(closed_sides(corners_mm, *face, smooth_below_deg, tolerance_mm), face, corners_mm.back()[0],
+                corners_mm.size() - 1) {}
 
 FacedBody::FacedBody(const std::vector<OutlineSide>& sides, std::shared_ptr<const HeightSurface> face,
-                     double radius_mm)
+                     double radius_mm, std::size_t last_corner)
     : face_(std::move(face)),
       below_(sides),
       wall_(static_cast<std::int32_t>(sides.size()) - 1),
-      face_tracer_(face_within(face_, radius_mm), kLevels) {}
+      top_(wall_ + 1),
+      face_tracer_(face_within(face_, radius_mm), kLevels) {
+  for (const OutlineSide& s : sides) corners_.push_back(s.corner);
+  corners_.push_back(last_corner);
+}
 
 SurfaceHit FacedBody::first_below(const Ray& ray, double t_min_mm, double t_max_mm) const {
   const RevolvedSurface surface{below_.view()};
@@ -64,7 +65,7 @@ SurfaceHit FacedBody::first(const Ray& ray, double t_min_mm, double t_max_mm) co
   if (!face) return below;
   const double t_mm = t_min_mm + face->t_mm;
   if (t_mm >= (below.part < 0 ? t_max_mm : below.t_mm)) return below;
-  return {kFacePart, t_mm, 0.0, 0.0};
+  return {top_, t_mm, 0.0, 0.0};
 }
 
 Vec3 FacedBody::face_normal(const Vec3& point_mm) const {
@@ -73,12 +74,12 @@ Vec3 FacedBody::face_normal(const Vec3& point_mm) const {
 }
 
 Vec3 FacedBody::outward(const Vec3& point_mm, const SurfaceHit& hit) const {
-  if (hit.part == kFacePart) return face_normal(point_mm);
+  if (hit.part == top_) return face_normal(point_mm);
   return RevolvedSurface{below_.view()}.outward(point_mm, hit);
 }
 
 Vec3 FacedBody::smooth(const Vec3& point_mm, const SurfaceHit& hit) const {
-  if (hit.part == kFacePart) return face_normal(point_mm);
+  if (hit.part == top_) return face_normal(point_mm);
   return RevolvedSurface{below_.view()}.smooth(point_mm, hit);
 }
 

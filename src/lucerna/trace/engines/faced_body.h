@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "lucerna/optics/shapes/outline.h"
 #include "lucerna/trace/engines/reference_tracer.h"
@@ -22,9 +23,13 @@ class FacedBody {
   Vec3 outward(const Vec3& point_mm, const SurfaceHit& hit) const;
   Vec3 smooth(const Vec3& point_mm, const SurfaceHit& hit) const;
 
+  /// Of each part of the surface: the corner at which its side of the outline begins; the last one's is the
+  /// outline's last, for the face.
+  const std::vector<std::size_t>& corners() const { return corners_; }
+
  private:
   FacedBody(const std::vector<OutlineSide>& sides, std::shared_ptr<const HeightSurface> face,
-            double radius_mm);
+            double radius_mm, std::size_t last_corner);
 
   /// The first place of the base or of the wall below the face's rim.
   SurfaceHit first_below(const Ray& ray, double t_min_mm, double t_max_mm) const;
@@ -32,7 +37,9 @@ class FacedBody {
 
   std::shared_ptr<const HeightSurface> face_;
   RevolvedTree below_;
-  std::int32_t wall_;
+  std::vector<std::size_t> corners_;
+  /// The parts that are wall and face, which come last.
+  std::int32_t wall_, top_;
   ReferenceTracer face_tracer_;
 };
 

@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "lucerna/trace/engines/reference_tracer.h"
+#include "lucerna/trace/engines/surface_finish.h"
 #include "lucerna/trace/engines/trace_engine.h"
-#include "lucerna/trace/kernels/slope_error.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
 namespace lucerna {
@@ -22,7 +22,7 @@ class ReferenceEngine final : public TraceEngine {
         kind_(options.sequence) {
     for (const PlacedReflector& r : scene.reflectors) {
       mirrors_.push_back({ReferenceTracer(r.reflector), r.world_from_reflector,
-                          r.world_from_reflector.inverse(), r.reflectance, 1e-3 * r.slope_error_mrad});
+                          r.world_from_reflector.inverse(), r.reflectance, finish_of(r)});
     }
   }
 
@@ -47,7 +47,7 @@ class ReferenceEngine final : public TraceEngine {
     ReferenceTracer tracer;
     Frame world_from_mirror, mirror_from_world;
     Reflectance reflectance;
-    double slope_error_rad;
+    SurfaceFinish finish;
   };
   struct Nearest {
     const Mirror* mirror = nullptr;
@@ -128,9 +128,12 @@ class ReferenceEngine final : public TraceEngine {
           absorb(energy, n.mirror->reflectance.at(cosine), static_cast<std::size_t>(MirrorLoss::face), tally);
       ++bounce;
       ++tally.reflections;
-      const double slope = n.mirror->slope_error_rad;
-      const Direction normal = slope > 0.0 ? tilted_normal(n.hit.normal, slope, key) : n.hit.normal;
-      const Direction out = Direction::from(reflect(n.local.direction, normal));
+      const SurfaceFinish& finish = n.mirror->finish;
+      const Direction normal = finish.slope_error_rad > 0.0
+                                   ? tilted_normal(n.hit.normal, finish.slope_error_rad, key)
+                                   : n.hit.normal;
+      Direction out = Direction::from(reflect(n.local.direction, normal));
+      if (finish.lobe_count > 0) out = scattered(finish, normal, out, key);
       ray = n.mirror->world_from_mirror.ray({n.hit.point_mm, out});
     }
   }

@@ -84,6 +84,43 @@ std::unique_ptr<const FacedBody> faced_body(const Solid& solid) {
                                            tolerance_mm);
 }
 
+/// By corners of the outline of a body, with the face's lid where it has one: does what begins there scatter?
+std::vector<bool> rough_corners(const Solid& solid) {
+  if (solid.face == nullptr)
+    return sides_of_faces(solid.outline_mm, solid.smooth_below_deg, solid.scatter_sides);
+  return sides_of_faces(faced_base(solid.outline_mm, solid.smooth_below_deg).corners, solid.smooth_below_deg,
+                        solid.scatter_sides);
+}
+
+/// The same by parts of its surface, which begin at these corners.
+std::vector<std::uint8_t> rough_parts(const Solid& solid, const std::vector<std::size_t>& corners) {
+  if (solid.scatter_sides.empty()) return {};
+  const std::vector<bool> rough = rough_corners(solid);
+  std::vector<std::uint8_t> out;
+  for (const std::size_t corner : corners) out.push_back(rough[corner] ? 1 : 0);
+  return out;
+}
+
+std::vector<std::size_t> corners_of(const std::vector<OutlineSide>& sides) {
+  std::vector<std::size_t> out;
+  for (const OutlineSide& s : sides) out.push_back(s.corner);
+  return out;
+}
+
+void check_scatter_sides(const Solid& solid) {
+  if (solid.scatter_sides.empty()) return;
+  const auto fail = [&](const std::string& why) {
+    throw InputError(fmt::format("solid '{}': scatter_sides: {}", solid.name, why));
+  };
+  if (solid.scatter.empty()) fail("no lobes that they could have");
+  if (solid.mesh != nullptr) fail("a mesh has no sides, expected an outline");
+  try {
+    static_cast<void>(rough_corners(solid));
+  } catch (const InputError& e) {
+    fail(e.what());
+  }
+}
+
 }  // namespace
 
 void check(const Solid& solid) {
@@ -111,6 +148,7 @@ void check(const Solid& solid) {
   } else {
     (void)sides_of(solid, kSurfaceTolerance);
   }
+  check_scatter_sides(solid);
 }
 
 std::shared_ptr<const Mesh> surface_mesh(const Solid& solid, double tolerance) {
@@ -137,6 +175,7 @@ SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
     check(s);
     Traced traced;
     traced.medium = {s.refractive_index, s.absorption_per_mm};
+    traced.scatter = s.scatter;
     traced.world_from_solid = s.world_from_solid;
     traced.solid_from_world = s.world_from_solid.inverse();
     if (s.mesh != nullptr) {
@@ -146,12 +185,21 @@ SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
       traced.corner_normals = smooth_normals(meshes.back());
     } else if (s.face != nullptr) {
       traced.faced = faced_body(s);
+      traced.rough = rough_parts(s, traced.faced->corners());
     } else {
-      traced.revolved = std::make_unique<const RevolvedTree>(sides_of(s, kCurveTolerance));
+      const std::vector<OutlineSide> sides = sides_of(s, kCurveTolerance);
+      traced.revolved = std::make_unique<const RevolvedTree>(sides);
+      traced.rough = rough_parts(s, corners_of(sides));
     }
     solids_.push_back(std::move(traced));
   }
   if (!meshes.empty()) tree_ = std::make_unique<const TriangleBvh>(meshes, true);
+}
+
+SolidFinish SolidTracer::Traced::finish() const {
+  const auto& lobes = scatter.lobes();
+  return {{0.0, lobes.data(), static_cast<std::uint32_t>(lobes.size())},
+          rough.empty() ? nullptr : rough.data()};
 }
 
 std::optional<GlassHit> SolidTracer::first_hit(const Ray& ray, double t_max_mm, bool started) const {
@@ -183,13 +231,13 @@ GlassPassage SolidTracer::pass(const Ray& ray, const GlassHit& hit, const Reflec
   const SurfaceHit at{hit.part, hit.t_mm, hit.u, hit.v};
   if (solid.is_of_triangles()) {
     const Vec3* const normals = solid.corner_normals.empty() ? nullptr : solid.corner_normals.data();
-    return through_solid(TriangleSurface{tree_->view(), solid.sense, normals}, solid.medium, ray, at, key,
-                         [&](const Vec3& point) {
+    return through_solid(TriangleSurface{tree_->view(), solid.sense, normals}, solid.medium, solid.finish(),
+                         ray, at, key, [&](const Vec3& point) {
                            if (visit) visit(point);
                          });
   }
   GlassPassage out = solid.with_surface([&](const auto& surface) {
-    return through_solid(surface, solid.medium, solid.solid_from_world.ray(ray), at, key,
+    return through_solid(surface, solid.medium, solid.finish(), solid.solid_from_world.ray(ray), at, key,
                          [&](const Vec3& point) {
                            if (visit) visit(solid.world_from_solid.point(point));
                          });

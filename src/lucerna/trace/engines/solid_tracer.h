@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -40,7 +41,11 @@ class SolidTracer {
     Frame world_from_solid, solid_from_world;
     double sense = 1.0;
     std::vector<Vec3> corner_normals;
+    /// What scatters, and where: by parts of the surface, empty for everywhere.
+    Scatter scatter;
+    std::vector<std::uint8_t> rough;
 
+    SolidFinish finish() const;
     bool is_of_triangles() const { return revolved == nullptr && faced == nullptr; }
     /// Calls `use` with the surface, in the body's frame; not of triangles.
     template <class Use>

@@ -11,12 +11,12 @@
 #include "lucerna/core/io/error.h"
 #include "lucerna/optics/height_field/height_field.h"
 #include "lucerna/trace/detectors/far_field_grid.h"
+#include "lucerna/trace/engines/surface_finish.h"
 #include "lucerna/trace/engines/trace_engine.h"
 #include "lucerna/trace/kernels/curve_view.h"
 #include "lucerna/trace/kernels/exact_mirrors.h"
 #include "lucerna/trace/kernels/facet_mirror.h"
 #include "lucerna/trace/kernels/field_view.h"
-#include "lucerna/trace/kernels/slope_error.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
 namespace lucerna {
@@ -49,7 +49,7 @@ class WavefrontEngine final : public TraceEngine {
            facets_[i] ? facets_[i]->view() : FacetView{},
            r.reflector.curve ? view_of(*r.reflector.curve, r.reflector.aperture) : CurveView{},
            view_of(r.world_from_reflector), view_of(r.world_from_reflector.inverse()), &r.reflectance,
-           1e-3 * r.slope_error_mrad});
+           finish_of(r)});
     }
   }
 
@@ -79,7 +79,7 @@ class WavefrontEngine final : public TraceEngine {
     CurveView curve;
     FrameView world_from_mirror, mirror_from_world;
     const Reflectance* reflectance;
-    double slope_error_rad;
+    SurfaceFinish finish;
   };
   /// All rays of one run on their way.
   struct Batch {
@@ -139,8 +139,8 @@ class WavefrontEngine final : public TraceEngine {
       if (!bodies().empty()) intersect_bodies(batch, n, bounce, mirror_hits);
       if (!glasses().empty()) intersect_glasses(batch, n, bounce, mirror_hits);
       for (std::size_t m = 0; m < mirrors_.size(); ++m) {
-        if (mirrors_[m].slope_error_rad > 0.0)
-          tilt(mirrors_[m].slope_error_rad, batch.rays, n, run, bounce, mirror_hits[m].hits);
+        if (mirrors_[m].finish.slope_error_rad > 0.0)
+          tilt(mirrors_[m].finish.slope_error_rad, batch.rays, n, run, bounce, mirror_hits[m].hits);
       }
       n = resolve_interactions(batch, n, mirror_hits, {run.sequence_seed, run.first, bounce}, tally);
       count_leaving(batch, left_before, bounce, tally);
@@ -185,6 +185,25 @@ class WavefrontEngine final : public TraceEngine {
     }
   }
 
+  /// Of a hit, in the mirror's frame.
+  static Direction normal_of(const LocalHits& hits, std::size_t i) {
+    return Direction::from({-static_cast<double>(hits.gx[i]), -static_cast<double>(hits.gy[i]),
+                            static_cast<double>(hits.gz[i])});
+  }
+
+  /// Sends on by its lobes what mirror `m` has mirrored.
+  void scatter(std::size_t m, const LocalHits& hits, std::size_t n, ReflectionKey first,
+               WorldRays& rays) const {
+    for (std::size_t i = 0; i < n; ++i) {
+      if (hits.state[i] != kFront) continue;
+      ReflectionKey key = first;
+      key.ray += static_cast<std::uint64_t>(rays.number[i]);
+      const Direction normal = turned(mirrors_[m].world_from_mirror, normal_of(hits, i));
+      const Ray mirrored = ray_of(rays, i);
+      put(rays, i, {mirrored.origin_mm, scattered(mirrors_[m].finish, normal, mirrored.direction, key)});
+    }
+  }
+
   /// Gives the normals of all reflections of one mirror their slope error.
   static void tilt(double slope_error_rad, const WorldRays& rays, std::size_t n, const SourceRun& run,
                    int bounce, LocalHits& hits) {
@@ -192,9 +211,7 @@ class WavefrontEngine final : public TraceEngine {
       if (hits.state[i] != kFront) continue;
       const ReflectionKey key{run.sequence_seed, run.first + static_cast<std::uint64_t>(rays.number[i]),
                               bounce};
-      const Vec3 normal{-static_cast<double>(hits.gx[i]), -static_cast<double>(hits.gy[i]),
-                        static_cast<double>(hits.gz[i])};
-      const Vec3 t = tilted_normal(Direction::from(normal), slope_error_rad, key);
+      const Vec3 t = tilted_normal(normal_of(hits, i), slope_error_rad, key);
       hits.gx[i] = static_cast<float>(-t.x);
       hits.gy[i] = static_cast<float>(-t.y);
       hits.gz[i] = static_cast<float>(t.z);
@@ -328,9 +345,10 @@ class WavefrontEngine final : public TraceEngine {
   /// Reflects what met mirror `m`, less what that absorbs, and notes its status; `reflected` is how often
   /// before.
   void reflect_off(std::size_t m, const MirrorHits& at_mirror, std::size_t n, const std::int32_t* reflected,
-                   Batch& batch, std::int32_t* status, Tally& tally) const {
+                   const ReflectionKey& first, Batch& batch, std::int32_t* status, Tally& tally) const {
     const LocalHits& hits = at_mirror.hits;
     kernels_.reflect(mirrors_[m].world_from_mirror, at_mirror.rays, hits, n, batch.rays, batch.cosine);
+    if (mirrors_[m].finish.lobe_count > 0) scatter(m, hits, n, first, batch.rays);
     alignas(64) double throughput[kBatch];
     const Reflectance& reflectance = *mirrors_[m].reflectance;
     if (reflectance.is_constant()) {
@@ -362,7 +380,7 @@ class WavefrontEngine final : public TraceEngine {
       reflected[i] = reflections(batch, rays, i, bounce);
     }
     for (std::size_t m = 0; m < mirrors_.size(); ++m)
-      reflect_off(m, mirror_hits[m], n, reflected, batch, status, tally);
+      reflect_off(m, mirror_hits[m], n, reflected, first, batch, status, tally);
     for (std::size_t i = 0; !glasses().empty() && i < n; ++i) {
       if (status[i] >= 0) ++batch.reflections[static_cast<std::size_t>(rays.number[i])];
     }

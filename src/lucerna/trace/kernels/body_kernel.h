@@ -7,7 +7,7 @@
 #include "lucerna/geometry.h"
 #include "lucerna/host_device.h"
 #include "lucerna/scene.h"
-#include "lucerna/trace/kernels/slope_error.h"
+#include "lucerna/trace/kernels/scatter_kernel.h"
 #include "lucerna/trace/kernels/triangle_kernel.h"
 
 namespace lucerna {
@@ -56,21 +56,25 @@ LUCERNA_HD inline BodyHit body_hit(const Direction& direction, double t_mm, std:
   return smoothed_hit(direction, t_mm, body, normal, blended_normal(corners, u, v));
 }
 
-/// Where a mirror reflects a ray that met it: about the normal, tilted by the body's slope error of this
-/// reflection. What a tilt sends into the triangle is reflected there once more: nothing leaks through.
-LUCERNA_HD inline Direction reflected_off(double slope_error_mrad, const Direction& direction,
+/// Where a mirror sends a ray that met it: about the normal, tilted by its slope error of this reflection,
+/// and on by its lobes. What of this leads into the triangle is reflected there once more: nothing leaks
+/// through.
+LUCERNA_HD inline Direction reflected_off(const SurfaceFinish& finish, const Direction& direction,
                                           const BodyHit& hit, const ReflectionKey& key) {
-  if (!(slope_error_mrad > 0.0)) return Direction::from(reflect(direction, hit.normal));
-  const Direction normal = tilted_normal(hit.normal, 1e-3 * slope_error_mrad, key);
-  const Direction out = Direction::from(reflect(direction, normal));
-  return dot(out, hit.face) < 0.0 ? Direction::from(reflect(out, hit.face)) : out;
+  const bool tilts = finish.slope_error_rad > 0.0;
+  const Direction normal = tilts ? tilted_normal(hit.normal, finish.slope_error_rad, key) : hit.normal;
+  Direction out = Direction::from(reflect(direction, normal));
+  if (finish.lobe_count > 0) out = scattered(finish, normal, out, key);
+  return (tilts || finish.lobe_count > 0) && dot(out, hit.face) < 0.0
+             ? Direction::from(reflect(out, hit.face))
+             : out;
 }
 
 /// A body as a kernel reads it.
 struct BodyView {
   const ReflectanceEntry* reflectance = nullptr;
   std::uint32_t reflectance_entries = 0;
-  double slope_error_mrad = 0.0;
+  SurfaceFinish finish;
   /// Three a triangle, in the luminaire frame; null for flat triangles.
   const Vec3* corner_normals = nullptr;
 };

@@ -75,7 +75,7 @@ struct MirrorView {
   FrameView world_from_mirror, mirror_from_world;
   const ReflectanceEntry* reflectance = nullptr;
   std::uint32_t reflectance_entries = 0;
-  double slope_error_rad = 0.0;
+  SurfaceFinish finish;
   /// In the field's place, if they have any nodes or columns (kExactMirrors):
   CurveView curve{};
   FacetView facets{};

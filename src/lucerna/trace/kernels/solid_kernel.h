@@ -11,6 +11,7 @@
 #include "lucerna/trace/kernels/body_kernel.h"
 #include "lucerna/trace/kernels/cover_glass_kernel.h"
 #include "lucerna/trace/kernels/revolved_kernel.h"
+#include "lucerna/trace/kernels/scatter_kernel.h"
 #include "lucerna/trace/kernels/triangle_kernel.h"
 
 namespace lucerna {
@@ -65,6 +66,16 @@ struct MediumView {
 struct SurfaceHit {
   std::int32_t part = -1;  ///< none
   double t_mm = 0.0, u = 0.0, v = 0.0;
+};
+
+/// Lobes of a body's surface. `rough`: by parts of it, 1 where it has them; null: everywhere.
+struct SolidFinish {
+  SurfaceFinish lobes;
+  const std::uint8_t* rough = nullptr;
+
+  LUCERNA_HD bool scatters_at(const SurfaceHit& hit) const {
+    return lobes.lobe_count > 0 && (rough == nullptr || rough[hit.part] != 0);
+  }
 };
 
 /// A ray inside a body that starts on its surface is not stopped by what is nearer than this, mm.
@@ -169,12 +180,26 @@ LUCERNA_HD inline bool cross_boundary(PolarisedRay& light, const BoundaryHit& at
   return reflected;
 }
 
+/// Turns light that has just left a boundary by the body's lobes; what they take is unpolarised. What would
+/// come out on the other side of the surface goes on as it was.
+LUCERNA_HD inline void scatter_on(const SurfaceFinish& lobes, const Direction& normal, const Vec3& outward,
+                                  double index, Rng& rng, PolarisedRay& light) {
+  const Direction smooth = light.ray.direction;
+  const bool same_side = dot(smooth, normal) > 0.0;
+  const Direction side = same_side ? normal : Direction::from(-1.0 * normal.vec());
+  const Direction out = scattered(lobes, side, smooth, index, rng);
+  if (out == smooth || (dot(outward, out.vec()) > 0.0) != (dot(outward, smooth.vec()) > 0.0)) return;
+  light.ray.direction = out;
+  light.field = any_field(out, side, rng.uniform());
+}
+
 /// Follows a ray that met a clear body until it is outside again: reflected there, or after all its way
 /// within. One branch is taken by chance at each boundary, with weight 1. Polarisation is kept within the
 /// body. `visit` is called with every point of the surface on the way. What is given up has `lost` set.
 template <class Surface, class Visit>
-LUCERNA_HD inline GlassPassage through_solid(const Surface& surface, const MediumView& medium, const Ray& ray,
-                                             SurfaceHit hit, const ReflectionKey& key, const Visit& visit) {
+LUCERNA_HD inline GlassPassage through_solid(const Surface& surface, const MediumView& medium,
+                                             const SolidFinish& finish, const Ray& ray, SurfaceHit hit,
+                                             const ReflectionKey& key, const Visit& visit) {
   // The streams of cover glasses: a ray meets one thing at a time.
   Rng rng(key.sequence_seed, key.ray, 0x20000u + static_cast<std::uint32_t>(key.bounce));
   GlassPassage out;
@@ -199,6 +224,8 @@ LUCERNA_HD inline GlassPassage through_solid(const Surface& surface, const Mediu
         inside = !inside;
         out.transmitted = true;
       }
+      if (finish.scatters_at(hit))
+        scatter_on(finish.lobes, at.normal, outward, inside ? medium.index : 1.0, rng, light);
       if (!inside) {
         out.ray = light.ray;
         return out;

@@ -13,7 +13,7 @@
 #include "lucerna/trace/kernels/exact_mirrors.h"
 #include "lucerna/trace/kernels/field_kernel.h"
 #include "lucerna/trace/kernels/launch_view.h"
-#include "lucerna/trace/kernels/slope_error.h"
+#include "lucerna/trace/kernels/scatter_kernel.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
 namespace lucerna {
@@ -139,13 +139,28 @@ LUCERNA_HD inline FirstHit first_hit(const LaunchView& v, const LaneRays& ray, s
   return first;
 }
 
-LUCERNA_HD inline void tilt(double slope_error_rad, const ReflectionKey& key, LaneHits& hit) {
-  const Direction normal = Direction::from(
+LUCERNA_HD inline Direction normal_of(const LaneHits& hit) {
+  return Direction::from(
       {-static_cast<double>(hit.gx.v), -static_cast<double>(hit.gy.v), static_cast<double>(hit.gz.v)});
-  const Vec3 t = tilted_normal(normal, slope_error_rad, key);
+}
+
+LUCERNA_HD inline void tilt(double slope_error_rad, const ReflectionKey& key, LaneHits& hit) {
+  const Vec3 t = tilted_normal(normal_of(hit), slope_error_rad, key);
   hit.gx = static_cast<float>(-t.x);
   hit.gy = static_cast<float>(-t.y);
   hit.gz = static_cast<float>(t.z);
+}
+
+/// Sends on by its lobes what a mirror has mirrored, a ray of the luminaire frame.
+LUCERNA_HD LUCERNA_HD_CALL inline void scatter(const MirrorView& mirror, const ReflectionKey& key,
+                                               const LaneHits& hit, LaneRays& out) {
+  const Direction mirrored = Direction::from(
+      {static_cast<double>(out.dx.v), static_cast<double>(out.dy.v), static_cast<double>(out.dz.v)});
+  const Direction normal = turned(mirror.world_from_mirror, normal_of(hit));
+  const Vec3 d = scattered(mirror.finish, normal, mirrored, key);
+  out.dx = static_cast<float>(d.x);
+  out.dy = static_cast<float>(d.y);
+  out.dz = static_cast<float>(d.z);
 }
 
 LUCERNA_HD inline bool all_finite(const LaneRays& r) {
@@ -186,7 +201,7 @@ LUCERNA_HD LUCERNA_HD_CALL inline ObstacleHit intersect_obstacles(const LaunchVi
       reflectance_at(body.reflectance, body.reflectance_entries, -dot(ray.direction, hit->normal));
   ObstacleHit e{true, true, throughput, static_cast<std::int32_t>(hit->body), {}};
   if (throughput > 0.0) {
-    e.ray = {ray.at(hit->t_mm), reflected_off(body.slope_error_mrad, ray.direction, *hit, key)};
+    e.ray = {ray.at(hit->t_mm), reflected_off(body.finish, ray.direction, *hit, key)};
   }
   return e;
 }
@@ -241,9 +256,10 @@ LUCERNA_HD inline void follow(const LaunchView& v, LaneRays ray, float flux, Ref
     const MirrorView& mirror = v.mirrors[first.mirror];
     if (first.hit.state.v == kBack) return counters.add(kAbsorbedBack, quanta_of(flux));
     if (reflections == v.max_bounces) return lose_to_bounce_limit(flux, counters);
-    if (mirror.slope_error_rad > 0.0) tilt(mirror.slope_error_rad, key, first.hit);
+    if (mirror.finish.slope_error_rad > 0.0) tilt(mirror.finish.slope_error_rad, key, first.hit);
     Float cosine;
     ray = in_frame(mirror.world_from_mirror, reflected(first.local, first.hit, cosine));
+    if (mirror.finish.lobe_count > 0) scatter(mirror, key, first.hit, ray);
     const double throughput =
         reflectance_at(mirror.reflectance, mirror.reflectance_entries, static_cast<double>(cosine.v));
     counters.add(kAbsorbedFace, absorb(flux, throughput));

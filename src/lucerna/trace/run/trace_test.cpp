@@ -214,6 +214,8 @@ TEST(Trace, StopsWhenAsked) {
 TEST(Trace, FastAndReferenceEnginesAgree) {
   Scene scene = downlight(emitter_at({.kind = EmitterKind::cylinder}, {0, 0, 1}));
   scene.reflectors[0].slope_error_mrad = 2.0;
+  scene.reflectors[0].scatter =
+      Scatter({lambert_lobe(0.1), gaussian_lobe(0.2, 0.02), abg_lobe(0.01, 1e-4, 2.0)});
   scene.reflectors[0].reflectance = Reflectance({{0.0, 0.95}, {80.0, 0.7}});
   const Reflector shield = profile_reflector({{0.0, 0.0}, {8.0, 2.0}, {12.0, 6.0}}, Aperture::circle(24.0));
   scene.reflectors.push_back(

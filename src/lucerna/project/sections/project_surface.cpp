@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <vector>
+
+#include "lucerna/project/sections/project_parts.h"
+
+namespace lucerna::project_parts {
+
+namespace {
+
+Reflectance read_metal(TomlReader& reader) {
+  if (reader.has("reflectance")) reader.fail("reflectance", "found `metal` too, which says what it is");
+  const std::string metal = reader.required_word("metal");
+  const double wavelength_nm = reader.number("wavelength_nm", kWavelengthNm);
+  return at_key(reader, "wavelength_nm", [&] { return metal_reflectance(metal, wavelength_nm); });
+}
+
+/// A number, or [[angle of incidence in degrees, value], ...].
+Reflectance read_reflectance(TomlReader& reader) {
+  if (reader.has("metal")) return read_metal(reader);
+  if (reader.has("wavelength_nm")) reader.fail("wavelength_nm", "belongs to `metal`, which is not there");
+  return at_key(reader, "reflectance", [&] {
+    if (!reader.has_array("reflectance")) return Reflectance(reader.number("reflectance", 1.0));
+    std::vector<Reflectance::Entry> table;
+    const auto pairs = reader.pairs("reflectance");
+    for (const auto& [angle, value] : *pairs) table.push_back({angle, value});
+    return Reflectance(std::move(table));
+  });
+}
+
+/// A number that this kind of lobe needs.
+double lobe_number(TomlReader& lobe, const char* key) {
+  const auto value = lobe.number(key);
+  if (!value) lobe.missing(key);
+  return *value;
+}
+
+/// A lobe by the numbers that its model needs.
+ScatterLobe made_of_numbers(TomlReader& lobe, const std::string& model) {
+  if (model == "lambert") return lambert_lobe(lobe_number(lobe, "share"));
+  if (model == "gaussian") {
+    const double share = lobe_number(lobe, "share");
+    return gaussian_lobe(share, lobe_number(lobe, "sigma"));
+  }
+  const double a = lobe_number(lobe, "a"), b = lobe_number(lobe, "b"), g = lobe_number(lobe, "g");
+  return at_key(lobe, "a", [&] { return abg_lobe(a, b, g); });
+}
+
+ScatterLobe read_lobe(TomlReader lobe) {
+  const std::string model = lobe.required_word("model");
+  const ScatterLobe made = made_of_numbers(lobe, model);
+  const auto refuse = [&](const char* key, const char* others) {
+    if (lobe.has(key)) lobe.fail(key, fmt::format("belongs to {}; this is {}", others, model));
+  };
+  if (model == "abg") refuse("share", "lambert and gaussian");
+  if (model != "gaussian") refuse("sigma", "gaussian");
+  for (const char* key : {"a", "b", "g"}) {
+    if (model != "abg") refuse(key, "abg");
+  }
+  lobe.finish();
+  return made;
+}
+
+/// Says what was assumed, in numbers.
+std::string assumption(const TomlReader& sheet, const Scatter& scatter) {
+  std::string text = fmt::format("{}: assumed of a data sheet:", sheet.path());
+  for (const ScatterLobe& lobe : scatter.lobes()) {
+    text +=
+        lobe.kind == ScatterKind::lambert
+            ? fmt::format(" {:.4g} % of the returned light by Lambert's law,", 100.0 * lobe.share)
+            : fmt::format(" {:.4g} % in a Gaussian lobe of sigma = {:.4g},", 100.0 * lobe.share, lobe.sigma);
+  }
+  return text + " the rest mirrored";
+}
+
+MirrorSurface read_data_sheet(TomlReader sheet, Project& project) {
+  ReflectorSheet stated{.total = lobe_number(sheet, "total"), .diffuse = lobe_number(sheet, "diffuse")};
+  if (const auto gloss = sheet.number("gloss_60")) stated.gloss_60 = *gloss;
+  MirrorSurface surface;
+  surface.scatter =
+      at_key(sheet, stated.gloss_60 < 0.0 ? "diffuse" : "gloss_60", [&] { return scatter_of(stated); });
+  surface.reflectance = Reflectance(stated.total);
+  project.warnings.push_back(assumption(sheet, surface.scatter));
+  sheet.finish();
+  return surface;
+}
+
+}  // namespace
+
+Scatter read_scatter(TomlReader& reader) {
+  std::vector<ScatterLobe> lobes;
+  for (TomlReader& lobe : reader.tables("scatter")) lobes.push_back(read_lobe(std::move(lobe)));
+  return at_key(reader, "scatter", [&] { return Scatter(std::move(lobes)); });
+}
+
+MirrorSurface read_mirror_surface(TomlReader& reader, Project& project) {
+  MirrorSurface surface;
+  if (auto sheet = reader.table("data_sheet")) {
+    for (const char* key : {"reflectance", "metal", "wavelength_nm", "scatter"}) {
+      if (reader.has(key)) reader.fail(key, "found `data_sheet` too, which says what it is");
+    }
+    surface = read_data_sheet(std::move(*sheet), project);
+  } else {
+    surface.reflectance = read_reflectance(reader);
+    surface.scatter = read_scatter(reader);
+  }
+  surface.slope_error_mrad = reader.number("slope_error_mrad", 0.0);
+  return surface;
+}
+
+}  // namespace lucerna::project_parts
