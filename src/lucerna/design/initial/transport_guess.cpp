@@ -36,8 +36,9 @@ constexpr double kBesideLight = 0.01;
 /// wide source goes there too. Beyond, it levels off within a share of the rim's radius, so that it stays
 /// within its limits: from kSteepest at most. Its places there have a share of a lit one's weight.
 constexpr double kBeyondLight = 1.3, kLevelWithin = 0.2, kUnlitWeight = 0.1, kSteepest = 1.0;
-/// Beyond the light it is followed as long as it is no steeper than that.
-constexpr double kWall = 3.0;
+/// Beyond the light it is followed as long as it rises by no more than so much of the rim's radius from knot
+/// to knot: no spline follows a wall.
+constexpr double kRiseOfKnots = 0.5;
 /// Weight of a third difference of coefficients against that of a point: nothing where there are points.
 constexpr double kSmoothness = 1e-4;
 
@@ -199,9 +200,15 @@ void level_off(const Vec3& along, double rim, std::vector<SurfacePointWeight>& p
   }
 }
 
-/// `widest`: as far as a face is followed, by azimuth; null for a mirror.
+/// As far as a lens's face has light, by azimuth, and how steep it may be beyond.
+struct LitFace {
+  std::array<double, kMeridians> widest{};
+  double steepest = 1.0;
+};
+
+/// `face`: null for a mirror.
 Outline outline(const PointTransport& transport, const Aperture& aperture, const Vec3& source,
-                double distance, int places, const std::array<double, kMeridians>* widest) {
+                double distance, int places, const LitFace* face) {
   const double scale = distance / transport.radius(Direction::from({0.0, 0.0, -1.0}));
   struct Meridian {
     std::vector<SurfacePointWeight> points;
@@ -213,15 +220,16 @@ Outline outline(const PointTransport& transport, const Aperture& aperture, const
     Meridian out;
     double r_before = 0.0, theta_before = 0.0;
     double max_angle = 0.9 * std::numbers::pi;
-    if (widest != nullptr) max_angle = std::min(max_angle, kBeyondLight * (*widest)[m]);
+    const double lit = face != nullptr ? face->widest[m] : max_angle;
+    if (face != nullptr) max_angle = std::min(max_angle, kBeyondLight * lit);
     for (int k = 0; k < places; ++k) {
       const double theta = max_angle * (k + 0.5) / places;
       const Direction d = Direction::from_unit(std::sin(theta) * along + Vec3{0.0, 0.0, -std::cos(theta)});
       const Vec3 at = source + (scale * transport.radius(d)) * d.vec();
       const double r = std::hypot(at.x, at.y);
       if (r <= r_before) break;  // it turns back inwards
-      const bool beyond = widest != nullptr && theta > (*widest)[m] && !out.points.empty();
-      if (beyond && std::abs(at.z - out.points.back().z_mm) > kWall * (r - r_before)) break;
+      const bool beyond = theta > lit && !out.points.empty();
+      if (beyond && std::abs(at.z - out.points.back().z_mm) > face->steepest * (r - r_before)) break;
       const double per = (theta - theta_before) / (r - r_before);
       if (r_before < hole && r >= hole) out.hole = theta_before + (hole - r_before) * per;
       if (r_before < rim && r >= rim) out.rim = theta_before + (rim - r_before) * per;
@@ -232,7 +240,7 @@ Outline outline(const PointTransport& transport, const Aperture& aperture, const
     }
     out.reach = r_before / rim;
     if (out.rim == 0.0) out.rim = theta_before;  // what it would catch up to where it ends
-    if (widest != nullptr) level_off(along, rim, out.points);
+    if (face != nullptr) level_off(along, rim, out.points);
     return out;
   };
   const auto meridians = parallel_map_blocks<Meridian>(kMeridians, 1, follow);
@@ -332,11 +340,13 @@ std::optional<DesignShape> transport_guess(const TransportProblem& problem, cons
     const PointTransport transport(light.caught, to.flux, choice.sign, 0.5 * source_cell * bin,
                                    round > 0 ? &guess : nullptr, medium ? 1.0 / medium->index : 1.0);
     potentials(to.bins) = transport.potentials();
-    std::optional<std::array<double, kMeridians>> widest;
-    if (medium) widest = widest_light(light.caught, light.half_cell);
+    std::optional<LitFace> face;
+    if (medium) {
+      face = {widest_light(light.caught, light.half_cell), 0.5 * kRiseOfKnots * family.intervals_x()};
+    }
     const bool last = round + 1 == kTransportRounds;
     mirror = outline(transport, aperture, source, choice.vertex_distance_mm, last ? kPlaces : kPlacesForEdges,
-                     widest ? &*widest : nullptr);
+                     face ? &*face : nullptr);
     edges = mirror->edges;
   }
   const bool too_small =

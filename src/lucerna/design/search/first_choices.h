@@ -24,7 +24,7 @@ inline constexpr FirstChoices kMirrors{
 /// cross are good for narrow beams only.
 inline constexpr FirstChoices kFaces{
     {{{-1.0, 1.0}, {-1.0, 1.25}}},
-    {{{1.0, 1.0}, {-1.0, 0.8}, {-1.0, 1.5}, {1.0, 1.25}, {-1.0, 0.65}, {1.0, 0.8}, {1.0, 1.5}}}};
+    {{{-1.0, 1.12}, {-1.0, 0.9}, {-1.0, 0.8}, {-1.0, 1.5}, {1.0, 1.0}, {-1.0, 0.65}, {1.0, 1.25}}}};
 /// Troughs of both orders of rays.
 inline constexpr FirstChoices kTroughs{
     {{{-1.0, 0.75}, {1.0, 1.0}}},

@@ -47,7 +47,9 @@ constexpr double kNoisy = 1.6;
 constexpr int kNeighboursBefore = 4;
 /// Farthest neighbour of the best: its vertex distance is within this factor.
 constexpr double kFarthest = 1.3;
-/// A candidate that after two rough steps costs so many times the best of the rough level goes no further.
+/// A candidate that after so many rough steps that were accepted costs so many times the best of the rough
+/// level goes no further.
+constexpr std::size_t kHopelessAfter = 2;
 constexpr double kHopeless = 4.0;
 /// An approach that after so many fine steps costs so many times what the best had cost by then goes no
 /// further: it would need many more steps than there are.
@@ -457,10 +459,9 @@ bool FreeFormSearch::level_ended() const {
   if (state_.step >= l.max_steps || state_.refused >= kMaxRefusedInARow) return true;
   const std::vector<double>& c = state_.costs;
   const FreeFormSnapshot* best = best_of(0);
-  if (state_.now.level == 0 && best != nullptr && state_.step >= 2 &&
-      state_.now.cost > kHopeless * best->cost) {
+  const bool has_shown = c.size() > kHopelessAfter;
+  if (state_.now.level == 0 && best != nullptr && has_shown && state_.now.cost > kHopeless * best->cost)
     return true;
-  }
   if (is_slow_approach()) return true;
   const std::size_t steps = problem_.rays->medium() && state_.now.level > 0 ? kFaceSteps : kSteps;
   return c.size() > steps && std::sqrt(c.back()) > (1.0 - l.min_gain) * std::sqrt(c[c.size() - 1 - steps]);
