@@ -190,6 +190,7 @@ const std::map<std::string, std::string> kPublicHeaders{
     {"source.h", "source"},
     {"source_model.h", "source"},
     {"build_info.h", "trace"},
+    {"bsdf.h", "optics"},
     {"cad.h", "optics"},
     {"diagram.h", "results"},
     {"objective.h", "design"},

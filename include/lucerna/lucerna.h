@@ -3,6 +3,7 @@
 
 /// All of the library. Each header can be included by itself.
 #include "lucerna/bounding_surface.h"
+#include "lucerna/bsdf.h"
 #include "lucerna/build_info.h"
 #include "lucerna/cad.h"
 #include "lucerna/comparison.h"

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "lucerna/bsdf.h"
 #include "lucerna/geometry.h"
 
 #pragma GCC visibility push(default)
@@ -59,21 +61,31 @@ struct ReflectorSheet {
   double gloss_60 = -1.0;
 };
 
-/// The lobes of a surface; none: a mirror. Immutable and thread safe.
+class MeasuredScatter;
+
+/// The lobes of a surface, or a measured table; none: a mirror. Immutable and thread safe.
 class Scatter {
  public:
   /// A mirror.
   Scatter() = default;
   /// Throws InputError where the shares' sum is more than 1.
   explicit Scatter(std::vector<ScatterLobe> lobes);
+  /// As a table has it: of light at an incidence between two of its own the shares of both, beyond them that
+  /// of the nearest, about the mirrored direction. What that would send below the surface goes to its mirror
+  /// image. Throws InputError where the table has no light above the surface. Some 100 evaluations a value.
+  explicit Scatter(const BsdfTable& table);
 
+  /// What the table's own values add up to at each of its incidences, a reflectance; empty without one.
+  std::vector<double> integrals() const;
+  /// The table; null for lobes.
+  const MeasuredScatter* measured() const { return measured_.get(); }
   /// The lobes as given.
   const std::vector<ScatterLobe>& lobes() const { return lobes_; }
   /// True for a mirror.
-  bool empty() const { return lobes_.empty(); }
+  bool empty() const { return lobes_.empty() && measured_ == nullptr; }
 
-  /// What lobes add to the BRDF, over the reflectance, 1/sr. `normal`, and the directions to the light and to
-  /// the eye, all on the same side; 0 where one is below the horizon.
+  /// What is scattered adds to the BRDF, over the reflectance, 1/sr. `normal`, and the directions to the
+  /// light and to the eye, all on the same side; 0 where one is below the horizon.
   double brdf(const Direction& normal, const Direction& to_light, const Direction& to_eye) const;
 
   /// Share of the returned light that is not mirrored, at a cosine of incidence in (0, 1]. Within 1e-4; a
@@ -82,6 +94,7 @@ class Scatter {
 
  private:
   std::vector<ScatterLobe> lobes_;
+  std::shared_ptr<const MeasuredScatter> measured_;
 };
 
 /// Lobes that agree with a data sheet. **Assumed**: what is diffuse follows Lambert's law, and the rest is

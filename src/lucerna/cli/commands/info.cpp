@@ -23,6 +23,7 @@ struct InfoArguments {
 Description describe(const std::string& path, const InfoArguments& a, Session& session) {
   if (is_source_model(path)) return describe_model(path);
   if (is_glass_catalogue(path)) return describe_catalogue(path);
+  if (is_bsdf_file(path)) return describe_bsdf(path);
   if (a.format.empty() && is_photometric_file(path)) {
     return describe_photometry(path, a.photometric.read_options(session.strict));
   }
@@ -68,8 +69,9 @@ void info(const InfoArguments& a, Session& session) {
 }  // namespace
 
 void add_info(CLI::App& app, Session& session, int&) {
-  Command command(app, "info",
-                  "Say what is in a ray file, model, IES or EULUMDAT file, or catalogue of glasses");
+  Command command(
+      app, "info",
+      "Say what is in a ray file, model, IES or EULUMDAT file, catalogue of glasses or measured BRDF");
   auto arguments = std::make_shared<InfoArguments>();
   command.required("FILE", arguments->files, "Files");
   command.option("--format", arguments->format, "Read ray files as this format, whatever their content says");

@@ -8,6 +8,7 @@
 
 #include "lucerna/core/io/file.h"
 #include "lucerna/results/json/result_fields.h"
+#include "tests/support/paths.h"
 #include "tests/support/result_paths.h"
 #include "tests/support/run_program.h"
 #include "tests/support/text_scan.h"
@@ -63,6 +64,7 @@ TEST_F(JsonFieldsCli, Info) {
   expect_known("info", "lamp/far-field.ldt lamp/far-field.ies");
   write_file(dir / "made.agf", "NM A 1 0 1.5\nCD 2.25 0 0 0 0 0\nLD 0.4 0.7\nNM B 1\nLD 0.4 0.7\n");
   expect_known("info", "made.agf");
+  expect_known("info", (test::source_dir() / "fuzz/corpus/bsdf/plane.bsdf").string());
   // Supports that these sources do not have.
   expect_all_seen("info", {"files[].chosen[].size_mm", "files[].chosen[].twist_rad_per_mm"});
 }

@@ -26,6 +26,10 @@ Description describe_model(const std::string& path);
 bool is_glass_catalogue(const std::string& path);
 /// A catalogue of glasses; what is wrong with one of them is a warning.
 Description describe_catalogue(const std::string& path);
+/// Whether the name says that it is a measured BRDF (.bsdf).
+bool is_bsdf_file(const std::string& path);
+/// A measured BRDF.
+Description describe_bsdf(const std::string& path);
 /// An IES or EULUMDAT file.
 Description describe_photometry(const std::string& path, const PhotometricReadOptions& options);
 

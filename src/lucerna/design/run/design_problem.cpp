@@ -308,7 +308,7 @@ std::string reflector_toml(const DesignProblem& problem, const DesignShape& shap
   }
   text += fmt::format("hole_diameter_mm = {}\n", 2.0 * aperture.hole_radius_mm());
   for (const char* key : {"position_mm", "axis", "turn_deg", "reflectance", "metal", "wavelength_nm",
-                          "slope_error_mrad", "scatter", "data_sheet"}) {
+                          "slope_error_mrad", "scatter", "data_sheet", "bsdf"}) {
     text += given_key(problem, key);
   }
   return text;

@@ -177,7 +177,7 @@ void read_body(TomlReader reader, Project& project) {
     body.scatter = std::move(surface.scatter);
   }
   for (const char* key :
-       {"reflectance", "metal", "wavelength_nm", "slope_error_mrad", "scatter", "data_sheet"}) {
+       {"reflectance", "metal", "wavelength_nm", "slope_error_mrad", "scatter", "data_sheet", "bsdf"}) {
     if (role != "mirror" && reader.has(key))
       reader.fail(key, fmt::format("belongs to role = \"mirror\"; this is {}", role));
   }

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <filesystem>
+#include <initializer_list>
 #include <vector>
 
 #include "lucerna/project/sections/project_parts.h"
@@ -84,6 +87,35 @@ MirrorSurface read_data_sheet(TomlReader sheet, Project& project) {
   return surface;
 }
 
+/// What the file says of reflectance, and a note where its values say something else.
+MirrorSurface read_measured(TomlReader& reader, Project& project) {
+  constexpr double kFar = 0.05;
+  const std::filesystem::path file = *reader.file("bsdf");
+  project.inputs.push_back(file);
+  const BsdfTable table = read_bsdf(file);
+  MirrorSurface surface;
+  surface.scatter = at_key(reader, "bsdf", [&] { return Scatter(table); });
+  std::vector<Reflectance::Entry> stated;
+  const std::vector<double> found = surface.scatter.integrals();
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double angle = table.incidence_deg[i], total = table.total[i];
+    stated.push_back({angle, total});
+    if (std::abs(found[i] - total) <= kFar) continue;
+    project.warnings.push_back(fmt::format(
+        "{}: states a reflectance of {:.4g} at {} degrees, its values add up to {:.4g}; the former is taken",
+        file.string(), total, angle, found[i]));
+  }
+  surface.reflectance = Reflectance(std::move(stated));
+  return surface;
+}
+
+/// Refuses what `by` says already.
+void refuse_beside(TomlReader& reader, const char* by, std::initializer_list<const char*> keys) {
+  for (const char* key : keys) {
+    if (reader.has(key)) reader.fail(key, fmt::format("found `{}` too, which says what it is", by));
+  }
+}
+
 }  // namespace
 
 Scatter read_scatter(TomlReader& reader) {
@@ -95,10 +127,11 @@ Scatter read_scatter(TomlReader& reader) {
 MirrorSurface read_mirror_surface(TomlReader& reader, Project& project) {
   MirrorSurface surface;
   if (auto sheet = reader.table("data_sheet")) {
-    for (const char* key : {"reflectance", "metal", "wavelength_nm", "scatter"}) {
-      if (reader.has(key)) reader.fail(key, "found `data_sheet` too, which says what it is");
-    }
+    refuse_beside(reader, "data_sheet", {"reflectance", "metal", "wavelength_nm", "scatter", "bsdf"});
     surface = read_data_sheet(std::move(*sheet), project);
+  } else if (reader.has("bsdf")) {
+    refuse_beside(reader, "bsdf", {"reflectance", "metal", "wavelength_nm", "scatter"});
+    surface = read_measured(reader, project);
   } else {
     surface.reflectance = read_reflectance(reader);
     surface.scatter = read_scatter(reader);

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
 #include "lucerna/project.h"
@@ -79,6 +81,31 @@ TEST(ProjectSurface, BadKeysAreNamed) {
   EXPECT_THAT(mirror_fault("reflectance = 0.9\n" + sheet), HasSubstr("found `data_sheet` too"));
   EXPECT_THAT(mirror_fault(sheet + "gloss_60 = 900\n"), HasSubstr("gloss_60"));
   EXPECT_THAT(mirror_fault("[reflector.data_sheet]\ntotal = 0.8\n"), HasSubstr("diffuse"));
+}
+
+constexpr const char* kBsdf =
+    "Source Measured\nSymmetry PlaneSymmetrical\nSpectralContent Monochrome\nScatterType BRDF\n"
+    "SampleRotation 1\n0\nAngleOfIncidence 2\n0 60\nScatterAzimuth 2\n0 180\nScatterRadial 3\n0 10 90\n"
+    "Monochrome\nDataBegin\nTIS 0.8\n5 0.1 0\n5 0.1 0\nTIS 0.3\n9 0.2 0.1\n9 0.2 0\nDataEnd\n";
+
+TEST(ProjectSurface, AMeasuredTableHasItsReflectance) {
+  const test::TempDir dir;
+  write_file(dir / "sheet.bsdf", kBsdf);
+  const auto read = [&](const std::string& keys) {
+    write_file(dir / "p.toml", kMirror + keys);
+    return read_project(dir / "p.toml");
+  };
+  const Project p = read("bsdf = 'sheet.bsdf'\n");
+  const PlacedReflector& mirror = p.scene.reflectors[0];
+  ASSERT_NE(mirror.scatter.measured(), nullptr);
+  EXPECT_NEAR(mirror.reflectance.at(1.0), 0.8, 1e-12);
+  EXPECT_NEAR(mirror.reflectance.at(0.5), 0.3, 1e-12);
+  ASSERT_EQ(p.warnings.size(), 2u);
+  EXPECT_THAT(p.warnings[0],
+              AllOf(HasSubstr("states a reflectance of 0.8 at 0 degrees"), HasSubstr("add up to")));
+  EXPECT_THAT(p.inputs, testing::Contains(std::filesystem::absolute(dir / "sheet.bsdf")));
+  EXPECT_THROW(read("bsdf = 'sheet.bsdf'\nreflectance = 0.5\n"), InputError);
+  EXPECT_THROW(read("bsdf = 'none.bsdf'\n"), InputError);
 }
 
 std::string solid(const std::string& keys) {

@@ -91,6 +91,15 @@ template <class Mirror>
 SurfaceFinish DeviceScene::put_finish(const Mirror& mirror) {
   SurfaceFinish finish = finish_of(mirror);
   finish.lobes = put(finish.lobes, finish.lobe_count);
+  if (BsdfView& m = finish.measured; m.incidences > 0) {
+    const auto size = [](std::int32_t n) { return static_cast<std::size_t>(n); };
+    const std::size_t rows = size(m.incidences) * size(m.azimuths);
+    m.brdf = put(m.brdf, rows * size(m.radials));
+    m.sums = put(m.sums, size(m.incidences) * size(m.cells()));
+    m.incidence = put(m.incidence, size(m.incidences));
+    m.azimuth = put(m.azimuth, size(m.azimuths));
+    m.radial = put(m.radial, size(m.radials));
+  }
   return finish;
 }
 

@@ -66,6 +66,21 @@ TEST(DeviceTrace, ScatteredLightIsTheCpusToTheBit) {
   expect_closed(device);
 }
 
+TEST(DeviceTrace, LightByAMeasuredTableIsTheCpusToTheBit) {
+  Scene scene = scene_of(cylinder());
+  BsdfTable table;
+  table.incidence_deg = {0.0, 40.0};
+  table.azimuth_deg = {0.0, 180.0};
+  table.radial_deg = {0.0, 5.0, 60.0};
+  table.brdf = {5.0, 1.0, 0.0, 5.0, 1.0, 0.1, 7.0, 1.0, 0.0, 7.0, 1.0, 0.2};
+  table.total = {0.8, 0.8};
+  scene.reflectors[0].scatter = Scatter(table);
+  scene.reflectors[1].scatter = Scatter(table);
+  const TraceResult device = trace_on(emulated(), scene, kScalar);
+  expect_same(trace(scene, kScalar), device);
+  expect_closed(device);
+}
+
 TEST(DeviceTrace, MirrorsThatAreNoHeightFieldAreTheCpusToTheBit) {
   for (const Reflector& family : test::exact_families()) {
     for (const Scene& scene : {scene_of(cylinder(), family), exact_scene_of(family)}) {

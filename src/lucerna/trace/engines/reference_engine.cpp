@@ -133,7 +133,7 @@ class ReferenceEngine final : public TraceEngine {
                                    ? tilted_normal(n.hit.normal, finish.slope_error_rad, key)
                                    : n.hit.normal;
       Direction out = Direction::from(reflect(n.local.direction, normal));
-      if (finish.lobe_count > 0) out = scattered(finish, normal, out, key);
+      if (finish.scatters()) out = scattered(finish, normal, out, key);
       ray = n.mirror->world_from_mirror.ray({n.hit.point_mm, out});
     }
   }

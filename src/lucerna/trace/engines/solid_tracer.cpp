@@ -198,7 +198,7 @@ SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
 
 SolidFinish SolidTracer::Traced::finish() const {
   const auto& lobes = scatter.lobes();
-  return {{0.0, lobes.data(), static_cast<std::uint32_t>(lobes.size())},
+  return {{.lobes = lobes.data(), .lobe_count = static_cast<std::uint32_t>(lobes.size())},
           rough.empty() ? nullptr : rough.data()};
 }
 

@@ -348,7 +348,7 @@ class WavefrontEngine final : public TraceEngine {
                    const ReflectionKey& first, Batch& batch, std::int32_t* status, Tally& tally) const {
     const LocalHits& hits = at_mirror.hits;
     kernels_.reflect(mirrors_[m].world_from_mirror, at_mirror.rays, hits, n, batch.rays, batch.cosine);
-    if (mirrors_[m].finish.lobe_count > 0) scatter(m, hits, n, first, batch.rays);
+    if (mirrors_[m].finish.scatters()) scatter(m, hits, n, first, batch.rays);
     alignas(64) double throughput[kBatch];
     const Reflectance& reflectance = *mirrors_[m].reflectance;
     if (reflectance.is_constant()) {

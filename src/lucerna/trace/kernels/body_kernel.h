@@ -64,10 +64,9 @@ LUCERNA_HD inline Direction reflected_off(const SurfaceFinish& finish, const Dir
   const bool tilts = finish.slope_error_rad > 0.0;
   const Direction normal = tilts ? tilted_normal(hit.normal, finish.slope_error_rad, key) : hit.normal;
   Direction out = Direction::from(reflect(direction, normal));
-  if (finish.lobe_count > 0) out = scattered(finish, normal, out, key);
-  return (tilts || finish.lobe_count > 0) && dot(out, hit.face) < 0.0
-             ? Direction::from(reflect(out, hit.face))
-             : out;
+  if (finish.scatters()) out = scattered(finish, normal, out, key);
+  return (tilts || finish.scatters()) && dot(out, hit.face) < 0.0 ? Direction::from(reflect(out, hit.face))
+                                                                  : out;
 }
 
 /// A body as a kernel reads it.

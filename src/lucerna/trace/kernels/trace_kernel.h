@@ -259,7 +259,7 @@ LUCERNA_HD inline void follow(const LaunchView& v, LaneRays ray, float flux, Ref
     if (mirror.finish.slope_error_rad > 0.0) tilt(mirror.finish.slope_error_rad, key, first.hit);
     Float cosine;
     ray = in_frame(mirror.world_from_mirror, reflected(first.local, first.hit, cosine));
-    if (mirror.finish.lobe_count > 0) scatter(mirror, key, first.hit, ray);
+    if (mirror.finish.scatters()) scatter(mirror, key, first.hit, ray);
     const double throughput =
         reflectance_at(mirror.reflectance, mirror.reflectance_entries, static_cast<double>(cosine.v));
     counters.add(kAbsorbedFace, absorb(flux, throughput));

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/trace/kernels/measured_scatter.h"
 
 namespace lucerna {
 
@@ -108,8 +109,18 @@ Scatter::Scatter(std::vector<ScatterLobe> lobes) : lobes_(std::move(lobes)) {
     throw InputError(fmt::format("scatter: the lobes' shares add up to {}, expected 1 at most", sum));
 }
 
+Scatter::Scatter(const BsdfTable& table) : measured_(std::make_shared<const MeasuredScatter>(table)) {}
+
+std::vector<double> Scatter::integrals() const {
+  return measured_ != nullptr ? measured_->integrals() : std::vector<double>();
+}
+
 double Scatter::brdf(const Direction& normal, const Direction& to_light, const Direction& to_eye) const {
   if (!(dot(normal, to_light) > 0.0 && dot(normal, to_eye) > 0.0)) return 0.0;
+  if (measured_ != nullptr) {
+    const Direction mirrored = reflect(-to_light, normal);
+    return measured_->density(normal, mirrored, to_eye) / dot(normal, to_eye);
+  }
   // Along the surface the mirrored direction is the light's turned round.
   const Vec3 both = to_light.vec() + to_eye.vec();
   const double offset = length(both - dot(both, normal) * normal.vec());
@@ -120,6 +131,7 @@ double Scatter::brdf(const Direction& normal, const Direction& to_light, const D
 }
 
 double Scatter::total(double cos_incidence) const {
+  if (measured_ != nullptr) return 1.0;
   const double r = std::sqrt(std::max(0.0, 1.0 - cos_incidence * cos_incidence));
   double sum = 0.0;
   for (const ScatterLobe& lobe : lobes_) {

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "lucerna/bsdf.h"
+#include "lucerna/geometry.h"
+#include "lucerna/trace/kernels/bsdf_kernel.h"
+
+namespace lucerna {
+
+/// A measured table, ready to be drawn from. Immutable and thread safe.
+class MeasuredScatter {
+ public:
+  /// Throws InputError where a table has no light above the surface at one of its incidences. 64 to 1024
+  /// evaluations a cell.
+  explicit MeasuredScatter(const BsdfTable& table);
+
+  /// Valid as long as this lives.
+  BsdfView view() const;
+  /// Of light that the surface returns, by solid angle, what goes from `mirrored` to `out`, 1/sr; both above
+  /// the surface of `normal`.
+  double density(const Direction& normal, const Direction& mirrored, const Direction& out) const;
+  /// What the table's values add up to at each incidence: a reflectance.
+  const std::vector<double>& integrals() const { return integrals_; }
+
+ private:
+  double density(std::int32_t slice, const Direction& normal, const Direction& mirrored,
+                 const Direction& out) const;
+
+  std::vector<double> incidence_, azimuth_, radial_, brdf_, sums_, integrals_;
+};
+
+}  // namespace lucerna
