@@ -46,8 +46,7 @@ axis = "-z"                   # the mirror opens downward
 turn_deg = 0.0
 reflectance = 0.92
 slope_error_mrad = 0.0        # Gaussian tilt of the normal, standard deviation about each of two axes
-#scatter = [{ model = "lambert", share = 0.05 }, { model = "gaussian", share = 0.3, sigma = 0.02 }]   # of what it returns
-# Or, instead of reflectance and scatter: data_sheet = { total = 0.87, diffuse = 0.12, gloss_60 = 450 }
+# Instead of reflectance: data_sheet = { total = 0.87, diffuse = 0.12, gloss_60 = 450 }, or bsdf = "sheet.bsdf".
 
 # A profile as points [r, z] from the vertex to the rim, a spline through them; reflectance over the angle of incidence.
 #[[reflector]]
@@ -56,6 +55,7 @@ slope_error_mrad = 0.0        # Gaussian tilt of the normal, standard deviation 
 #position_mm = [200, 0, 15]
 #axis = "-z"
 #reflectance = [[0, 0.92], [60, 0.90], [85, 0.95]]   # or metal = "aluminium", wavelength_nm = 555
+#scatter = [{ model = "lambert", share = 0.05 }, { model = "gaussian", share = 0.3, sigma = 0.02 }]   # of what it returns
 
 # A profile that is no function of r, vertex first: deep concentrators, mirrors that close in again. Or file = "profile.csv"
 # with lines r,z.
