@@ -48,6 +48,23 @@ class HeightSurface {
   virtual bool convex_over(const Rectangle& region) const;
 };
 
+/// The same lenslet over every cell of a square or hexagonal grid about the z axis, one of them on the axis.
+struct LensArray {
+  /// Distance of neighbouring centres, > 0.
+  double pitch_mm = 1.0;
+  /// Rows of every other cell are moved by half a pitch.
+  bool is_hexagonal = false;
+  /// Of curvature at the apex, not 0; above 0 lenslets bulge towards +z, below 0 they are hollow.
+  double radius_mm = 1.0;
+  /// 0: a sphere; -1: a paraboloid.
+  double conic = 0.0;
+  /// Height of all apexes.
+  double apex_mm = 0.0;
+};
+/// Its surface, as the face of a `Solid`. Throws InputError for what is not finite or out of its range, and
+/// for lenslets that end within their cells.
+[[nodiscard]] std::shared_ptr<const HeightSurface> lens_array(const LensArray& array);
+
 /// The outlines that an aperture can have.
 enum class ApertureShape { circle, rectangle };
 

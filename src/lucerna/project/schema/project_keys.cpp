@@ -97,6 +97,7 @@ constexpr std::array kKeys{
     ProjectKey{"body", "file", Type::file, kAny, "", "required but for glass and `outline_mm`", "A mesh (.stl .obj)."},
     ProjectKey{"body", "outline_mm", Type::pairs, kAny, "", "none", "Of a solid of revolution, instead of `file`: corners [radius, height] of a closed outline that turns about the z axis."},
     ProjectKey{"body", "face", Type::table, kAny, "", "none", "Of a solid with `outline_mm`: its top, a free form. The outline is then open: from the axis to the upper end of a wall of one radius, which goes on to the face's rim."},
+    ProjectKey{"body", "array", Type::table, kAny, "", "none", "Of a solid with such an outline, instead of `face`: lenslets on a grid ([lens arrays](../theory/solids.md#lens-arrays))."},
     ProjectKey{"body", "smooth_below_deg", Type::number, within(0, 180), "", "20", "Of a solid: across triangles that meet at less than this angle the normal changes steadily, and an outline is a curve through corners that turn by less; 0 for facets and straight sides."},
     ProjectKey{"body", "scale", Type::number, kAboveZero, "", "1", "Millimetres of one unit of the mesh."},
     ProjectKey{"body", "open", Type::flag, kAny, "", "false", "Takes a mesh with open edges, as a sheet."},
@@ -133,6 +134,12 @@ constexpr std::array kKeys{
     ProjectKey{"body.data_sheet", "total", Type::number, up_to(1), "", "required", "Total reflectance (DIN 5036-3)."},
     ProjectKey{"body.data_sheet", "diffuse", Type::number, within(0, 1), "", "required", "Diffuse reflectance, of the incident light; taken as Lambert's law."},
     ProjectKey{"body.data_sheet", "gloss_60", Type::number, kNotNegative, "", "none: the rest is mirrored", "Gloss at 60 degrees (ISO 2813, ISO 7668), from which a Gaussian lobe gets its width."},
+
+    ProjectKey{"body.array", "pitch_mm", Type::number, kAboveZero, "", "required", "Distance of neighbouring lenslets."},
+    ProjectKey{"body.array", "layout", Type::word, kAny, "square hexagonal", "\"square\"", "Their grid. One is on the axis, and one beside it along x."},
+    ProjectKey{"body.array", "radius_mm", Type::number, kAny, "", "required", "Radius of curvature at their apexes; below 0 they are hollow."},
+    ProjectKey{"body.array", "conic", Type::number, kAny, "", "0", "Conic constant: 0 is a sphere, -1 a paraboloid."},
+    ProjectKey{"body.array", "apex_mm", Type::number, kAny, "", "required", "Height of their apexes."},
 
     ProjectKey{"body.face", "half_mm", Type::number, kAboveZero, "", "required", "The knots span [-half_mm, half_mm] along x and y; at least the wall's radius."},
     ProjectKey{"body.face", "intervals", Type::numbers, whole(1, 1000), "", "required", "Intervals between the knots along x and y."},

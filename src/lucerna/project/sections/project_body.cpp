@@ -116,6 +116,24 @@ std::shared_ptr<const HeightSurface> read_face(TomlReader face, const std::vecto
   return surface;
 }
 
+/// [body.array]: lenslets as its top.
+std::shared_ptr<const HeightSurface> read_array(TomlReader array) {
+  const auto needed = [&](const char* key, const char* expected) {
+    const auto value = array.number(key);
+    if (!value) array.missing(key, expected);
+    return *value;
+  };
+  LensArray out;
+  out.pitch_mm = needed("pitch_mm", "the distance of neighbouring lenslets");
+  out.radius_mm = needed("radius_mm", "the lenslets' radius of curvature");
+  out.apex_mm = needed("apex_mm", "the height of their apexes");
+  out.conic = array.number("conic", 0.0);
+  out.is_hexagonal = array.word("layout").value_or("square") == "hexagonal";
+  auto surface = at_key(array, "radius_mm", [&] { return lens_array(out); });
+  array.finish();
+  return surface;
+}
+
 Solid read_solid(TomlReader& reader, Project& project) {
   Solid solid;
   solid.name = read_cause(reader, project.scene, solid.name);
@@ -124,12 +142,17 @@ Solid read_solid(TomlReader& reader, Project& project) {
     if (reader.has("file")) reader.fail("file", "found `outline_mm` too, which says what it is");
     solid.outline_mm = *outline;
     if (auto face = reader.table("face")) {
+      if (reader.has("array")) reader.fail("array", "found `face` too, which says what the top is");
       solid.face = read_face(std::move(*face), *outline);
+    } else if (auto array = reader.table("array")) {
+      solid.face = read_array(std::move(*array));
     } else {
       at_key(reader, "outline_mm", [&] { check_outline(*outline); });
     }
   } else {
-    if (reader.has("face")) reader.fail("face", "belongs to `outline_mm`, which is not there");
+    for (const char* key : {"face", "array"}) {
+      if (reader.has(key)) reader.fail(key, "belongs to `outline_mm`, which is not there");
+    }
     solid.mesh = read_mesh_file(reader, project);
   }
   const ClearMedium medium = read_medium(reader, solid.refractive_index, project);
@@ -144,7 +167,11 @@ Solid read_solid(TomlReader& reader, Project& project) {
   if (rough && rough->empty()) reader.fail("scatter_sides", "found an empty list, expected numbers of sides");
   for (const double side : rough.value_or(std::vector<double>()))
     solid.scatter_sides.push_back(static_cast<std::size_t>(side));
-  at_key(reader, rough ? "scatter_sides" : solid.face ? "face" : "role", [&] { check(solid); });
+  at_key(reader,
+         rough        ? "scatter_sides"
+         : solid.face ? (reader.has("array") ? "array" : "face")
+                      : "role",
+         [&] { check(solid); });
   return solid;
 }
 

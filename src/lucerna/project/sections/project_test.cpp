@@ -442,6 +442,29 @@ TEST(Project, ASolidHasAFreeFace) {
          "body[0].face: solid 'solid': face: found z = 5");
 }
 
+TEST(Project, ASolidHasLensletsOnIt) {
+  const std::string lens = std::string(kSource) + "[[body]]\nrole = 'solid'\n";
+  const std::string outline = "outline_mm = [[0, 0], [10, 0], [10, 1]]\n";
+  const std::string array = "[body.array]\npitch_mm = 1.5\nradius_mm = 2\napex_mm = 3\n";
+  const Solid solid = read(lens + outline + array).scene.solids.at(0);
+  ASSERT_NE(solid.face, nullptr);
+  EXPECT_EQ(solid.face->at(3.0, -1.5).z_mm, 3.0);
+  EXPECT_NEAR(solid.face->at(0.5, 0.0).z_mm, 1.0 + std::sqrt(4.0 - 0.25), 1e-12);
+  const Solid other = read(lens + outline + array + "layout = 'hexagonal'\nconic = -1\n").scene.solids.at(0);
+  EXPECT_NEAR(other.face->at(0.75, 1.5 * std::sqrt(0.75)).z_mm, 3.0, 1e-12);
+
+  const auto expect = [](const std::string& text, const std::string& part) {
+    EXPECT_THAT(message(text), testing::HasSubstr(part));
+  };
+  expect(lens + array, "body[0].array: belongs to `outline_mm`");
+  expect(lens + outline + "[body.array]\nradius_mm = 2\napex_mm = 3\n", "body[0].array.pitch_mm");
+  expect(lens + outline + array + "layout = 'hex'\n", "expected square or hexagonal");
+  expect(lens + outline + "[body.array]\npitch_mm = 5\nradius_mm = 2\napex_mm = 3\n",
+         "body[0].array.radius_mm: array: lenslets of radius_mm = 2");
+  expect(lens + "outline_mm = [[0, 4], [10, 0], [10, 2.9]]\n" + array,
+         "body[0].array: solid 'solid': face: found z");
+}
+
 TEST(Project, AMisspeltKeyIsNamedWhereItsMeaningIsMissing) {
   const test::TempDir dir;
   const auto message = [&](const std::string& reflector) {

@@ -142,6 +142,9 @@ ReferenceTracer::ReferenceTracer(const Reflector& reflector, int levels) : refle
   } else if (const FacetedSurface* surface = faceted(reflector)) {
     facets_.emplace(*surface, reflector.aperture);
     high = facets_->view().high;
+  } else if (const auto* array = dynamic_cast<const LensArraySurface*>(reflector.surface.get())) {
+    array_ = array;
+    high = array->range(reflector.aperture.bounds()).high_mm;
   } else {
     mipmap_.emplace(reflector, levels);
     high = mipmap_->cell(0, 0, 0).high_mm;
@@ -164,9 +167,18 @@ std::optional<MirrorHit> ReferenceTracer::first_hit_with_facets(const Ray& ray) 
   return MirrorHit{hit.t, ray.at(hit.t) + off, normal, hit.front};
 }
 
+std::optional<MirrorHit> ReferenceTracer::first_hit_with_array(const Ray& ray) const {
+  const auto hit = first_lens_array_hit(*array_, reflector_.aperture, ray);
+  if (!hit) return std::nullopt;
+  const bool front = dot(ray.direction, hit->normal) < 0.0;
+  const Vec3 off = (front ? offset_mm_ : -offset_mm_) * hit->normal.vec();
+  return MirrorHit{hit->t_mm, ray.at(hit->t_mm) + off, hit->normal, front};
+}
+
 std::optional<MirrorHit> ReferenceTracer::first_hit(const Ray& ray) const {
   if (reflector_.curve) return first_hit_with_curve(ray);
   if (facets_) return first_hit_with_facets(ray);
+  if (array_ != nullptr) return first_hit_with_array(ray);
   const auto found = Walk(reflector_, *mipmap_, ray).run();
   if (!found) return std::nullopt;
   const Vec3 p = ray.at(found->t);

@@ -7,6 +7,7 @@
 #include "lucerna/optics/height_field/height_mipmap.h"
 #include "lucerna/trace/kernels/curve_view.h"
 #include "lucerna/trace/kernels/facet_mirror.h"
+#include "lucerna/trace/kernels/lens_array_walk.h"
 
 namespace lucerna {
 
@@ -28,7 +29,7 @@ struct MirrorHit {
 /// (height of the ray - height of the surface) between shared cell borders cannot fall between cells, so the
 /// surface is watertight; within a cell up to two crossings are found. Where the surface is convex, which
 /// cells are told, a line has no more than that, and the walk ends. Swept curves (Reflector::curve) and
-/// facets go to kernels of their own instead. Immutable and thread safe.
+/// facets and arrays of lenslets go to kernels of their own instead. Immutable and thread safe.
 class ReferenceTracer {
  public:
   /// 2^levels cells a side; a hit does not depend on it but where a ray grazes the surface twice within one
@@ -42,11 +43,14 @@ class ReferenceTracer {
  private:
   std::optional<MirrorHit> first_hit_with_curve(const Ray& ray) const;
   std::optional<MirrorHit> first_hit_with_facets(const Ray& ray) const;
+  std::optional<MirrorHit> first_hit_with_array(const Ray& ray) const;
 
   Reflector reflector_;
   std::optional<HeightMipmap> mipmap_;  ///< of height fields
   CurveView curve_{};                   ///< of swept curves; points into reflector_.curve
   std::optional<FacetMirror> facets_;   ///< of faceted surfaces
+  /// Of arrays of lenslets; belongs to reflector_.
+  const LensArraySurface* array_ = nullptr;
   double offset_mm_;
 };
 
