@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "lucerna/trace/kernels/clip_line.h"
+
 namespace lucerna {
 
 namespace {
@@ -27,9 +29,9 @@ class Walk {
     double t0 = 0.0, t1 = std::numeric_limits<double>::infinity();
     const Rectangle& region = mipmap_.region();
     const HeightRange& heights = mipmap_.cell(0, 0, 0);
-    clip(o_.x, d_.x, region.x0_mm, region.x1_mm, t0, t1);
-    clip(o_.y, d_.y, region.y0_mm, region.y1_mm, t0, t1);
-    clip(o_.z, d_.z, heights.low_mm, heights.high_mm, t0, t1);
+    clip_line(o_.x, d_.x, region.x0_mm, region.x1_mm, t0, t1);
+    clip_line(o_.y, d_.y, region.y0_mm, region.y1_mm, t0, t1);
+    clip_line(o_.z, d_.z, heights.low_mm, heights.high_mm, t0, t1);
     if (t0 <= t1) visit(0, 0, 0, t0, t1);
     return found_;
   }
@@ -39,16 +41,6 @@ class Walk {
   struct Value {
     double f, df;
   };
-
-  static void clip(double o, double d, double low, double high, double& t0, double& t1) {
-    if (d == 0.0) {
-      if (o < low || o > high) t1 = -1.0;
-      return;
-    }
-    const double a = (low - o) / d, b = (high - o) / d;
-    t0 = std::max(t0, std::min(a, b));
-    t1 = std::min(t1, std::max(a, b));
-  }
 
   SurfacePoint surface(double t) const { return reflector_.surface->at(o_.x + t * d_.x, o_.y + t * d_.y); }
 

@@ -6,20 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "lucerna/trace/kernels/clip_line.h"
+
 namespace lucerna {
 
 namespace {
-
-/// Cuts [t0, t1] to where low <= o + t d <= high; t1 < t0 where it is nowhere.
-void clip(double o, double d, double low, double high, double& t0, double& t1) {
-  if (d == 0.0) {
-    if (o < low || o > high) t1 = -1.0;
-    return;
-  }
-  const double a = (low - o) / d, b = (high - o) / d;
-  t0 = std::max(t0, std::min(a, b));
-  t1 = std::min(t1, std::max(a, b));
-}
 
 /// The roots of a t^2 + 2 b t + c without cancellation, in ascending order; not finite where there is none.
 std::array<double, 2> roots(double a, double b, double c) {
@@ -40,11 +31,11 @@ class ArrayWalk {
     double t = 0.0, end = std::numeric_limits<double>::infinity();
     const Rectangle region = aperture_.bounds();
     const HeightRange heights = surface_.range(region);
-    clip(o_.x, d_.x, region.x0_mm, region.x1_mm, t, end);
-    clip(o_.y, d_.y, region.y0_mm, region.y1_mm, t, end);
+    clip_line(o_.x, d_.x, region.x0_mm, region.x1_mm, t, end);
+    clip_line(o_.y, d_.y, region.y0_mm, region.y1_mm, t, end);
     // A hair more, so that rounding at an apex or a corner loses no hit.
     const double slack = 1e-9 * (1.0 + std::abs(heights.high_mm) + std::abs(heights.low_mm));
-    clip(o_.z, d_.z, heights.low_mm - slack, heights.high_mm + slack, t, end);
+    clip_line(o_.z, d_.z, heights.low_mm - slack, heights.high_mm + slack, t, end);
     if (!(t <= end)) return std::nullopt;
     ArrayPoint cell = surface_.cells().centre(o_.x + t * d_.x, o_.y + t * d_.y);
     while (t <= end) {
