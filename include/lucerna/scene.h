@@ -182,7 +182,8 @@ struct Solid {
 /// outline as solid_of_revolution refuses it, or whose curve crosses itself. With a face, for an outline that
 /// is not as `face` says, or turns into the wall by no more than `smooth_below_deg`, and a face that is not
 /// finite, is not above the outline at one of 64 x 64 points, or has its rim not above the wall's lower end;
-/// and for scatter_sides of a mesh, of a body without lobes, that are not there or lie on the axis.
+/// and for a measured table, and scatter_sides of a mesh, of a body without lobes, that are not there or lie
+/// on the axis.
 /// O(triangles log triangles + corners^2).
 void check(const Solid& solid);
 /// How far the triangles of an outline may leave it, over its size, where they are only shown.

@@ -220,6 +220,15 @@ TEST(RoughSolid, RefusesSidesThatCannotScatter) {
   s.mesh = surface_mesh(s);
   s.outline_mm.clear();
   EXPECT_THAT(fault(s), testing::HasSubstr("a mesh has no sides"));
+  BsdfTable table;
+  table.incidence_deg = {0.0};
+  table.azimuth_deg = {0.0, 180.0};
+  table.radial_deg = {0.0, 60.0};
+  table.brdf = {1.0, 1.0, 1.0, 1.0};
+  table.total = {0.5};
+  s = rough_plate(gaussian_lobe(1.0, 0.1), {});
+  s.scatter = Scatter(table);
+  EXPECT_THAT(fault(s), testing::HasSubstr("belongs to mirrors"));
 }
 
 }  // namespace

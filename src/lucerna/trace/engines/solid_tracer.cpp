@@ -107,7 +107,12 @@ std::vector<std::size_t> corners_of(const std::vector<OutlineSide>& sides) {
   return out;
 }
 
-void check_scatter_sides(const Solid& solid) {
+void check_scatter(const Solid& solid) {
+  if (solid.scatter.measured() != nullptr) {
+    throw InputError(
+        fmt::format("solid '{}': a measured BRDF belongs to mirrors, expected lobes", solid.name),
+        ErrorCause::unsupported);
+  }
   if (solid.scatter_sides.empty()) return;
   const auto fail = [&](const std::string& why) {
     throw InputError(fmt::format("solid '{}': scatter_sides: {}", solid.name, why));
@@ -148,7 +153,7 @@ void check(const Solid& solid) {
   } else {
     (void)sides_of(solid, kSurfaceTolerance);
   }
-  check_scatter_sides(solid);
+  check_scatter(solid);
 }
 
 std::shared_ptr<const Mesh> surface_mesh(const Solid& solid, double tolerance) {
