@@ -171,6 +171,19 @@ slope_error_mrad = 0.0        # Gaussian tilt of the normal, standard deviation 
 #scatter = [{ model = "gaussian", share = 1.0, sigma = 0.2 }]
 #position_mm = [0, 0, -40]
 
+# A lens array: lenslets on a square or hexagonal grid, as the top of a plate with a wall. Without [body.array]
+# and with [body.face] the top is a B-spline.
+#[[body]]
+#role = "solid"
+#outline_mm = [[0, 0], [20, 0], [20, 1]]
+#position_mm = [0, 0, -80]
+#[body.array]
+#pitch_mm = 2.0
+#layout = "hexagonal"
+#radius_mm = 3.0               # of curvature; below 0 they are hollow
+#conic = -1.0
+#apex_mm = 2.0
+
 # ---- detectors: any number at once; the name names the files ----
 [[detector]]
 name = "far"
