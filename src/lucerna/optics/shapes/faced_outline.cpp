@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/optics/shapes/lens_array.h"
 
 namespace lucerna {
 
@@ -52,8 +53,21 @@ void check_wall(std::span<const OutlinePoint> p) {
   }
 }
 
+/// Lenslets are as low between each other all over the body, and may be smaller than the distance of places.
+void check_above(const std::vector<OutlineSide>& sides, const LensArraySurface& array) {
+  double below = sides.back().to[1];
+  for (const OutlineSide& side : sides) below = std::max({below, side.from[1], side.to[1]});
+  const double low = array.range({}).low_mm;
+  if (low > below) return;
+  throw InputError(fmt::format(
+      "array: found lenslets that reach down to z = {:.6g}, expected them above the outline below, "
+      "z = {:.6g}",
+      low, below));
+}
+
 void check_above(std::span<const OutlinePoint> p, const std::vector<OutlineSide>& sides,
                  const HeightSurface& face) {
+  if (const auto* array = dynamic_cast<const LensArraySurface*>(&face)) return check_above(sides, *array);
   const double radius = p.back()[0], wall = p[p.size() - 2][1];
   for (int ring = 0; ring <= kFaceRings; ++ring) {
     const double r = radius * ring / kFaceRings;

@@ -16,7 +16,8 @@ namespace lucerna {
 /// Throws InputError for an outline that does not begin on the axis or end in a wall, that check_outline
 /// refuses once it is closed above the face, whose curve crosses itself or turns into the wall by no more
 /// than `smooth_below_deg`; and for a face that is not finite, is not above the base, or whose rim is not
-/// above the wall's lower end. The face is looked at at 64 x 64 points. O(corners^2 + 4096 sides).
+/// above the wall's lower end. The face is looked at at 64 x 64 points, lenslets of an array by their lowest
+/// place. O(corners^2 + 4096 sides).
 void check_faced_outline(std::span<const OutlinePoint> corners_mm, const HeightSurface& face,
                          double smooth_below_deg);
 

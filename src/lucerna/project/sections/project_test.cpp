@@ -462,7 +462,7 @@ TEST(Project, ASolidHasLensletsOnIt) {
   expect(lens + outline + "[body.array]\npitch_mm = 5\nradius_mm = 2\napex_mm = 3\n",
          "body[0].array.radius_mm: array: lenslets of radius_mm = 2");
   expect(lens + "outline_mm = [[0, 4], [10, 0], [10, 2.9]]\n" + array,
-         "body[0].array: solid 'solid': face: found z");
+         "body[0].array: solid 'solid': array: found lenslets that reach down to z = 2.695");
 }
 
 TEST(Project, AMisspeltKeyIsNamedWhereItsMeaningIsMissing) {
