@@ -92,7 +92,7 @@ TEST_F(InitCli, EveryBlockReadsOnceItIsUncommented) {
   }
   EXPECT_EQ(sources, 2u);
   EXPECT_EQ(reflectors, 8u) << "one of every family, one profile, two that are no function of r";
-  EXPECT_EQ(bodies, 5u) << "every role";
+  EXPECT_EQ(bodies, 6u) << "every role, and a lens array";
   EXPECT_EQ(detectors, 4u) << "every kind";
   EXPECT_EQ(designs, 2u);
   EXPECT_EQ(sources + reflectors + bodies + detectors + designs, all.size());

@@ -145,7 +145,8 @@ TEST(ProjectSurface, TheTextOfAProjectKeepsItsLobes) {
   const Project p = read_mirror(lobe("model = 'gaussian'\nshare = 0.2\nsigma = 0.05\n"));
   const test::TempDir dir;
   write_file(dir / "again.toml", project_text(p));
-  const auto& lobes = read_project(dir / "again.toml").scene.reflectors[0].scatter.lobes();
+  const Project again = read_project(dir / "again.toml");
+  const auto& lobes = again.scene.reflectors[0].scatter.lobes();
   ASSERT_EQ(lobes.size(), 1u);
   EXPECT_EQ(lobes[0].sigma, 0.05);
 }
