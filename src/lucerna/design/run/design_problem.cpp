@@ -271,7 +271,13 @@ std::string given_key(const DesignProblem& problem, const char* key) {
   const auto* node = table != nullptr ? table->get(key) : nullptr;
   if (node == nullptr) return "";
   std::ostringstream out;
-  node->visit([&](const auto& n) { out << n; });
+  if (const toml::table* given = node->as_table()) {
+    toml::table on_one_line = *given;
+    on_one_line.is_inline(true);
+    out << on_one_line;
+  } else {
+    node->visit([&](const auto& n) { out << n; });
+  }
   return fmt::format("{} = {}\n", key, out.str());
 }
 

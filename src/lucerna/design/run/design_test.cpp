@@ -359,6 +359,28 @@ TEST(DesignProblem, TheWrittenMirrorHasTheGivenSurface) {
   }
 }
 
+TEST(DesignProblem, TheWrittenMirrorHasTheTablesOfTheGivenOne) {
+  const TempDir folder;
+  write_target(folder.path());
+  const auto read = [&](const std::string& text) {
+    write_file(folder / "project.toml", text);
+    return design_problem(read_project(folder / "project.toml"), folder / "project.toml");
+  };
+  std::string bare = mirror("family = \"revolution\"\npreset = \"parabola\"\nfocal_mm = 8\n");
+  const std::string plain = "reflectance = 0.9\n";
+  bare.replace(bare.find(plain), plain.size(), "");
+  const Direction up = Direction::from({0.0, 0.0, 1.0}), aside = Direction::from({0.3, 0.0, 1.0});
+  for (const char* table : {"[reflector.data_sheet]\ntotal = 0.8\ndiffuse = 0.2\n",
+                            "[[reflector.scatter]]\nmodel = \"gaussian\"\nshare = 0.2\nsigma = 0.05\n"}) {
+    const DesignProblem p = read(kSource + bare + table + "[target]\nfile = \"target.ies\"\n");
+    const DesignProblem again = read(project_text(with_shape(p, p.start)));
+    const PlacedReflector &given = p.project.scene.reflectors[0], &kept = again.project.scene.reflectors[0];
+    EXPECT_FALSE(given.scatter.empty());
+    EXPECT_EQ(kept.scatter.brdf(up, up, aside), given.scatter.brdf(up, up, aside));
+    EXPECT_EQ(kept.reflectance.at(1.0), given.reflectance.at(1.0));
+  }
+}
+
 TEST(DesignProblem, RefusesATargetBehindTheMirror) {
   const TempDir folder;
   write_target(folder.path());

@@ -221,7 +221,7 @@ std::optional<GlassHit> SolidTracer::first_hit(const Ray& ray, double t_max_mm, 
   for (std::size_t i = 0; i < solids_.size(); ++i) {
     if (solids_[i].is_of_triangles()) continue;
     const SurfaceHit hit = solids_[i].with_surface([&](const auto& surface) {
-      return surface.first(solids_[i].solid_from_world.ray(ray), started ? kSolidStart : 0.0, t_max_mm);
+      return surface.first(solids_[i].solid_from_world.ray(ray), started ? kBodyStart : 0.0, t_max_mm);
     });
     if (hit.part < 0) continue;
     out = GlassHit{hit.t_mm, i, false, hit.part, hit.u, hit.v};

@@ -190,7 +190,13 @@ Scatter scatter_of(const ReflectorSheet& sheet) {
   std::vector<ScatterLobe> lobes;
   const double diffuse = sheet.diffuse / sheet.total;
   if (diffuse > 0.0) lobes.push_back(lambert_lobe(diffuse));
-  if (sheet.gloss_60 < 0.0 || diffuse >= 1.0) return Scatter(std::move(lobes));
+  if (sheet.gloss_60 < 0.0) return Scatter(std::move(lobes));
+  if (diffuse >= 1.0) {
+    throw InputError(
+        fmt::format("gloss_60 = {}: found diffuse = total, which leaves no light for a gloss; "
+                    "expected less diffuse light, or no gloss_60",
+                    sheet.gloss_60));
+  }
   if (const double sigma = sigma_of_gloss(sheet); sigma > 0.0)
     lobes.push_back(gaussian_lobe(1.0 - diffuse, sigma));
   return Scatter(std::move(lobes));
