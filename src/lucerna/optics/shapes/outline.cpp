@@ -174,7 +174,8 @@ std::vector<bool> sides_of_faces(std::span<const OutlinePoint> given, double smo
   const bool is_turned = outline_area(given) < 0.0;
   std::vector<bool> named(n, false);
   for (const std::size_t side : sides) {
-    if (side >= n) throw InputError(fmt::format("side {} of an outline of {} sides", side, n));
+    if (side >= n)
+      throw InputError(fmt::format("side {} of an outline of {} sides, expected 0 to {}", side, n, n - 1));
     if (given[side][0] == 0.0 && given[(side + 1) % n][0] == 0.0)
       throw InputError(fmt::format("side {} lies on the axis and makes no face", side));
     // Side i of a reversed outline leads from corner n - 1 - i back to n - 2 - i.

@@ -66,13 +66,15 @@ ScatterLobe read_lobe(TomlReader lobe) {
 /// Says what was assumed, in numbers.
 std::string assumption(const TomlReader& sheet, const Scatter& scatter) {
   std::string text = fmt::format("{}: assumed of a data sheet:", sheet.path());
+  double mirrored = 1.0;
   for (const ScatterLobe& lobe : scatter.lobes()) {
+    mirrored -= lobe.share;
     text +=
         lobe.kind == ScatterKind::lambert
             ? fmt::format(" {:.4g} % of the returned light by Lambert's law,", 100.0 * lobe.share)
             : fmt::format(" {:.4g} % in a Gaussian lobe of sigma = {:.4g},", 100.0 * lobe.share, lobe.sigma);
   }
-  return text + " the rest mirrored";
+  return text + (mirrored > 1e-9 ? " the rest mirrored" : " nothing mirrored");
 }
 
 MirrorSurface read_data_sheet(TomlReader sheet, Project& project) {

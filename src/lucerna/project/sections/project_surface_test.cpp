@@ -61,7 +61,7 @@ TEST(ProjectSurface, ADataSheetSaysWhatWasAssumed) {
   ASSERT_EQ(p.warnings.size(), 1u);
   EXPECT_THAT(p.warnings[0],
               AllOf(HasSubstr("reflector[0].data_sheet: assumed"), HasSubstr("25 % of the returned light"),
-                    HasSubstr("75 % in a Gaussian lobe")));
+                    HasSubstr("75 % in a Gaussian lobe"), HasSubstr("nothing mirrored")));
 }
 
 TEST(ProjectSurface, BadKeysAreNamed) {
