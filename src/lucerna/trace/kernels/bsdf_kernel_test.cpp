@@ -11,8 +11,8 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/scatter.h"
-#include "lucerna/trace/kernels/scatter_kernel.h"
 #include "lucerna/trace/kernels/measured_scatter.h"
+#include "lucerna/trace/kernels/scatter_kernel.h"
 #include "tests/support/statistics.h"
 
 namespace lucerna {
