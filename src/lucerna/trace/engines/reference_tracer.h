@@ -28,7 +28,7 @@ struct MirrorHit {
 /// start, each hit refined on the exact surface to rounding, normals exact, all in double. A sign change of
 /// (height of the ray - height of the surface) between shared cell borders cannot fall between cells, so the
 /// surface is watertight; within a cell up to two crossings are found. Where the surface is convex, which
-/// cells are told, a line has no more than that, and the walk ends. Swept curves (Reflector::curve) and
+/// cells are told, a line has no more than that, and the walk ends. Swept curves (Reflector::curve),
 /// facets and arrays of lenslets go to kernels of their own instead. Immutable and thread safe.
 class ReferenceTracer {
  public:

@@ -207,6 +207,21 @@ SolidFinish SolidTracer::Traced::finish() const {
           rough.empty() ? nullptr : rough.data()};
 }
 
+namespace {
+
+/// Of a ray on its way between bodies, which meets no surface from inside. Its place is rounded to float:
+/// after it left a body it may stand a little within.
+template <class Surface>
+SurfaceHit first_from_outside(const Surface& surface, const Ray& ray, double t_max_mm) {
+  SurfaceHit hit;
+  do {
+    hit = surface.first(ray, hit.t_mm + kSolidStart, t_max_mm);
+  } while (hit.part >= 0 && dot(surface.outward(ray.at(hit.t_mm), hit), ray.direction.vec()) > 0.0);
+  return hit;
+}
+
+}  // namespace
+
 std::optional<GlassHit> SolidTracer::first_hit(const Ray& ray, double t_max_mm, bool started) const {
   std::optional<GlassHit> out;
   if (tree_ != nullptr) {
@@ -221,7 +236,8 @@ std::optional<GlassHit> SolidTracer::first_hit(const Ray& ray, double t_max_mm, 
   for (std::size_t i = 0; i < solids_.size(); ++i) {
     if (solids_[i].is_of_triangles()) continue;
     const SurfaceHit hit = solids_[i].with_surface([&](const auto& surface) {
-      return surface.first(solids_[i].solid_from_world.ray(ray), started ? kBodyStart : 0.0, t_max_mm);
+      const Ray local = solids_[i].solid_from_world.ray(ray);
+      return started ? first_from_outside(surface, local, t_max_mm) : surface.first(local, 0.0, t_max_mm);
     });
     if (hit.part < 0) continue;
     out = GlassHit{hit.t_mm, i, false, hit.part, hit.u, hit.v};

@@ -24,8 +24,8 @@ class SolidTracer {
   bool empty() const { return solids_.empty(); }
 
   /// The first surface within (0, t_max_mm) of a ray in the luminaire frame. `started`: it comes from
-  /// something that it met before; what is nearer than a thousandth of a millimetre is that: places of rays
-  /// between bodies are rounded to float.
+  /// something that it met before, and is outside of all bodies; what is nearer than a thousandth of a
+  /// millimetre to triangles is that.
   std::optional<GlassHit> first_hit(const Ray& ray, double t_max_mm, bool started) const;
 
   /// What becomes of the ray there; `key.bounce` counts all that it met before, a body once. `visit` sees

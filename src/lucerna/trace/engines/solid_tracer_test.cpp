@@ -333,6 +333,16 @@ TEST(SolidTracer, LightThatLeftAWideBodyIsOutOfIt) {
   }
 }
 
+TEST(SolidTracer, ARayBetweenBodiesMeetsThemFromOutsideOnly) {
+  const SolidTracer tracer({plate(5.0)});
+  const Ray near = ray_up(20.0, {0.0, 0.0, -5e-4}), within = ray_up(20.0, {0.0, 0.0, 5.0 - 1e-5});
+  const auto hit = tracer.first_hit(near, 1e9, true);
+  ASSERT_TRUE(hit) << "another part of the body it left, as of fine lenslets";
+  EXPECT_NEAR(hit->t_mm, 5e-4 / std::cos(radians(20.0)), 1e-9);
+  EXPECT_FALSE(tracer.first_hit(within, 1e9, true)) << "it has left the body";
+  EXPECT_TRUE(tracer.first_hit(within, 1e9, false)) << "it starts in the body";
+}
+
 TEST(SolidTracer, PathsHoldThePointsOnTheSurface) {
   const Scene scene = scene_with(plate(5.0), -3.0);
   int through = 0;
