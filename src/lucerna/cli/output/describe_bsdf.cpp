@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "lucerna/bsdf.h"
 #include "lucerna/cli/output/describe.h"
+#include "lucerna/core/io/file.h"
 #include "lucerna/scatter.h"
 
 namespace lucerna::cli {
 
-bool is_bsdf_file(const std::string& path) {
-  const std::string ending = std::filesystem::path(path).extension().string();
-  return ending == ".bsdf" || ending == ".BSDF";
-}
+bool is_bsdf_file(const std::string& path) { return lower_ending(path) == ".bsdf"; }
 
 Description describe_bsdf(const std::string& path) {
   const BsdfTable table = read_bsdf(path);

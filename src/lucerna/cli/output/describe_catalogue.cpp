@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "lucerna/cli/output/describe.h"
 #include "lucerna/core/io/error.h"
+#include "lucerna/core/io/file.h"
 #include "lucerna/glass_catalogue.h"
 
 namespace lucerna::cli {
@@ -34,10 +33,7 @@ void add_glass(const CatalogueGlass& glass, Description& d) {
 
 }  // namespace
 
-bool is_glass_catalogue(const std::string& path) {
-  const std::string ending = std::filesystem::path(path).extension().string();
-  return ending == ".agf" || ending == ".AGF";
-}
+bool is_glass_catalogue(const std::string& path) { return lower_ending(path) == ".agf"; }
 
 Description describe_catalogue(const std::string& path) {
   const std::vector<std::string> names = glass_names(path);

@@ -3,9 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
-
 #include "lucerna/core/io/error.h"
+#include "lucerna/core/io/file.h"
 #include "lucerna/photometric_file.h"
 #include "lucerna/ray_file.h"
 #include "lucerna/source_model.h"
@@ -31,8 +30,7 @@ std::string other_kind(const std::filesystem::path& path) {
 
 /// By its ending, of a file whose content is neither light nor rays.
 bool is_damaged_photometry(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string ending = lower_ending(path);
   std::error_code ignored;
   return (ending == ".ies" || ending == ".ldt") && std::filesystem::is_regular_file(path, ignored) &&
          !detect_ray_format(path);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/cli/parse/photometric_arguments.h"
 
-#include <algorithm>
-#include <filesystem>
+#include "lucerna/core/io/file.h"
 
 namespace lucerna::cli {
 
@@ -29,9 +28,7 @@ std::optional<PhotometricFormat> photometric_format_for(const std::string& path,
   if (to == "ies-2019") return PhotometricFormat::ies_2019;
   if (to == "ldt") return PhotometricFormat::ldt;
   if (!to.empty()) return std::nullopt;
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = lower_ending(path);
   if (ending == ".ies") return PhotometricFormat::ies_2019;
   if (ending == ".ldt") return PhotometricFormat::ldt;
   return std::nullopt;

@@ -42,6 +42,9 @@ class OutputFile {
 /// Writes a whole file through OutputFile.
 void write_file(const std::filesystem::path& path, std::string_view text);
 
+/// The ending of a name in lower case, ".ies"; empty if it has none.
+std::string lower_ending(const std::filesystem::path& path);
+
 /// The whole of a small file. Throws InputError if it cannot be read or is larger than `max_bytes`.
 std::string read_file(const std::filesystem::path& path, std::uint64_t max_bytes);
 

@@ -175,5 +175,10 @@ TEST(InputFile, HasTheSizeOfTheFileThatItOpened) {
   EXPECT_EQ(mixed, 0);
 }
 
+TEST(LowerEnding, IsThatOfTheNameAlone) {
+  EXPECT_EQ(lower_ending("Folder.X/Lamp.v2.IES"), ".ies");
+  EXPECT_EQ(lower_ending("folder.x/lamp"), "");
+}
+
 }  // namespace
 }  // namespace lucerna

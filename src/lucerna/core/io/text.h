@@ -24,6 +24,9 @@ std::vector<std::string_view> lines_of(std::string_view text);
 /// `text` without blanks, tabs and other control characters at both ends.
 std::string_view trimmed(std::string_view text);
 
+/// The words of a line between blanks and tabs. They point into `line`.
+std::vector<std::string_view> blank_separated(std::string_view line);
+
 /// The whole of `text` as a finite number: sign, digits, '.', exponent of any length; nothing else ("nan",
 /// "inf", "0x").
 std::optional<double> number_from(std::string_view text);

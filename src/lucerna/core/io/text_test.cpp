@@ -56,6 +56,11 @@ TEST(Text, LosesBlanksAtItsEnds) {
   EXPECT_EQ(trimmed(" \t"), "");
 }
 
+TEST(Text, HasWordsBetweenBlanksAndTabs) {
+  EXPECT_EQ(blank_separated("  one\ttwo  three\r"), (std::vector<std::string_view>{"one", "two", "three"}));
+  EXPECT_TRUE(blank_separated(" \t ").empty());
+}
+
 TEST(Text, IsANumberAsAWhole) {
   EXPECT_EQ(number_from("+1.5E+000"), 1.5);
   EXPECT_EQ(number_from("3.7E-0400"), 0.0);

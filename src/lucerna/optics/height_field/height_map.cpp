@@ -143,8 +143,7 @@ HeightMap from_picture(const GreyImage& image, const std::string& file) {
 }  // namespace
 
 HeightMap read_height_map(const std::filesystem::path& path, FirstRow first_row) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  const std::string ending = lower_ending(path);
   HeightMap map;
   if (ending == ".csv" || ending == ".txt") {
     NumberTable table = read_number_table(path);

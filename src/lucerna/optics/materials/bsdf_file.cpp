@@ -31,15 +31,10 @@ struct Word {
 std::vector<Word> bsdf_words(std::string_view text) {
   std::vector<Word> out;
   std::size_t number = 0;
-  for (std::string_view line : lines_of(text)) {
+  for (const std::string_view line : lines_of(text)) {
     ++number;
-    line = trimmed(line);
-    if (line.starts_with('#')) continue;
-    for (; !line.empty(); line = trimmed(line)) {
-      const std::string_view word = line.substr(0, line.find_first_of(" \t"));
-      out.push_back({word, number});
-      line.remove_prefix(word.size());
-    }
+    if (trimmed(line).starts_with('#')) continue;
+    for (const std::string_view word : blank_separated(line)) out.push_back({word, number});
   }
   return out;
 }

@@ -27,15 +27,6 @@ constexpr double kIndexTolerance = 1e-3;
 
 using Words = std::vector<std::string_view>;
 
-Words words_in(std::string_view line) {
-  Words words;
-  while (!(line = trimmed(line)).empty()) {
-    words.push_back(line.substr(0, line.find_first_of(" \t")));
-    line.remove_prefix(words.back().size());
-  }
-  return words;
-}
-
 std::string upper(std::string_view text) {
   std::string out;
   for (const char c : text) out += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
@@ -49,7 +40,7 @@ void for_each_line(const std::filesystem::path& path, const Each& each) {
   std::size_t number = 0;
   for (const std::string_view line : lines_of(text)) {
     ++number;
-    const Words words = words_in(line);
+    const Words words = blank_separated(line);
     if (!words.empty() && !each(number, words)) return;
   }
 }

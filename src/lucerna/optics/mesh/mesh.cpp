@@ -166,9 +166,7 @@ Mesh read_obj(const std::filesystem::path& path) {
 }
 
 Mesh read_mesh(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  const std::string ending = lower_ending(path);
   if (ending == ".stl") return read_stl(path);
   if (ending == ".obj") return read_obj(path);
   throw_input_error(path.string(), "", "ends in '{}', expected .stl or .obj", ending);

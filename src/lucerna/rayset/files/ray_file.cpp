@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
@@ -105,9 +104,7 @@ std::unique_ptr<RayWriter> create_ray_file(const std::filesystem::path& path, st
 
 std::string ray_format_for(const std::filesystem::path& path, std::string_view to) {
   if (!to.empty()) return std::string(format_named(to).name);
-  std::string ending = path.extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = lower_ending(path);
   if (ending == ".tm25ray" || ending == ".tm25") return "tm25";
   if (ending == ".sdf") return "zemax-binary";
   if (ending == ".dis") return "asap";
