@@ -191,6 +191,12 @@ std::string TomlReader::required_word(std::string_view key) {
   return *found;
 }
 
+double TomlReader::required_number(std::string_view key, const std::string& what) {
+  const auto found = number(key);
+  if (!found) missing(key, what);
+  return *found;
+}
+
 std::optional<bool> TomlReader::flag(std::string_view key) {
   const toml::node* node = find(key, {KeyType::flag});
   if (node == nullptr) return std::nullopt;

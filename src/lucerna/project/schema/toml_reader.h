@@ -37,6 +37,8 @@ class TomlReader {
   /// One of the key's words.
   std::optional<std::string> word(std::string_view key);
   std::string required_word(std::string_view key);
+  /// `what` as `missing` takes it.
+  double required_number(std::string_view key, const std::string& what = {});
   std::optional<bool> flag(std::string_view key);
   /// Any number of numbers; with `n`, exactly that many.
   std::optional<std::vector<double>> numbers(std::string_view key);

@@ -103,30 +103,24 @@ CoverGlass read_cover_glass(TomlReader& reader, Project& project) {
 
 /// [body.face]: the top of a solid of this open outline.
 std::shared_ptr<const HeightSurface> read_face(TomlReader face, const std::vector<OutlinePoint>& outline) {
-  const auto half_mm = face.number("half_mm");
-  if (!half_mm) face.missing("half_mm", "half the width of the knots' square");
+  const double half_mm = face.required_number("half_mm", "half the width of the knots' square");
   const double radius_mm = outline.empty() ? 0.0 : outline.back()[0];
-  if (*half_mm < radius_mm)
+  if (half_mm < radius_mm)
     face.fail("half_mm",
-              fmt::format("found {}, expected at least the wall's radius, {}", *half_mm, radius_mm));
+              fmt::format("found {}, expected at least the wall's radius, {}", half_mm, radius_mm));
   if (!face.has("intervals")) face.missing("intervals", "the intervals along x and y");
   if (!face.has("coefficients_mm")) face.missing("coefficients_mm", "the spline's heights");
-  auto surface = read_spline(face, std::numeric_limits<double>::infinity(), *half_mm, *half_mm);
+  auto surface = read_spline(face, std::numeric_limits<double>::infinity(), half_mm, half_mm);
   face.finish();
   return surface;
 }
 
 /// [body.array]: lenslets as its top.
 std::shared_ptr<const HeightSurface> read_array(TomlReader array) {
-  const auto needed = [&](const char* key, const char* expected) {
-    const auto value = array.number(key);
-    if (!value) array.missing(key, expected);
-    return *value;
-  };
   LensArray out;
-  out.pitch_mm = needed("pitch_mm", "the distance of neighbouring lenslets");
-  out.radius_mm = needed("radius_mm", "the lenslets' radius of curvature");
-  out.apex_mm = needed("apex_mm", "the height of their apexes");
+  out.pitch_mm = array.required_number("pitch_mm", "the distance of neighbouring lenslets");
+  out.radius_mm = array.required_number("radius_mm", "the lenslets' radius of curvature");
+  out.apex_mm = array.required_number("apex_mm", "the height of their apexes");
   out.conic = array.number("conic", 0.0);
   out.is_hexagonal = array.word("layout").value_or("square") == "hexagonal";
   auto surface = at_key(array, "radius_mm", [&] { return lens_array(out); });

@@ -130,8 +130,7 @@ Reflector read_profile_family(TomlReader& reader, bool trough, Project& project)
 
 /// Facets on a base of revolution: flat, or pillows of a radius of curvature.
 Reflector read_faceted(TomlReader& reader, Project& project) {
-  const auto pitch = reader.number("pitch_mm");
-  if (!pitch) reader.missing("pitch_mm", "the side of a facet");
+  const double pitch = reader.required_number("pitch_mm", "the side of a facet");
   const double radius = reader.number("pillow_radius_mm", std::numeric_limits<double>::infinity());
   Reflector base = read_profile_family(reader, false, project);
   if (base.curve) {
@@ -140,16 +139,15 @@ Reflector read_faceted(TomlReader& reader, Project& project) {
                 "towards the axis");
   }
   return at_key(reader, "pillow_radius_mm", [&] {
-    return Reflector{std::make_shared<FacetedSurface>(base.surface, *pitch, radius), base.aperture};
+    return Reflector{std::make_shared<FacetedSurface>(base.surface, pitch, radius), base.aperture};
   });
 }
 
 /// The free-form family: a bicubic B-spline of heights over a paraboloid (docs/theory/design.md).
 Reflector read_bspline(TomlReader& reader) {
-  const auto focal = reader.number("focal_mm");
-  if (!focal) reader.missing("focal_mm", "the paraboloid that the spline stands on");
+  const double focal = reader.required_number("focal_mm", "the paraboloid that the spline stands on");
   const Aperture aperture = read_aperture(reader, std::nullopt);
-  return {read_spline(reader, *focal, aperture.half_x_mm(), aperture.half_y_mm()), aperture};
+  return {read_spline(reader, focal, aperture.half_x_mm(), aperture.half_y_mm()), aperture};
 }
 
 /// Heights of a file over `size_mm`: z = z_offset_mm + z_scale_mm * value.

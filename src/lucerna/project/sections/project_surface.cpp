@@ -30,21 +30,14 @@ Reflectance read_reflectance(TomlReader& reader) {
   });
 }
 
-/// A number that this kind of lobe needs.
-double lobe_number(TomlReader& lobe, const char* key) {
-  const auto value = lobe.number(key);
-  if (!value) lobe.missing(key);
-  return *value;
-}
-
 /// A lobe by the numbers that its model needs.
 ScatterLobe made_of_numbers(TomlReader& lobe, const std::string& model) {
-  if (model == "lambert") return lambert_lobe(lobe_number(lobe, "share"));
+  if (model == "lambert") return lambert_lobe(lobe.required_number("share"));
   if (model == "gaussian") {
-    const double share = lobe_number(lobe, "share");
-    return gaussian_lobe(share, lobe_number(lobe, "sigma"));
+    const double share = lobe.required_number("share");
+    return gaussian_lobe(share, lobe.required_number("sigma"));
   }
-  const double a = lobe_number(lobe, "a"), b = lobe_number(lobe, "b"), g = lobe_number(lobe, "g");
+  const double a = lobe.required_number("a"), b = lobe.required_number("b"), g = lobe.required_number("g");
   return at_key(lobe, "a", [&] { return abg_lobe(a, b, g); });
 }
 
@@ -78,7 +71,7 @@ std::string assumption(const TomlReader& sheet, const Scatter& scatter) {
 }
 
 MirrorSurface read_data_sheet(TomlReader sheet, Project& project) {
-  ReflectorSheet stated{.total = lobe_number(sheet, "total"), .diffuse = lobe_number(sheet, "diffuse")};
+  ReflectorSheet stated{.total = sheet.required_number("total"), .diffuse = sheet.required_number("diffuse")};
   if (const auto gloss = sheet.number("gloss_60")) stated.gloss_60 = *gloss;
   MirrorSurface surface;
   surface.scatter =
