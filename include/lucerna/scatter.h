@@ -12,7 +12,7 @@ namespace lucerna {
 
 // How a surface scatters the light that it returns.
 //
-// Directions are told by their cosines along the surface. A lobe's density is one over the offset d, the
+// Directions are given by their cosines along the surface. A lobe's density is one over the offset d, the
 // distance between the cosines of the scattered and of the mirrored direction, or even for Lambert's law. So
 // what a lobe adds to the BRDF is the same with the directions exchanged (Helmholtz). An offset that leads
 // below the horizon is not taken: that light is mirrored. So a surface scatters the less, the more grazing
@@ -72,7 +72,8 @@ class Scatter {
   explicit Scatter(std::vector<ScatterLobe> lobes);
   /// As a table has it: of light at an incidence between two of its own the shares of both, beyond them that
   /// of the nearest, about the mirrored direction. What that would send below the surface goes to its mirror
-  /// image. Throws InputError where the table has no light above the surface. Some 100 evaluations a value.
+  /// image. Throws InputError where the table has no light above the surface, its angles do not ascend or
+  /// values are missing. Some 100 evaluations a value.
   explicit Scatter(const BsdfTable& table);
 
   /// What the table's own values add up to at each of its incidences, a reflectance; empty without one.

@@ -91,7 +91,8 @@ template <class Mirror>
 SurfaceFinish DeviceScene::put_finish(const Mirror& mirror) {
   SurfaceFinish finish = finish_of(mirror);
   finish.lobes = put(finish.lobes, finish.lobe_count);
-  if (BsdfView& m = finish.measured; m.incidences > 0) {
+  if (finish.measured != nullptr) {
+    BsdfView m = *finish.measured;
     const auto size = [](std::int32_t n) { return static_cast<std::size_t>(n); };
     const std::size_t rows = size(m.incidences) * size(m.azimuths);
     m.brdf = put(m.brdf, rows * size(m.radials));
@@ -99,6 +100,7 @@ SurfaceFinish DeviceScene::put_finish(const Mirror& mirror) {
     m.incidence = put(m.incidence, size(m.incidences));
     m.azimuth = put(m.azimuth, size(m.azimuths));
     m.radial = put(m.radial, size(m.radials));
+    finish.measured = put(&m, 1);
   }
   return finish;
 }

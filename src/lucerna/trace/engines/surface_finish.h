@@ -15,7 +15,7 @@ SurfaceFinish finish_of(const Mirror& mirror) {
   const auto& lobes = mirror.scatter.lobes();
   const MeasuredScatter* const measured = mirror.scatter.measured();
   return {1e-3 * mirror.slope_error_mrad, lobes.data(), static_cast<std::uint32_t>(lobes.size()),
-          measured != nullptr ? measured->view() : BsdfView{}};
+          measured != nullptr ? &measured->view() : nullptr};
 }
 
 /// Does chance decide where a reflection there goes?

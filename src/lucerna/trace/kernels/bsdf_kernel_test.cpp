@@ -73,7 +73,7 @@ std::vector<double> stated_counts(const Scatter& scatter, double incidence_deg, 
 
 std::vector<double> drawn_counts(const Scatter& scatter, double incidence_deg, std::uint64_t n) {
   SurfaceFinish finish;
-  finish.measured = scatter.measured()->view();
+  finish.measured = &scatter.measured()->view();
   std::vector<double> out(kSide * kSide + 1, 0.0);
   for (std::uint64_t i = 0; i < n; ++i) {
     const Direction d = scattered(finish, Direction{}, bsdf_mirrored(incidence_deg), {7, i, 1});
@@ -133,9 +133,16 @@ TEST(Bsdf, AzimuthNoughtLeadsToTheNormal) {
             2.0 * scatter.brdf(Direction{}, bsdf_light(60.0), bsdf_mirrored(84.0)));
 }
 
-TEST(Bsdf, RefusesATableWithoutLightAboveTheSurface) {
+TEST(Bsdf, RefusesTablesThatCannotBeDrawnFrom) {
   BsdfTable t = lobe_table(180.0, 12.0);
   std::fill(t.brdf.begin(), t.brdf.begin() + static_cast<std::ptrdiff_t>(t.row(1, 0)), 0.0);
+  EXPECT_THROW(Scatter{t}, InputError);
+  t = lobe_table(180.0, 12.0);
+  t.brdf.pop_back();
+  EXPECT_THROW(Scatter{t}, InputError);
+  EXPECT_THROW(Scatter{BsdfTable()}, InputError);
+  t = lobe_table(180.0, 12.0);
+  std::swap(t.radial_deg[1], t.radial_deg[2]);
   EXPECT_THROW(Scatter{t}, InputError);
 }
 

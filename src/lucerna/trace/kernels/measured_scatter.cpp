@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <numbers>
 
 #include "lucerna/core/io/error.h"
@@ -19,6 +20,24 @@ std::vector<double> in_radians(const std::vector<double>& angles_deg) {
   std::vector<double> out;
   for (const double a : angles_deg) out.push_back(radians(a));
   return out;
+}
+
+std::int32_t count_of(const std::vector<double>& v) { return static_cast<std::int32_t>(v.size()); }
+
+/// Throws InputError for a table that no reader makes.
+const BsdfTable& checked(const BsdfTable& t) {
+  const auto ascend = [](const std::vector<double>& angles, std::size_t least) {
+    return angles.size() >= least &&
+           std::ranges::adjacent_find(angles, std::greater_equal<>()) == angles.end();
+  };
+  if (!ascend(t.incidence_deg, 1) || !ascend(t.azimuth_deg, 2) || !ascend(t.radial_deg, 2))
+    throw InputError(
+        "a BRDF: found angles that do not ascend, expected an incidence, two azimuths and two radial "
+        "angles at least");
+  const std::size_t values = t.row(t.incidence_deg.size(), 0);
+  if (t.brdf.size() != values)
+    throw InputError(fmt::format("a BRDF: found {} values, expected {}", t.brdf.size(), values));
+  return t;
 }
 
 /// Does the surface cut it, by its corners?
@@ -47,37 +66,31 @@ double light_in(const BsdfCell& cell) {
 }  // namespace
 
 MeasuredScatter::MeasuredScatter(const BsdfTable& table)
-    : incidence_(in_radians(table.incidence_deg)),
+    : incidence_(in_radians(checked(table).incidence_deg)),
       azimuth_(in_radians(table.azimuth_deg)),
       radial_(in_radians(table.radial_deg)),
-      brdf_(table.brdf) {
-  const BsdfView v = view();
-  LUCERNA_CHECK(brdf_.size() == incidence_.size() * azimuth_.size() * radial_.size(), "{} values",
-                brdf_.size());
+      brdf_(table.brdf),
+      sums_(table.incidence_deg.size() * (table.azimuth_deg.size() - 1) * (table.radial_deg.size() - 1)),
+      view_{incidence_.data(),    azimuth_.data(),    radial_.data(),    brdf_.data(),          sums_.data(),
+            count_of(incidence_), count_of(azimuth_), count_of(radial_), table.is_symmetrical()} {
+  const BsdfView& v = view_;
+  double* at = sums_.data();
   for (std::int32_t slice = 0; slice < v.incidences; ++slice) {
-    const std::size_t first = sums_.size();
+    double* const first = at;
     double sum = 0.0;
-    for (std::int32_t cell = 0; cell < v.cells(); ++cell)
-      sums_.push_back(sum += light_in(BsdfCell(v, slice, cell)));
+    for (std::int32_t cell = 0; cell < v.cells(); ++cell) *at++ = sum += light_in(BsdfCell(v, slice, cell));
     if (!(sum > 0.0)) {
       throw InputError(fmt::format("a BRDF has no light above the surface at {} degrees of incidence",
                                    table.incidence_deg[static_cast<std::size_t>(slice)]));
     }
-    for (std::size_t i = first; i < sums_.size(); ++i) sums_[i] /= sum;
+    for (double* s = first; s != at; ++s) *s /= sum;
     integrals_.push_back(v.is_symmetrical ? 2.0 * sum : sum);
   }
 }
 
-BsdfView MeasuredScatter::view() const {
-  const auto count = [](const std::vector<double>& v) { return static_cast<std::int32_t>(v.size()); };
-  return {incidence_.data(), azimuth_.data(), radial_.data(),
-          brdf_.data(),      sums_.data(),    count(incidence_),
-          count(azimuth_),   count(radial_),  azimuth_.back() < 1.5 * std::numbers::pi};
-}
-
 double MeasuredScatter::density(std::int32_t slice, const Direction& normal, const Direction& mirrored,
                                 const Direction& out) const {
-  const BsdfView v = view();
+  const BsdfView& v = view_;
   const double cos_radial = std::clamp(dot(mirrored, out), -1.0, 1.0), radial = std::acos(cos_radial);
   if (radial > radial_.back()) return 0.0;
   const Direction x = towards_normal(normal, mirrored);
@@ -92,7 +105,7 @@ double MeasuredScatter::density(std::int32_t slice, const Direction& normal, con
 
 double MeasuredScatter::density(const Direction& normal, const Direction& mirrored,
                                 const Direction& out) const {
-  const BsdfView v = view();
+  const BsdfView& v = view_;
   const double incidence = std::acos(std::clamp(dot(normal, mirrored), 0.0, 1.0));
   // The share of the upper of two is where a uniform number begins to choose the lower one.
   const std::int32_t upper = bsdf_slice(v, incidence, 0.0), lower = bsdf_slice(v, incidence, 1.0);

@@ -12,12 +12,13 @@ namespace lucerna {
 /// A measured table, ready to be drawn from. Immutable and thread safe.
 class MeasuredScatter {
  public:
-  /// Throws InputError where a table has no light above the surface at one of its incidences. 64 to 1024
-  /// evaluations a cell.
+  /// Throws InputError as Scatter does. 64 to 1024 evaluations a cell.
   explicit MeasuredScatter(const BsdfTable& table);
+  MeasuredScatter(const MeasuredScatter&) = delete;
+  MeasuredScatter& operator=(const MeasuredScatter&) = delete;
 
   /// Valid as long as this lives.
-  BsdfView view() const;
+  const BsdfView& view() const { return view_; }
   /// Of light that the surface returns, by solid angle, what goes from `mirrored` to `out`, 1/sr; both above
   /// the surface of `normal`.
   double density(const Direction& normal, const Direction& mirrored, const Direction& out) const;
@@ -29,6 +30,8 @@ class MeasuredScatter {
                  const Direction& out) const;
 
   std::vector<double> incidence_, azimuth_, radial_, brdf_, sums_, integrals_;
+  /// Of these.
+  BsdfView view_;
 };
 
 }  // namespace lucerna

@@ -20,10 +20,10 @@ struct SurfaceFinish {
   double slope_error_rad = 0.0;
   const ScatterLobe* lobes = nullptr;
   std::uint32_t lobe_count = 0;
-  /// In their place, if it has any incidence.
-  BsdfView measured{};
+  /// In their place, if not null.
+  const BsdfView* measured = nullptr;
 
-  LUCERNA_HD bool scatters() const { return lobe_count > 0 || measured.incidences > 0; }
+  LUCERNA_HD bool scatters() const { return lobe_count > 0 || measured != nullptr; }
 };
 
 /// A direction in another frame.
@@ -85,7 +85,7 @@ LUCERNA_HD inline Direction scattered(const SurfaceFinish& finish, const Directi
                                       const Direction& mirrored, const ReflectionKey& key) {
   // Streams from 2^16 on belong to slope errors, from 2^17 on to glass.
   Rng rng(key.sequence_seed, key.ray, 0x30000u + static_cast<std::uint32_t>(key.bounce));
-  if (finish.measured.incidences > 0) return scattered_by(finish.measured, normal, mirrored, rng);
+  if (finish.measured != nullptr) return scattered_by(*finish.measured, normal, mirrored, rng);
   return scattered(finish, normal, mirrored, 1.0, rng);
 }
 
