@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `compare` of ray sets and models and `info` of models, as a user meets them.
+// `compare` of ray sets and models, as a user meets it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -80,40 +80,6 @@ TEST(CompareCli, WrongWordsAreOneClearLine) {
   const auto missing = run_lucerna(dir.path(), "compare a.tm25ray none.tm25ray");
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_EQ(std::count(missing.err.begin(), missing.err.end(), '\n'), 1) << missing.err;
-}
-
-TEST(InfoCli, AnAdaptiveModelSaysWhatWasChosenAndWhy) {
-  const TempDir dir;
-  run_well(dir, "make-source disk -n 30000 --surface sphere --surface-mm 3 -o a.tm25ray");
-  run_well(dir, "compress a.tm25ray -o a.nfl --held-out 0");
-  const Json file = json_of(dir, "info a.nfl")["files"][0];
-  EXPECT_EQ(file["starting_surface"], "sphere");
-  ASSERT_EQ(file["chosen"].size(), file["layers"].get<std::size_t>());
-  double share = 0.0;
-  std::size_t leaves = 0;
-  for (const Json& layer : file["chosen"]) {
-    share += layer["share"].get<double>();
-    leaves += layer["leaves"].get<std::size_t>();
-    EXPECT_FALSE(layer["why"].get<std::string>().empty());
-    EXPECT_EQ(layer["axis"].size(), 3u);
-  }
-  EXPECT_NEAR(share, 1.0, 1e-9);
-  EXPECT_EQ(leaves, file["leaves"].get<std::size_t>());
-  EXPECT_NEAR(file["etendue_mm2sr"]["p50"].get<double>() / 4.9348, 1.0, 0.1);
-  const auto text = run_lucerna(dir.path(), "info a.nfl").out;
-  EXPECT_TRUE(has(text, file["chosen"][0]["why"].get<std::string>())) << text;
-  EXPECT_TRUE(has(text, file["chosen"][0]["support"].get<std::string>())) << text;
-}
-
-TEST(InfoCli, AModelOfClustersSaysItsMesh) {
-  const TempDir dir;
-  run_well(dir, "make-source disk -n 20000 --surface sphere --surface-mm 3 -o a.tm25ray");
-  run_well(dir, "compress a.tm25ray -o a.nfl --method clusters --held-out 0");
-  const Json file = json_of(dir, "info a.nfl")["files"][0];
-  EXPECT_EQ(file["starting_surface"], "sphere");
-  EXPECT_GE(file["clusters"].get<int>(), 32);
-  EXPECT_GT(file["triangles"].get<int>(), file["clusters"].get<int>());
-  EXPECT_TRUE(has(run_lucerna(dir.path(), "info a.nfl").out, "triangles"));
 }
 
 // Rays on one point, one line and in one plane go the whole way.

@@ -6,12 +6,10 @@
 #include <algorithm>
 
 #include "lucerna/cli/commands/commands.h"
-#include "lucerna/cli/manual/program_options.h"
 #include "lucerna/core/io/file.h"
 #include "lucerna/project/schema/project_keys.h"
 #include "lucerna/results/json/result_fields.h"
 #include "tests/support/paths.h"
-#include "tests/support/text_scan.h"
 
 namespace lucerna::cli {
 namespace {
@@ -40,25 +38,6 @@ TEST(ReferencePages, HaveARowForEachKeyAndASectionForEachCommand) {
   EXPECT_EQ(rows(cli, "## "), 1 + static_cast<std::ptrdiff_t>(kCommands.size()));
   for (const char* option : {"`--noise`", "`PROJECT`", "`-o, --output`", "`--advise`", "`FILE...`"})
     EXPECT_NE(cli.find(option), std::string::npos) << option;
-}
-
-// The page against the parser, option by option: the count is that of the rows.
-TEST(ReferencePages, HaveARowForEachOptionOfEachCommand) {
-  const std::string page = reference_pages().at("cli.md");
-  std::size_t options = 0;
-  for (const CommandFacts& command : program_commands()) {
-    const auto sections = test::between(page + "\n## ", "\n## " + command.name + "\n", "\n## ");
-    ASSERT_EQ(sections.size(), 1u) << command.name;
-    EXPECT_EQ(rows(sections.front(), "| `"), static_cast<std::ptrdiff_t>(command.options.size()))
-        << command.name;
-    for (const OptionFacts& option : command.options) {
-      std::string names;
-      for (const std::string& name : option.names) names += (names.empty() ? "| `" : ", ") + name;
-      EXPECT_TRUE(test::has(sections.front(), names)) << command.name << ' ' << names;
-      ++options;
-    }
-  }
-  EXPECT_GT(options, 100u);
 }
 
 TEST(ReferencePages, HaveARowForEachFieldOfTheResults) {
