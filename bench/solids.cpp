@@ -103,7 +103,7 @@ Outcome by_embree(const EmbreeSurface& surface, const MediumView& medium, const 
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const SurfaceHit hit = surface.first(rays[i], 0.0, 1e300);
     if (hit.part < 0) continue;
-    const GlassPassage p = through_solid(surface, medium, rays[i], hit, {1, i, 0}, [](const Vec3&) {});
+    const GlassPassage p = through_solid(surface, medium, {}, rays[i], hit, {1, i, 0}, [](const Vec3&) {});
     out.within += p.ray.direction.z() > std::cos(radians(2.0)) ? 1.0 : 0.0;
     out.lost += p.lost ? 1.0 : 0.0;
   }
