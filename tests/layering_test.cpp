@@ -60,7 +60,7 @@ const std::map<std::string, Layers> kSubRooms{
      {
          {"comparison", {}},
          {"data", {}},
-         {"formats/common", {}},
+         {"formats/common", {"data"}},
          {"formats/asap", {"formats/common"}},
          {"formats/lighttools", {"formats/common"}},
          {"formats/mcpl", {"formats/common"}},

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "lucerna/material.h"
+
 #pragma GCC visibility push(default)
 namespace lucerna {
 
@@ -57,6 +59,12 @@ struct CatalogueGlass {
 /// catalogue's wavelengths. 0 where the catalogue states no transmittance. Throws InputError where it states
 /// some, but not for this wavelength, and where no light passes. Thread safe.
 [[nodiscard]] double glass_absorption_per_mm(const CatalogueGlass& glass, double wavelength_nm);
+
+/// Both over the whole range of the formula, the index within 1e-5; absorption only where the catalogue
+/// states transmittances, and beyond its wavelengths that of the nearest. Light that does not pass at all is
+/// absorbed to 1e-30 within a millimetre. Throws InputError where the formula gives no index of 1 to 4.
+/// Thread safe.
+[[nodiscard]] Dispersion dispersion(const CatalogueGlass& glass);
 
 }  // namespace lucerna
 #pragma GCC visibility pop

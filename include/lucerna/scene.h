@@ -14,7 +14,9 @@
 #include "lucerna/detectors.h"
 #include "lucerna/geometry.h"
 #include "lucerna/host_device.h"
+#include "lucerna/material.h"
 #include "lucerna/mesh.h"
+#include "lucerna/rays.h"
 #include "lucerna/reflector.h"
 #include "lucerna/scatter.h"
 #include "lucerna/source.h"
@@ -166,6 +168,9 @@ struct Solid {
   double refractive_index = 1.49;
   /// Natural absorption coefficient >= 0: a path of x mm leaves exp(-x * absorption_per_mm).
   double absorption_per_mm = 0.0;
+  /// Not null: each ray has the index of its own wavelength, and absorption too where there are samples of
+  /// it. Rays of unknown wavelength (not above 0) have those above. All sources must have wavelengths.
+  std::shared_ptr<const Dispersion> dispersion = nullptr;
   /// Of a mesh, > 0: the normal changes steadily across triangles that meet at less than this angle
   /// (`corner_normals`); 0: every triangle is flat. Of an outline: between corners that turn by more than
   /// this it is a curve without kinks through its corners (a C2 cubic spline); 0: all sides are straight. At
@@ -211,6 +216,9 @@ struct PlacedSource {
   Frame world_from_source;
   /// Overrides the source's own flux, in its own unit; > 0.
   std::optional<double> flux;
+  /// Not empty: the spectral power that wavelengths of the rays are drawn from, whatever the source says of
+  /// them; of its lumens where it counts lumens. One point: all rays have that wavelength.
+  SpectralTable spectrum = {};
 
   /// `flux` if given, else the source's own; in the source's unit.
   double total_flux() const { return flux ? *flux : rays->flux(); }
@@ -261,7 +269,8 @@ struct Scene {
 double share_behind(const PlacedSource& source, const PlacedReflector& mirror);
 
 /// Throws InputError if the scene cannot be traced: no source, a flux that is not above 0, lm and W together,
-/// a detector whose steps do not divide the circle, two detectors of one name.
+/// a detector whose steps do not divide the circle, two detectors of one name, a spectrum that is none, and a
+/// source without wavelengths beside a solid that disperses.
 void check(const Scene& scene);
 
 }  // namespace lucerna

@@ -6,7 +6,9 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "lucerna/bounding_surface.h"
 #include "lucerna/flux_unit.h"
@@ -15,6 +17,8 @@
 
 #pragma GCC visibility push(default)
 namespace lucerna {
+
+class SpectrumSampler;
 
 /// Anything that light can be drawn from by number: an analytic emitter, a compressed model, the rays of a
 /// file. Immutable once made; `emit` is thread safe.
@@ -37,7 +41,7 @@ class RaySource {
   /// the file.
   virtual void emit(const Sequence& sequence, std::uint64_t first, RayBlock& out) const = 0;
 
-  /// True if the rays have wavelengths of their own (`emit_wavelengths`).
+  /// True if wavelengths of the rays are known (`emit_wavelengths`).
   virtual bool has_wavelengths() const { return false; }
   /// Sets the wavelengths of rays `first` .. `first + nm.size() - 1` of the stream of `emit`, nm. Only for
   /// sources that have them. Thread safe.
@@ -127,9 +131,23 @@ class RaySetSource final : public RaySource {
   FluxUnit flux_unit() const override { return rays_->header.flux_unit; }
   std::optional<std::uint64_t> ray_count() const override { return rays_->rays.size(); }
   void emit(const Sequence& sequence, std::uint64_t first, RayBlock& out) const override;
+  /// True for a column of wavelengths, one wavelength of all rays, or spectra.
+  bool has_wavelengths() const override;
+  /// The ray's own, else that of all rays; else drawn from the spectrum that the ray's index names, or the
+  /// first one: of the lumens where weights are lumens.
+  void emit_wavelengths(const Sequence& sequence, std::uint64_t first, std::span<float> nm) const override;
 
  private:
+  /// Calls `copy(from, count, to)` for each run of neighbours in the file that rays `first` .. `first + size
+  /// - 1` of the stream are, with their place among these.
+  template <class Copy>
+  void visit(const Sequence& sequence, std::uint64_t first, std::size_t size, const Copy& copy) const;
+  /// Of a ray of the file; where its index names none, the first. Only where there are any.
+  const SpectrumSampler& spectrum_of(std::size_t ray) const;
+
   std::shared_ptr<const RaySet> rays_;
+  /// Of its spectra; null where rays have wavelengths or there are none.
+  std::shared_ptr<const std::vector<SpectrumSampler>> spectra_;
   double flux_ = 0.0;
   /// n / sum of weights: makes the mean weight 1.
   double weight_scale_ = 0.0;

@@ -44,7 +44,7 @@ class LensBlocks {
     for (int surfaces = 0;; ++key.bounce) {
       const auto hit = solids_.first_hit(ray, kNoLimit_mm, key.bounce > 0);
       if (!hit) return sums.left(ray, flux, surfaces);
-      const GlassPassage way = solids_.pass(ray, *hit, key, [&](const Vec3&) { ++surfaces; });
+      const GlassPassage way = solids_.pass(ray, *hit, key, 0.0F, [&](const Vec3&) { ++surfaces; });
       sums.absorbed(flux * (1.0 - way.throughput));
       flux *= way.throughput;
       if (way.lost || key.bounce == kMostPassages) return sums.lost(flux);

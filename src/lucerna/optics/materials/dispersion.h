@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <span>
+#include <vector>
 
 #include "lucerna/material.h"
 
@@ -26,5 +30,15 @@ struct MetalRow {
 };
 /// Linear between the rows, whose wavelengths ascend; `wavelength_um` within them.
 RefractiveIndex interpolated(std::span<const MetalRow> rows, double wavelength_um);
+
+/// `value(nm)` at even steps from `min_nm` to `max_nm`: of at most a nanometre, but at most 100 000.
+template <class Value>
+std::vector<double> each_nanometre(double min_nm, double max_nm, const Value& value) {
+  const auto steps = static_cast<std::size_t>(std::clamp(std::ceil(max_nm - min_nm), 1.0, 1e5));
+  std::vector<double> out;
+  for (std::size_t i = 0; i <= steps; ++i)
+    out.push_back(value(std::lerp(min_nm, max_nm, static_cast<double>(i) / static_cast<double>(steps))));
+  return out;
+}
 
 }  // namespace lucerna

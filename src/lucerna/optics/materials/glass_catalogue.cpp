@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "lucerna/core/io/diagnostic_text.h"
 #include "lucerna/core/io/error.h"
@@ -15,6 +16,7 @@
 #include "lucerna/core/io/spelling.h"
 #include "lucerna/core/io/text.h"
 #include "lucerna/optics/materials/agf_formulas.h"
+#include "lucerna/optics/materials/dispersion.h"
 
 namespace lucerna {
 
@@ -208,17 +210,39 @@ double glass_index(const CatalogueGlass& glass, double wavelength_nm) {
   return n;
 }
 
+namespace {
+
+/// The share of 1 mm, linear between rows, of which there is at least one; `wavelength_nm` within them.
+double transmittance_of_1_mm(const std::vector<InternalTransmittance>& rows, double wavelength_nm) {
+  const auto b = std::ranges::lower_bound(rows, wavelength_nm, {}, &InternalTransmittance::wavelength_nm);
+  if (!(b->wavelength_nm > wavelength_nm)) return per_mm(*b);
+  const auto a = b - 1;
+  return std::lerp(per_mm(*a), per_mm(*b),
+                   (wavelength_nm - a->wavelength_nm) / (b->wavelength_nm - a->wavelength_nm));
+}
+
+}  // namespace
+
+Dispersion dispersion(const CatalogueGlass& glass) {
+  constexpr double kDark = 1e-30;
+  const auto& rows = glass.transmittance;
+  std::vector<double> absorption_per_mm;
+  if (!rows.empty()) {
+    absorption_per_mm = each_nanometre(glass.min_nm, glass.max_nm, [&](double nm) {
+      const double within = std::clamp(nm, rows.front().wavelength_nm, rows.back().wavelength_nm);
+      return std::max(0.0, -std::log(std::max(kDark, transmittance_of_1_mm(rows, within))));
+    });
+  }
+  return {glass.min_nm, glass.max_nm,
+          each_nanometre(glass.min_nm, glass.max_nm, [&](double nm) { return glass_index(glass, nm); }),
+          std::move(absorption_per_mm)};
+}
+
 double glass_absorption_per_mm(const CatalogueGlass& glass, double wavelength_nm) {
   const auto& rows = glass.transmittance;
   if (rows.empty()) return 0.0;
   check_range(glass, "transmittance", wavelength_nm, rows.front().wavelength_nm, rows.back().wavelength_nm);
-  const auto b = std::ranges::lower_bound(rows, wavelength_nm, {}, &InternalTransmittance::wavelength_nm);
-  double passes = per_mm(*b);
-  if (b->wavelength_nm > wavelength_nm) {
-    const auto a = b - 1;
-    passes = std::lerp(per_mm(*a), passes,
-                       (wavelength_nm - a->wavelength_nm) / (b->wavelength_nm - a->wavelength_nm));
-  }
+  const double passes = transmittance_of_1_mm(rows, wavelength_nm);
   if (passes == 0.0) {
     throw InputError(fmt::format("glass '{}' lets no light of {} nm through", glass.name, wavelength_nm),
                      ErrorCause::out_of_range);

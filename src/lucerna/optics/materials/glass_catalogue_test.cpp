@@ -77,6 +77,23 @@ TEST(GlassCatalogue, AbsorptionFollowsFromTheThickestPlate) {
   EXPECT_EQ(glass_absorption_per_mm(read_glass(file, "Flint"), 500.0), 0.0) << "none is stated";
 }
 
+TEST(GlassCatalogue, DispersionIsIndexAndAbsorptionOfEachWavelength) {
+  const TempDir dir;
+  const auto file = written(dir, kCatalogue);
+  const CatalogueGlass crown = read_glass(file, "CROWN-7");
+  const Dispersion d = dispersion(crown);
+  EXPECT_EQ(d.min_nm(), 300.0);
+  EXPECT_EQ(d.max_nm(), 2500.0);
+  ASSERT_TRUE(d.has_absorption());
+  for (const double nm : {400.0, 432.1, 500.0, 587.56, 600.0}) {
+    EXPECT_NEAR(d.index(nm), glass_index(crown, nm), 1e-5) << nm;
+    EXPECT_NEAR(d.absorption_per_mm(nm), glass_absorption_per_mm(crown, nm), 1e-5) << nm;
+  }
+  EXPECT_EQ(d.absorption_per_mm(900.0), d.absorption_per_mm(600.0)) << "that of the nearest";
+  EXPECT_NEAR(d.absorption_per_mm(300.0), std::log(1e30), 1e-9) << "no light passes";
+  EXPECT_FALSE(dispersion(read_glass(file, "Flint")).has_absorption());
+}
+
 TEST(GlassCatalogue, IsReadInUtf16Too) {
   const TempDir dir;
   std::string wide = "\xFF\xFE";

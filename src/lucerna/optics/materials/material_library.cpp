@@ -87,20 +87,36 @@ std::vector<MaterialInfo> materials() {
   return all;
 }
 
-RefractiveIndex refractive_index(std::string_view material, double wavelength_nm) {
+namespace {
+
+const Material& find(std::string_view material) {
   for (const Material& m : library()) {
-    if (m.info.name != material) continue;
-    if (!(wavelength_nm >= m.info.min_nm && wavelength_nm <= m.info.max_nm)) {
-      throw InputError(fmt::format("material '{}': found {} nm, expected {:g} to {:g} nm", material,
-                                   wavelength_nm, m.info.min_nm, m.info.max_nm),
-                       ErrorCause::out_of_range);
-    }
-    return m.index_at(1e-3 * wavelength_nm);
+    if (m.info.name == material) return m;
   }
   WordSet known;
   for (const Material& m : library()) known.insert(m.info.name);
   throw InputError(fmt::format("material '{}' is not known; the nearest known one is '{}'", material,
                                nearest_word(material, known)));
+}
+
+}  // namespace
+
+RefractiveIndex refractive_index(std::string_view material, double wavelength_nm) {
+  const Material& m = find(material);
+  if (!(wavelength_nm >= m.info.min_nm && wavelength_nm <= m.info.max_nm)) {
+    throw InputError(fmt::format("material '{}': found {} nm, expected {:g} to {:g} nm", material,
+                                 wavelength_nm, m.info.min_nm, m.info.max_nm),
+                     ErrorCause::out_of_range);
+  }
+  return m.index_at(1e-3 * wavelength_nm);
+}
+
+Dispersion dispersion(std::string_view material) {
+  const Material& m = find(material);
+  if (m.info.is_metal)
+    throw InputError(fmt::format("material '{}' is a metal, expected a clear medium", material));
+  return {m.info.min_nm, m.info.max_nm,
+          each_nanometre(m.info.min_nm, m.info.max_nm, [&](double nm) { return m.index_at(1e-3 * nm).n; })};
 }
 
 }  // namespace lucerna

@@ -51,6 +51,37 @@ TEST(Material, HasItsOwnRangeAndNoOther) {
   }
 }
 
+TEST(Dispersion, IsTheIndexOfEachWavelength) {
+  for (const MaterialInfo& m : materials()) {
+    if (m.is_metal) continue;
+    const Dispersion d = dispersion(m.name);
+    EXPECT_EQ(d.min_nm(), m.min_nm);
+    EXPECT_EQ(d.max_nm(), m.max_nm);
+    for (int i = 0; i <= 1000; ++i) {
+      const double nm = std::lerp(m.min_nm, m.max_nm, i / 1000.0);
+      EXPECT_NEAR(d.index(nm), refractive_index(m.name, nm).n, 1e-5) << m.name << " at " << nm;
+    }
+    EXPECT_EQ(d.index(100.0), d.index(m.min_nm)) << "held beyond the ends";
+    EXPECT_EQ(d.index(9000.0), d.index(m.max_nm));
+    EXPECT_FALSE(d.has_absorption());
+  }
+  EXPECT_THROW((void)dispersion("silver"), InputError);
+  EXPECT_THROW((void)dispersion("butter"), InputError);
+}
+
+TEST(Dispersion, RefusesWhatIsNone) {
+  EXPECT_THROW(Dispersion(500.0, 500.0, {1.5, 1.5}), InputError);
+  EXPECT_THROW(Dispersion(0.0, 500.0, {1.5, 1.5}), InputError);
+  EXPECT_THROW(Dispersion(400.0, std::nan(""), {1.5, 1.5}), InputError);
+  EXPECT_THROW(Dispersion(400.0, 500.0, {1.5}), InputError);
+  EXPECT_THROW(Dispersion(400.0, 500.0, {1.5, 0.9}), InputError);
+  EXPECT_THROW(Dispersion(400.0, 500.0, {1.5, 1.5}, {0.1}), InputError);
+  EXPECT_THROW(Dispersion(400.0, 500.0, {1.5, 1.5}, {0.1, -0.1}), InputError);
+  const Dispersion d(400.0, 500.0, {1.6, 1.5}, {0.0, 0.2});
+  EXPECT_NEAR(d.index(425.0), 1.575, 1e-12);
+  EXPECT_NEAR(d.absorption_per_mm(475.0), 0.15, 1e-12);
+}
+
 TEST(Material, NamesTheNearestThatIsKnown) {
   try {
     (void)refractive_index("aluminum", 550.0);

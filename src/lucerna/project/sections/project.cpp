@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/project.h"
 
+#include <algorithm>
 #include <sstream>
+#include <vector>
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/project/schema/project_files.h"
@@ -10,6 +12,7 @@
 #include "lucerna/project/schema/toml_text.h"
 #include "lucerna/project/sections/project_memory.h"
 #include "lucerna/project/sections/project_parts.h"
+#include "lucerna/trace/engines/ray_colours.h"
 
 namespace lucerna {
 
@@ -40,6 +43,31 @@ void check_sources_before_mirrors(Project& project, const std::string& file) {
                          ErrorCause::contradiction);
       }
       if (share > 0.0) project.warnings.push_back(fmt::format("{}: {}", file, who));
+    }
+  }
+}
+
+/// Says how much light has a wavelength that a dispersing solid does not know.
+void warn_of_wavelengths(Project& project, const std::string& file) {
+  constexpr std::size_t kRays = 4096;
+  const RayColours colours(project.scene);
+  if (!colours.are_needed()) return;
+  std::vector<float> nm(kRays);
+  for (std::size_t s = 0; s < project.scene.sources.size(); ++s) {
+    colours.emit(s, Sequence(SequenceKind::random, 1), 0, nm);
+    const auto warn = [&](const auto& is_unknown, const std::string& what) {
+      const auto n = std::ranges::count_if(nm, is_unknown);
+      if (n == 0) return;
+      project.warnings.push_back(fmt::format("{}: source[{}]: {:.3g} % of its rays have {}", file, s,
+                                             100.0 * static_cast<double>(n) / kRays, what));
+    };
+    warn([](double w) { return !(w > 0.0); }, "no wavelength: they meet the index of `wavelength_nm`");
+    for (const Solid& solid : project.scene.solids) {
+      if (solid.dispersion == nullptr) continue;
+      const double min_nm = solid.dispersion->min_nm(), max_nm = solid.dispersion->max_nm();
+      warn([&](double w) { return w > 0.0 && !(w >= min_nm && w <= max_nm); },
+           fmt::format("wavelengths out of {:g} to {:g} nm: in '{}' they meet the index of the nearer end",
+                       min_nm, max_nm, solid.name));
     }
   }
 }
@@ -83,6 +111,7 @@ void read_tables(Project& project, const fs::path& path, Progress& progress) {
     throw InputError(fmt::format("{}: {}", path.string(), e.what()), e.cause());
   }
   check_sources_before_mirrors(project, path.string());
+  warn_of_wavelengths(project, path.string());
   make_files_absolute(toml_tables(project), fs::absolute(path).parent_path());
 }
 

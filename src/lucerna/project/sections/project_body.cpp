@@ -47,6 +47,8 @@ namespace {
 /// What light meets in a glass or a solid.
 struct ClearMedium {
   double refractive_index, absorption_per_mm = 0.0;
+  /// Null unless `dispersion` asks for it.
+  std::shared_ptr<const Dispersion> dispersion = nullptr;
 };
 
 ClearMedium read_catalogue(TomlReader& reader, const std::filesystem::path& file, Project& project) {
@@ -54,12 +56,16 @@ ClearMedium read_catalogue(TomlReader& reader, const std::filesystem::path& file
   if (!name) reader.missing("glass", "a name of the catalogue");
   const double wavelength_nm = reader.number("wavelength_nm", kWavelengthNm);
   project.inputs.push_back(file);
-  const CatalogueGlass glass = at_key(reader, "glass", [&] { return read_glass(file, *name); });
-  return at_key(reader, "wavelength_nm", [&] {
-    const double absorption_per_mm =
-        reader.has("absorption_per_mm") ? 0.0 : glass_absorption_per_mm(glass, wavelength_nm);
-    return ClearMedium{glass_index(glass, wavelength_nm), absorption_per_mm};
+  CatalogueGlass glass = at_key(reader, "glass", [&] { return read_glass(file, *name); });
+  // What the project says of the absorption holds for all wavelengths.
+  if (reader.has("absorption_per_mm")) glass.transmittance.clear();
+  ClearMedium medium = at_key(reader, "wavelength_nm", [&] {
+    return ClearMedium{glass_index(glass, wavelength_nm), glass_absorption_per_mm(glass, wavelength_nm)};
   });
+  if (reader.flag("dispersion").value_or(false))
+    at_key(reader, "glass",
+           [&] { medium.dispersion = std::make_shared<const Dispersion>(dispersion(glass)); });
+  return medium;
 }
 
 /// The index is a number, or follows from one of `material` and `catalogue`.
@@ -68,8 +74,9 @@ ClearMedium read_medium(TomlReader& reader, double index_otherwise, Project& pro
   const auto catalogue = reader.file("catalogue");
   if (!catalogue && reader.has("glass")) reader.fail("glass", "belongs to `catalogue`, which is not there");
   if (!material && !catalogue) {
-    if (reader.has("wavelength_nm"))
-      reader.fail("wavelength_nm", "belongs to `material` or `catalogue`, and neither is there");
+    for (const char* key : {"wavelength_nm", "dispersion"}) {
+      if (reader.has(key)) reader.fail(key, "belongs to `material` or `catalogue`, and neither is there");
+    }
     return {reader.number("refractive_index", index_otherwise)};
   }
   if (reader.has("refractive_index")) {
@@ -79,7 +86,11 @@ ClearMedium read_medium(TomlReader& reader, double index_otherwise, Project& pro
   if (material && catalogue) reader.fail("catalogue", "found `material` too; expected one of both");
   if (catalogue) return read_catalogue(reader, *catalogue, project);
   const double wavelength_nm = reader.number("wavelength_nm", kWavelengthNm);
-  return {at_key(reader, "wavelength_nm", [&] { return refractive_index(*material, wavelength_nm).n; })};
+  ClearMedium medium{
+      at_key(reader, "wavelength_nm", [&] { return refractive_index(*material, wavelength_nm).n; })};
+  if (reader.flag("dispersion").value_or(false))
+    medium.dispersion = std::make_shared<const Dispersion>(dispersion(*material));
+  return medium;
 }
 
 /// The medium's own absorption unless the project has another.
@@ -89,6 +100,7 @@ double read_absorption_per_mm(TomlReader& reader, const ClearMedium& medium) {
 
 CoverGlass read_cover_glass(TomlReader& reader, Project& project) {
   if (reader.has("file")) reader.fail("file", "belongs to bodies of triangles; a glass is flat");
+  if (reader.has("dispersion")) reader.fail("dispersion", "belongs to role = \"solid\"; this is glass");
   CoverGlass glass;
   glass.name = read_cause(reader, project.scene, glass.name);
   glass.world_from_glass = read_placement(reader);
@@ -152,6 +164,7 @@ Solid read_solid(TomlReader& reader, Project& project) {
   const ClearMedium medium = read_medium(reader, solid.refractive_index, project);
   solid.refractive_index = medium.refractive_index;
   solid.absorption_per_mm = read_absorption_per_mm(reader, medium);
+  solid.dispersion = medium.dispersion;
   solid.smooth_below_deg = reader.number("smooth_below_deg", solid.smooth_below_deg);
   solid.scatter = read_scatter(reader);
   const auto rough = reader.number_or_numbers("scatter_sides");

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "lucerna/core/io/number_table.h"
 #include "lucerna/project/sections/project_memory.h"
 #include "lucerna/project/sections/project_parts.h"
 #include "lucerna/ray_file.h"
@@ -90,12 +91,36 @@ std::shared_ptr<const RaySource> read_model_source(const TomlReader& reader, con
   return model;
 }
 
+/// `wavelength_nm` or `spectrum`; empty for neither.
+SpectralTable read_spectrum(TomlReader& reader, Project& project) {
+  const auto nm = reader.number("wavelength_nm");
+  const auto file = reader.file("spectrum");
+  if (nm && file) reader.fail("spectrum", "found `wavelength_nm` too; expected one of both");
+  if (nm) return {{static_cast<float>(*nm)}, {1.0F}};
+  if (!file) return {};
+  project.inputs.push_back(*file);
+  return at_key(reader, "spectrum", [&] {
+    const NumberTable table = read_number_table(*file, TableHeader::optional);
+    if (table.columns != 2 || table.rows == 0) {
+      throw InputError(fmt::format("{}: found {} lines of {} numbers, expected lines of two: nm and power",
+                                   file->string(), table.rows, table.columns));
+    }
+    SpectralTable out;
+    for (std::size_t i = 0; i < table.rows; ++i) {
+      out.wavelength_nm.push_back(static_cast<float>(table.numbers[2 * i]));
+      out.relative_power.push_back(static_cast<float>(table.numbers[2 * i + 1]));
+    }
+    return out;
+  });
+}
+
 }  // namespace
 
 PlacedSource read_source(TomlReader reader, Project& project, Progress& progress) {
   PlacedSource source;
   source.world_from_source = read_placement(reader);
   const auto flux = read_flux(reader);
+  source.spectrum = read_spectrum(reader, project);
   const auto file = reader.file("file");
   if (file) {
     if (reader.has("kind")) reader.fail("kind", "a source has either a file or a kind");

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/rayset/data/luminous_spectrum.h"
+#include "lucerna/rayset/data/spectrum_sampler.h"
 #include "lucerna/source.h"
 
 namespace lucerna {
@@ -34,6 +36,22 @@ std::uint64_t golden_stride(std::uint64_t n) {
   return best;
 }
 
+/// The column of the rays' own wavelengths, if they have one.
+const std::vector<float>* wavelengths_of(const RaySet& set) {
+  const auto column = find_column(set.header.columns, ColumnKind::wavelength_nm);
+  return column && *column < set.rays.extra.size() ? &set.rays.extra[*column] : nullptr;
+}
+
+/// Of the spectra of the header, as they are drawn from; null where there are none.
+std::shared_ptr<const std::vector<SpectrumSampler>> samplers_of(const RaySetHeader& header) {
+  std::vector<SpectrumSampler> out;
+  for (const SpectralTable& table : header.spectra) {
+    if (table.wavelength_nm.empty()) return nullptr;
+    out.emplace_back(header.flux_unit == FluxUnit::lumen ? luminous_spectrum(table) : table);
+  }
+  return out.empty() ? nullptr : std::make_shared<const std::vector<SpectrumSampler>>(std::move(out));
+}
+
 }  // namespace
 
 RaySetSource::RaySetSource(std::shared_ptr<const RaySet> rays, const std::string& name)
@@ -51,11 +69,14 @@ RaySetSource::RaySetSource(std::shared_ptr<const RaySet> rays, const std::string
   weight_scale_ = static_cast<double>(block.size()) / sum;
   blocks_ = (block.size() + kRun - 1) / kRun;
   stride_ = golden_stride(blocks_);
+  if (wavelengths_of(*rays_) == nullptr && !rays_->header.wavelength_nm)
+    spectra_ = samplers_of(rays_->header);
 }
 
-void RaySetSource::emit(const Sequence& sequence, std::uint64_t first, RayBlock& out) const {
-  const RayBlock& in = rays_->rays;
-  const std::uint64_t n = in.size(), start = detail::mix_bits(sequence.seed()) % blocks_;
+template <class Copy>
+void RaySetSource::visit(const Sequence& sequence, std::uint64_t first, std::size_t size,
+                         const Copy& copy) const {
+  const std::uint64_t n = rays_->rays.size(), start = detail::mix_bits(sequence.seed()) % blocks_;
   // The visit as if every block were full; the numbers that the last, short block lacks are passed over by
   // giving it the last place of the visit: block `blocks_ - 1` is swapped with whatever the steps put there.
   const std::uint64_t last_visited = (start + (blocks_ - 1) * stride_) % blocks_;
@@ -63,14 +84,21 @@ void RaySetSource::emit(const Sequence& sequence, std::uint64_t first, RayBlock&
     const std::uint64_t block = (start + (j / kRun) * stride_) % blocks_;
     return block == blocks_ - 1 ? last_visited : block == last_visited ? blocks_ - 1 : block;
   };
-  for (std::size_t i = 0; i < out.size();) {
+  for (std::size_t i = 0; i < size;) {
     const std::uint64_t j = (first + i) % n;
     const auto from = static_cast<std::size_t>(block_of(j) * kRun + j % kRun);
-    const auto count =
-        static_cast<std::size_t>(std::min({kRun - j % kRun, std::uint64_t{out.size() - i}, n - j}));
+    const auto count = static_cast<std::size_t>(std::min({kRun - j % kRun, std::uint64_t{size - i}, n - j}));
+    copy(from, count, i);
+    i += count;
+  }
+}
+
+void RaySetSource::emit(const Sequence& sequence, std::uint64_t first, RayBlock& out) const {
+  const RayBlock& in = rays_->rays;
+  visit(sequence, first, out.size(), [&](std::size_t from, std::size_t count, std::size_t to) {
     const auto copy = [&](const std::vector<float>& a, std::vector<float>& b) {
       std::copy_n(a.begin() + static_cast<std::ptrdiff_t>(from), count,
-                  b.begin() + static_cast<std::ptrdiff_t>(i));
+                  b.begin() + static_cast<std::ptrdiff_t>(to));
     };
     copy(in.x_mm, out.x_mm);
     copy(in.y_mm, out.y_mm);
@@ -79,9 +107,33 @@ void RaySetSource::emit(const Sequence& sequence, std::uint64_t first, RayBlock&
     copy(in.ky, out.ky);
     copy(in.kz, out.kz);
     for (std::size_t k = 0; k < count; ++k)
-      out.weight[i + k] = static_cast<float>(weight_scale_ * static_cast<double>(in.weight[from + k]));
-    i += count;
-  }
+      out.weight[to + k] = static_cast<float>(weight_scale_ * static_cast<double>(in.weight[from + k]));
+  });
+}
+
+bool RaySetSource::has_wavelengths() const {
+  return wavelengths_of(*rays_) != nullptr || rays_->header.wavelength_nm || spectra_ != nullptr;
+}
+
+const SpectrumSampler& RaySetSource::spectrum_of(std::size_t ray) const {
+  const auto column = find_column(rays_->header.columns, ColumnKind::spectrum_index);
+  if (!column || *column >= rays_->rays.extra.size()) return spectra_->front();
+  const double index = static_cast<double>(rays_->rays.extra[*column][ray]);
+  const double last = static_cast<double>(spectra_->size());
+  return (*spectra_)[static_cast<std::size_t>(index >= 1.0 && index <= last ? index : 1.0) - 1];
+}
+
+void RaySetSource::emit_wavelengths(const Sequence& sequence, std::uint64_t first,
+                                    std::span<float> nm) const {
+  LUCERNA_CHECK(has_wavelengths(), "wavelengths of rays without, {} wanted", nm.size());
+  const std::vector<float>* const own = wavelengths_of(*rays_);
+  visit(sequence, first, nm.size(), [&](std::size_t from, std::size_t count, std::size_t to) {
+    for (std::size_t k = 0; k < count; ++k) {
+      nm[to + k] = own != nullptr        ? (*own)[from + k]
+                   : spectra_ == nullptr ? *rays_->header.wavelength_nm
+                                         : spectrum_of(from + k).of_ray(sequence.seed(), first + to + k);
+    }
+  });
 }
 
 }  // namespace lucerna

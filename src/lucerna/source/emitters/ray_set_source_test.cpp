@@ -74,5 +74,48 @@ TEST(RaySetSource, RefusesWhatCannotShine) {
   EXPECT_THROW(RaySetSource(dark, "dark"), InputError);
 }
 
+/// Wavelengths of the first `n` rays of a stream, and where these begin.
+std::pair<std::vector<float>, RayBlock> coloured(const RaySource& source, std::uint64_t first,
+                                                 std::size_t n) {
+  const Sequence sequence(SequenceKind::random, 3);
+  RayBlock rays;
+  rays.resize(n);
+  source.emit(sequence, first, rays);
+  std::vector<float> nm(n);
+  source.emit_wavelengths(sequence, first, nm);
+  return {nm, rays};
+}
+
+TEST(RaySetSource, EachRayKeepsItsWavelength) {
+  const auto set = numbered_set(1000);
+  set->header.columns = {{ColumnKind::wavelength_nm, "wavelength nm"}};
+  set->rays.extra = {std::vector<float>(1000)};
+  for (std::size_t i = 0; i < 1000; ++i) set->rays.extra[0][i] = 400.0F + static_cast<float>(i);
+  const RaySetSource source(set, "set");
+  ASSERT_TRUE(source.has_wavelengths());
+  const auto [nm, rays] = coloured(source, 777, 500);
+  for (std::size_t i = 0; i < nm.size(); ++i) EXPECT_EQ(nm[i], 400.0F + rays.x_mm[i]) << i;
+}
+
+TEST(RaySetSource, TakesTheOneWavelengthOrTheSpectrumOfItsIndex) {
+  const auto set = numbered_set(64);
+  EXPECT_FALSE(RaySetSource(set, "set").has_wavelengths());
+  set->header.spectra = {{{450.0F}, {1.0F}}, {{600.0F, 610.0F}, {1.0F, 1.0F}}};
+  set->header.columns = {{ColumnKind::spectrum_index, "spectrum index"}};
+  set->rays.extra = {std::vector<float>(64, 2.0F)};
+  set->rays.extra[0][9] = 1.0F;
+  set->rays.extra[0][10] = 77.0F;
+  const auto [nm, rays] = coloured(RaySetSource(set, "set"), 0, 64);
+  for (std::size_t i = 0; i < nm.size(); ++i) {
+    if (rays.x_mm[i] == 9.0F || rays.x_mm[i] == 10.0F) {
+      EXPECT_EQ(nm[i], 450.0F) << "an index that names none is the first";
+    } else {
+      EXPECT_TRUE(nm[i] >= 600.0F && nm[i] <= 610.0F) << nm[i];
+    }
+  }
+  set->header.wavelength_nm = 530.0F;
+  for (const float one : coloured(RaySetSource(set, "set"), 0, 64).first) EXPECT_EQ(one, 530.0F);
+}
+
 }  // namespace
 }  // namespace lucerna

@@ -27,13 +27,14 @@ class GlassTracer {
   std::optional<GlassHit> first_hit(const Ray& ray, double t_max_mm, bool started) const;
 
   /// What becomes of the ray there. `key.bounce` counts all that the ray met before, plates and bodies
-  /// included. `visit` sees every point of a body's surface on the way.
-  GlassPassage pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key,
+  /// included. `wavelength_nm` counts in bodies that disperse; not above 0: not known. `visit` sees every
+  /// point of a body's surface on the way.
+  GlassPassage pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key, float wavelength_nm = 0.0F,
                     const std::function<void(const Vec3&)>& visit = {}) const {
     if (is_solid(hit)) {
       GlassHit of_solid = hit;
       of_solid.glass -= cover_glasses_.size();
-      return solids_.pass(ray, of_solid, key, visit);
+      return solids_.pass(ray, of_solid, key, wavelength_nm, visit);
     }
     return through_cover_glass(cover_glasses_[hit.glass], ray, hit, key);
   }

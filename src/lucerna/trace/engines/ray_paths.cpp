@@ -9,6 +9,7 @@
 #include "lucerna/core/io/error.h"
 #include "lucerna/trace/engines/body_tracer.h"
 #include "lucerna/trace/engines/glass_tracer.h"
+#include "lucerna/trace/engines/ray_colours.h"
 #include "lucerna/trace/engines/ray_numbering.h"
 #include "lucerna/trace/engines/reference_tracer.h"
 #include "lucerna/trace/tally/flux_quanta.h"
@@ -54,8 +55,12 @@ struct Obstacles {
 class PathWalk {
  public:
   PathWalk(const Obstacles& obstacles, const Ray& ray, std::size_t source, const ReflectionKey& key,
-           int max_bounces)
-      : obstacles_(obstacles), ray_(ray), key_(key), max_bounces_(max_bounces) {
+           float wavelength_nm, int max_bounces)
+      : obstacles_(obstacles),
+        ray_(ray),
+        key_(key),
+        wavelength_nm_(wavelength_nm),
+        max_bounces_(max_bounces) {
     path_ = {source, {ray.origin_mm}, {0}, ray.direction, RayEnd::out};
   }
 
@@ -111,7 +116,7 @@ class PathWalk {
   /// Every point of a solid's surface on the way.
   bool pass_solid(const GlassHit& hit) {
     const GlassPassage passage =
-        obstacles_.glass_tracer.pass(ray_, hit, key_, [this](const Vec3& at) { note(at); });
+        obstacles_.glass_tracer.pass(ray_, hit, key_, wavelength_nm_, [this](const Vec3& at) { note(at); });
     if (!(passage.throughput > 0.0)) return end_here(RayEnd::glass);
     if (passage.lost || (!passage.transmitted && reflections_ == max_bounces_))
       return end_here(RayEnd::bounce_limit);
@@ -124,7 +129,7 @@ class PathWalk {
   bool pass(const GlassHit& hit) {
     if (obstacles_.glass_tracer.is_solid(hit)) return pass_solid(hit);
     const Vec3 in = ray_.at(hit.t_mm);
-    const GlassPassage passage = obstacles_.glass_tracer.pass(ray_, hit, key_);
+    const GlassPassage passage = obstacles_.glass_tracer.pass(ray_, hit, key_, wavelength_nm_);
     if (!(passage.throughput > 0.0)) return end_at(in, RayEnd::glass);
     if (!passage.transmitted && reflections_ == max_bounces_) return end_at(in, RayEnd::bounce_limit);
     const CoverGlass& glass = obstacles_.glasses[hit.glass];
@@ -143,6 +148,7 @@ class PathWalk {
   const Obstacles& obstacles_;
   Ray ray_;
   ReflectionKey key_;
+  float wavelength_nm_;
   int max_bounces_;
   int reflections_ = 0;
   RayPath path_;
@@ -162,19 +168,24 @@ std::vector<RayPath> ray_paths(const Scene& scene, std::uint64_t count, const Pa
         {ReferenceTracer(r.reflector, 5), r.world_from_reflector, r.world_from_reflector.inverse()});
   }
   const RayNumbering numbering(scene.sources, options.seed);
+  const RayColours colours(scene);
   std::vector<RayPath> paths;
   RayBlock rays;
   for (std::uint64_t at = options.first_ray, end = at + count; at < end;) {
     const std::uint64_t to = std::min(end, (at / kBlockRays + 1) * kBlockRays);
     for (const SourceRun& run : numbering.runs(at, to)) {
       const PlacedSource& source = scene.sources[run.source];
+      const Sequence sequence(options.sequence, run.sequence_seed);
       rays.resize(run.count, 0);
-      source.rays->emit(Sequence(options.sequence, run.sequence_seed), run.first, rays);
+      source.rays->emit(sequence, run.first, rays);
+      std::vector<float> wavelength_nm(run.count, 0.0F);
+      if (colours.are_needed()) colours.emit(run.source, sequence, run.first, wavelength_nm);
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const Ray ray = source.world_from_source.ray(rays.ray(i));
         if (!is_finite(ray.origin_mm) || !is_finite(ray.direction)) continue;
         const ReflectionKey key{run.sequence_seed, run.first + i, 0};
-        paths.push_back(PathWalk(obstacles, ray, run.source, key, options.max_bounces).run());
+        paths.push_back(
+            PathWalk(obstacles, ray, run.source, key, wavelength_nm[i], options.max_bounces).run());
       }
     }
     at = to;

@@ -34,11 +34,13 @@ class ReferenceEngine final : public TraceEngine {
     const PlacedSource& source = scene_.sources[run.source];
     rays.resize(run.count, 0);
     source.rays->emit(Sequence(kind_, run.sequence_seed), run.first, rays);
+    emit_wavelengths(run, kind_, scratch);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       trace_ray(
           source.world_from_source.ray(rays.ray(i)),
           std::llround(static_cast<double>(rays.weight[i]) * numbering_.ray_flux(run.source) * kQuantaPerRay),
-          {run.sequence_seed, run.first + i, 0}, scratch, tally);
+          {run.sequence_seed, run.first + i, 0},
+          scratch.wavelength_nm.empty() ? 0.0F : scratch.wavelength_nm[i], scratch, tally);
     }
   }
 
@@ -77,7 +79,8 @@ class ReferenceEngine final : public TraceEngine {
     return absorbed;
   }
 
-  void trace_ray(Ray ray, std::int64_t energy, ReflectionKey key, TraceScratch& scratch, Tally& tally) const {
+  void trace_ray(Ray ray, std::int64_t energy, ReflectionKey key, float wavelength_nm, TraceScratch& scratch,
+                 Tally& tally) const {
     ++tally.rays;
     tally.emitted += energy;
     // `bounce` counts reflections, key.bounce all that the ray meets.
@@ -87,7 +90,7 @@ class ReferenceEngine final : public TraceEngine {
       const Nearest n = nearest(ray);
       const auto body = bodies().first_hit(ray, n.hit.t_mm, bounce > 0);
       if (const auto cover_glass = glasses().first_hit(ray, body ? body->t_mm : n.hit.t_mm, key.bounce > 0)) {
-        const GlassPassage passage = glasses().pass(ray, *cover_glass, key);
+        const GlassPassage passage = glasses().pass(ray, *cover_glass, key, wavelength_nm);
         if (!passage.transmitted && passage.throughput > 0.0) {
           if (bounce == max_bounces_) return lose(LostCause::bounce_limit, energy, tally);
           ++bounce;

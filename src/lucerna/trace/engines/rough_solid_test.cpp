@@ -48,7 +48,7 @@ Passed pass(const SolidTracer& tracer, const Ray& ray, std::uint64_t number) {
   const auto hit = tracer.first_hit(ray, 1e9, false);
   EXPECT_TRUE(hit);
   Passed out{ray.direction, {}, 0};
-  out.passage = tracer.pass(ray, *hit, {1, number, 0}, [&](const Vec3&) { ++out.places; });
+  out.passage = tracer.pass(ray, *hit, {1, number, 0}, 0.0F, [&](const Vec3&) { ++out.places; });
   out.direction = out.passage.ray.direction;
   return out;
 }

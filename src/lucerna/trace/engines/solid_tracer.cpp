@@ -180,6 +180,7 @@ SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
     check(s);
     Traced traced;
     traced.medium = {s.refractive_index, s.absorption_per_mm};
+    traced.dispersion = s.dispersion;
     traced.scatter = s.scatter;
     traced.world_from_solid = s.world_from_solid;
     traced.solid_from_world = s.world_from_solid.inverse();
@@ -199,6 +200,13 @@ SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
     solids_.push_back(std::move(traced));
   }
   if (!meshes.empty()) tree_ = std::make_unique<const TriangleBvh>(meshes, true);
+}
+
+MediumView SolidTracer::Traced::medium_at(float wavelength_nm) const {
+  if (dispersion == nullptr || !(wavelength_nm > 0.0F)) return medium;
+  const double nm = wavelength_nm;
+  return {dispersion->index(nm),
+          dispersion->has_absorption() ? dispersion->absorption_per_mm(nm) : medium.absorption_per_mm};
 }
 
 SolidFinish SolidTracer::Traced::finish() const {
@@ -247,18 +255,19 @@ std::optional<GlassHit> SolidTracer::first_hit(const Ray& ray, double t_max_mm, 
 }
 
 GlassPassage SolidTracer::pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key,
-                               const std::function<void(const Vec3&)>& visit) const {
+                               float wavelength_nm, const std::function<void(const Vec3&)>& visit) const {
   const Traced& solid = solids_[hit.glass];
+  const MediumView medium = solid.medium_at(wavelength_nm);
   const SurfaceHit at{hit.part, hit.t_mm, hit.u, hit.v};
   if (solid.is_of_triangles()) {
     const Vec3* const normals = solid.corner_normals.empty() ? nullptr : solid.corner_normals.data();
-    return through_solid(TriangleSurface{tree_->view(), solid.sense, normals}, solid.medium, solid.finish(),
-                         ray, at, key, [&](const Vec3& point) {
+    return through_solid(TriangleSurface{tree_->view(), solid.sense, normals}, medium, solid.finish(), ray,
+                         at, key, [&](const Vec3& point) {
                            if (visit) visit(point);
                          });
   }
   GlassPassage out = solid.with_surface([&](const auto& surface) {
-    return through_solid(surface, solid.medium, solid.finish(), solid.solid_from_world.ray(ray), at, key,
+    return through_solid(surface, medium, solid.finish(), solid.solid_from_world.ray(ray), at, key,
                          [&](const Vec3& point) {
                            if (visit) visit(solid.world_from_solid.point(point));
                          });

@@ -28,15 +28,17 @@ class SolidTracer {
   /// millimetre to triangles is that.
   std::optional<GlassHit> first_hit(const Ray& ray, double t_max_mm, bool started) const;
 
-  /// What becomes of the ray there; `key.bounce` counts all that it met before, a body once. `visit` sees
-  /// every point of the surface on its way.
-  GlassPassage pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key,
+  /// What becomes of the ray there; `key.bounce` counts all that it met before, a body once. `wavelength_nm`
+  /// counts where the body disperses; not above 0: not known. `visit` sees every point of the surface on its
+  /// way.
+  GlassPassage pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key, float wavelength_nm = 0.0F,
                     const std::function<void(const Vec3&)>& visit = {}) const;
 
  private:
   /// A body by its outline, with a face at its top or not, or of triangles, which has neither of these.
   struct Traced {
     MediumView medium;
+    std::shared_ptr<const Dispersion> dispersion;
     std::unique_ptr<const RevolvedTree> revolved;
     std::unique_ptr<const FacedBody> faced;
     Frame world_from_solid, solid_from_world;
@@ -46,6 +48,7 @@ class SolidTracer {
     Scatter scatter;
     std::vector<std::uint8_t> rough;
 
+    MediumView medium_at(float wavelength_nm) const;
     SolidFinish finish() const;
     bool is_of_triangles() const { return revolved == nullptr && faced == nullptr; }
     /// Calls `use` with the surface, in the body's frame; not of triangles.

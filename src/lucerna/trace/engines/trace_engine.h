@@ -12,6 +12,7 @@
 #include "lucerna/trace/detectors/plane_bins.h"
 #include "lucerna/trace/engines/body_tracer.h"
 #include "lucerna/trace/engines/glass_tracer.h"
+#include "lucerna/trace/engines/ray_colours.h"
 #include "lucerna/trace/engines/ray_numbering.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
@@ -20,6 +21,8 @@ namespace lucerna {
 /// What one task works with.
 struct TraceScratch {
   RayBlock rays;
+  /// Their wavelengths, if the scene asks for them, else empty.
+  std::vector<float> wavelength_nm;
   /// Rays that left, in the order of their numbers, if the scene keeps them; weights in mean rays.
   RayBlock out_rays;
 };
@@ -31,6 +34,7 @@ class TraceEngine {
   explicit TraceEngine(const Scene& scene)
       : bodies_(scene.bodies),
         glasses_(scene.glasses, scene.solids),
+        colours_(scene),
         keep_rays_(!scene.ray_detectors.empty()) {
     body_count_ = scene.bodies.size();
     glass_count_ = scene.glasses.size() + scene.solids.size();
@@ -59,6 +63,13 @@ class TraceEngine {
   }
 
  protected:
+  /// The wavelengths of the rays of `run`, where they are needed.
+  void emit_wavelengths(const SourceRun& run, SequenceKind kind, TraceScratch& scratch) const {
+    if (!colours_.are_needed()) return;
+    scratch.wavelength_nm.resize(run.count);
+    colours_.emit(run.source, Sequence(kind, run.sequence_seed), run.first, scratch.wavelength_nm);
+  }
+
   /// Is there any detector that `leave` serves?
   bool looks_at_places() const {
     return keep_rays_ || !planes_.empty() ||
@@ -90,6 +101,7 @@ class TraceEngine {
  private:
   BodyTracer bodies_;
   GlassTracer glasses_;
+  RayColours colours_;
   std::size_t body_count_ = 0, glass_count_ = 0;
   std::vector<FarFieldGrid> far_fields_;
   std::vector<PlaneBins> planes_;

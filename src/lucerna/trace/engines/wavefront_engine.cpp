@@ -60,7 +60,9 @@ class WavefrontEngine final : public TraceEngine {
     const PlacedSource& source = scene_.sources[run.source];
     rays.resize(run.count, 0);
     source.rays->emit(Sequence(kind_, run.sequence_seed), run.first, rays);
+    emit_wavelengths(run, kind_, scratch);
     Batch batch;
+    batch.wavelength_nm = scratch.wavelength_nm;
     const std::size_t n =
         emit(rays, source.world_from_source, numbering_.ray_flux(run.source), batch.rays, tally);
     if (!bodies().empty()) batch.body.resize(n);
@@ -94,6 +96,8 @@ class WavefrontEngine final : public TraceEngine {
     /// By number, how often each ray was reflected; kept only if there are any of these: else it is the same
     /// for all rays still on their way.
     std::array<int, kBatch> reflections;
+    /// By number; empty where nothing asks for them.
+    std::span<const float> wavelength_nm;
   };
   struct MirrorHits {
     LocalRays rays;
@@ -307,8 +311,10 @@ class WavefrontEngine final : public TraceEngine {
     WorldRays& rays = batch.rays;
     const GlassHit& hit = *batch.glass[i];
     const int bounce = key.bounce;
-    key.ray += static_cast<std::uint64_t>(rays.number[i]);
-    const GlassPassage passage = glasses().pass(ray_of(rays, i), hit, key);
+    const auto number = static_cast<std::size_t>(rays.number[i]);
+    key.ray += number;
+    const float wavelength_nm = batch.wavelength_nm.empty() ? 0.0F : batch.wavelength_nm[number];
+    const GlassPassage passage = glasses().pass(ray_of(rays, i), hit, key, wavelength_nm);
     const bool reflected = passage.throughput > 0.0 && !passage.transmitted;
     if (reflected && !may_reflect(batch, i, bounce, tally)) return kTerminated;
     absorb(rays.flux[i], passage.throughput, glass_cause(hit.glass), tally);

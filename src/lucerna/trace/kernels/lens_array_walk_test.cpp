@@ -99,7 +99,7 @@ TEST(LensArrayWalk, EveryLensletHasItsFocus) {
       const auto hit = tracer.first_hit(up, 1e9, false);
       ASSERT_TRUE(hit);
       int places = 0;
-      const GlassPassage p = tracer.pass(up, *hit, {1, i, 0}, [&](const Vec3&) { ++places; });
+      const GlassPassage p = tracer.pass(up, *hit, {1, i, 0}, 0.0F, [&](const Vec3&) { ++places; });
       if (!p.transmitted || places != 2) continue;  // some of it is reflected
       ++through;
       const Vec3 at = p.ray.at((5.0 - p.ray.origin_mm.z) / p.ray.direction.z());

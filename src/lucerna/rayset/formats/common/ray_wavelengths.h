@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lucerna/rays.h"
-#include "lucerna/rayset/formats/common/spectrum_sampler.h"
+#include "lucerna/rayset/data/spectrum_sampler.h"
 
 namespace lucerna {
 

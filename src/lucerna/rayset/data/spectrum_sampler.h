@@ -17,6 +17,10 @@ class SpectrumSampler {
   /// The wavelength in nm below which the share `u` in [0, 1) of the power lies.
   float wavelength_nm(double u) const;
 
+  /// The wavelength of ray `number` of the stream that `seed` starts: independent of all else that is drawn
+  /// for it.
+  float of_ray(std::uint64_t seed, std::uint64_t number) const;
+
   /// The i-th of a sequence that fills the spectrum evenly (multiples of the golden ratio).
   float operator()(std::uint64_t i) const;
 
