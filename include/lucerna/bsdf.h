@@ -10,14 +10,17 @@
 #pragma GCC visibility push(default)
 namespace lucerna {
 
-/// A measured BRDF as a `.bsdf` file of Zemax OpticStudio has it: values at azimuths and radial angles about
-/// the mirrored direction. Azimuth 0 leads from there to the surface's normal.
+/// A measured BRDF as a `.bsdf` file has it: values at azimuths and radial angles. Of Zemax OpticStudio these
+/// are about the mirrored direction, and azimuth 0 leads from there to the surface's normal; of LightTools
+/// about the normal, and azimuth 0 (270 in the file) leads to the mirrored direction.
 struct BsdfTable {
+  /// True for angles about the normal.
+  bool is_about_normal = false;
   /// Angles of incidence, ascending in [0, 90).
   std::vector<double> incidence_deg;
   /// Ascending from 0: to 180, and the same on the other side of the plane of incidence, or to 360.
   std::vector<double> azimuth_deg;
-  /// Ascending from 0, at most 180. Beyond the last the BRDF is 0.
+  /// Ascending from 0, at most 180; about the normal at most 90. Beyond the last the BRDF is 0.
   std::vector<double> radial_deg;
   /// 1/sr, >= 0: [incidence][azimuth][radial].
   std::vector<double> brdf;
@@ -32,9 +35,10 @@ struct BsdfTable {
   }
 };
 
-/// Reads such a file. Of tristimulus values Y is taken. Throws InputError with file and line for what breaks
-/// the format, and what is not supported: light that goes through (BTDF), several rotations of the sample, a
-/// file of LightTools. At most 64 MiB. Thread safe.
+/// Reads such a file of either maker. Of tristimulus values Y is taken; of LightTools the front's BRDF, while
+/// its back and light that goes through are passed over. Throws InputError with file and line for what breaks
+/// the format, and what is not supported: a file of Zemax of light that goes through (BTDF), several rotations
+/// of the sample, planes of incidence or wavelengths, and no BRDF of the front. At most 64 MiB. Thread safe.
 [[nodiscard]] BsdfTable read_bsdf(const std::filesystem::path& path);
 /// The same of a text; `name` stands for the file in messages.
 [[nodiscard]] BsdfTable parse_bsdf(std::string_view text, const std::string& name);

@@ -79,7 +79,7 @@ constexpr std::array kKeys{
     ProjectKey{"reflector", "slope_error_mrad", Type::number, within(0, 1000), "", "0", "Gaussian tilt of the normal, standard deviation about each of two axes."},
     ProjectKey{"reflector", "scatter", Type::tables, kAny, "", "none", "How the returned light is scattered ([scatter](../theory/scatter.md))."},
     ProjectKey{"reflector", "data_sheet", Type::table, kAny, "", "none", "What a maker states of the sheet, instead of `reflectance` and `scatter`."},
-    ProjectKey{"reflector", "bsdf", Type::file, kAny, "", "none", "A measured BRDF of the surface (Zemax `.bsdf`), instead of `reflectance` and `scatter` ([scatter](../theory/scatter.md#measured-tables))."},
+    ProjectKey{"reflector", "bsdf", Type::file, kAny, "", "none", "A measured BRDF of the surface (`.bsdf` of Zemax or LightTools), instead of `reflectance` and `scatter` ([scatter](../theory/scatter.md#measured-tables))."},
     ProjectKey{"reflector", "position_mm", Type::vector, kAny, "", "[0, 0, 0]", "Where the vertex is placed."},
     ProjectKey{"reflector", "axis", Type::axis, kAny, "", "\"+z\"", "Where the mirror opens to."},
     ProjectKey{"reflector", "turn_deg", Type::number, kAny, "", "0", "Rotation about that axis."},

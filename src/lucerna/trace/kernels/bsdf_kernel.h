@@ -13,8 +13,8 @@
 namespace lucerna {
 
 // Light that a measured table of a BRDF sends on; small functions that CPU and GPU share. The table of an
-// incidence is a density of azimuth and radial angle about the mirrored direction, linear in both between its
-// angles, times the cosine at the surface as the table's own incidence has it.
+// incidence is a density of azimuth and radial angle about the mirrored direction or the normal, linear in
+// both between its angles, times the cosine at the surface as the table's own incidence has it.
 
 /// A table as a kernel reads it. Angles in radians, ascending.
 struct BsdfView {
@@ -29,6 +29,9 @@ struct BsdfView {
   std::int32_t incidences = 0, azimuths = 0, radials = 0;
   /// Azimuths to pi stand for both sides.
   bool is_symmetrical = false;
+  /// Angles are about the normal, azimuth 0 towards the mirrored direction; else about that, azimuth 0
+  /// towards the normal.
+  bool is_about_normal = false;
 
   LUCERNA_HD std::int32_t cells() const { return (azimuths - 1) * (radials - 1); }
 };
@@ -57,9 +60,10 @@ LUCERNA_HD inline double cosine_at_surface(double incidence, double azimuth, dou
 struct BsdfCell {
   double incidence, azimuth_from, azimuth_to, radial_from, radial_to;
   double corner[4];  ///< at azimuth from and to, each at radial from and to
+  bool is_about_normal;
 
   LUCERNA_HD BsdfCell(const BsdfView& v, std::int32_t slice, std::int32_t cell)
-      : incidence(v.incidence[slice]) {
+      : incidence(v.incidence[slice]), is_about_normal(v.is_about_normal) {
     const std::int32_t a = cell / (v.radials - 1), r = cell % (v.radials - 1);
     azimuth_from = v.azimuth[a];
     azimuth_to = v.azimuth[a + 1];
@@ -72,29 +76,35 @@ struct BsdfCell {
     corner[3] = row[v.radials + 1];
   }
 
+  /// At the surface, of a direction by its angles.
+  LUCERNA_HD double cosine(double azimuth, double cos_radial) const {
+    return is_about_normal ? cos_radial : cosine_at_surface(incidence, azimuth, cos_radial);
+  }
+
   /// BRDF times cosine; 0 below the surface.
   LUCERNA_HD double density(double azimuth, double cos_radial) const {
-    const double cosine = cosine_at_surface(incidence, azimuth, cos_radial);
-    if (!(cosine > 0.0)) return 0.0;
+    const double at_surface = cosine(azimuth, cos_radial);
+    if (!(at_surface > 0.0)) return 0.0;
     const double radial = std::acos(cos_radial < 1.0 ? cos_radial : 1.0);
     const double u = (azimuth - azimuth_from) / (azimuth_to - azimuth_from);
     const double w = (radial - radial_from) / (radial_to - radial_from);
-    return cosine * ((1.0 - u) * ((1.0 - w) * corner[0] + w * corner[1]) +
-                     u * ((1.0 - w) * corner[2] + w * corner[3]));
+    return at_surface * ((1.0 - u) * ((1.0 - w) * corner[0] + w * corner[1]) +
+                         u * ((1.0 - w) * corner[2] + w * corner[3]));
   }
 
   /// No density in it is larger.
   LUCERNA_HD double bound() const {
     double most = 0.0;
     for (const double c : corner) most = c > most ? c : most;
+    if (is_about_normal) return most * std::cos(radial_from) * (1.0 + 1e-9);
     // The cosine is the largest where the azimuth is nearest to the normal's, 0 or 2 pi.
     const double end = 2.0 * std::numbers::pi - azimuth_to;
     const double nearest = azimuth_from < end ? azimuth_from : end;
     double best = std::atan2(std::sin(incidence) * std::cos(nearest), std::cos(incidence));
     if (best < radial_from) best = radial_from;
     if (best > radial_to) best = radial_to;
-    const double cosine = cosine_at_surface(incidence, nearest, std::cos(best));
-    return most * (cosine > 0.0 ? cosine : 0.0) * (1.0 + 1e-9);
+    const double highest = cosine_at_surface(incidence, nearest, std::cos(best));
+    return most * (highest > 0.0 ? highest : 0.0) * (1.0 + 1e-9);
   }
 };
 
@@ -135,6 +145,22 @@ LUCERNA_HD inline Direction towards_normal(const Direction& normal, const Direct
                                      : Direction::from(Frame::from_z(mirrored).ex());
 }
 
+/// What the angles of a table are about, and where its azimuth 0 leads to.
+struct BsdfFrame {
+  Direction pole, azimuth_0;
+};
+
+/// A table turns with the mirrored direction: for light of another incidence than its own, one about the
+/// normal is about what its normal has turned to.
+LUCERNA_HD inline BsdfFrame bsdf_frame(const BsdfView& v, std::int32_t slice, const Direction& normal,
+                                       const Direction& mirrored) {
+  const Direction x = towards_normal(normal, mirrored);
+  if (!v.is_about_normal) return {mirrored, x};
+  const double c = std::cos(v.incidence[slice]), s = std::sin(v.incidence[slice]);
+  return {Direction::from(c * mirrored.vec() + s * x.vec()),
+          Direction::from(s * mirrored.vec() - c * x.vec())};
+}
+
 /// Where light goes that a mirror of `normal` would send to `mirrored`. What would go below the surface,
 /// where light comes at another angle than the table's, goes to its mirror image.
 LUCERNA_HD inline Direction scattered_by(const BsdfView& v, const Direction& normal,
@@ -144,10 +170,10 @@ LUCERNA_HD inline Direction scattered_by(const BsdfView& v, const Direction& nor
   const std::int32_t slice = bsdf_slice(v, incidence, rng.uniform());
   const BsdfAngles a = drawn_angles(v, slice, rng);
   const double sine = std::sqrt(a.cos_radial < 1.0 ? 1.0 - a.cos_radial * a.cos_radial : 0.0);
-  const Direction x = towards_normal(normal, mirrored);
-  const Vec3 y = cross(mirrored.vec(), x.vec());
+  const BsdfFrame frame = bsdf_frame(v, slice, normal, mirrored);
+  const Vec3 y = cross(frame.pole.vec(), frame.azimuth_0.vec());
   const Direction out =
-      Direction::from(a.cos_radial * mirrored.vec() + (sine * std::cos(a.azimuth)) * x.vec() +
+      Direction::from(a.cos_radial * frame.pole.vec() + (sine * std::cos(a.azimuth)) * frame.azimuth_0.vec() +
                       (sine * std::sin(a.azimuth)) * y);
   return dot(out, normal) < 0.0 ? reflect(out, normal) : out;
 }

@@ -36,6 +36,28 @@ BsdfTable lobe_table(double end_deg, double width_deg) {
   return t;
 }
 
+/// The same lobe at all azimuths, by angles about the mirrored direction or about the normal.
+BsdfTable round_lobe(bool about_normal) {
+  BsdfTable t;
+  t.is_about_normal = about_normal;
+  t.incidence_deg = {0.0, 20.0, 50.0};
+  for (double a = 0.0; a <= 180.0; a += 4.0) t.azimuth_deg.push_back(a);
+  for (double r = 0.0; r <= (about_normal ? 90.0 : 150.0); r += 2.0) t.radial_deg.push_back(r);
+  for (const double incidence : t.incidence_deg) {
+    const double tilt = radians(incidence);
+    for (const double azimuth : t.azimuth_deg) {
+      for (const double radial : t.radial_deg) {
+        const double r = radians(radial), a = radians(azimuth);
+        const double to_mirrored = std::cos(r) * std::cos(tilt) + std::sin(r) * std::cos(a) * std::sin(tilt);
+        const double off = about_normal ? std::acos(std::clamp(to_mirrored, -1.0, 1.0)) : r;
+        t.brdf.push_back(0.1 + std::exp(-off * off / (2.0 * 0.3 * 0.3)));
+      }
+    }
+    t.total.push_back(0.8);
+  }
+  return t;
+}
+
 Direction bsdf_mirrored(double incidence_deg) {
   return Direction::from({std::sin(radians(incidence_deg)), 0.0, std::cos(radians(incidence_deg))});
 }
@@ -97,6 +119,32 @@ TEST(BsdfStatistical, DirectionsFollowTheTable) {
     for (const double incidence_deg : {0.0, 35.0, 50.0, 80.0})
       EXPECT_GT(bsdf_p_value(table, table, incidence_deg), test::kFalseAlarm)
           << end_deg << ' ' << incidence_deg;
+  }
+}
+
+// As LightTools has tables. False alarm 1e-6 each.
+TEST(BsdfStatistical, DirectionsFollowATableAboutTheNormal) {
+  const BsdfTable table = round_lobe(true);
+  for (const double incidence_deg : {0.0, 20.0, 40.0, 70.0})
+    EXPECT_GT(bsdf_p_value(table, table, incidence_deg), test::kFalseAlarm) << incidence_deg;
+  BsdfTable other = table;
+  other.is_about_normal = false;
+  EXPECT_LT(bsdf_p_value(other, table, 20.0), test::kFalseAlarm) << "taken for Zemax's angles";
+}
+
+// One lobe in the angles of either maker: the same light, between the incidences of the tables too.
+TEST(Bsdf, AnglesAboutTheNormalAreTheSameSurface) {
+  const Scatter about_normal(round_lobe(true)), about_mirrored(round_lobe(false));
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(about_normal.integrals()[i], about_mirrored.integrals()[i],
+                2e-3 * about_mirrored.integrals()[i]);
+  for (const double incidence_deg : {0.0, 20.0, 35.0, 50.0}) {
+    for (const double to_deg : {-40.0, 0.0, 20.0, 45.0, 60.0}) {
+      const Direction to = Direction::from(bsdf_mirrored(to_deg).vec() + Vec3{0.0, 0.2, 0.0});
+      const double expected = about_mirrored.brdf(Direction{}, bsdf_light(incidence_deg), to);
+      EXPECT_NEAR(about_normal.brdf(Direction{}, bsdf_light(incidence_deg), to), expected, 0.02 * expected)
+          << incidence_deg << ' ' << to_deg;
+    }
   }
 }
 

@@ -45,7 +45,7 @@ bool is_cut(const BsdfCell& cell) {
   int above = 0;
   for (const double azimuth : {cell.azimuth_from, cell.azimuth_to}) {
     for (const double radial : {cell.radial_from, cell.radial_to})
-      above += cosine_at_surface(cell.incidence, azimuth, std::cos(radial)) > 0.0 ? 1 : 0;
+      above += cell.cosine(azimuth, std::cos(radial)) > 0.0 ? 1 : 0;
   }
   return above != 4;
 }
@@ -71,8 +71,9 @@ MeasuredScatter::MeasuredScatter(const BsdfTable& table)
       radial_(in_radians(table.radial_deg)),
       brdf_(table.brdf),
       sums_(table.incidence_deg.size() * (table.azimuth_deg.size() - 1) * (table.radial_deg.size() - 1)),
-      view_{incidence_.data(),    azimuth_.data(),    radial_.data(),    brdf_.data(),          sums_.data(),
-            count_of(incidence_), count_of(azimuth_), count_of(radial_), table.is_symmetrical()} {
+      view_{incidence_.data(),      azimuth_.data(),      radial_.data(),     brdf_.data(),
+            sums_.data(),           count_of(incidence_), count_of(azimuth_), count_of(radial_),
+            table.is_symmetrical(), table.is_about_normal} {
   const BsdfView& v = view_;
   double* at = sums_.data();
   for (std::int32_t slice = 0; slice < v.incidences; ++slice) {
@@ -91,10 +92,11 @@ MeasuredScatter::MeasuredScatter(const BsdfTable& table)
 double MeasuredScatter::density(std::int32_t slice, const Direction& normal, const Direction& mirrored,
                                 const Direction& out) const {
   const BsdfView& v = view_;
-  const double cos_radial = std::clamp(dot(mirrored, out), -1.0, 1.0), radial = std::acos(cos_radial);
+  const BsdfFrame frame = bsdf_frame(v, slice, normal, mirrored);
+  const double cos_radial = std::clamp(dot(frame.pole, out), -1.0, 1.0), radial = std::acos(cos_radial);
   if (radial > radial_.back()) return 0.0;
-  const Direction x = towards_normal(normal, mirrored);
-  double azimuth = std::atan2(dot(cross(mirrored.vec(), x.vec()), out.vec()), dot(x, out));
+  const Direction& x = frame.azimuth_0;
+  double azimuth = std::atan2(dot(cross(frame.pole.vec(), x.vec()), out.vec()), dot(x, out));
   if (azimuth < 0.0) azimuth = v.is_symmetrical ? -azimuth : azimuth + 2.0 * std::numbers::pi;
   const auto cell_of = [](const std::vector<double>& angles, double angle) {
     return std::max(first_above(angles.data(), static_cast<std::int32_t>(angles.size()), angle), 1) - 1;
