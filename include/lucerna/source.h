@@ -18,7 +18,7 @@
 #pragma GCC visibility push(default)
 namespace lucerna {
 
-class SpectrumSampler;
+class RayWavelengths;
 
 /// Anything that light can be drawn from by number: an analytic emitter, a compressed model, the rays of a
 /// file. Immutable once made; `emit` is thread safe.
@@ -133,8 +133,8 @@ class RaySetSource final : public RaySource {
   void emit(const Sequence& sequence, std::uint64_t first, RayBlock& out) const override;
   /// True for a column of wavelengths, one wavelength of all rays, or spectra.
   bool has_wavelengths() const override;
-  /// The ray's own, else that of all rays; else drawn from the spectrum that the ray's index names, or the
-  /// first one: of the lumens where weights are lumens.
+  /// The ray's own; else drawn from the spectrum that the ray's index names, or the first one (of the lumens
+  /// where weights are lumens), the same at every visit; else that of all rays.
   void emit_wavelengths(const Sequence& sequence, std::uint64_t first, std::span<float> nm) const override;
 
  private:
@@ -142,12 +142,8 @@ class RaySetSource final : public RaySource {
   /// - 1` of the stream are, with their place among these.
   template <class Copy>
   void visit(const Sequence& sequence, std::uint64_t first, std::size_t size, const Copy& copy) const;
-  /// Of a ray of the file; where its index names none, the first. Only where there are any.
-  const SpectrumSampler& spectrum_of(std::size_t ray) const;
-
   std::shared_ptr<const RaySet> rays_;
-  /// Of its spectra; null where rays have wavelengths or there are none.
-  std::shared_ptr<const std::vector<SpectrumSampler>> spectra_;
+  std::shared_ptr<const RayWavelengths> wavelengths_;
   double flux_ = 0.0;
   /// n / sum of weights: makes the mean weight 1.
   double weight_scale_ = 0.0;

@@ -127,6 +127,10 @@ PlacedSource read_source(TomlReader reader, Project& project, Progress& progress
     source.rays = read_model_source(reader, *file, flux, project);
     if (source.rays == nullptr) source.rays = read_ray_source(reader, *file, flux, project, progress);
     if (flux) source.flux = flux->flux;
+    const auto* const model = dynamic_cast<const SourceModel*>(source.rays.get());
+    if (source.spectrum.wavelength_nm.empty() && model != nullptr && !model->has_wavelengths() &&
+        !model->spectra().empty())
+      source.spectrum = model->spectra().front();
   } else {
     if (!reader.has("kind")) reader.missing("kind", "a source needs a file or a kind");
     source.rays = read_emitter(reader, flux);

@@ -10,6 +10,7 @@
 #include "lucerna/core/io/message_bytes.h"
 #include "lucerna/ray_file.h"
 #include "lucerna/rayset/data/merge_ray_sets.h"
+#include "lucerna/rayset/data/ray_wavelengths.h"
 #include "lucerna/rayset/data/subset.h"
 #include "lucerna/rayset/files/named_warnings.h"
 
@@ -25,38 +26,58 @@ void for_each_column(Block& rays, const Use& use) {
   for (auto& column : rays.extra) use(column);
 }
 
-/// Leaves of extra columns the wavelengths, if there are any.
-void keep_wavelengths(const std::vector<ColumnSpec>& columns, RayBlock& rays) {
-  const auto column = find_column(columns, ColumnKind::wavelength_nm);
-  if (!column) return rays.extra.clear();
-  std::swap(rays.extra.front(), rays.extra[*column]);
-  rays.extra.resize(1);
+/// What is left of the extra columns.
+enum class Columns { all, none, wavelengths };
+
+/// Leaves that of `block`, whose first ray has the number `first` in its file.
+void keep(Columns columns, const RayWavelengths& wavelengths, std::uint64_t first, RayBlock& block) {
+  if (columns == Columns::all) return;
+  std::vector<float> nm;
+  for (std::size_t i = 0; columns == Columns::wavelengths && i < block.size(); ++i)
+    nm.push_back(wavelengths.of(block, i, first + i));
+  block.extra.clear();
+  if (columns == Columns::wavelengths) block.extra.push_back(std::move(nm));
 }
 
-void keep_wavelengths(std::vector<ColumnSpec>& columns) {
-  std::erase_if(columns, [](const ColumnSpec& c) { return c.kind != ColumnKind::wavelength_nm; });
-  if (columns.size() > 1) columns.resize(1);
+/// The same of a header.
+void keep(Columns columns, RaySetHeader& header) {
+  if (columns == Columns::all) return;
+  header.columns.clear();
+  if (columns == Columns::none) return;
+  header.columns = {{ColumnKind::wavelength_nm, standard_label(ColumnKind::wavelength_nm)}};
+  header.spectra.clear();
+  header.wavelength_nm.reset();
+}
+
+/// Is the colour of a ray known from its own columns?
+bool has_own_colour(const RaySetHeader& header) {
+  return find_column(header.columns, ColumnKind::wavelength_nm) ||
+         (find_column(header.columns, ColumnKind::spectrum_index) && header.spectra.size() > 1);
+}
+
+bool have_one_colour(const RaySetHeader& a, const RaySetHeader& b) {
+  return a.spectra == b.spectra && a.wavelength_nm == b.wavelength_nm;
 }
 
 /// A file of which some rays are wanted.
 struct ThinnedFile {
   std::unique_ptr<RayReader> reader;
   RaySubset subset;
+  RayWavelengths wavelengths;
 
   /// Those of the chosen rays that have the numbers `own`.
-  RayBlock read(ItemRange own, const ThinOptions& options, Progress& progress) const {
+  RayBlock read(ItemRange own, Columns columns, Progress& progress) const {
     const std::uint64_t first = subset.begin(own.first), last = subset.begin(own.last);
-    const std::vector<ColumnSpec>& columns = reader->header().columns;
     RayBlock rays, block;
-    rays.extra.resize(columns.size());
-    if (options.only_wavelengths) keep_wavelengths(columns, rays);
+    rays.extra.resize(reader->header().columns.size());
+    keep(columns, wavelengths, 0, rays);
     rays.reserve(own.size());
     reader->skip(first);
     for (std::uint64_t at = first; at < last;) {
       const std::uint64_t some = std::min<std::uint64_t>(kStreamBlock, last - at);
       const std::size_t n = reader->read(block, static_cast<std::size_t>(some));
       if (n == 0) break;
-      if (options.only_wavelengths) keep_wavelengths(columns, block);
+      keep(columns, wavelengths, at, block);
       subset.select(block, at, rays);
       progress.step("read rays", (at += n) - first, last - first);
     }
@@ -81,9 +102,30 @@ std::vector<ThinnedFile> opened(const std::vector<std::filesystem::path>& files,
         all_rays <= options.max_rays
             ? count
             : std::max(one, static_cast<std::uint64_t>(share * static_cast<double>(count)));
-    all.push_back({std::move(reader), RaySubset(count, wanted, options.seed)});
+    const RaySetHeader& header = reader->header();
+    RayWavelengths wavelengths(header, header.flux_unit);
+    all.push_back({std::move(reader), RaySubset(count, wanted, options.seed), std::move(wavelengths)});
   }
   return all;
+}
+
+/// What is kept of all files alike.
+Columns columns_of(const std::vector<ThinnedFile>& files, const std::vector<std::filesystem::path>& names,
+                   const ThinOptions& options, std::vector<std::string>& warnings) {
+  if (!options.only_wavelengths) return Columns::all;
+  const RaySetHeader& first = files.front().reader->header();
+  bool differ = false;
+  std::vector<std::string> unknown;
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    const RaySetHeader& header = files[k].reader->header();
+    differ = differ || has_own_colour(header) || !have_one_colour(header, first);
+    if (!files[k].wavelengths.are_known()) unknown.push_back(names[k].string());
+  }
+  if (!differ) return Columns::none;
+  if (unknown.empty()) return Columns::wavelengths;
+  warnings.push_back(fmt::format("{}: nothing is known of its colour, so that of the other files is dropped",
+                                 unknown.front()));
+  return Columns::none;
 }
 
 /// The rays of all parts, in order, on all peers.
@@ -132,12 +174,13 @@ ThinnedRaySet thinned_ray_set(const std::vector<std::filesystem::path>& files, c
                               Progress& progress) {
   ThinnedRaySet out;
   const auto readers = together(options.peers, [&] { return opened(files, options, out.of); });
+  const Columns columns = columns_of(readers, files, options, out.warnings);
   for (std::size_t k = 0; k < files.size(); ++k) {
     const ThinnedFile& file = readers[k];
     const ItemRange own = own_items(options.peers, file.subset.count());
-    RayBlock rays = together(options.peers, [&] { return file.read(own, options, progress); });
+    RayBlock rays = together(options.peers, [&] { return file.read(own, columns, progress); });
     RaySet set{file.reader->header(), joined(options.peers, std::move(rays))};
-    if (options.only_wavelengths) keep_wavelengths(set.header.columns);
+    keep(columns, set.header);
     add_named_warnings(files[k], file.reader->warnings(), out.warnings);
     if (files.size() == 1) {
       out.set = std::move(set);

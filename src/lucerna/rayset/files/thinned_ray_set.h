@@ -16,7 +16,9 @@ struct ThinOptions {
   /// About so many rays are kept; all where the files have no more.
   std::uint64_t max_rays = ~std::uint64_t{0};
   std::uint64_t seed = 1;
-  /// Of the extra columns only wavelengths are kept.
+  /// Of the extra columns only wavelengths are kept. Where files differ in colour, or the rays of one have
+  /// spectra of their own, each ray is given a wavelength (RayWavelengths); with a file whose colour is not
+  /// known all colours are dropped, and a warning says so.
   bool only_wavelengths = false;
   /// Processes that read a part each, and all return the whole: then the call is collective. Null without.
   Peers* peers = nullptr;

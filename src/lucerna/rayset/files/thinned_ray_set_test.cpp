@@ -116,6 +116,72 @@ TEST(ThinnedRaySet, KeepsOfItsColumnsTheWavelengths) {
   EXPECT_EQ(read.rays.extra[0], std::vector<float>(10, 600.0f));
 }
 
+/// `n` rays with a colour: one wavelength, or the spectra of a header with the index of each ray.
+std::filesystem::path coloured_file(const test::TempDir& dir, const std::string& name, std::size_t n,
+                                    const RaySetHeader& colour) {
+  RaySet set = read_ray_set(file_of(dir, name, n, 10.0));
+  set.header.spectra = colour.spectra;
+  set.header.wavelength_nm = colour.wavelength_nm;
+  if (colour.spectra.size() > 1) {
+    set.header.columns = {{ColumnKind::spectrum_index, standard_label(ColumnKind::spectrum_index)}};
+    set.rays.extra = {std::vector<float>(n)};
+    for (std::size_t i = 0; i < n; ++i) set.rays.extra[0][i] = i % 2 == 0 ? 1.0F : 2.0F;
+  }
+  write_ray_set(dir / name, set, "tm25");
+  return dir / name;
+}
+
+const SpectralTable kBlue{{440.0F, 460.0F}, {1.0F, 1.0F}}, kYellow{{520.0F, 700.0F}, {1.0F, 1.0F}};
+
+// A white LED as makers publish it: a file of the die and one of the phosphor.
+TEST(ThinnedRaySet, FilesOfTwoColoursGiveEachRayAWavelength) {
+  const test::TempDir dir;
+  const std::vector<std::filesystem::path> files{coloured_file(dir, "blue", 500, {.spectra = {kBlue}}),
+                                                 coloured_file(dir, "yellow", 1500, {.spectra = {kYellow}})};
+  const ThinnedRaySet all = thinned_ray_set(files, {.only_wavelengths = true}, no_progress());
+  EXPECT_TRUE(all.warnings.empty());
+  ASSERT_EQ(all.set.header.columns.size(), 1U);
+  EXPECT_EQ(all.set.header.columns[0].kind, ColumnKind::wavelength_nm);
+  EXPECT_TRUE(all.set.header.spectra.empty());
+  const std::vector<float>& nm = all.set.rays.extra.at(0);
+  for (std::size_t i = 0; i < nm.size(); ++i)
+    EXPECT_TRUE(i < 500 ? nm[i] >= 440.0F && nm[i] <= 460.0F : nm[i] >= 520.0F && nm[i] <= 700.0F) << i;
+  // The rays are lumens: within the phosphor's they crowd about 560 nm.
+  EXPECT_NEAR(std::accumulate(nm.begin() + 500, nm.end(), 0.0) / 1500.0, 572.2, 1.0) << "610 nm of its watts";
+  const auto errors = test::on_peers(3, [&](Peers& peers) {
+    const ThinOptions options{.only_wavelengths = true, .peers = &peers};
+    EXPECT_EQ(thinned_ray_set(files, options, no_progress()).set, all.set);
+  });
+  for (const std::string& error : errors) EXPECT_EQ(error, "");
+}
+
+TEST(ThinnedRaySet, RaysWithSpectraOfTheirOwnGetWavelengths) {
+  const test::TempDir dir;
+  const auto file = coloured_file(dir, "both", 100, {.spectra = {kBlue, kYellow}});
+  const ThinnedRaySet all = thinned_ray_set({file}, {.only_wavelengths = true}, no_progress());
+  for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(all.set.rays.extra.at(0)[i] < 500.0F, i % 2 == 0) << i;
+}
+
+TEST(ThinnedRaySet, OneColourStaysWithTheHeader) {
+  const test::TempDir dir;
+  const std::vector<std::filesystem::path> files{coloured_file(dir, "a", 10, {.spectra = {kBlue}}),
+                                                 coloured_file(dir, "b", 10, {.spectra = {kBlue}})};
+  const ThinnedRaySet all = thinned_ray_set(files, {.only_wavelengths = true}, no_progress());
+  EXPECT_EQ(all.set.header.spectra, std::vector{kBlue});
+  EXPECT_TRUE(all.set.rays.extra.empty());
+}
+
+TEST(ThinnedRaySet, ColoursThatAreNotAllKnownAreDroppedAloud) {
+  const test::TempDir dir;
+  const std::vector<std::filesystem::path> files{coloured_file(dir, "blue", 10, {.wavelength_nm = 450.0F}),
+                                                 file_of(dir, "unknown", 10, 10.0)};
+  const ThinnedRaySet all = thinned_ray_set(files, {.only_wavelengths = true}, no_progress());
+  ASSERT_EQ(all.warnings.size(), 1U);
+  EXPECT_THAT(all.warnings[0], testing::HasSubstr("unknown: nothing is known of its colour"));
+  EXPECT_TRUE(all.set.rays.extra.empty());
+  EXPECT_FALSE(all.set.header.wavelength_nm);
+}
+
 TEST(RayReader, PassesOverRays) {
   const test::TempDir dir;
   const RaySet set = read_ray_set(file_of(dir, "a", 1000, 1.0));

@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "lucerna/core/io/error.h"
-#include "lucerna/rayset/data/luminous_spectrum.h"
-#include "lucerna/rayset/data/spectrum_sampler.h"
+#include "lucerna/rayset/data/ray_wavelengths.h"
 #include "lucerna/source.h"
 
 namespace lucerna {
@@ -36,22 +35,6 @@ std::uint64_t golden_stride(std::uint64_t n) {
   return best;
 }
 
-/// The column of the rays' own wavelengths, if they have one.
-const std::vector<float>* wavelengths_of(const RaySet& set) {
-  const auto column = find_column(set.header.columns, ColumnKind::wavelength_nm);
-  return column && *column < set.rays.extra.size() ? &set.rays.extra[*column] : nullptr;
-}
-
-/// Of the spectra of the header, as they are drawn from; null where there are none.
-std::shared_ptr<const std::vector<SpectrumSampler>> samplers_of(const RaySetHeader& header) {
-  std::vector<SpectrumSampler> out;
-  for (const SpectralTable& table : header.spectra) {
-    if (table.wavelength_nm.empty()) return nullptr;
-    out.emplace_back(header.flux_unit == FluxUnit::lumen ? luminous_spectrum(table) : table);
-  }
-  return out.empty() ? nullptr : std::make_shared<const std::vector<SpectrumSampler>>(std::move(out));
-}
-
 }  // namespace
 
 RaySetSource::RaySetSource(std::shared_ptr<const RaySet> rays, const std::string& name)
@@ -69,8 +52,7 @@ RaySetSource::RaySetSource(std::shared_ptr<const RaySet> rays, const std::string
   weight_scale_ = static_cast<double>(block.size()) / sum;
   blocks_ = (block.size() + kRun - 1) / kRun;
   stride_ = golden_stride(blocks_);
-  if (wavelengths_of(*rays_) == nullptr && !rays_->header.wavelength_nm)
-    spectra_ = samplers_of(rays_->header);
+  wavelengths_ = std::make_shared<const RayWavelengths>(rays_->header, flux_unit());
 }
 
 template <class Copy>
@@ -111,28 +93,13 @@ void RaySetSource::emit(const Sequence& sequence, std::uint64_t first, RayBlock&
   });
 }
 
-bool RaySetSource::has_wavelengths() const {
-  return wavelengths_of(*rays_) != nullptr || rays_->header.wavelength_nm || spectra_ != nullptr;
-}
-
-const SpectrumSampler& RaySetSource::spectrum_of(std::size_t ray) const {
-  const auto column = find_column(rays_->header.columns, ColumnKind::spectrum_index);
-  if (!column || *column >= rays_->rays.extra.size()) return spectra_->front();
-  const double index = static_cast<double>(rays_->rays.extra[*column][ray]);
-  const double last = static_cast<double>(spectra_->size());
-  return (*spectra_)[static_cast<std::size_t>(index >= 1.0 && index <= last ? index : 1.0) - 1];
-}
+bool RaySetSource::has_wavelengths() const { return wavelengths_->are_known(); }
 
 void RaySetSource::emit_wavelengths(const Sequence& sequence, std::uint64_t first,
                                     std::span<float> nm) const {
   LUCERNA_CHECK(has_wavelengths(), "wavelengths of rays without, {} wanted", nm.size());
-  const std::vector<float>* const own = wavelengths_of(*rays_);
   visit(sequence, first, nm.size(), [&](std::size_t from, std::size_t count, std::size_t to) {
-    for (std::size_t k = 0; k < count; ++k) {
-      nm[to + k] = own != nullptr        ? (*own)[from + k]
-                   : spectra_ == nullptr ? *rays_->header.wavelength_nm
-                                         : spectrum_of(from + k).of_ray(sequence.seed(), first + to + k);
-    }
+    for (std::size_t k = 0; k < count; ++k) nm[to + k] = wavelengths_->of(rays_->rays, from + k, from + k);
   });
 }
 

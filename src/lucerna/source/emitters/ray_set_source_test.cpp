@@ -113,6 +113,7 @@ TEST(RaySetSource, TakesTheOneWavelengthOrTheSpectrumOfItsIndex) {
       EXPECT_TRUE(nm[i] >= 600.0F && nm[i] <= 610.0F) << nm[i];
     }
   }
+  set->header.spectra.clear();
   set->header.wavelength_nm = 530.0F;
   for (const float one : coloured(RaySetSource(set, "set"), 0, 64).first) EXPECT_EQ(one, 530.0F);
 }

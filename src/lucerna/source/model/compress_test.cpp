@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "lucerna/error.h"
 #include "lucerna/ray_file.h"
 #include "lucerna/source.h"
@@ -52,6 +55,49 @@ TEST_F(Compress, TheMethodIsTheOneThatWasAskedFor) {
   EXPECT_EQ(clusters->method(), to_string(CompressMethod::clusters));
   EXPECT_EQ(compress_method("clusters"), CompressMethod::clusters);
   EXPECT_THROW(compress_method("trees"), UsageError);
+}
+
+/// Intensity as cos(theta)^exponent from a square of 1 mm, of one wavelength or spectrum.
+RaySet lobe_rays(std::size_t n, double exponent, double flux_lm, std::uint64_t seed) {
+  RaySet set;
+  set.header.set_flux(flux_lm);
+  set.rays.resize(n);
+  Rng rng(seed, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double z = std::pow(1.0 - rng.uniform(), 1.0 / (exponent + 1.0));
+    const double turn = 2.0 * std::numbers::pi * rng.uniform(), sine = std::sqrt(1.0 - z * z);
+    set.rays.set(i, {{rng.uniform() - 0.5, rng.uniform() - 0.5, 0.0},
+                     Direction::from({sine * std::cos(turn), sine * std::sin(turn), z})});
+    set.rays.weight[i] = 1.0F;
+  }
+  return set;
+}
+
+// A die of 30 lm in a narrow lobe and a phosphor of 70 lm by Lambert's law, a file each: within 20 degrees of
+// the axis 0.611 of the light is blue, beyond 60 degrees 0.003. A model that forgets which direction has
+// which colour has 0.3 in both.
+TEST_F(Compress, TwoFilesAreOneSourceWithColourOverAngle) {
+  RaySet blue = lobe_rays(30'000, 8.0, 30.0, 1), yellow = lobe_rays(30'000, 1.0, 70.0, 2);
+  blue.header.wavelength_nm = 450.0F;
+  yellow.header.spectra = {{{520.0F, 580.0F, 700.0F}, {0.2F, 1.0F, 0.1F}}};
+  write_ray_set(dir_ / "blue", blue, "tm25");
+  write_ray_set(dir_ / "yellow", yellow, "tm25");
+  const CompressedFiles made = compress({dir_ / "blue", dir_ / "yellow"});
+  EXPECT_TRUE(made.warnings.empty());
+  ASSERT_TRUE(made.model->has_wavelengths());
+  sample(*made.model, 200'000, dir_ / "led", {.format = "tm25"});
+  const RaySet drawn = read_ray_set(dir_ / "led");
+  const auto column = find_column(drawn.header.columns, ColumnKind::wavelength_nm);
+  ASSERT_TRUE(column);
+  double blue_near = 0.0, near = 0.0, blue_far = 0.0, far = 0.0;
+  for (std::size_t i = 0; i < drawn.rays.size(); ++i) {
+    const bool is_blue = drawn.rays.extra[*column][i] < 500.0F;
+    const double z = drawn.rays.kz[i];
+    if (z > std::cos(radians(20.0))) near += 1.0, blue_near += is_blue ? 1.0 : 0.0;
+    if (z < 0.5) far += 1.0, blue_far += is_blue ? 1.0 : 0.0;
+  }
+  EXPECT_NEAR(blue_near / near, 0.611, 0.03);
+  EXPECT_LT(blue_far / far, 0.03);
 }
 
 TEST_F(Compress, KeepsToTheSizeThatWasAskedFor) {

@@ -7,8 +7,8 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/parallel/parallel.h"
+#include "lucerna/rayset/data/ray_wavelengths.h"
 #include "lucerna/rayset/formats/common/little_endian.h"
-#include "lucerna/rayset/formats/common/ray_wavelengths.h"
 #include "lucerna/rayset/formats/common/record_file.h"
 #include "lucerna/rayset/formats/mcpl/mcpl.h"
 #include "lucerna/rayset/formats/mcpl/mcpl_direction.h"
@@ -30,7 +30,11 @@ std::optional<std::size_t> additional_column(const RaySetHeader& header, std::st
 class McplWriter final : public RayWriter {
  public:
   McplWriter(const std::filesystem::path& path, const RaySetHeader& header)
-      : wavelengths_(header, warnings_), file_(path), flags_(additional_column(header, kMcplFlags)) {
+      : wavelengths_(header, FluxUnit::watt, kGreen_nm),
+        file_(path),
+        flags_(additional_column(header, kMcplFlags)) {
+    if (std::string warning = wavelengths_warning(header); !warning.empty())
+      warnings_.push_back(std::move(warning));
     for (std::size_t c = 0; c < 3; ++c) polarisation_[c] = additional_column(header, kMcplPolarisation[c]);
     record_.user_flags = flags_.has_value();
     record_.polarisation = std::ranges::all_of(polarisation_, [](const auto& c) { return c.has_value(); });

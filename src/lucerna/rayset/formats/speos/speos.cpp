@@ -6,8 +6,8 @@
 #include <span>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/rayset/data/ray_wavelengths.h"
 #include "lucerna/rayset/formats/common/little_endian.h"
-#include "lucerna/rayset/formats/common/ray_wavelengths.h"
 #include "lucerna/rayset/formats/common/record_file.h"
 
 namespace lucerna {
@@ -22,7 +22,9 @@ constexpr std::size_t kRaysLookedAt = 64;
 class SpeosWriter final : public RayWriter {
  public:
   SpeosWriter(const std::filesystem::path& path, const RaySetHeader& header)
-      : wavelengths_(header, warnings_), writer_(path, layout_for(header)) {
+      : wavelengths_(header, FluxUnit::watt, kGreen_nm), writer_(path, layout_for(header)) {
+    if (std::string warning = wavelengths_warning(header); !warning.empty())
+      warnings_.push_back(std::move(warning));
     for (std::string& lost : losses(
              header, "speos", {.wavelengths = true, .one_wavelength = true, .table = true, .texts = false}))
       warnings_.push_back(std::move(lost));
