@@ -165,8 +165,7 @@ slope_error_mrad = 0.0        # Gaussian tilt of the normal, standard deviation 
 #[[body]]
 #role = "solid"
 #outline_mm = [[0, 0], [20, 0], [20, 2], [0, 6]]
-#refractive_index = 1.49       # or material = "pmma", wavelength_nm = 555
-#dispersion = true             # with material: each ray meets the index of its own wavelength
+#refractive_index = 1.49       # or material = "pmma", wavelength_nm = 555, or each ray's own: dispersion = true
 #absorption_per_mm = 0.0005
 #scatter_sides = 2             # a frosted face
 #scatter = [{ model = "gaussian", share = 1.0, sigma = 0.2 }]
