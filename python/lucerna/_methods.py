@@ -162,9 +162,10 @@ def tables(self: Any) -> dict[str, Any]:
 @_method(_core.DesignResult)
 @property
 def reflector(self: Any) -> Any:
-    """The mirror that was found, a Reflector."""
+    """The mirror that was found, a Reflector; None for a lens."""
     shaped = _toml.tables(self.scene).get("design", {}).get("reflector", 0)
-    return _toml.reflectors(self.scene)[int(shaped)]
+    mirrors = _toml.reflectors(self.scene)
+    return mirrors[int(shaped)] if mirrors else None
 
 
 @_method(_core.Reflector)

@@ -2,6 +2,8 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include "call.h"
 #include "lucerna/report.h"
@@ -17,7 +19,7 @@ namespace {
 // What `help` says of each; signatures are in a form that `inspect` reads.
 
 constexpr const char* kDesignResultClassDoc =
-    R"(A designed mirror, its light, and how far that is from the target.
+    R"(A designed mirror or lens, its light, and how far that is from the target.
 
 A result never changes, so threads may share it. It pickles with all its figures and the files that `save`
 writes.)";
@@ -27,7 +29,7 @@ constexpr const char* kSaveDoc = R"(save(folder)
 
 Writes what `lucerna design` leaves in a folder.
 
-That is the mirror as TOML, STEP, STL, OBJ, DXF and CSV, its light, history, checkpoint and result.json.
+That is the mirror or lens as TOML, STEP, STL, OBJ, DXF and CSV, its light, history, checkpoint and result.json.
 
 Parameters
 ----------
@@ -109,6 +111,25 @@ py::object advice_record(const AdviceTrial& a) {
   out["change"] = a.change;
   out["error"] = design_error(a.error);
   out["helps"] = a.helps;
+  return record(out);
+}
+
+py::object lens_record(const Solid& lens) {
+  const auto mesh = surface_mesh(lens);
+  std::vector<double> outline_mm;
+  for (const auto& corner : lens.outline_mm)
+    outline_mm.insert(outline_mm.end(), corner.begin(), corner.end());
+  std::vector<std::int64_t> triangles;
+  for (const auto& t : mesh->triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+  py::dict out;
+  out["name"] = lens.name;
+  out["refractive_index"] = lens.refractive_index;
+  out["absorption_per_mm"] = lens.absorption_per_mm;
+  out["position_mm"] = vector(lens.world_from_solid.origin_mm());
+  out["has_face"] = lens.face != nullptr;
+  out["outline_mm"] = owned(std::move(outline_mm), grid(lens.outline_mm.size(), 2));
+  out["vertices_mm"] = owned(mesh->vertices_mm);
+  out["triangles"] = owned(std::move(triangles), grid(mesh->triangles.size(), 3));
   return record(out);
 }
 
@@ -241,6 +262,10 @@ const Finding kFindings[] = {
                            : py::object(py::none());
      },
      "How figures vary over inexact luminaires, as Records, if it was asked for."},
+    {"lens", [](const DesignedMirror& d) { return d.lens ? lens_record(*d.lens) : py::object(py::none()); },
+     "The lens that was shaped, as a Record: its outline, its surface as triangles in its own frame, its "
+     "medium; "
+     "None for a mirror."},
     {"evaluations", [](const DesignedMirror& d) { return py::object(py::cast(d.evaluations)); },
      "Evaluations of the objective."},
     {"rays", [](const DesignedMirror& d) { return py::object(py::cast(d.rays)); },
@@ -307,7 +332,8 @@ void add_designs(py::module_& m) {
   auto c = py::class_<Designed>(m, "DesignResult", kDesignResultClassDoc);
   add_findings(c);
   c.def_property_readonly(
-      "scene", [](const Designed& d) { return d.scene; }, "The project with the mirror that was found.");
+      "scene", [](const Designed& d) { return d.scene; },
+      "The project with the mirror or lens that was found.");
   c.def_property_readonly(
       "traced", [](const Designed& d) { return d.traced; }, "The light of that project, a TraceResult.");
   c.def("save", &save, "folder"_a, kSaveDoc);

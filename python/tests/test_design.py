@@ -36,6 +36,25 @@ def test_a_design_is_better_than_its_start(found):
     assert lu.compare(spot(), light.scaled(1)).overlap.value > 0.8
 
 
+def test_a_lens_is_designed_and_read_back(found, tmp_path):
+    assert found.lens is None
+    keys = dict(role="solid", name="lens", outline_mm=[[0, 3], [9, 3], [9, 5], [6, 7.6], [3, 9.1], [0, 9.6]], axis="-z")
+    lamp = lu.Scene([{"kind": "disk", "radius_mm": 0.5, "axis": "-z"}], bodies=[{**keys, "material": "pmma"}],
+                    target=spot(), design={"free_sides": 2, "intervals": 6, "time_s": 1000, "restarts": 0})
+    made = lu.design(lamp, max_rays=16384)
+    assert made.relative_rms.value < made.start_error.c48.excess.value
+    lens = made.lens
+    assert lens.name == "lens" and not lens.has_face and 1.49 < lens.refractive_index < 1.5
+    assert lens.outline_mm.shape[1] == 2 and lens.outline_mm[:, 0].max() == 9
+    # Closed: every edge belongs to two triangles, once in each direction.
+    edges = np.concatenate([lens.triangles[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
+    assert {tuple(e) for e in edges} == {tuple(e[::-1]) for e in edges} and len({tuple(e) for e in edges}) == len(edges)
+    assert np.hypot(*lens.vertices_mm[:, :2].T).max() == pytest.approx(9, rel=1e-6)
+    assert made.reflector is None
+    assert "lens.step" in made.save(tmp_path)
+    assert made.scene.tables["body"][0]["outline_mm"] == lens.outline_mm.tolist()
+
+
 def test_its_convergence_is_drawn(found):
     import matplotlib.pyplot as plt
 

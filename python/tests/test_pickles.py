@@ -11,7 +11,7 @@ import pytest
 from test_design import lamp as design_lamp
 
 FINDINGS = ["error", "start_error", "relative_rms", "floor", "efficiency", "end", "interrupted", "zones", "limits",
-            "bound", "remarks", "pareto", "advice", "tolerances", "evaluations", "rays", "checkpoint"]
+            "bound", "remarks", "pareto", "advice", "tolerances", "lens", "evaluations", "rays", "checkpoint"]
 
 
 @pytest.fixture(scope="module")
