@@ -37,8 +37,9 @@ struct BsdfTable {
 
 /// Reads such a file of either maker. Of tristimulus values Y is taken; of LightTools the front's BRDF, while
 /// its back and light that goes through are passed over. Throws InputError with file and line for what breaks
-/// the format, and what is not supported: a file of Zemax of light that goes through (BTDF), several rotations
-/// of the sample, planes of incidence or wavelengths, and no BRDF of the front. At most 64 MiB. Thread safe.
+/// the format, and what is not supported: a file of Zemax of light that goes through (BTDF), several
+/// rotations of the sample, planes of incidence or wavelengths, and no BRDF of the front. At most 64 MiB.
+/// Thread safe.
 [[nodiscard]] BsdfTable read_bsdf(const std::filesystem::path& path);
 /// The same of a text; `name` stands for the file in messages.
 [[nodiscard]] BsdfTable parse_bsdf(std::string_view text, const std::string& name);

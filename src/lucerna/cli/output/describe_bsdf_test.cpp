@@ -22,7 +22,8 @@ TEST(DescribeBsdf, SaysWhatIsStatedAndWhatIsThere) {
   ASSERT_TRUE(is_bsdf_file(file));
   const Description d = describe_bsdf(file);
   ASSERT_EQ(d.lines.size(), 2u);
-  EXPECT_EQ(d.lines[0], "  format              bsdf of Zemax, 2 azimuths to 180 degrees, 2 radial angles to 90");
+  EXPECT_EQ(d.lines[0],
+            "  format              bsdf of Zemax, 2 azimuths to 180 degrees, 2 radial angles to 90");
   // 0.2 pi
   EXPECT_THAT(d.lines[1], testing::HasSubstr("0.6000 stated, 0.628"));
   EXPECT_NEAR(d.json["incidences"][0]["reflectance_of_values"].get<double>(), 0.6283, 2e-3);
