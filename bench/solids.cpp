@@ -91,7 +91,7 @@ Outcome by_tracer(const SolidTracer& tracer, const std::vector<Ray>& rays) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const auto hit = tracer.first_hit(rays[i], 1e300, false);
     if (!hit) continue;
-    const GlassPassage p = tracer.pass(rays[i], *hit, {1, i, 0});
+    const GlassPassage p = tracer.pass(rays[i], *hit, {1, i, 0}, 0.0F);
     out.within += p.ray.direction.z() > std::cos(radians(2.0)) ? 1.0 : 0.0;
     out.lost += p.lost ? 1.0 : 0.0;
   }

@@ -24,6 +24,8 @@ struct BsdfTable {
   std::vector<double> radial_deg;
   /// 1/sr, >= 0: [incidence][azimuth][radial].
   std::vector<double> brdf;
+  /// Where the file has several, and these values are of the one nearest to what was asked for; else 0.
+  double wavelength_nm = 0.0;
   /// Reflectance at each incidence as the file states it (TIS), in (0, 1].
   std::vector<double> total;
 
@@ -35,14 +37,15 @@ struct BsdfTable {
   }
 };
 
-/// Reads such a file of either maker. Of tristimulus values Y is taken; of LightTools the front's BRDF, while
-/// its back and light that goes through are passed over. Throws InputError with file and line for what breaks
-/// the format, and what is not supported: a file of Zemax of light that goes through (BTDF), several
-/// rotations of the sample, planes of incidence or wavelengths, and no BRDF of the front. At most 64 MiB.
-/// Thread safe.
-[[nodiscard]] BsdfTable read_bsdf(const std::filesystem::path& path);
+/// Reads such a file of either maker. Of tristimulus values Y is taken, of several wavelengths (LightTools)
+/// the one nearest to `wavelength_nm`; of LightTools the front's BRDF, while its back and light that goes
+/// through are passed over. Throws InputError with file and line for what breaks the format, and what is not
+/// supported: a file of Zemax of light that goes through (BTDF), several rotations of the sample or planes of
+/// incidence, and no BRDF of the front. At most 64 MiB. Thread safe.
+[[nodiscard]] BsdfTable read_bsdf(const std::filesystem::path& path, double wavelength_nm = 555.0);
 /// The same of a text; `name` stands for the file in messages.
-[[nodiscard]] BsdfTable parse_bsdf(std::string_view text, const std::string& name);
+[[nodiscard]] BsdfTable parse_bsdf(std::string_view text, const std::string& name,
+                                   double wavelength_nm = 555.0);
 
 }  // namespace lucerna
 #pragma GCC visibility pop

@@ -60,7 +60,7 @@ struct CatalogueGlass {
 /// some, but not for this wavelength, and where no light passes. Thread safe.
 [[nodiscard]] double glass_absorption_per_mm(const CatalogueGlass& glass, double wavelength_nm);
 
-/// Both over the whole range of the formula, the index within 1e-5; absorption only where the catalogue
+/// Both over the whole range of the formula, sampled each nanometre; absorption only where the catalogue
 /// states transmittances, and beyond its wavelengths that of the nearest. Light that does not pass at all is
 /// absorbed to 1e-30 within a millimetre. Throws InputError where the formula gives no index of 1 to 4.
 /// Thread safe.

@@ -220,6 +220,10 @@ struct PlacedSource {
   /// them; of its lumens where it counts lumens. One point: all rays have that wavelength.
   SpectralTable spectrum = {};
 
+  /// What wavelengths of the rays are drawn from: `spectrum`, else the one spectrum of a model without
+  /// wavelengths; null: the rays have their own, or none are known.
+  const SpectralTable* drawn_spectrum() const;
+
   /// `flux` if given, else the source's own; in the source's unit.
   double total_flux() const { return flux ? *flux : rays->flux(); }
 };

@@ -126,6 +126,8 @@ py::object lens_record(const Solid& lens) {
   out["refractive_index"] = lens.refractive_index;
   out["absorption_per_mm"] = lens.absorption_per_mm;
   out["position_mm"] = vector(lens.world_from_solid.origin_mm());
+  out["x_axis"] = vector(lens.world_from_solid.ex());
+  out["axis"] = vector(lens.world_from_solid.ez());
   out["has_face"] = lens.face != nullptr;
   out["outline_mm"] = owned(std::move(outline_mm), grid(lens.outline_mm.size(), 2));
   out["vertices_mm"] = owned(mesh->vertices_mm);

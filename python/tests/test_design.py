@@ -51,6 +51,7 @@ def test_a_lens_is_designed_and_read_back(found, tmp_path):
     assert {tuple(e) for e in edges} == {tuple(e[::-1]) for e in edges} and len({tuple(e) for e in edges}) == len(edges)
     assert np.hypot(*lens.vertices_mm[:, :2].T).max() == pytest.approx(9, rel=1e-6)
     assert made.reflector is None
+    np.testing.assert_allclose([*lens.axis, *lens.position_mm], [0, 0, -1, 0, 0, 0], atol=1e-12)
     assert "lens.step" in made.save(tmp_path)
     assert made.scene.tables["body"][0]["outline_mm"] == lens.outline_mm.tolist()
 

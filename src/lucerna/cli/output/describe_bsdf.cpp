@@ -14,7 +14,10 @@ Description describe_bsdf(const std::string& path) {
   const BsdfTable table = read_bsdf(path);
   const std::vector<double> found = Scatter(table).integrals();
   Description d;
-  d.json = Json{{"path", path}, {"format", "bsdf"}, {"incidences", Json::array()}};
+  d.json = Json{{"path", path},
+                {"format", "bsdf"},
+                {"maker", table.is_about_normal ? "LightTools" : "Zemax"},
+                {"incidences", Json::array()}};
   d.lines.push_back(
       fmt::format("  format              bsdf of {}, {} azimuths to {:g} degrees, {} radial angles to {:g}",
                   table.is_about_normal ? "LightTools" : "Zemax", table.azimuth_deg.size(),

@@ -25,6 +25,6 @@ std::vector<Solid> meshed(const Scene& scene) {
 }  // namespace
 
 LensBlocks::LensBlocks(const Scene& scene, std::uint64_t seed)
-    : scene_(scene), numbering_(scene.sources, seed), solids_(meshed(scene)) {}
+    : scene_(scene), numbering_(scene.sources, seed), solids_(meshed(scene)), colours_(scene) {}
 
 }  // namespace lucerna

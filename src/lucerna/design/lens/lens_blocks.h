@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <vector>
 
 #include "lucerna/scene.h"
+#include "lucerna/trace/engines/ray_colours.h"
 #include "lucerna/trace/engines/ray_numbering.h"
 #include "lucerna/trace/engines/solid_tracer.h"
 
@@ -24,11 +27,15 @@ class LensBlocks {
   void follow(std::uint64_t block, RayBlock& rays, Sums& sums) const {
     for (const SourceRun& run : numbering_.runs(block * kBlockRays, (block + 1) * kBlockRays)) {
       const PlacedSource& source = scene_.sources[run.source];
+      const Sequence sequence(SequenceKind::sobol, run.sequence_seed);
       rays.resize(run.count, 0);
-      source.rays->emit(Sequence(SequenceKind::sobol, run.sequence_seed), run.first, rays);
+      source.rays->emit(sequence, run.first, rays);
+      std::vector<float> wavelength_nm(run.count);
+      colours_.emit(run.source, sequence, run.first, wavelength_nm);
       for (std::size_t i = 0; i < run.count; ++i) {
         const double flux = numbering_.ray_flux(run.source) * static_cast<double>(rays.weight[i]);
-        follow(source.world_from_source.ray(rays.ray(i)), flux, {run.sequence_seed, run.first + i, 0}, sums);
+        follow(source.world_from_source.ray(rays.ray(i)), flux, {run.sequence_seed, run.first + i, 0},
+               wavelength_nm[i], sums);
       }
     }
   }
@@ -39,12 +46,12 @@ class LensBlocks {
   static constexpr double kNoLimit_mm = std::numeric_limits<double>::max();
 
   template <class Sums>
-  void follow(Ray ray, double flux, ReflectionKey key, Sums& sums) const {
+  void follow(Ray ray, double flux, ReflectionKey key, float wavelength_nm, Sums& sums) const {
     sums.emitted(flux);
     for (int surfaces = 0;; ++key.bounce) {
       const auto hit = solids_.first_hit(ray, kNoLimit_mm, key.bounce > 0);
       if (!hit) return sums.left(ray, flux, surfaces);
-      const GlassPassage way = solids_.pass(ray, *hit, key, 0.0F, [&](const Vec3&) { ++surfaces; });
+      const GlassPassage way = solids_.pass(ray, *hit, key, wavelength_nm, [&](const Vec3&) { ++surfaces; });
       sums.absorbed(flux * (1.0 - way.throughput));
       flux *= way.throughput;
       if (way.lost || key.bounce == kMostPassages) return sums.lost(flux);
@@ -55,6 +62,7 @@ class LensBlocks {
   const Scene& scene_;
   RayNumbering numbering_;
   SolidTracer solids_;
+  RayColours colours_;
 };
 
 }  // namespace lucerna

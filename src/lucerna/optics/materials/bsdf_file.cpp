@@ -167,15 +167,15 @@ class BsdfReader {
 
 }  // namespace
 
-BsdfTable parse_bsdf(std::string_view text, const std::string& name) {
+BsdfTable parse_bsdf(std::string_view text, const std::string& name, double wavelength_nm) {
   BsdfWords words(text, name);
   // Zemax lists the incidences in the header; LightTools states one in each block.
-  return words.have("AOI") ? read_lighttools_bsdf(words) : BsdfReader(std::move(words)).read();
+  return words.have("AOI") ? read_lighttools_bsdf(words, wavelength_nm) : BsdfReader(std::move(words)).read();
 }
 
-BsdfTable read_bsdf(const std::filesystem::path& path) {
+BsdfTable read_bsdf(const std::filesystem::path& path, double wavelength_nm) {
   const std::string text = decoded_text(read_file(path, kMaxBsdfBytes));
-  return parse_bsdf(text, path.string());
+  return parse_bsdf(text, path.string(), wavelength_nm);
 }
 
 }  // namespace lucerna

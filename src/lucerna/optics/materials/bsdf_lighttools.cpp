@@ -27,9 +27,7 @@ struct Header {
 Header read_header(BsdfWords& words) {
   Header out;
   for (std::string_view key; (key = words.next("a line of the header, or DataBegin")) != "DataBegin";) {
-    if (key == "Source" || key == "Comment") {
-      words.next("its value");
-    } else if (key == "Symmetry") {
+    if (key == "Symmetry") {
       const std::string_view word = words.next("a symmetry");
       if (word != "PlaneSymmetrical" && word != "Asymmetric")
         words.fail("found symmetry '{}', expected PlaneSymmetrical or Asymmetric", words.shown(word));
@@ -44,7 +42,7 @@ Header read_header(BsdfWords& words) {
     } else if (key == "ScatterRadial") {
       out.radial_deg = words.angles("ScatterRadial", 0.0, 90.0);
     } else {
-      words.fail("found '{}', expected a key of the header", words.shown(key));
+      words.skip_line();  // names, comments
     }
   }
   if (out.azimuth_deg.empty() || out.radial_deg.size() < 2)
@@ -172,13 +170,13 @@ std::vector<Column> columns_of(const Header& header, const BsdfWords& words) {
 
 /// The values of one block at the columns of the table.
 struct Slice {
-  double total = 0.0, plane_deg = 0.0, wavelength_nm = 0.0;
+  double total = 0.0, plane_deg = 0.0;
   std::vector<double> brdf;
 };
 
 Slice slice_of(const Block& block, const std::vector<double>& values, const std::vector<Column>& columns,
                std::size_t radials) {
-  Slice out{block.total, block.plane_deg, block.wavelength_nm, {}};
+  Slice out{block.total, block.plane_deg, {}};
   for (const Column& c : columns) {
     for (std::size_t r = 0; r < radials; ++r)
       out.brdf.push_back(std::lerp(values[c.from * radials + r], values[c.to * radials + r], c.share_of_to));
@@ -186,42 +184,47 @@ Slice slice_of(const Block& block, const std::vector<double>& values, const std:
   return out;
 }
 
-void check_block(const Block& block, const std::map<double, Slice>& before, const BsdfWords& words) {
+/// By incidence.
+using Slices = std::map<double, Slice>;
+
+void check_block(const Block& block, const Slices& before, const BsdfWords& words) {
   const double at = *block.incidence_deg;
   if (!(at >= 0.0 && at < 90.0)) words.fail("found an incidence of {} degrees, expected 0 to below 90", at);
   if (before.empty()) return;
   const Slice& first = before.begin()->second;
   if (block.plane_deg != first.plane_deg)
     words.refuse("planes of incidence at {} and {} degrees, expected one", first.plane_deg, block.plane_deg);
-  if (block.wavelength_nm != first.wavelength_nm)
-    words.refuse("wavelengths {} and {}, expected one", first.wavelength_nm, block.wavelength_nm);
   if (before.contains(at)) words.fail("found the incidence of {} degrees twice", at);
 }
 
 }  // namespace
 
-BsdfTable read_lighttools_bsdf(BsdfWords& words) {
+BsdfTable read_lighttools_bsdf(BsdfWords& words, double wavelength_nm) {
   const Header header = read_header(words);
   const std::vector<Column> columns = columns_of(header, words);
   const std::size_t radials = header.radial_deg.size(), values = header.azimuth_deg.size() * radials;
   if (values > words.count()) words.fail("the file has {} words, expected {} values", words.count(), values);
-  std::map<double, Slice> slices;
+  std::map<double, Slices> by_wavelength;
   while (auto block = next_block(words)) {
     std::vector<double> brdf;
     if (!block->is_wanted()) {
       for (std::size_t k = 0; k <= values; ++k) static_cast<void>(words.number("a value"));
       continue;
     }
+    Slices& slices = by_wavelength[block->wavelength_nm];
     check_block(*block, slices, words);
     block->total = words.total();
     words.values(values, brdf);
     slices.emplace(*block->incidence_deg, slice_of(*block, brdf, columns, radials));
   }
   if (!words.at_end()) words.fail("found words after DataEnd, expected none");
-  if (slices.empty())
+  if (by_wavelength.empty())
     words.refuse("no BRDF of the front{}, expected one", header.is_tristimulus ? " with TrisY" : "");
+  const auto& [found_nm, slices] = *std::ranges::min_element(
+      by_wavelength, {}, [&](const auto& one) { return std::abs(one.first - wavelength_nm); });
   BsdfTable table;
   table.is_about_normal = true;
+  if (by_wavelength.size() > 1) table.wavelength_nm = found_nm;
   table.radial_deg = header.radial_deg;
   for (const Column& c : columns) table.azimuth_deg.push_back(c.azimuth_deg);
   for (const auto& [incidence_deg, slice] : slices) {

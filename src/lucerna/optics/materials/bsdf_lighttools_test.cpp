@@ -100,12 +100,27 @@ TEST(LightToolsBsdf, OfTristimulusValuesYIsTaken) {
   EXPECT_THAT(parsed(with(text, "TrisX", "TrisY")).incidence_deg, ElementsAre(0.0, 40.0));
 }
 
+TEST(LightToolsBsdf, OfSeveralWavelengthsTheNearestIsTaken) {
+  const std::string two = with(kFull, "Wavelength 550", "Wavelength 450");
+  const BsdfTable green = parsed(two), blue = parse_bsdf(two, "made.bsdf", 480.0);
+  EXPECT_THAT(green.incidence_deg, ElementsAre(0.0));
+  EXPECT_EQ(green.wavelength_nm, 550.0);
+  EXPECT_THAT(blue.incidence_deg, ElementsAre(40.0));
+  EXPECT_EQ(blue.wavelength_nm, 450.0);
+  EXPECT_EQ(parsed(kFull).wavelength_nm, 0.0) << "one";
+}
+
+TEST(LightToolsBsdf, LinesThatAreNotNeededArePassedOver) {
+  const BsdfTable t =
+      parsed(with(kFull, "Symmetry Asym", "Model made up here\r\nComment 12 \"a b\"\r\nSymmetry Asym"));
+  EXPECT_EQ(t.brdf, parsed(kFull).brdf);
+}
+
 TEST(LightToolsBsdf, FaultsAreNamedWithTheirLine) {
   const auto fault = [](const char* from, const char* to) { return lighttools_fault(with(kFull, from, to)); };
   EXPECT_THAT(fault("AOI 40", "AOI 90"), HasSubstr("made.bsdf: line 14: found an incidence of 90 degrees"));
   EXPECT_THAT(fault("AOI 40", "AOI 0"), HasSubstr("found the incidence of 0 degrees twice"));
   EXPECT_THAT(fault("POI 0", "POI 45"), HasSubstr("planes of incidence at 45 and 0"));
-  EXPECT_THAT(fault("Wavelength 550", "Wavelength 450"), HasSubstr("wavelengths 450 and 550"));
   EXPECT_THAT(fault("Side Front", "Side Top"), HasSubstr("found 'Top', expected Front"));
   EXPECT_THAT(fault("TIS 0.6", "TIS 60"), HasSubstr("found a total (TIS) of 60"));
   EXPECT_THAT(fault("1 .1 .2", "1 .1 x"), HasSubstr("line 15: found 'x', expected a value"));

@@ -35,6 +35,10 @@ std::string_view BsdfWords::next(const char* expected) {
   return words_[at_++].text;
 }
 
+void BsdfWords::skip_line() {
+  while (!at_end() && words_[at_].line == line_) ++at_;
+}
+
 double BsdfWords::number(const char* expected) {
   const std::string_view word = next(expected);
   const auto value = number_from(word);

@@ -42,6 +42,8 @@ class BsdfWords {
   bool have(std::string_view word) const;
 
   std::string_view next(const char* expected);
+  /// Passes over what stands behind the last word on its line.
+  void skip_line();
   double number(const char* expected);
   void require(std::string_view word);
   /// A count and as many ascending angles, each from `min` to `max`.

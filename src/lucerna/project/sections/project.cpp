@@ -47,26 +47,36 @@ void check_sources_before_mirrors(Project& project, const std::string& file) {
   }
 }
 
-/// Says how much light has a wavelength that a dispersing solid does not know.
+/// Says how much light has a wavelength that a dispersing solid does not know, by the first rays.
 void warn_of_wavelengths(Project& project, const std::string& file) {
   constexpr std::size_t kRays = 4096;
   const RayColours colours(project.scene);
   if (!colours.are_needed()) return;
+  const Sequence sequence(SequenceKind::random, 1);
   std::vector<float> nm(kRays);
+  RayBlock rays;
+  rays.resize(kRays);
   for (std::size_t s = 0; s < project.scene.sources.size(); ++s) {
-    colours.emit(s, Sequence(SequenceKind::random, 1), 0, nm);
+    project.scene.sources[s].rays->emit(sequence, 0, rays);
+    colours.emit(s, sequence, 0, nm);
     const auto warn = [&](const auto& is_unknown, const std::string& what) {
-      const auto n = std::ranges::count_if(nm, is_unknown);
-      if (n == 0) return;
-      project.warnings.push_back(fmt::format("{}: source[{}]: {:.3g} % of its rays have {}", file, s,
-                                             100.0 * static_cast<double>(n) / kRays, what));
+      double some = 0.0, all = 0.0;
+      for (std::size_t i = 0; i < kRays; ++i) {
+        const double weight = rays.weight[i], at = nm[i];
+        all += weight;
+        some += is_unknown(at) ? weight : 0.0;
+      }
+      if (!(some > 0.0)) return;
+      project.warnings.push_back(fmt::format("{}: source[{}]: some {:.2g} % of its light has {}", file, s,
+                                             100.0 * some / all, what));
     };
-    warn([](double w) { return !(w > 0.0); }, "no wavelength: they meet the index of `wavelength_nm`");
+    warn([](double w) { return !(w > 0.0); },
+         "no wavelength: it meets the index at the `wavelength_nm` of the solid");
     for (const Solid& solid : project.scene.solids) {
       if (solid.dispersion == nullptr) continue;
       const double min_nm = solid.dispersion->min_nm(), max_nm = solid.dispersion->max_nm();
       warn([&](double w) { return w > 0.0 && !(w >= min_nm && w <= max_nm); },
-           fmt::format("wavelengths out of {:g} to {:g} nm: in '{}' they meet the index of the nearer end",
+           fmt::format("wavelengths out of {:g} to {:g} nm: in '{}' it meets the index of the nearer end",
                        min_nm, max_nm, solid.name));
     }
   }

@@ -60,7 +60,8 @@ TEST_F(ProjectColour, WavelengthsThatAMediumDoesNotKnowAreTold) {
   write_file(dir_ / "near_uv.csv", "320 1\n520 1\n");
   const Project project = read(std::string(kDisk) + "flux_w = 1\nspectrum = 'near_uv.csv'\n" + kLens);
   ASSERT_EQ(project.warnings.size(), 1U);
-  EXPECT_THAT(project.warnings[0], testing::ContainsRegex("source\\[0\\]: (49|50|51)[.0-9]* % of its rays"));
+  EXPECT_THAT(project.warnings[0],
+              testing::ContainsRegex("source\\[0\\]: some (49|50|51)[.0-9]* % of its light"));
   EXPECT_THAT(project.warnings[0], HasSubstr("out of 420 to 1620 nm: in 'solid'"));
 }
 
@@ -69,7 +70,7 @@ TEST_F(ProjectColour, WhatIsMissingOrMisplacedIsNamed) {
     EXPECT_THAT(message(text), HasSubstr(part)) << text;
   };
   const std::string disk = kDisk, lens = kLens;
-  expect(disk + lens, "source 1 has no wavelengths, and solid 'solid' disperses");
+  expect(disk + lens, "source 1: found no wavelengths, expected a spectrum");
   expect(disk + "wavelength_nm = 450\nspectrum = 'a.csv'\n" + lens,
          "source[0].spectrum: found `wavelength_nm`");
   expect(disk + "wavelength_nm = 0\n" + lens, "source[0].wavelength_nm");
@@ -79,7 +80,8 @@ TEST_F(ProjectColour, WhatIsMissingOrMisplacedIsNamed) {
   write_file(dir_ / "a.csv", "");
   expect(disk + "spectrum = 'a.csv'\n" + lens, "expected lines of two");
   write_file(dir_ / "a.csv", "500 1\n400 1\n");
-  expect(disk + "spectrum = 'a.csv'\n" + lens, "source 1: spectrum: found 400 nm, expected more than 500");
+  expect(disk + "spectrum = 'a.csv'\n" + lens,
+         "a.csv: found 400 nm after 500, expected wavelengths to ascend");
   const std::string plain = "[[body]]\nrole = 'solid'\noutline_mm = [[0, 0], [5, 0], [5, 2], [0, 4]]\n";
   expect(disk + plain + "dispersion = true\n", "body[0].dispersion: belongs to `material` or `catalogue`");
   expect(disk + "[[body]]\nrole = 'glass'\ndiameter_mm = 9\nmaterial = 'bk7'\ndispersion = true\n",

@@ -3,6 +3,7 @@
 #include "lucerna/project/sections/project_memory.h"
 #include "lucerna/project/sections/project_parts.h"
 #include "lucerna/ray_file.h"
+#include "lucerna/rayset/data/luminous_spectrum.h"
 #include "lucerna/rayset/files/named_warnings.h"
 #include "lucerna/source.h"
 #include "lucerna/source_model.h"
@@ -110,6 +111,7 @@ SpectralTable read_spectrum(TomlReader& reader, Project& project) {
       out.wavelength_nm.push_back(static_cast<float>(table.numbers[2 * i]));
       out.relative_power.push_back(static_cast<float>(table.numbers[2 * i + 1]));
     }
+    check_spectrum(out, file->string());
     return out;
   });
 }
@@ -127,10 +129,6 @@ PlacedSource read_source(TomlReader reader, Project& project, Progress& progress
     source.rays = read_model_source(reader, *file, flux, project);
     if (source.rays == nullptr) source.rays = read_ray_source(reader, *file, flux, project, progress);
     if (flux) source.flux = flux->flux;
-    const auto* const model = dynamic_cast<const SourceModel*>(source.rays.get());
-    if (source.spectrum.wavelength_nm.empty() && model != nullptr && !model->has_wavelengths() &&
-        !model->spectra().empty())
-      source.spectrum = model->spectra().front();
   } else {
     if (!reader.has("kind")) reader.missing("kind", "a source needs a file or a kind");
     source.rays = read_emitter(reader, flux);

@@ -88,6 +88,9 @@ MirrorSurface read_measured(TomlReader& reader, Project& project) {
   const std::filesystem::path file = *reader.file("bsdf");
   project.inputs.push_back(file);
   const BsdfTable table = read_bsdf(file);
+  if (table.wavelength_nm > 0.0)
+    project.warnings.push_back(
+        fmt::format("{}: has several wavelengths; {:g} nm is taken", file.string(), table.wavelength_nm));
   MirrorSurface surface;
   surface.scatter = at_key(reader, "bsdf", [&] { return Scatter(table); });
   std::vector<Reflectance::Entry> stated;

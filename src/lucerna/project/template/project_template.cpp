@@ -18,7 +18,8 @@ position_mm = [0, 0, 0]       # where the source's origin goes
 axis = "+z"                   # where its +z points: +x -x +y -y +z -z or a vector
 turn_deg = 0.0                # then about that axis
 
-# A ray file or a model (lucerna compress); its own flux counts unless flux_lm or flux_w overrides it.
+# A ray file or a model (lucerna compress); its own flux counts unless flux_lm or flux_w overrides it. Solids with
+# dispersion need wavelengths: the file's, or wavelength_nm = 450, or spectrum = "white.csv" (lines of nm, power).
 #[[source]]
 #file = "led.tm25ray"
 #flux_lm = 337.0

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+
+#include "lucerna/core/io/error.h"
 
 namespace lucerna {
 
@@ -31,6 +34,25 @@ double luminous_efficiency(double wavelength_nm) {
   return std::lerp(kEfficiency[below], kEfficiency[below + 1], at - static_cast<double>(below));
 }
 
+void check_spectrum(const SpectralTable& spectrum, const std::string& what) {
+  const auto& nm = spectrum.wavelength_nm;
+  const auto& power = spectrum.relative_power;
+  const auto fail = [&](const std::string& found) { throw InputError(fmt::format("{}: {}", what, found)); };
+  if (nm.size() != power.size())
+    fail(fmt::format("found {} wavelengths and {} powers, expected equally many", nm.size(), power.size()));
+  for (std::size_t i = 0; i < nm.size(); ++i) {
+    const double at = nm[i];
+    if (!(at >= kShortest_nm && at <= kLongest_nm))
+      fail(fmt::format("found {:g} nm, expected {:g} to {:g}", at, kShortest_nm, kLongest_nm));
+    if (i > 0 && !(nm[i] > nm[i - 1]))
+      fail(fmt::format("found {:g} nm after {:g}, expected wavelengths to ascend", at, nm[i - 1]));
+    if (!(power[i] >= 0.0F && std::isfinite(power[i])))
+      fail(fmt::format("found a power of {:g} at {:g} nm, expected a finite number >= 0", power[i], at));
+  }
+  if (!power.empty() && std::ranges::all_of(power, [](float p) { return p == 0.0F; }))
+    fail("found no power above 0");
+}
+
 SpectralTable luminous_spectrum(const SpectralTable& power) {
   SpectralTable out;
   bool is_visible = false;
@@ -43,7 +65,9 @@ SpectralTable luminous_spectrum(const SpectralTable& power) {
     const double nm = power.wavelength_nm[i], watts = power.relative_power[i];
     if (i > 0) {
       const double last_nm = power.wavelength_nm[i - 1], last_watts = power.relative_power[i - 1];
-      for (double at = (std::floor(last_nm / kStep_nm) + 1.0) * kStep_nm; at < nm; at += kStep_nm)
+      // V is 0 beyond its table.
+      const double first = std::max((std::floor(last_nm / kStep_nm) + 1.0) * kStep_nm, kFirst_nm - kStep_nm);
+      for (double at = first; at < nm && at <= kLast_nm + kStep_nm; at += kStep_nm)
         add(at, std::lerp(last_watts, watts, (at - last_nm) / (nm - last_nm)));
     }
     add(nm, watts);

@@ -31,6 +31,13 @@ TEST(LuminousSpectrum, ResolvesVBetweenThePointsOfATable) {
   EXPECT_NEAR(5.0 * sum, 2.0 * 106.857, 0.002);
 }
 
+// Whatever a file states: V ends at 780 nm, and so does the table between its points.
+TEST(LuminousSpectrum, IsShortForHugeWavelengths) {
+  const SpectralTable lumens = luminous_spectrum({{400.0F, 1e30F}, {1.0F, 1.0F}});
+  EXPECT_LT(lumens.wavelength_nm.size(), 100U);
+  EXPECT_EQ(lumens.relative_power.back(), 0.0F);
+}
+
 TEST(LuminousSpectrum, LeavesLinesAndInvisibleLightAsTheyAre) {
   const SpectralTable line{{450.0F}, {1.0F}}, infrared{{850.0F, 950.0F}, {1.0F, 0.5F}};
   EXPECT_EQ(luminous_spectrum(line), line);

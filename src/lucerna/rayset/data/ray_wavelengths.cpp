@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "lucerna/random.h"
 #include "lucerna/rayset/data/luminous_spectrum.h"
 
 namespace lucerna {
@@ -25,14 +26,16 @@ float RayWavelengths::of(const RayBlock& block, std::size_t i, std::uint64_t num
   if (spectra_.empty()) return one_nm_.value_or(unknown_nm_);
   const double index = index_ ? static_cast<double>(block.extra[*index_][i]) : 1.0;
   const bool is_named = index >= 1.0 && index <= static_cast<double>(spectra_.size());
-  return spectra_[is_named ? static_cast<std::size_t>(index) - 1 : 0](number);
+  // Any seed will do: another would give other rays other wavelengths.
+  const double u = Rng(0x6C616D626461U, number).uniform();
+  return spectra_[is_named ? static_cast<std::size_t>(index) - 1 : 0].wavelength_nm(u);
 }
 
 std::string wavelengths_warning(const RaySetHeader& header) {
-  const RayWavelengths wavelengths(header, FluxUnit::watt);
-  if (wavelengths.are_drawn())
-    return "the spectral table is written as one wavelength per ray, drawn evenly from it";
-  if (wavelengths.are_known()) return {};
+  const bool own = find_column(header.columns, ColumnKind::wavelength_nm).has_value();
+  const bool table = !header.spectra.empty() && !header.spectra.front().wavelength_nm.empty();
+  if (!own && table) return "the spectral table is written as one wavelength per ray, drawn from it";
+  if (own || header.wavelength_nm) return {};
   return fmt::format("no wavelengths are known: {} nm is written for all rays", kGreen_nm);
 }
 

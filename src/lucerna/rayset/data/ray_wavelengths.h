@@ -11,8 +11,9 @@
 
 namespace lucerna {
 
-/// A wavelength for each ray of a set: the ray's own; else one drawn evenly from the spectrum that its index
-/// names (the first one where it names none); else the one that all rays have. Thread safe.
+/// A wavelength for each ray of a set: the ray's own; else one drawn from the spectrum that its index names
+/// (the first one where it names none), whatever the order of the rays; else the one that all rays have.
+/// Thread safe.
 class RayWavelengths {
  public:
   /// `drawn`: what a ray is a share of, power or the lumens of that power. `unknown_nm`: of rays where
@@ -22,6 +23,8 @@ class RayWavelengths {
   /// The column of RayBlock::extra that has them; absent if there is none.
   std::optional<std::size_t> column() const { return column_; }
   bool are_known() const { return column_ || are_drawn() || one_nm_; }
+  /// From the ray's own columns?
+  bool differ_by_ray() const { return column_ || (are_drawn() && index_ && spectra_.size() > 1); }
   /// From spectra?
   bool are_drawn() const { return !column_ && !spectra_.empty(); }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "lucerna/core/io/error.h"
-#include "lucerna/random.h"
 
 namespace lucerna {
 
@@ -35,17 +34,6 @@ float SpectrumSampler::wavelength_nm(double u) const {
   if (!(rest > 0.0)) return table_.wavelength_nm[i - 1];
   const double t = 2.0 * rest / (a + std::sqrt(std::max(0.0, a * a + 2.0 * (b - a) * rest)));
   return static_cast<float>(static_cast<double>(table_.wavelength_nm[i - 1]) + width * std::min(t, 1.0));
-}
-
-float SpectrumSampler::of_ray(std::uint64_t seed, std::uint64_t number) const {
-  // Slope errors, glasses and lobes have the streams from 0x10000 to 0x3ffff.
-  return wavelength_nm(Rng(seed, number, 0x40000U).uniform());
-}
-
-float SpectrumSampler::operator()(std::uint64_t i) const {
-  // 2^64 over the golden ratio: the fraction of i phi, exactly.
-  const std::uint64_t turns = i * 0x9E3779B97F4A7C15U;
-  return wavelength_nm(static_cast<double>(turns >> 11) * 0x1p-53);
 }
 
 }  // namespace lucerna

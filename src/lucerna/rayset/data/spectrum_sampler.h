@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "lucerna/rays.h"
@@ -16,13 +15,6 @@ class SpectrumSampler {
 
   /// The wavelength in nm below which the share `u` in [0, 1) of the power lies.
   float wavelength_nm(double u) const;
-
-  /// The wavelength of ray `number` of the stream that `seed` starts: independent of all else that is drawn
-  /// for it.
-  float of_ray(std::uint64_t seed, std::uint64_t number) const;
-
-  /// The i-th of a sequence that fills the spectrum evenly (multiples of the golden ratio).
-  float operator()(std::uint64_t i) const;
 
  private:
   SpectralTable table_;

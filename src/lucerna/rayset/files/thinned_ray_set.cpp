@@ -49,12 +49,6 @@ void keep(Columns columns, RaySetHeader& header) {
   header.wavelength_nm.reset();
 }
 
-/// Is the colour of a ray known from its own columns?
-bool has_own_colour(const RaySetHeader& header) {
-  return find_column(header.columns, ColumnKind::wavelength_nm) ||
-         (find_column(header.columns, ColumnKind::spectrum_index) && header.spectra.size() > 1);
-}
-
 bool have_one_colour(const RaySetHeader& a, const RaySetHeader& b) {
   return a.spectra == b.spectra && a.wavelength_nm == b.wavelength_nm;
 }
@@ -118,13 +112,13 @@ Columns columns_of(const std::vector<ThinnedFile>& files, const std::vector<std:
   std::vector<std::string> unknown;
   for (std::size_t k = 0; k < files.size(); ++k) {
     const RaySetHeader& header = files[k].reader->header();
-    differ = differ || has_own_colour(header) || !have_one_colour(header, first);
+    differ = differ || files[k].wavelengths.differ_by_ray() || !have_one_colour(header, first);
     if (!files[k].wavelengths.are_known()) unknown.push_back(names[k].string());
   }
   if (!differ) return Columns::none;
   if (unknown.empty()) return Columns::wavelengths;
-  warnings.push_back(fmt::format("{}: nothing is known of its colour, so that of the other files is dropped",
-                                 unknown.front()));
+  warnings.push_back(
+      fmt::format("{}: nothing is known of its colour, so all colours are dropped", unknown.front()));
   return Columns::none;
 }
 

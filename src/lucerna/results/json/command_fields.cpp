@@ -99,6 +99,7 @@ constexpr std::array kCommandFields{
     ResultField{"files[].glasses[].min_nm", "info", "number", "nm", "Where the formula begins to hold."},
     ResultField{"files[].glasses[].max_nm", "info", "number", "nm", "Where it ends."},
     ResultField{"files[].glasses[].index_d", "info", "number", "", "Its index at 587.56 nm; null out of that range."},
+    ResultField{"files[].maker", "info", "text", "", "Of a measured BRDF: Zemax or LightTools, whose format it has."},
     ResultField{"files[].incidences[].incidence_deg", "info", "number", "deg", "Measured BRDFs (`bsdf`), each angle of incidence: the angle."},
     ResultField{"files[].incidences[].reflectance_stated", "info", "number", "", "Reflectance that the file states there."},
     ResultField{"files[].incidences[].reflectance_of_values", "info", "number", "", "What its values add up to."},

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string>
 #include <utility>
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/ray_file.h"
+#include "lucerna/rayset/data/ray_wavelengths.h"
 #include "lucerna/rayset/files/thinned_ray_set.h"
 #include "lucerna/source/adaptive/compression/adaptive_compress.h"
 #include "lucerna/source/clusters/cluster_compress.h"
@@ -22,6 +25,18 @@ ThinOptions thin_options(const CompressOptions& options, Peers* peers) {
   ThinOptions thin{.seed = options.seed, .only_wavelengths = true, .peers = peers};
   if (options.method == CompressMethod::adaptive) thin.max_rays = kMaxAdaptiveRays;
   return thin;
+}
+
+/// What of the rays' colours the model will not have, as a sentence; empty for nothing.
+std::string dropped_colours(const RaySet& set, CompressMethod method) {
+  const RayWavelengths wavelengths(set.header, set.header.flux_unit);
+  if (!wavelengths.are_known()) return {};
+  if (method == CompressMethod::clusters) return "clusters have no colours: those of the rays are dropped";
+  if (!wavelengths.column()) return {};
+  const auto& nm = set.rays.extra.at(*wavelengths.column());
+  const auto unknown = std::ranges::count_if(nm, [](float x) { return !(x > 0.0F); });
+  if (unknown == 0) return {};
+  return fmt::format("{} of {} rays have no wavelength: the colours of all are dropped", unknown, nm.size());
 }
 
 }  // namespace
@@ -63,6 +78,8 @@ CompressedFiles compress_files(const std::vector<std::filesystem::path>& files,
                                      files.size() == 1 ? files.front().string() : "all files", read.of,
                                      read.set.rays.size()));
   }
+  if (std::string dropped = dropped_colours(read.set, options.method); !dropped.empty())
+    made.warnings.push_back(std::move(dropped));
   made.model = compress(read.set, options, progress);
   return made;
 }

@@ -100,6 +100,37 @@ TEST_F(Compress, TwoFilesAreOneSourceWithColourOverAngle) {
   EXPECT_LT(blue_far / far, 0.03);
 }
 
+// In memory and by its file, rays with spectra by index are the same model; what is dropped is told.
+TEST_F(Compress, ColoursAreKeptOrDroppedAloud) {
+  RaySet set = lobe_rays(20'000, 1.0, 30.0, 3);
+  set.header.flux_unit = FluxUnit::watt;  // TM-25 wants watts of rays with colours
+  set.header.set_flux(2.0);
+  set.header.spectra = {{{450.0F}, {1.0F}}, {{520.0F, 700.0F}, {1.0F, 1.0F}}};
+  set.header.columns = {{ColumnKind::spectrum_index, standard_label(ColumnKind::spectrum_index)}};
+  set.rays.extra = {std::vector<float>(20'000)};
+  for (std::size_t i = 0; i < 20'000; ++i) set.rays.extra[0][i] = i % 2 == 0 ? 1.0F : 2.0F;
+  write_ray_set(dir_ / "both", set, "tm25");
+  const auto in_memory = compress(set);
+  const CompressedFiles by_file = compress({dir_ / "both"});
+  EXPECT_TRUE(in_memory->has_wavelengths() && by_file.model->has_wavelengths());
+  EXPECT_TRUE(in_memory->spectra().empty() && by_file.warnings.empty());
+  EXPECT_EQ(source_model_bytes(*in_memory), source_model_bytes(*by_file.model));
+
+  const CompressedFiles clusters = compress({dir_ / "both"}, {.method = CompressMethod::clusters});
+  ASSERT_EQ(clusters.warnings.size(), 1U);
+  EXPECT_NE(clusters.warnings[0].find("clusters have no colours"), std::string::npos);
+
+  set.header.spectra.clear();
+  set.header.columns = {{ColumnKind::wavelength_nm, standard_label(ColumnKind::wavelength_nm)}};
+  set.rays.extra[0].assign(20'000, 500.0F);
+  set.rays.extra[0][7] = 0.0F;
+  write_ray_set(dir_ / "one", set, "tm25");
+  const CompressedFiles one = compress({dir_ / "one"});
+  ASSERT_EQ(one.warnings.size(), 1U);
+  EXPECT_NE(one.warnings[0].find("1 of 20000 rays have no wavelength"), std::string::npos);
+  EXPECT_FALSE(one.model->has_wavelengths());
+}
+
 TEST_F(Compress, KeepsToTheSizeThatWasAskedFor) {
   for (const CompressMethod method : {CompressMethod::adaptive, CompressMethod::clusters}) {
     const auto made = compress({file("a", 100.0, 1)}, {.method = method, .max_bytes = 3000});

@@ -29,7 +29,7 @@ class GlassTracer {
   /// What becomes of the ray there. `key.bounce` counts all that the ray met before, plates and bodies
   /// included. `wavelength_nm` counts in bodies that disperse; not above 0: not known. `visit` sees every
   /// point of a body's surface on the way.
-  GlassPassage pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key, float wavelength_nm = 0.0F,
+  GlassPassage pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key, float wavelength_nm,
                     const std::function<void(const Vec3&)>& visit = {}) const {
     if (is_solid(hit)) {
       GlassHit of_solid = hit;

@@ -23,7 +23,7 @@ class RayColours {
   bool are_needed() const { return are_needed_; }
 
   /// Sets those of rays `first` .. `first + nm.size() - 1` of the stream of a source, by its number: drawn
-  /// from its spectrum, else its own. Only where they are needed.
+  /// from its spectrum, else its own. 0 (not known) where they are not needed.
   void emit(std::size_t source, const Sequence& sequence, std::uint64_t first, std::span<float> nm) const;
 
  private:

@@ -195,7 +195,7 @@ TEST(RayColours, SourcesMustKnowTheirWavelengths) {
   Scene scene = spectrometer();
   EXPECT_EQ(refusal(scene), "");
   scene.sources[0].rays = make_emitter({.kind = EmitterKind::point});
-  EXPECT_THAT(refusal(scene), AllOf(HasSubstr("source 1 has no wavelengths"), HasSubstr("solid 'solid'")));
+  EXPECT_THAT(refusal(scene), AllOf(HasSubstr("source 1: found no wavelengths"), HasSubstr("solid 'solid'")));
   scene.sources[0].spectrum = {{555.0F}, {1.0F}};
   EXPECT_EQ(refusal(scene), "");
   scene.sources[0].spectrum = {};
@@ -208,11 +208,13 @@ TEST(RayColours, SpectraAreChecked) {
   Scene scene = spectrometer();
   auto& spectrum = scene.sources[0].spectrum;
   spectrum = {{500.0F, 400.0F}, {1.0F, 1.0F}};
-  EXPECT_THAT(refusal(scene), HasSubstr("source 1: spectrum: found 400 nm, expected more than 500"));
+  EXPECT_THAT(refusal(scene), HasSubstr("source 1: spectrum: found 400 nm after 500"));
   spectrum = {{400.0F, 500.0F}, {1.0F, -1.0F}};
   EXPECT_THAT(refusal(scene), HasSubstr("found a power of -1"));
   spectrum = {{400.0F, 500.0F}, {1.0F}};
   EXPECT_THAT(refusal(scene), HasSubstr("found 2 wavelengths and 1 powers"));
+  spectrum = {{400.0F, 1e30F}, {1.0F, 1.0F}};
+  EXPECT_THAT(refusal(scene), HasSubstr("found 1e+30 nm, expected 100 to 20000"));
   spectrum = {{400.0F, 500.0F}, {0.0F, 0.0F}};
   EXPECT_THAT(refusal(scene), HasSubstr("no power above 0"));
 }

@@ -178,8 +178,8 @@ std::vector<RayPath> ray_paths(const Scene& scene, std::uint64_t count, const Pa
       const Sequence sequence(options.sequence, run.sequence_seed);
       rays.resize(run.count, 0);
       source.rays->emit(sequence, run.first, rays);
-      std::vector<float> wavelength_nm(run.count, 0.0F);
-      if (colours.are_needed()) colours.emit(run.source, sequence, run.first, wavelength_nm);
+      std::vector<float> wavelength_nm(run.count);
+      colours.emit(run.source, sequence, run.first, wavelength_nm);
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const Ray ray = source.world_from_source.ray(rays.ray(i));
         if (!is_finite(ray.origin_mm) || !is_finite(ray.direction)) continue;

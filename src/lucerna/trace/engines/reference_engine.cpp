@@ -39,8 +39,7 @@ class ReferenceEngine final : public TraceEngine {
       trace_ray(
           source.world_from_source.ray(rays.ray(i)),
           std::llround(static_cast<double>(rays.weight[i]) * numbering_.ray_flux(run.source) * kQuantaPerRay),
-          {run.sequence_seed, run.first + i, 0},
-          scratch.wavelength_nm.empty() ? 0.0F : scratch.wavelength_nm[i], scratch, tally);
+          {run.sequence_seed, run.first + i, 0}, scratch.wavelength_nm[i], scratch, tally);
     }
   }
 

@@ -47,7 +47,7 @@ Solid turned_cap() {
 GlassPassage through(const SolidTracer& tracer, const Ray& ray, std::uint64_t number) {
   const auto hit = tracer.first_hit(ray, 1e9, false);
   if (!hit) throw std::runtime_error("a ray misses the lens");
-  return tracer.pass(ray, *hit, {3, number, 0});
+  return tracer.pass(ray, *hit, {3, number, 0}, 0.0F);
 }
 
 /// Where it is in the plane z.

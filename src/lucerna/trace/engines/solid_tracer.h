@@ -31,7 +31,7 @@ class SolidTracer {
   /// What becomes of the ray there; `key.bounce` counts all that it met before, a body once. `wavelength_nm`
   /// counts where the body disperses; not above 0: not known. `visit` sees every point of the surface on its
   /// way.
-  GlassPassage pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key, float wavelength_nm = 0.0F,
+  GlassPassage pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key, float wavelength_nm,
                     const std::function<void(const Vec3&)>& visit = {}) const;
 
  private:

@@ -124,7 +124,7 @@ TEST(SolidTracerStatistical, APlateLetsThroughWhatACoverGlassDoes) {
     ASSERT_TRUE(hit);
     double sum[2] = {0.0, 0.0}, square[2] = {0.0, 0.0};
     for (int i = 0; i < n; ++i) {
-      const GlassPassage p = tracer.pass(ray, *hit, {7, static_cast<std::uint64_t>(i), 0});
+      const GlassPassage p = tracer.pass(ray, *hit, {7, static_cast<std::uint64_t>(i), 0}, 0.0F);
       ASSERT_FALSE(p.lost);
       const int side = p.ray.direction.z() > 0.0 ? 1 : 0;
       EXPECT_NEAR(std::abs(p.ray.direction.z()), ray.direction.z(), 1e-9) << "parallel faces";
@@ -156,7 +156,7 @@ TEST(SolidTracer, APrismBendsLightAsSnellSays) {
   EXPECT_NEAR(hit->t_mm, 3.0, 1e-6);
   int through = 0;
   for (std::uint64_t i = 0; i < 200; ++i) {
-    const GlassPassage p = tracer.pass(ray, *hit, {1, i, 0});
+    const GlassPassage p = tracer.pass(ray, *hit, {1, i, 0}, 0.0F);
     if (!(p.ray.direction.z() > 0.0)) continue;
     ++through;
     // The face's normal leans to -x by 30 degrees; the ray leaves on its far side.
@@ -175,7 +175,7 @@ TEST(SolidTracer, ABallLensHasItsFocus) {
     const Ray ray = ray_up(0.0, {0.2, 0.1, -30.0});
     const auto hit = tracer.first_hit(ray, 1e9, false);
     ASSERT_TRUE(hit);
-    const GlassPassage p = tracer.pass(ray, *hit, {5, i, 0});
+    const GlassPassage p = tracer.pass(ray, *hit, {5, i, 0}, 0.0F);
     if (!(p.ray.direction.z() > 0.9)) continue;
     ++seen;
     const Vec3& o = p.ray.origin_mm;
@@ -210,7 +210,7 @@ TEST(SolidTracer, ACartesianOvalIsStigmatic) {
     const Ray ray = ray_up(0.0, {r * std::cos(phi), r * std::sin(phi), -40.0});
     const auto hit = tracer.first_hit(ray, 1e9, false);
     ASSERT_TRUE(hit);
-    const GlassPassage p = tracer.pass(ray, *hit, {6, i, 0});
+    const GlassPassage p = tracer.pass(ray, *hit, {6, i, 0}, 0.0F);
     if (!(p.ray.direction.z() > 0.5)) continue;
     const Vec3 to = Vec3{0.0, 0.0, focus} - p.ray.origin_mm;
     (length(cross(to, p.ray.direction.vec())) < 1e-6 ? through : astray) += 1;
@@ -260,7 +260,7 @@ TEST(SolidTracer, ACollimatorOfEqualPathsSendsLightAlongItsAxis) {
     ASSERT_TRUE(hit) << angle;
     int along = 0;
     for (std::uint64_t i = 0; i < 100; ++i) {
-      const GlassPassage p = tracer.pass(ray, *hit, {9, i, 0});
+      const GlassPassage p = tracer.pass(ray, *hit, {9, i, 0}, 0.0F);
       along += p.ray.direction.z() > std::cos(radians(0.2)) ? 1 : 0;
     }
     EXPECT_GT(along, 80) << angle;
@@ -286,7 +286,7 @@ TEST(SolidTracer, LightFromInsideLeavesWithinTheCriticalCone) {
     const auto hit = tracer.first_hit(ray, 1e9, false);
     ASSERT_TRUE(hit);
     EXPECT_NEAR(hit->t_mm, 5.0 / std::cos(radians(angle)), 1e-5);
-    const GlassPassage p = tracer.pass(ray, *hit, {2, 3, 0});
+    const GlassPassage p = tracer.pass(ray, *hit, {2, 3, 0}, 0.0F);
     const bool is_guided = angle > degrees(std::asin(1.0 / 1.5));
     // Beyond it the light goes to and fro until it comes to the rim, or is given up.
     if (is_guided) {

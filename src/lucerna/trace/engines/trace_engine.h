@@ -21,7 +21,7 @@ namespace lucerna {
 /// What one task works with.
 struct TraceScratch {
   RayBlock rays;
-  /// Their wavelengths, if the scene asks for them, else empty.
+  /// Their wavelengths, if the scene asks for them, else 0.
   std::vector<float> wavelength_nm;
   /// Rays that left, in the order of their numbers, if the scene keeps them; weights in mean rays.
   RayBlock out_rays;
@@ -63,9 +63,8 @@ class TraceEngine {
   }
 
  protected:
-  /// The wavelengths of the rays of `run`, where they are needed.
+  /// The wavelengths of the rays of `run`.
   void emit_wavelengths(const SourceRun& run, SequenceKind kind, TraceScratch& scratch) const {
-    if (!colours_.are_needed()) return;
     scratch.wavelength_nm.resize(run.count);
     colours_.emit(run.source, Sequence(kind, run.sequence_seed), run.first, scratch.wavelength_nm);
   }

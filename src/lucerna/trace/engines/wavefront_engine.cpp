@@ -96,7 +96,7 @@ class WavefrontEngine final : public TraceEngine {
     /// By number, how often each ray was reflected; kept only if there are any of these: else it is the same
     /// for all rays still on their way.
     std::array<int, kBatch> reflections;
-    /// By number; empty where nothing asks for them.
+    /// By number.
     std::span<const float> wavelength_nm;
   };
   struct MirrorHits {
@@ -313,8 +313,7 @@ class WavefrontEngine final : public TraceEngine {
     const int bounce = key.bounce;
     const auto number = static_cast<std::size_t>(rays.number[i]);
     key.ray += number;
-    const float wavelength_nm = batch.wavelength_nm.empty() ? 0.0F : batch.wavelength_nm[number];
-    const GlassPassage passage = glasses().pass(ray_of(rays, i), hit, key, wavelength_nm);
+    const GlassPassage passage = glasses().pass(ray_of(rays, i), hit, key, batch.wavelength_nm[number]);
     const bool reflected = passage.throughput > 0.0 && !passage.transmitted;
     if (reflected && !may_reflect(batch, i, bounce, tally)) return kTerminated;
     absorb(rays.flux[i], passage.throughput, glass_cause(hit.glass), tally);

@@ -138,44 +138,80 @@ LUCERNA_HD inline BsdfAngles drawn_angles(const BsdfView& v, std::int32_t slice,
   return out;
 }
 
-/// Across the mirrored direction, towards the normal: azimuth 0.
-LUCERNA_HD inline Direction towards_normal(const Direction& normal, const Direction& mirrored) {
-  const Vec3 across = normal.vec() - dot(normal, mirrored) * mirrored.vec();
-  return dot(across, across) > 1e-20 ? Direction::from(across)
-                                     : Direction::from(Frame::from_z(mirrored).ex());
-}
+/// The axes that a table stands on at one of its incidences: along the surface in the plane of incidence,
+/// where the mirrored light goes; across that plane; and the normal.
+struct BsdfAxes {
+  Direction along, across, normal;
 
-/// What the angles of a table are about, and where its azimuth 0 leads to.
-struct BsdfFrame {
-  Direction pole, azimuth_0;
+  LUCERNA_HD BsdfAxes(const Direction& n, const Direction& mirrored) : normal(n) {
+    const Vec3 flat = mirrored.vec() - dot(n, mirrored) * n.vec();
+    along = dot(flat, flat) > 1e-20 ? Direction::from(flat) : Direction::from(Frame::from_z(n).ex());
+    across = Direction::from(cross(n.vec(), along.vec()));
+  }
 };
 
-/// A table turns with the mirrored direction: for light of another incidence than its own, one about the
-/// normal is about what its normal has turned to.
-LUCERNA_HD inline BsdfFrame bsdf_frame(const BsdfView& v, std::int32_t slice, const Direction& normal,
-                                       const Direction& mirrored) {
-  const Direction x = towards_normal(normal, mirrored);
-  if (!v.is_about_normal) return {mirrored, x};
-  const double c = std::cos(v.incidence[slice]), s = std::sin(v.incidence[slice]);
-  return {Direction::from(c * mirrored.vec() + s * x.vec()),
-          Direction::from(s * mirrored.vec() - c * x.vec())};
+/// The direction of angles of a table of incidence `incidence`, as cosines along the axes; above the surface
+/// where the table has light.
+LUCERNA_HD inline Vec3 direction_of(const BsdfView& v, double incidence, const BsdfAngles& a) {
+  const double sine = std::sqrt(a.cos_radial < 1.0 ? 1.0 - a.cos_radial * a.cos_radial : 0.0);
+  const double x = sine * std::cos(a.azimuth), y = sine * std::sin(a.azimuth);
+  if (v.is_about_normal) return {x, y, a.cos_radial};
+  // About the mirrored direction, azimuth 0 towards the normal.
+  const double c = std::cos(incidence), s = std::sin(incidence);
+  return {s * a.cos_radial - c * x, -y, c * a.cos_radial + s * x};
 }
 
-/// Where light goes that a mirror of `normal` would send to `mirrored`. What would go below the surface,
-/// where light comes at another angle than the table's, goes to its mirror image.
+/// What a table's direction becomes for light of another incidence. Cosines along the surface, over the
+/// longest that they could be, are moved so that the mirrored direction goes to the mirrored one and grazing
+/// ones stay: x to (x + k) / (1 + k x). The BRDF goes along, so that one that is even stays even.
+struct BsdfShift {
+  double k = 0.0;
+
+  LUCERNA_HD static double longest(double across) {
+    return across * across < 1.0 ? std::sqrt(1.0 - across * across) : 0.0;
+  }
+  LUCERNA_HD Vec3 moved(const Vec3& d, double by) const {
+    const double c = longest(d.y);
+    if (by == 0.0 || !(c > 0.0)) return d;
+    const double x = d.x / c, to = (x + by) / (1.0 + by * x);
+    const double z2 = 1.0 - to * to;
+    return {c * to, d.y, c * std::sqrt(z2 > 0.0 ? z2 : 0.0)};
+  }
+  LUCERNA_HD Vec3 there(const Vec3& d) const { return moved(d, k); }
+  LUCERNA_HD Vec3 back(const Vec3& d) const { return moved(d, -k); }
+  /// How much the cosines about a direction of the table are spread, over the most that any are.
+  LUCERNA_HD double spread(const Vec3& d) const {
+    const double c = longest(d.y), x = c > 0.0 ? d.x / c : 0.0;
+    const double least = 1.0 - (k < 0.0 ? -k : k), here = 1.0 + k * x;
+    return least * least / (here * here);
+  }
+};
+
+/// What is far beyond the last incidence of a table is not followed all the way.
+inline constexpr double kMostBsdfShift = 0.9;
+
+/// From the incidence of a table to that of the light, by the sines of both.
+LUCERNA_HD inline BsdfShift bsdf_shift(double from, double to) {
+  if (!(from * to < 1.0)) return {};
+  const double k = (to - from) / (1.0 - from * to);
+  return {k > kMostBsdfShift ? kMostBsdfShift : k < -kMostBsdfShift ? -kMostBsdfShift : k};
+}
+
+/// Where light goes that a mirror of `normal` would send to `mirrored`: above the surface.
 LUCERNA_HD inline Direction scattered_by(const BsdfView& v, const Direction& normal,
                                          const Direction& mirrored, Rng& rng) {
   const double cosine = dot(normal, mirrored);
   const double incidence = std::acos(cosine > 1.0 ? 1.0 : cosine < 0.0 ? 0.0 : cosine);
   const std::int32_t slice = bsdf_slice(v, incidence, rng.uniform());
-  const BsdfAngles a = drawn_angles(v, slice, rng);
-  const double sine = std::sqrt(a.cos_radial < 1.0 ? 1.0 - a.cos_radial * a.cos_radial : 0.0);
-  const BsdfFrame frame = bsdf_frame(v, slice, normal, mirrored);
-  const Vec3 y = cross(frame.pole.vec(), frame.azimuth_0.vec());
-  const Direction out =
-      Direction::from(a.cos_radial * frame.pole.vec() + (sine * std::cos(a.azimuth)) * frame.azimuth_0.vec() +
-                      (sine * std::sin(a.azimuth)) * y);
-  return dot(out, normal) < 0.0 ? reflect(out, normal) : out;
+  const double of_table = v.incidence[slice];
+  const BsdfShift shift = bsdf_shift(std::sin(of_table), std::sin(incidence));
+  Vec3 d = direction_of(v, of_table, drawn_angles(v, slice, rng));
+  // The table's density times how much it is spread: at least a twentieth is taken where the table is even.
+  for (int i = 0; i < 100'000 && rng.uniform() > shift.spread(d); ++i)
+    d = direction_of(v, of_table, drawn_angles(v, slice, rng));
+  const Vec3 out = shift.there(d);
+  const BsdfAxes axes(normal, mirrored);
+  return Direction::from(out.x * axes.along.vec() + out.y * axes.across.vec() + out.z * axes.normal.vec());
 }
 
 }  // namespace lucerna

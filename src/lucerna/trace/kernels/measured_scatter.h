@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "lucerna/bsdf.h"
@@ -26,12 +30,19 @@ class MeasuredScatter {
   const std::vector<double>& integrals() const { return integrals_; }
 
  private:
-  double density(std::int32_t slice, const Direction& normal, const Direction& mirrored,
-                 const Direction& out) const;
+  static constexpr int kShifts = 40;
+
+  /// Of the table of one incidence for light of another; `out` by the cosines along the surface's axes.
+  double density(std::int32_t slice, double incidence, const Vec3& out) const;
+  /// What the values of a table add up to, each times the spread of the shift.
+  double spread_light(std::int32_t slice, const BsdfShift& shift) const;
 
   std::vector<double> incidence_, azimuth_, radial_, brdf_, sums_, integrals_;
   /// Of these.
   BsdfView view_;
+  /// By incidence and shift; made where `density` asks for it, which tracing does not.
+  mutable std::vector<std::array<double, kShifts + 1>> spread_;
+  std::unique_ptr<std::once_flag[]> made_;
 };
 
 }  // namespace lucerna

@@ -7,6 +7,8 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/optics/shapes/swept_curve.h"
+#include "lucerna/rayset/data/luminous_spectrum.h"
+#include "lucerna/source_model.h"
 #include "lucerna/trace/detectors/far_field_grid.h"
 
 namespace lucerna {
@@ -45,40 +47,29 @@ double share_behind(const PlacedSource& source, const PlacedReflector& mirror) {
   return static_cast<double>(behind) / static_cast<double>(rays.size());
 }
 
-namespace {
-
-/// Of light: ascending wavelengths above 0, power that is nowhere below 0 and somewhere above.
-void check_spectrum(const SpectralTable& spectrum, std::size_t source) {
-  const auto& nm = spectrum.wavelength_nm;
-  const auto& power = spectrum.relative_power;
-  const auto fail = [&](const std::string& found) {
-    throw InputError(fmt::format("source {}: spectrum: {}", source, found));
-  };
-  if (nm.size() != power.size())
-    fail(fmt::format("found {} wavelengths and {} powers, expected equally many", nm.size(), power.size()));
-  for (std::size_t i = 0; i < nm.size(); ++i) {
-    const double last = i > 0 ? static_cast<double>(nm[i - 1]) : 0.0;
-    if (!(static_cast<double>(nm[i]) > last && std::isfinite(nm[i])))
-      fail(fmt::format("found {} nm, expected more than {}", nm[i], last));
-    if (!(power[i] >= 0.0F && std::isfinite(power[i])))
-      fail(fmt::format("found a power of {}, expected a finite number >= 0", power[i]));
-  }
-  if (std::ranges::all_of(power, [](float p) { return p == 0.0F; }) && !power.empty())
-    fail("found no power above 0");
+const SpectralTable* PlacedSource::drawn_spectrum() const {
+  if (!spectrum.wavelength_nm.empty()) return &spectrum;
+  const auto* const model = dynamic_cast<const SourceModel*>(rays.get());
+  const bool has_one = model != nullptr && !model->has_wavelengths() && model->spectra().size() == 1;
+  return has_one ? model->spectra().data() : nullptr;
 }
 
+namespace {
+
 void check_wavelengths(const Scene& scene) {
-  for (std::size_t i = 0; i < scene.sources.size(); ++i) check_spectrum(scene.sources[i].spectrum, i + 1);
+  for (std::size_t i = 0; i < scene.sources.size(); ++i)
+    check_spectrum(scene.sources[i].spectrum, fmt::format("source {}: spectrum", i + 1));
   const auto disperses =
       std::ranges::find_if(scene.solids, [](const Solid& s) { return s.dispersion != nullptr; });
   if (disperses == scene.solids.end()) return;
   for (std::size_t i = 0; i < scene.sources.size(); ++i) {
     const PlacedSource& s = scene.sources[i];
-    if (!s.spectrum.wavelength_nm.empty() || s.rays->has_wavelengths()) continue;
+    if (s.drawn_spectrum() != nullptr || s.rays->has_wavelengths()) continue;
     throw InputError(
-        fmt::format("source {} has no wavelengths, and solid '{}' disperses; expected a spectrum "
-                    "or rays with wavelengths",
-                    i + 1, disperses->name),
+        fmt::format(
+            "source {}: found no wavelengths, expected a spectrum or rays with wavelengths: solid '{}' "
+            "disperses",
+            i + 1, disperses->name),
         ErrorCause::missing);
   }
 }

@@ -30,7 +30,7 @@ std::optional<std::size_t> additional_column(const RaySetHeader& header, std::st
 class McplWriter final : public RayWriter {
  public:
   McplWriter(const std::filesystem::path& path, const RaySetHeader& header)
-      : wavelengths_(header, FluxUnit::watt, kGreen_nm),
+      : wavelengths_(header, header.flux_unit, kGreen_nm),
         file_(path),
         flags_(additional_column(header, kMcplFlags)) {
     if (std::string warning = wavelengths_warning(header); !warning.empty())

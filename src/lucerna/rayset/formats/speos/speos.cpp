@@ -22,14 +22,14 @@ constexpr std::size_t kRaysLookedAt = 64;
 class SpeosWriter final : public RayWriter {
  public:
   SpeosWriter(const std::filesystem::path& path, const RaySetHeader& header)
-      : wavelengths_(header, FluxUnit::watt, kGreen_nm), writer_(path, layout_for(header)) {
+      : wavelengths_(header, writes_lumens(header) ? FluxUnit::lumen : FluxUnit::watt, kGreen_nm),
+        writer_(path, layout_for(header)) {
     if (std::string warning = wavelengths_warning(header); !warning.empty())
       warnings_.push_back(std::move(warning));
     for (std::string& lost : losses(
              header, "speos", {.wavelengths = true, .one_wavelength = true, .table = true, .texts = false}))
       warnings_.push_back(std::move(lost));
-    // Lumen weights with a wavelength each are no watts: then only the lumens may be stated.
-    const bool lumen_only = header.flux_unit == FluxUnit::lumen && (wavelengths_.column() || !header.flux_w);
+    const bool lumen_only = writes_lumens(header);
     if (lumen_only)
       warnings_.push_back("speos energies are meant in watt; the lumens of the rays are written");
     std::vector<std::byte> head(kSpeosHeaderSize);
@@ -51,6 +51,11 @@ class SpeosWriter final : public RayWriter {
   void finish() override { writer_.file().commit(); }
 
  private:
+  /// Lumen weights with a wavelength each are no watts: then only the lumens may be stated.
+  static bool writes_lumens(const RaySetHeader& header) {
+    return header.flux_unit == FluxUnit::lumen &&
+           (find_column(header.columns, ColumnKind::wavelength_nm) || !header.flux_w);
+  }
   RecordLayout layout_for(const RaySetHeader& header) const {
     RecordLayout layout;
     layout.floats = kPlain;

@@ -18,8 +18,8 @@ bool looks_like_speos(const InputFile& file);
 /// follows from the file's size, so that a file cut between two rays cannot be told from a whole one.
 std::unique_ptr<RayReader> open_speos(InputFile file, const ReadOptions& options = {});
 
-/// Every ray has a wavelength here: the wavelength column's, else the set's one wavelength, else drawn evenly
-/// from its spectral table, else 555 nm; warnings say which.
+/// Every ray has a wavelength here (RayWavelengths), 555 nm where none is known; warnings say so, and where
+/// they are drawn.
 std::unique_ptr<RayWriter> create_speos(const std::filesystem::path& path, const RaySetHeader& header,
                                         const WriteOptions& options = {});
 

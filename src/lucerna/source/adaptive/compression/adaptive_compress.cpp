@@ -9,6 +9,7 @@
 #include "lucerna/core/parallel/parallel.h"
 #include "lucerna/random.h"
 #include "lucerna/ray_statistics.h"
+#include "lucerna/rayset/data/ray_wavelengths.h"
 #include "lucerna/rayset/statistics/surface_guess.h"
 #include "lucerna/source/adaptive/mixture/layer_split.h"
 #include "lucerna/source/adaptive/mixture/penalty_choice.h"
@@ -362,10 +363,14 @@ std::vector<GrownLayer> grown_layers(const RayBlock& rays, std::span<const float
   return std::move(grower.grown);
 }
 
-/// The rays' own wavelengths, or none.
-std::span<const float> wavelengths_of(const RayBlock& rays, const RaySetHeader& header) {
-  const auto column = find_column(header.columns, ColumnKind::wavelength_nm);
-  return column && *column < rays.extra.size() ? rays.extra[*column] : std::span<const float>{};
+/// The rays' own wavelengths, or none where one of them has none.
+std::vector<float> wavelengths_of(const RayBlock& rays, const RaySetHeader& header) {
+  const RayWavelengths wavelengths(header, header.flux_unit);
+  std::vector<float> nm;
+  if (!wavelengths.differ_by_ray() || rays.extra.empty()) return nm;
+  for (std::size_t i = 0; i < rays.size(); ++i) nm.push_back(wavelengths.of(rays, i, i));
+  if (std::ranges::any_of(nm, [](float x) { return !(x > 0.0F); })) nm.clear();
+  return nm;
 }
 
 void check_rays(const RayBlock& rays) {
@@ -389,13 +394,11 @@ std::unique_ptr<AdaptiveModel> compress(const RayBlock& rays, std::span<const fl
                                         const RaySetHeader& header, const AdaptiveOptions& options,
                                         Progress& progress) {
   check_rays(rays);
-  const bool coloured = std::all_of(nm.begin(), nm.end(), [](float x) { return x > 0.0f; });
-  if (!coloured) nm = {};
   AdaptiveData data;
   data.flux = model_flux(header, options);
   data.flux_unit = header.flux_unit;
   data.training_rays = rays.size();
-  data.spectra = header.spectra;
+  if (nm.empty()) data.spectra = header.spectra;
   data.surface = starting_surface(rays);
   SearchResult search = search_support(rays, data.surface, options.seed, progress);
   polish(search, rays, options.seed, progress);
