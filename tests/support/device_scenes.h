@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "lucerna/bsdf.h"
 #include "lucerna/optics/shapes/faceted_surface.h"
 #include "lucerna/source.h"
 #include "lucerna/source/emitters/draw_rays.h"
@@ -116,6 +117,26 @@ inline Scene with_glasses(Scene scene) {
        .refractive_index = 2.4,
        .absorption_per_mm = 0.01,
        .world_from_glass = Frame::from_axis(Direction::from({0.3, 0.2, 1}), 0.0, {-12, 5, -30})}};
+  return scene;
+}
+
+/// Lobes of every kind on both mirrors of a scene.
+inline Scene with_lobes(Scene scene) {
+  scene.reflectors[0].scatter = Scatter({lambert_lobe(0.2), abg_lobe(0.01, 1e-4, 2.0)});
+  scene.reflectors[1].scatter = Scatter({gaussian_lobe(0.6, 0.05)});
+  return scene;
+}
+
+/// A measured table on both, in the angles of Zemax or of LightTools.
+inline Scene with_table(Scene scene, bool about_normal) {
+  BsdfTable table;
+  table.is_about_normal = about_normal;
+  table.incidence_deg = {0.0, 40.0};
+  table.azimuth_deg = {0.0, 180.0};
+  table.radial_deg = {0.0, 5.0, 60.0};
+  table.brdf = {5.0, 1.0, 0.0, 5.0, 1.0, 0.1, 7.0, 1.0, 0.0, 7.0, 1.0, 0.2};
+  table.total = {0.8, 0.8};
+  for (PlacedReflector& mirror : scene.reflectors) mirror.scatter = Scatter(table);
   return scene;
 }
 

@@ -58,27 +58,13 @@ Scene exact_scene_of(const Reflector& mirror) {
 }
 
 TEST(DeviceTrace, ScatteredLightIsTheCpusToTheBit) {
-  Scene scene = test::with_glasses(scene_of(cylinder()));
-  scene.reflectors[0].scatter = Scatter({lambert_lobe(0.2), abg_lobe(0.01, 1e-4, 2.0)});
-  scene.reflectors[1].scatter = Scatter({gaussian_lobe(0.6, 0.05)});
-  const TraceResult device = trace_on(emulated(), scene, kScalar);
-  expect_same(trace(scene, kScalar), device);
-  expect_closed(device);
-}
-
-TEST(DeviceTrace, LightByAMeasuredTableIsTheCpusToTheBit) {
-  Scene scene = scene_of(cylinder());
-  BsdfTable table;
-  table.incidence_deg = {0.0, 40.0};
-  table.azimuth_deg = {0.0, 180.0};
-  table.radial_deg = {0.0, 5.0, 60.0};
-  table.brdf = {5.0, 1.0, 0.0, 5.0, 1.0, 0.1, 7.0, 1.0, 0.0, 7.0, 1.0, 0.2};
-  table.total = {0.8, 0.8};
-  scene.reflectors[0].scatter = Scatter(table);
-  scene.reflectors[1].scatter = Scatter(table);
-  const TraceResult device = trace_on(emulated(), scene, kScalar);
-  expect_same(trace(scene, kScalar), device);
-  expect_closed(device);
+  const Scene plain = scene_of(cylinder());
+  for (const Scene& scene : {test::with_lobes(test::with_glasses(plain)), test::with_table(plain, false),
+                             test::with_table(plain, true)}) {
+    const TraceResult device = trace_on(emulated(), scene, kScalar);
+    expect_same(trace(scene, kScalar), device);
+    expect_closed(device);
+  }
 }
 
 TEST(DeviceTrace, MirrorsThatAreNoHeightFieldAreTheCpusToTheBit) {

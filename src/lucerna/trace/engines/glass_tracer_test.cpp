@@ -116,7 +116,8 @@ TEST(CoverGlass, RimIsBlackAndStartsInsideAreFree) {
   ASSERT_TRUE(side);
   EXPECT_NEAR(side->t_mm, 10.0, 1e-12);
   EXPECT_TRUE(side->edge);
-  EXPECT_EQ(glass.pass({{60.0, 0.0, 2.0}, Direction::from({-1.0, 0.0, 0.0})}, *side, {}).throughput, 0.0);
+  EXPECT_EQ(glass.pass({{60.0, 0.0, 2.0}, Direction::from({-1.0, 0.0, 0.0})}, *side, {}, 0.0F).throughput,
+            0.0);
   EXPECT_FALSE(glass.first_hit({{0.0, 0.0, 2.0}, Direction::from({0.1, 0.0, 1.0})}, 1e9, false));
   EXPECT_FALSE(glass.first_hit({{0.0, 0.0, 4.0}, Direction::from({0.1, 0.0, 1.0})}, 1e9, false))
       << "leaves a face";
@@ -127,7 +128,7 @@ TEST(CoverGlass, RimIsBlackAndStartsInsideAreFree) {
   ASSERT_TRUE(hit);
   int throughput = 0;
   for (std::uint64_t i = 0; i < 200; ++i) {
-    const GlassPassage p = glass.pass({steep.at(-1.0), steep.direction}, *hit, {1, i, 0});
+    const GlassPassage p = glass.pass({steep.at(-1.0), steep.direction}, *hit, {1, i, 0}, 0.0F);
     EXPECT_FALSE(p.throughput > 0.0 && p.transmitted);
     throughput += p.throughput > 0.0;
   }
