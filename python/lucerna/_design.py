@@ -27,7 +27,7 @@ def design(scene: _core.Scene, *, target: Any = None, limits: Mapping[str, Any] 
            tolerances: bool = False, pareto: bool = False, advise: bool = False,
            resume: _core.DesignResult | bytes | os.PathLike[str] | str | None = None, callback: Any = None,
            **keys: Any) -> _core.DesignResult:
-    """Shapes a scene's mirror until its light is the target's, as well as it can be.
+    """Shapes a scene's mirror, or faces of its lens, until its light is the target's, as well as it can be.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def design(scene: _core.Scene, *, target: Any = None, limits: Mapping[str, Any] 
         Gets a Record with phase and, once there are steps, evaluations, rays, relative_rms, floor, efficiency
         and in_rectangle of the best so far; ten times a second at most.
     **keys
-        Other keys of [design]: intervals, optimizer, restarts, light_weight.
+        Other keys of [design]: free_sides, family, intervals, optimizer, restarts, light_weight.
 
     Returns
     -------
