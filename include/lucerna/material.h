@@ -48,8 +48,9 @@ class Dispersion {
   Dispersion(double min_nm, double max_nm, std::vector<double> index,
              std::vector<double> absorption_per_mm = {});
 
-  /// Where there are samples.
+  /// Where samples begin.
   double min_nm() const { return min_nm_; }
+  /// As far as there are samples.
   double max_nm() const { return max_nm_; }
   /// False: the medium's absorption is not part of it.
   bool has_absorption() const { return !absorption_per_mm_.empty(); }

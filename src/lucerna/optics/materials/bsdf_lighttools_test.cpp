@@ -131,7 +131,7 @@ TEST(LightToolsBsdf, FaultsAreNamedWithTheirLine) {
   EXPECT_THAT(fault("ScatterRadial 3\r\n0 30 90\r\n", ""), HasSubstr("4 angles of ScatterAzimuth and 0"));
   EXPECT_THAT(fault("DataEnd\r\n", "DataEnd 1\r\n"), HasSubstr("after DataEnd"));
   std::string through = kFull;
-  for (std::size_t at; (at = through.find("BRDF")) != std::string::npos;) through.replace(at, 4, "BTDF");
+  for (std::size_t at = 0; (at = through.find("BRDF")) != std::string::npos;) through.replace(at, 4, "BTDF");
   EXPECT_THAT(lighttools_fault(through), HasSubstr("no BRDF of the front"));
 }
 

@@ -70,7 +70,7 @@ Direction bsdf_light(double incidence_deg) {
 constexpr int kSide = 16;
 constexpr double kRim = 0.9;
 std::size_t square_of(double x, double y) {
-  if (x * x + y * y > kRim) return kSide * kSide;
+  if (x * x + y * y > kRim) return std::size_t{kSide} * kSide;
   const auto place = [](double v) {
     return std::clamp(static_cast<int>((v + 1.0) * 0.5 * kSide), 0, kSide - 1);
   };
