@@ -110,7 +110,7 @@ Outcome by_embree(const EmbreeSurface& surface, const MediumView& medium, const 
   return out;
 }
 
-/// Medians of three, the ways by turns.
+/// Medians of three, interleaved.
 void print_speeds(const Solid& outline, const Solid& triangles, const EmbreeSurface& embree, std::size_t n) {
   const std::vector<Ray> rays = rays_up(n);
   const SolidTracer cones({outline}), mesh({triangles});

@@ -71,9 +71,9 @@ class Scatter {
   /// Throws InputError where the shares' sum is more than 1.
   explicit Scatter(std::vector<ScatterLobe> lobes);
   /// As a table has it: of light at an incidence between two of its own the shares of both, beyond them that
-  /// of the nearest, about the mirrored direction. What that would send below the surface goes to its mirror
-  /// image. Throws InputError where the table has no light above the surface, its angles do not ascend or
-  /// values are missing. Some 100 evaluations a value.
+  /// of the nearest, each moved along the plane of incidence to where the light is mirrored
+  /// (docs/theory/scatter.md). Throws InputError where the table has no light above the surface, its angles
+  /// do not ascend or values are missing. Some 100 evaluations a value.
   explicit Scatter(const BsdfTable& table);
 
   /// What the table's own values add up to at each of its incidences, a reflectance; empty without one.

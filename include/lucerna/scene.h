@@ -220,7 +220,7 @@ struct PlacedSource {
   /// them; of its lumens where it counts lumens. One point: all rays have that wavelength.
   SpectralTable spectrum = {};
 
-  /// What wavelengths of the rays are drawn from: `spectrum`, else the one spectrum of a model without
+  /// What wavelengths of the rays are drawn from: `spectrum`, else the one spectrum of a source without
   /// wavelengths; null: the rays have their own, or none are known.
   const SpectralTable* drawn_spectrum() const;
 

@@ -46,6 +46,8 @@ class RaySource {
   /// Sets the wavelengths of rays `first` .. `first + nm.size() - 1` of the stream of `emit`, nm. Only for
   /// sources that have them. Thread safe.
   virtual void emit_wavelengths(const Sequence& sequence, std::uint64_t first, std::span<float> nm) const;
+  /// Spectra that are known of the source as a whole, where its rays have no wavelengths.
+  virtual std::span<const SpectralTable> spectra() const { return {}; }
 };
 
 /// Analytic sources, exactly known: to make ray sets, to trace without a file, and to measure models against.

@@ -33,8 +33,6 @@ class SourceModel : public RaySource {
   virtual std::size_t leaves() const = 0;
   /// Rays that the model was made from; 0 = not known.
   virtual std::uint64_t training_rays() const = 0;
-  /// Spectra that the ray file had beside its rays.
-  virtual std::span<const SpectralTable> spectra() const { return {}; }
 
   /// Density of starts, 1/mm^2 on the surface; 0 off it. Starts that have no area (single points, lines) are
   /// not in it. Throws InputError when no start has an area (rays on one point or line).

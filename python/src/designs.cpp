@@ -266,8 +266,7 @@ const Finding kFindings[] = {
      "How figures vary over inexact luminaires, as Records, if it was asked for."},
     {"lens", [](const DesignedMirror& d) { return d.lens ? lens_record(*d.lens) : py::object(py::none()); },
      "The lens that was shaped, as a Record: its outline, its surface as triangles in its own frame, its "
-     "medium; "
-     "None for a mirror."},
+     "medium; None for a mirror."},
     {"evaluations", [](const DesignedMirror& d) { return py::object(py::cast(d.evaluations)); },
      "Evaluations of the objective."},
     {"rays", [](const DesignedMirror& d) { return py::object(py::cast(d.rays)); },

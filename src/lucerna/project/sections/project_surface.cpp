@@ -87,7 +87,7 @@ MirrorSurface read_measured(TomlReader& reader, Project& project) {
   constexpr double kFar = 0.05;
   const std::filesystem::path file = *reader.file("bsdf");
   project.inputs.push_back(file);
-  const BsdfTable table = read_bsdf(file);
+  const BsdfTable table = read_bsdf(file, reader.number("wavelength_nm", kWavelengthNm));
   if (table.wavelength_nm > 0.0)
     project.warnings.push_back(
         fmt::format("{}: has several wavelengths; {:g} nm is taken", file.string(), table.wavelength_nm));
@@ -128,7 +128,7 @@ MirrorSurface read_mirror_surface(TomlReader& reader, Project& project) {
     refuse_beside(reader, "data_sheet", {"reflectance", "metal", "wavelength_nm", "scatter", "bsdf"});
     surface = read_data_sheet(std::move(*sheet), project);
   } else if (reader.has("bsdf")) {
-    refuse_beside(reader, "bsdf", {"reflectance", "metal", "wavelength_nm", "scatter"});
+    refuse_beside(reader, "bsdf", {"reflectance", "metal", "scatter"});
     surface = read_measured(reader, project);
   } else {
     surface.reflectance = read_reflectance(reader);

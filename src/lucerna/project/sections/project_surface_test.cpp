@@ -151,5 +151,25 @@ TEST(ProjectSurface, TheTextOfAProjectKeepsItsLobes) {
   EXPECT_EQ(lobes[0].sigma, 0.05);
 }
 
+TEST(ProjectSurface, OfATableOfSeveralWavelengthsTheNearestIsTaken) {
+  const test::TempDir dir;
+  std::string table =
+      "Symmetry Asymmetric\nSpectralContent Monochrome\nScatterAzimuth 1\n0\nScatterRadial 2\n0 90\n"
+      "DataBegin\n";
+  for (const char* nm : {"450", "650"})
+    table += std::string("AOI 0\nWavelength ") + nm + "\nScatterType BRDF\nTIS 0." + nm + "\n1 1\n";
+  write_file(dir / "sheet.bsdf", table + "DataEnd\n");
+  const auto at = [&](const std::string& keys) {
+    write_file(dir / "p.toml",
+               "[[source]]\nkind = 'disk'\n[[reflector]]\nfamily = 'revolution'\npreset = "
+               "'parabola'\nfocal_mm = 10\n"
+               "diameter_mm = 80\nposition_mm = [0, 0, 10]\naxis = '-z'\nbsdf = 'sheet.bsdf'\n" +
+                   keys);
+    return read_project(dir / "p.toml").scene.reflectors.at(0).reflectance.at(1.0);
+  };
+  EXPECT_NEAR(at(""), 0.65, 1e-12) << "555 nm";
+  EXPECT_NEAR(at("wavelength_nm = 540\n"), 0.45, 1e-12);
+}
+
 }  // namespace
 }  // namespace lucerna

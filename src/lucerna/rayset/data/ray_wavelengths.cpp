@@ -31,11 +31,10 @@ float RayWavelengths::of(const RayBlock& block, std::size_t i, std::uint64_t num
   return spectra_[is_named ? static_cast<std::size_t>(index) - 1 : 0].wavelength_nm(u);
 }
 
-std::string wavelengths_warning(const RaySetHeader& header) {
-  const bool own = find_column(header.columns, ColumnKind::wavelength_nm).has_value();
-  const bool table = !header.spectra.empty() && !header.spectra.front().wavelength_nm.empty();
-  if (!own && table) return "the spectral table is written as one wavelength per ray, drawn from it";
-  if (own || header.wavelength_nm) return {};
+std::string wavelengths_warning(const RayWavelengths& wavelengths) {
+  if (wavelengths.are_drawn())
+    return "the spectral table is written as one wavelength per ray, drawn from it";
+  if (wavelengths.are_known()) return {};
   return fmt::format("no wavelengths are known: {} nm is written for all rays", kGreen_nm);
 }
 

@@ -40,7 +40,7 @@ class RayWavelengths {
 
 /// What a writer says that gives each ray a wavelength, 555 nm where none is known: a sentence where they are
 /// drawn or unknown, else empty.
-std::string wavelengths_warning(const RaySetHeader& header);
+std::string wavelengths_warning(const RayWavelengths& wavelengths);
 /// The peak of V(lambda).
 inline constexpr float kGreen_nm = 555.0F;
 

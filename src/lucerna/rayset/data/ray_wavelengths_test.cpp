@@ -41,11 +41,11 @@ TEST(RayWavelengths, AreUnknownWhereNothingIsSaid) {
 
 TEST(RayWavelengths, WritersAreWarned) {
   RaySetHeader header;
-  EXPECT_NE(wavelengths_warning(header).find("555 nm"), std::string::npos);
+  EXPECT_NE(wavelengths_warning(RayWavelengths(header, FluxUnit::watt)).find("555 nm"), std::string::npos);
   header.spectra = {kBroad};
-  EXPECT_NE(wavelengths_warning(header).find("drawn"), std::string::npos);
+  EXPECT_NE(wavelengths_warning(RayWavelengths(header, FluxUnit::watt)).find("drawn"), std::string::npos);
   header.columns = {{ColumnKind::wavelength_nm, "nm"}};
-  EXPECT_EQ(wavelengths_warning(header), "");
+  EXPECT_EQ(wavelengths_warning(RayWavelengths(header, FluxUnit::watt)), "");
 }
 
 // Rays are often made in the order of the golden angle. Correlation of the wavelength with that angle's

@@ -45,7 +45,7 @@ Solid prism() {
   return solid;
 }
 
-/// 600 parallel rays beside each other on its left face, ray i at y = i / 100, of the lines by turns.
+/// 600 parallel rays beside each other on its left face, ray i at y = i / 100, of each line in turn.
 std::shared_ptr<RaySet> three_lines() {
   auto set = std::make_shared<RaySet>();
   set->header.flux_lm = 1.0;

@@ -60,15 +60,15 @@ class WavefrontEngine final : public TraceEngine {
     const PlacedSource& source = scene_.sources[run.source];
     rays.resize(run.count, 0);
     source.rays->emit(Sequence(kind_, run.sequence_seed), run.first, rays);
-    emit_wavelengths(run, kind_, scratch);
     Batch batch;
-    batch.wavelength_nm = scratch.wavelength_nm;
     const std::size_t n =
         emit(rays, source.world_from_source, numbering_.ray_flux(run.source), batch.rays, tally);
     if (!bodies().empty()) batch.body.resize(n);
     if (!glasses().empty()) {
       batch.glass.resize(n);
       batch.reflections.fill(0);
+      emit_wavelengths(run, kind_, scratch);
+      batch.wavelength_nm = scratch.wavelength_nm;
     }
     follow(batch, n, run, scratch, tally);
   }
@@ -96,7 +96,7 @@ class WavefrontEngine final : public TraceEngine {
     /// By number, how often each ray was reflected; kept only if there are any of these: else it is the same
     /// for all rays still on their way.
     std::array<int, kBatch> reflections;
-    /// By number.
+    /// By number; only with cover glasses or solids.
     std::span<const float> wavelength_nm;
   };
   struct MirrorHits {

@@ -187,14 +187,16 @@ struct BsdfShift {
   }
 };
 
-/// What is far beyond the last incidence of a table is not followed all the way.
-inline constexpr double kMostBsdfShift = 0.9;
+/// No shift is larger: where it would be, a peak stays behind its light.
+inline constexpr double kMostBsdfShift = 0.875;
 
-/// From the incidence of a table to that of the light, by the sines of both.
+/// From the incidence of a table to that of the light, by the sines of both. So much at most that one in 64
+/// directions at the table's mirrored one is taken (BsdfShift::spread).
 LUCERNA_HD inline BsdfShift bsdf_shift(double from, double to) {
+  constexpr double kLeast = 1.0 - kMostBsdfShift;
   if (!(from * to < 1.0)) return {};
-  const double k = (to - from) / (1.0 - from * to);
-  return {k > kMostBsdfShift ? kMostBsdfShift : k < -kMostBsdfShift ? -kMostBsdfShift : k};
+  const double k = (to - from) / (1.0 - from * to), most = (1.0 - kLeast) / (1.0 + kLeast * from);
+  return {k > most ? most : k < -kMostBsdfShift ? -kMostBsdfShift : k};
 }
 
 /// Where light goes that a mirror of `normal` would send to `mirrored`: above the surface.
@@ -206,7 +208,7 @@ LUCERNA_HD inline Direction scattered_by(const BsdfView& v, const Direction& nor
   const double of_table = v.incidence[slice];
   const BsdfShift shift = bsdf_shift(std::sin(of_table), std::sin(incidence));
   Vec3 d = direction_of(v, of_table, drawn_angles(v, slice, rng));
-  // The table's density times how much it is spread: at least a twentieth is taken where the table is even.
+  // The table's density times how much it is spread: of an even table a fifteenth is taken at least.
   for (int i = 0; i < 100'000 && rng.uniform() > shift.spread(d); ++i)
     d = direction_of(v, of_table, drawn_angles(v, slice, rng));
   const Vec3 out = shift.there(d);

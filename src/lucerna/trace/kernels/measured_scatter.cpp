@@ -53,17 +53,25 @@ bool is_cut(const BsdfCell& cell) {
   return above != 4;
 }
 
-/// By the midpoint rule over solid angle.
-double light_in(const BsdfCell& cell) {
-  const int n = is_cut(cell) ? kPointsAtHorizon : kPoints;
+/// The light of a cell, each direction times its weight, by the midpoint rule over solid angle with n points
+/// along each side.
+template <class Weight>
+double light_in(const BsdfCell& cell, int n, const Weight& weight) {
   const double high = std::cos(cell.radial_from), low = std::cos(cell.radial_to);
   const double wide = cell.azimuth_to - cell.azimuth_from;
   double sum = 0.0;
   for (int i = 0; i < n; ++i) {
-    for (int k = 0; k < n; ++k)
-      sum += cell.density(cell.azimuth_from + wide * (i + 0.5) / n, low + (high - low) * (k + 0.5) / n);
+    for (int k = 0; k < n; ++k) {
+      const BsdfAngles a{cell.azimuth_from + wide * (i + 0.5) / n, low + (high - low) * (k + 0.5) / n};
+      const double density = cell.density(a.azimuth, a.cos_radial);
+      if (density > 0.0) sum += density * weight(a);
+    }
   }
   return sum * wide * (high - low) / (n * n);
+}
+
+double light_in(const BsdfCell& cell) {
+  return light_in(cell, is_cut(cell) ? kPointsAtHorizon : kPoints, [](const BsdfAngles&) { return 1.0; });
 }
 
 }  // namespace
@@ -96,31 +104,21 @@ MeasuredScatter::MeasuredScatter(const BsdfTable& table)
 
 namespace {
 
-/// Angles of a table of incidence `incidence` for cosines along its axes, from -pi or 0.
-struct TableAngles {
-  double azimuth = 0.0, cos_radial = 1.0;
-};
-TableAngles angles_of(const BsdfView& v, double incidence, const Vec3& d) {
+/// Angles of a table of incidence `incidence` for cosines along its axes; the azimuth from -pi.
+BsdfAngles angles_of(const BsdfView& v, double incidence, const Vec3& d) {
   if (v.is_about_normal) return {std::atan2(d.y, d.x), d.z};
   const double c = std::cos(incidence), s = std::sin(incidence);
   return {std::atan2(-d.y, s * d.z - c * d.x), s * d.x + c * d.z};
 }
 
-/// The integral of the table's density times `spread` of the shift, by 5 x 5 points a cell.
+/// The integral of the table's density times `spread` of the shift.
 double shifted_light(const BsdfView& v, std::int32_t slice, const BsdfShift& shift) {
   constexpr int kSide = 5;
   double sum = 0.0;
   for (std::int32_t i = 0; i < v.cells(); ++i) {
     const BsdfCell cell(v, slice, i);
-    const double high = std::cos(cell.radial_from), low = std::cos(cell.radial_to);
-    const double wide = cell.azimuth_to - cell.azimuth_from;
-    for (int p = 0; p < kSide * kSide; ++p) {
-      const BsdfAngles a{cell.azimuth_from + wide * (p % kSide + 0.5) / kSide,
-                         low + (high - low) * (p / kSide + 0.5) / kSide};
-      const double density = cell.density(a.azimuth, a.cos_radial);
-      if (density > 0.0)
-        sum += density * shift.spread(direction_of(v, cell.incidence, a)) * wide * (high - low);
-    }
+    sum += light_in(cell, kSide,
+                    [&](const BsdfAngles& a) { return shift.spread(direction_of(v, cell.incidence, a)); });
   }
   return v.is_symmetrical ? 2.0 * sum : sum;
 }
@@ -149,7 +147,7 @@ double MeasuredScatter::density(std::int32_t slice, double incidence, const Vec3
   const auto at = static_cast<std::size_t>(slice);
   const BsdfShift shift = bsdf_shift(std::sin(incidence_[at]), std::sin(incidence));
   const Vec3 d = shift.back(out);
-  TableAngles a = angles_of(v, incidence_[at], d);
+  BsdfAngles a = angles_of(v, incidence_[at], d);
   const double radial = std::acos(std::clamp(a.cos_radial, -1.0, 1.0));
   if (radial > radial_.back() || !(d.z > 0.0)) return 0.0;
   if (a.azimuth < 0.0) a.azimuth = v.is_symmetrical ? -a.azimuth : a.azimuth + 2.0 * std::numbers::pi;

@@ -79,8 +79,8 @@ TEST(RevolvedTree, FindsWhatAllSidesOneByOneHave) {
   }
 }
 
-// A ray from far away crosses a closed surface an even number of times, in and out by turns. Rays through the
-// axis, along it and along flat sides are among them.
+// A ray from far away crosses a closed surface an even number of times, in and out alternately. Rays through
+// the axis, along it and along flat sides are among them.
 TEST(RevolvedTree, NothingSlipsThroughBetweenSides) {
   Rng rng(3, 0);
   int crossings = 0;

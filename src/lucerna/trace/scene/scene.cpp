@@ -8,7 +8,6 @@
 #include "lucerna/core/io/error.h"
 #include "lucerna/optics/shapes/swept_curve.h"
 #include "lucerna/rayset/data/luminous_spectrum.h"
-#include "lucerna/source_model.h"
 #include "lucerna/trace/detectors/far_field_grid.h"
 
 namespace lucerna {
@@ -49,9 +48,7 @@ double share_behind(const PlacedSource& source, const PlacedReflector& mirror) {
 
 const SpectralTable* PlacedSource::drawn_spectrum() const {
   if (!spectrum.wavelength_nm.empty()) return &spectrum;
-  const auto* const model = dynamic_cast<const SourceModel*>(rays.get());
-  const bool has_one = model != nullptr && !model->has_wavelengths() && model->spectra().size() == 1;
-  return has_one ? model->spectra().data() : nullptr;
+  return !rays->has_wavelengths() && rays->spectra().size() == 1 ? rays->spectra().data() : nullptr;
 }
 
 namespace {

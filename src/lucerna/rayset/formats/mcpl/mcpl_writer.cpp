@@ -33,7 +33,7 @@ class McplWriter final : public RayWriter {
       : wavelengths_(header, header.flux_unit, kGreen_nm),
         file_(path),
         flags_(additional_column(header, kMcplFlags)) {
-    if (std::string warning = wavelengths_warning(header); !warning.empty())
+    if (std::string warning = wavelengths_warning(wavelengths_); !warning.empty())
       warnings_.push_back(std::move(warning));
     for (std::size_t c = 0; c < 3; ++c) polarisation_[c] = additional_column(header, kMcplPolarisation[c]);
     record_.user_flags = flags_.has_value();

@@ -24,7 +24,7 @@ class SpeosWriter final : public RayWriter {
   SpeosWriter(const std::filesystem::path& path, const RaySetHeader& header)
       : wavelengths_(header, writes_lumens(header) ? FluxUnit::lumen : FluxUnit::watt, kGreen_nm),
         writer_(path, layout_for(header)) {
-    if (std::string warning = wavelengths_warning(header); !warning.empty())
+    if (std::string warning = wavelengths_warning(wavelengths_); !warning.empty())
       warnings_.push_back(std::move(warning));
     for (std::string& lost : losses(
              header, "speos", {.wavelengths = true, .one_wavelength = true, .table = true, .texts = false}))
