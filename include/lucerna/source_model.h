@@ -87,6 +87,9 @@ struct CompressOptions {
   std::optional<double> flux;
   /// Of the random choices; the same seed gives the same model.
   std::uint64_t seed = 1;
+  /// Of files with more rays the adaptive method holds so many in memory (>= 1), 68 bytes each, and lays the
+  /// model's pieces out by these. How much light each piece has, all rays say: files are read once more.
+  std::uint64_t max_rays_in_memory = 20'000'000;
 };
 
 /// Makes a model of rays in memory. The same rays, options and seed give the same model for any number of

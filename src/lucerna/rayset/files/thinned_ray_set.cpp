@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -145,6 +146,25 @@ RayBlock joined(Peers* peers, RayBlock own) {
   return std::move(parts.front());
 }
 
+/// Calls `use` with all rays of a file, block by block; their columns as they are in the file.
+void for_each_block(RayReader& reader, const std::function<void(RayBlock&, std::uint64_t first)>& use) {
+  RayBlock block;
+  std::uint64_t at = 0;
+  while (const std::size_t n = reader.read(block, kStreamBlock)) {
+    use(block, at);
+    at += n;
+  }
+}
+
+double sum_of_weights(const std::filesystem::path& file) {
+  double sum = 0.0;
+  const auto reader = open_ray_file(file);
+  for_each_block(*reader, [&](const RayBlock& block, std::uint64_t) {
+    sum = std::accumulate(block.weight.begin(), block.weight.end(), sum);
+  });
+  return sum;
+}
+
 /// What `read` returns; an InputError of one peer is thrown by all.
 template <class Read>
 auto together(Peers* peers, const Read& read) {
@@ -183,6 +203,34 @@ ThinnedRaySet thinned_ray_set(const std::vector<std::filesystem::path>& files, c
     }
   }
   return out;
+}
+
+void for_each_ray_block(const std::vector<std::filesystem::path>& files, const ThinOptions& options,
+                        const std::function<void(const RayBlock&)>& use, Progress& progress) {
+  constexpr std::size_t kBlock = std::size_t{1} << 20;
+  std::uint64_t all = 0, done = 0;
+  std::vector<std::string> told;
+  const auto opened_files = opened(files, {.seed = options.seed}, all);
+  const Columns columns = columns_of(opened_files, files, options, told);
+  RayBlock some;
+  const auto pass_on = [&] {
+    if (!some.empty()) use(some);
+    some.resize(0, some.extra.size());
+    progress.step("count rays", done, all);
+  };
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    const RaySetHeader& header = opened_files[k].reader->header();
+    const double sum = files.size() > 1 ? sum_of_weights(files[k]) : 0.0;
+    const auto factor = static_cast<float>(sum > 0.0 ? *header.flux() / sum : 1.0);
+    for_each_block(*opened_files[k].reader, [&](RayBlock& block, std::uint64_t first) {
+      keep(columns, opened_files[k].wavelengths, first, block);
+      for (float& weight : block.weight) weight *= factor;
+      some.append(block);
+      done += block.size();
+      if (some.size() >= kBlock) pass_on();
+    });
+  }
+  pass_on();
 }
 
 }  // namespace lucerna

@@ -18,12 +18,9 @@ namespace lucerna {
 
 namespace {
 
-/// The adaptive method uses at most so many rays: 560 MB, and 40 bytes a ray beside them.
-constexpr std::uint64_t kMaxAdaptiveRays = 20'000'000;
-
 ThinOptions thin_options(const CompressOptions& options, Peers* peers) {
   ThinOptions thin{.seed = options.seed, .only_wavelengths = true, .peers = peers};
-  if (options.method == CompressMethod::adaptive) thin.max_rays = kMaxAdaptiveRays;
+  if (options.method == CompressMethod::adaptive) thin.max_rays = options.max_rays_in_memory;
   return thin;
 }
 
@@ -51,14 +48,28 @@ CompressMethod compress_method(std::string_view name) {
   throw UsageError(fmt::format("unknown method '{}'; expected adaptive or clusters", name));
 }
 
-std::unique_ptr<SourceModel> compress(const RaySet& rays, const CompressOptions& options,
+namespace {
+
+/// `all_rays`: as AdaptiveOptions has them.
+std::unique_ptr<SourceModel> compress(const RaySet& rays, const CompressOptions& options, RayStream all_rays,
                                       Progress& progress) {
   if (options.method == CompressMethod::adaptive) {
-    return compress_adaptive(
-        rays, {.max_bytes = options.max_bytes, .seed = options.seed, .flux = options.flux}, progress);
+    return compress_adaptive(rays,
+                             {.max_bytes = options.max_bytes,
+                              .seed = options.seed,
+                              .flux = options.flux,
+                              .all_rays = std::move(all_rays)},
+                             progress);
   }
   return compress_clusters(rays, {.max_bytes = options.max_bytes, .seed = options.seed, .flux = options.flux},
                            progress);
+}
+
+}  // namespace
+
+std::unique_ptr<SourceModel> compress(const RaySet& rays, const CompressOptions& options,
+                                      Progress& progress) {
+  return compress(rays, options, {}, progress);
 }
 
 CompressedFiles compress_files(const std::vector<std::filesystem::path>& files,
@@ -67,20 +78,26 @@ CompressedFiles compress_files(const std::vector<std::filesystem::path>& files,
   // Before much is read.
   if (!options.flux && peers == nullptr)
     require_flux(open_ray_file(files.front())->header(), files.front().string());
-  ThinnedRaySet read = thinned_ray_set(files, thin_options(options, peers), progress);
+  if (options.max_rays_in_memory < 1)
+    throw UsageError("found no ray that may be in memory, expected 1 or more");
+  const ThinOptions thin = thin_options(options, peers);
+  ThinnedRaySet read = thinned_ray_set(files, thin, progress);
   if (options.flux) read.set.header.set_flux(*options.flux);
   require_flux(read.set.header, files.front().string());
   CompressedFiles made;
   made.rays = read.of;
   made.warnings = std::move(read.warnings);
+  RayStream all_rays;
   if (read.set.rays.size() < read.of) {
-    made.notes.push_back(fmt::format("{}: of {} rays {} are used, one of each stretch of equal length",
-                                     files.size() == 1 ? files.front().string() : "all files", read.of,
-                                     read.set.rays.size()));
+    all_rays = [&](const auto& use) { for_each_ray_block(files, thin, use, progress); };
+    made.notes.push_back(fmt::format(
+        "{}: {} of {} rays, one of each stretch of equal length, say where the model's pieces lie; "
+        "all of them say how bright these are",
+        files.size() == 1 ? files.front().string() : "all files", read.set.rays.size(), read.of));
   }
   if (std::string dropped = dropped_colours(read.set, options.method); !dropped.empty())
     made.warnings.push_back(std::move(dropped));
-  made.model = compress(read.set, options, progress);
+  made.model = compress(read.set, options, std::move(all_rays), progress);
   return made;
 }
 

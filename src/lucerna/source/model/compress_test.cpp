@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "lucerna/core/io/file.h"
+#include "lucerna/core/parallel/parallel.h"
 #include "lucerna/error.h"
 #include "lucerna/ray_file.h"
 #include "lucerna/source.h"
@@ -143,6 +146,71 @@ TEST_F(Compress, RefusesNoFilesAndNoFlux) {
   RaySet set = disk_rays(1000, 1.0, 1);
   set.header.flux_lm.reset();
   EXPECT_THROW(static_cast<void>(compress(set)), InputError);
+}
+
+/// The flux with x > 0 of the weights' sum.
+double right_share(const RayBlock& rays) {
+  double right = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto weight = static_cast<double>(rays.weight[i]);
+    all += weight;
+    right += rays.x_mm[i] > 0.0F ? weight : 0.0;
+  }
+  return right / all;
+}
+
+// 20,000 of 400,000 rays lie on the right by chance to 0.35 %; all of them by the file's share, which the
+// model has to within what its trees smooth.
+TEST_F(Compress, RaysThatAreNotInMemoryCount) {
+  RaySet set = lobe_rays(400'000, 1.0, 100.0, 5);
+  for (std::size_t i = 0; i < set.rays.size(); ++i) {
+    // Half of the rays right of the middle are faint; nothing of 0.01 mm lies astride of it.
+    set.rays.x_mm[i] += set.rays.x_mm[i] > 0.0F ? 0.01F : -0.01F;
+    if (set.rays.x_mm[i] > 0.0F && i % 2 == 0) set.rays.weight[i] = 0.5F;
+  }
+  const double share = right_share(set.rays);
+  write_ray_set(dir_ / "rays", set, "tm25");
+  const auto model_share = [&](const SourceModel& model) {
+    return right_share(draw_rays(model, Sequence(SequenceKind::sobol, 1), 1 << 20));
+  };
+  double worst_of_some = 0.0;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const CompressedFiles made = compress({dir_ / "rays"}, {.seed = seed, .max_rays_in_memory = 20'000});
+    EXPECT_EQ(made.rays, 400'000u);
+    EXPECT_EQ(made.model->training_rays(), 400'000u);
+    ASSERT_EQ(made.notes.size(), 1u);
+    EXPECT_NEAR(model_share(*made.model), share, 0.0005) << seed;
+    RaySet some = set;
+    some.rays = {};
+    for (std::size_t i = seed; i < set.rays.size(); i += 20) some.rays.append(set.rays, i);
+    worst_of_some = std::max(worst_of_some, std::abs(model_share(*compress(some)) - share));
+  }
+  EXPECT_GT(worst_of_some, 0.001) << "without the other rays";
+}
+
+// Two layers, a background and colours, each counted.
+TEST_F(Compress, AModelOfAllRaysIsTheSameForAnyNumberOfThreads) {
+  RaySet blue = lobe_rays(30'000, 8.0, 30.0, 1), yellow = lobe_rays(30'000, 1.0, 70.0, 2);
+  for (std::size_t i = 0; i < yellow.rays.size(); i += 3) yellow.rays.z_mm[i] -= 3.0F;
+  blue.header.wavelength_nm = 450.0F;
+  yellow.header.wavelength_nm = 580.0F;
+  write_ray_set(dir_ / "blue", blue, "tm25");
+  write_ray_set(dir_ / "yellow", yellow, "tm25");
+  const CompressOptions options{.max_rays_in_memory = 12'000};
+  const auto bytes = [&](const std::string& name) {
+    const CompressedFiles made = compress({dir_ / "blue", dir_ / "yellow"}, options);
+    EXPECT_TRUE(made.model->has_wavelengths());
+    EXPECT_EQ(made.model->training_rays(), 60'000u);
+    save_source_model(dir_ / name, *made.model);
+    return read_file(dir_ / name, 1 << 20);
+  };
+  const std::string many = bytes("many.nfl");
+  const ThreadLimit one(1);
+  EXPECT_EQ(bytes("one.nfl"), many);
+}
+
+TEST_F(Compress, NoRayInMemoryIsRefused) {
+  EXPECT_THROW((void)compress({file("a", 1.0, 1)}, {.max_rays_in_memory = 0}), UsageError);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "lucerna/progress.h"
 #include "lucerna/rays.h"
+#include "lucerna/source/adaptive/compression/ray_stream.h"
 #include "lucerna/source/adaptive/sampling/adaptive_model.h"
 
 namespace lucerna {
@@ -22,6 +23,9 @@ struct AdaptiveOptions {
   std::optional<int> trees;
   std::optional<double> penalty_nats;
   bool overlap = true;
+  /// All rays, where those given are only some of them: what is cut where then comes from the rays given, and
+  /// how bright each piece is from all. Null: the rays given are all.
+  RayStream all_rays = {};
 };
 
 /// Compresses a ray set by the adaptive method (docs/theory/source-model.md). The same rays, options and seed

@@ -123,17 +123,28 @@ Hierarchy hierarchy(const std::vector<std::size_t>& cells, const TreeMarginals::
   return {pyramid(std::move(found)), pyramid(std::move(variance)), pyramid(std::move(base))};
 }
 
+using AllCells = std::array<TreeMarginals::Cells, kAxisPairs.size()>;
+
+AllCells dark_cells() {
+  AllCells cells;
+  for (std::size_t p = 0; p < kAxisPairs.size(); ++p) {
+    cells[p].weight.assign(kAxisPairs[p].side() * kAxisPairs[p].side(), 0.0);
+    cells[p].squares = cells[p].weight;
+  }
+  return cells;
+}
+
 }  // namespace
 
-void TreeMarginals::find_cores(std::span<const TreeItem> items, const TreeBox& box) {
+void TreeMarginals::find_cores(std::span<const TreeItem> items) {
   constexpr double kOutside = 0.01, kNarrowest = 1e-4;
   constexpr std::size_t kSome = 1 << 16;
   const std::size_t stride = items.size() / kSome + 1;
   for (std::size_t d = 0; d < 4; ++d) {
-    if (!(box.width(d) > 0.0)) continue;
+    if (!(box_.width(d) > 0.0)) continue;
     std::vector<WeightedValue> places;
     for (std::size_t i = 0; i < items.size(); i += stride) {
-      const double t = (static_cast<double>(items[i].c[d]) - box.low[d]) / box.width(d);
+      const double t = (static_cast<double>(items[i].c[d]) - box_.low[d]) / box_.width(d);
       places.push_back({t, static_cast<double>(items[i].weight)});
     }
     const double low = weighted_quantile(places, kOutside), high = weighted_quantile(places, 1.0 - kOutside);
@@ -141,32 +152,36 @@ void TreeMarginals::find_cores(std::span<const TreeItem> items, const TreeBox& b
   }
 }
 
-TreeMarginals::TreeMarginals(std::span<const TreeItem> items, const TreeBox& box) {
+TreeMarginals::TreeMarginals(std::span<const TreeItem> items, const TreeBox& box) : box_(box) {
+  find_cores(items);
+  clear();
+  add(items);
+}
+
+void TreeMarginals::clear() {
+  cells_ = dark_cells();
+  total_weight_ = total_squares_ = 0.0;
+}
+
+void TreeMarginals::add(std::span<const TreeItem> items) {
   struct Part {
-    std::array<Cells, kAxisPairs.size()> cells;
+    AllCells cells = dark_cells();
     double weight = 0.0, squares = 0.0;
   };
-  const auto empty = [](std::array<Cells, kAxisPairs.size()>& cells) {
-    for (std::size_t p = 0; p < kAxisPairs.size(); ++p) {
-      cells[p].weight.assign(kAxisPairs[p].side() * kAxisPairs[p].side(), 0.0);
-      cells[p].squares = cells[p].weight;
-    }
-  };
-  find_cores(items, box);
   std::array<double, 4> scale{};
-  for (std::size_t d = 0; d < 4; ++d) scale[d] = box.width(d) > 0.0 ? 1.0 / box.width(d) : 0.0;
+  for (std::size_t d = 0; d < 4; ++d) scale[d] = box_.width(d) > 0.0 ? 1.0 / box_.width(d) : 0.0;
   const auto parts =
       parallel_map_blocks<Part>(items.size(), kMarginalBlock, [&](std::size_t first, std::size_t last) {
         Part part;
-        empty(part.cells);
         for (std::size_t i = first; i < last; ++i) {
           const TreeItem& item = items[i];
           const auto w = static_cast<double>(item.weight);
           part.weight += w, part.squares += w * w;
           std::array<double, 4> t{};
           for (std::size_t d = 0; d < 4; ++d)
-            t[d] = std::clamp(stretch_[d].stretched((static_cast<double>(item.c[d]) - box.low[d]) * scale[d]),
-                              0.0, 0.999999999);
+            t[d] =
+                std::clamp(stretch_[d].stretched((static_cast<double>(item.c[d]) - box_.low[d]) * scale[d]),
+                           0.0, 0.999999999);
           for (std::size_t p = 0; p < kAxisPairs.size(); ++p) {
             const AxisPair& pair = kAxisPairs[p];
             const auto side = static_cast<double>(pair.side());
@@ -177,7 +192,6 @@ TreeMarginals::TreeMarginals(std::span<const TreeItem> items, const TreeBox& box
         }
         return part;
       });
-  empty(cells_);
   for (const Part& part : parts) {
     total_weight_ += part.weight, total_squares_ += part.squares;
     for (std::size_t p = 0; p < kAxisPairs.size(); ++p) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "lucerna/random.h"
 
@@ -100,6 +101,28 @@ TEST(TreeMarginals, CountsEveryRayInEveryPair) {
     const auto& w = m.cells(p).weight;
     EXPECT_EQ(w.size(), kAxisPairs[p].side() * kAxisPairs[p].side());
     EXPECT_NEAR(std::accumulate(w.begin(), w.end(), 0.0), 3750.0, 1e-9);
+  }
+}
+
+TEST(TreeMarginals, RaysAreAddedAndTakenAway) {
+  const TreeBox box{{0, 0, 0, 0}, {1, 1, 1, 1}};
+  std::vector<TreeItem> items(3000);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    Rng rng(5, i);
+    for (float& c : items[i].c) c = static_cast<float>(rng.uniform());
+    items[i].weight = i % 2 == 0 ? 1.0F : 2.0F;
+  }
+  const TreeMarginals whole(items, box);
+  TreeMarginals parts = whole;
+  parts.clear();
+  EXPECT_EQ(parts.total_weight(), 0.0);
+  parts.add(std::span(items).first(1000));
+  parts.add(std::span(items).subspan(1000));
+  EXPECT_EQ(parts.total_weight(), whole.total_weight());
+  EXPECT_EQ(parts.total_squares(), whole.total_squares());
+  for (std::size_t p = 0; p < kAxisPairs.size(); ++p) {
+    EXPECT_EQ(parts.cells(p).weight, whole.cells(p).weight) << p;
+    EXPECT_EQ(parts.cells(p).squares, whole.cells(p).squares) << p;
   }
 }
 
