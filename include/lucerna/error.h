@@ -40,9 +40,9 @@ std::string_view to_string(ErrorCause cause);
 /// Everything that Lucerna throws. The text says what is wrong, where, what was found and what was expected.
 class Error : public std::runtime_error {
  public:
-  /// `option` is a literal: it is not copied.
-  Error(const std::string& what, ErrorCause cause, std::string_view option = {})
-      : std::runtime_error(what), cause_(cause), option_(option) {}
+  /// Bytes of `what` that do not print, as those of a damaged file, are written as "\x00". `option` is a
+  /// literal: it is not copied.
+  Error(const std::string& what, ErrorCause cause, std::string_view option = {});
   /// What kind of thing is wrong.
   ErrorCause cause() const noexcept { return cause_; }
   /// The field of the call's options that would help: "salvage", "flux", "format", "device"; empty where none

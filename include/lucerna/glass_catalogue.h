@@ -60,10 +60,10 @@ struct CatalogueGlass {
 /// some, but not for this wavelength, and where no light passes. Thread safe.
 [[nodiscard]] double glass_absorption_per_mm(const CatalogueGlass& glass, double wavelength_nm);
 
-/// Both over the whole range of the formula, sampled each nanometre; absorption only where the catalogue
-/// states transmittances, and beyond its wavelengths that of the nearest. Light that does not pass at all is
-/// absorbed to 1e-30 within a millimetre. Throws InputError where the formula gives no index of 1 to 4.
-/// Thread safe.
+/// Both over the range of the formula, sampled each nanometre: the longest stretch of it in which the formula
+/// gives an index of 1 to 4. Absorption only where the catalogue states transmittances, and beyond its
+/// wavelengths that of the nearest. Light that does not pass at all is absorbed to 1e-30 within a millimetre.
+/// Throws InputError if no two neighbouring samples have such an index. Thread safe.
 [[nodiscard]] Dispersion dispersion(const CatalogueGlass& glass);
 
 }  // namespace lucerna

@@ -112,8 +112,8 @@ bool write_results(const MpiTraceArguments& a, const Project& project, const Tra
       session.timed("figures", [&] { return trace_metrics(result, project.scene, {}, session.progress()); });
   const bool stopped = session.progress().stop_requested();
   if (stopped) note_interrupted_figures(session);
-  const auto names =
-      write_trace_output(a.output, result, origin, figures, trace_warnings(figures, project.scene), session);
+  const auto names = write_trace_output(a.output, result, origin, figures,
+                                        trace_warnings(figures, project.scene, project.warnings), session);
   const double seconds = session.seconds("trace");
   session.print_line(fmt::format(
       "{}: {} rays in {:.3g} s, {:.3g} M rays/s ({}, {} ranks of {} threads); figures {:.3g} s", a.output,

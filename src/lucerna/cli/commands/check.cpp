@@ -6,10 +6,15 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "lucerna/bsdf.h"
 #include "lucerna/cli/commands/commands.h"
+#include "lucerna/cli/output/describe.h"
 #include "lucerna/cli/parse/input_kind.h"
 #include "lucerna/cli/parse/photometric_arguments.h"
 #include "lucerna/core/io/error.h"
+#include "lucerna/design/lens/lens_problem.h"
+#include "lucerna/design/run/design_problem.h"
+#include "lucerna/project/schema/project_tables.h"
 #include "lucerna/ray_file.h"
 #include "lucerna/rayset/files/ray_check.h"
 #include "lucerna/source_model.h"
@@ -26,9 +31,36 @@ std::vector<Diagnostic> check_rays(const std::string& path, Session& session) {
   return found;
 }
 
+std::vector<Diagnostic> as_faults(const std::vector<std::string>& warnings, const Session& session) {
+  std::vector<Diagnostic> found;
+  for (const std::string& text : warnings)
+    found.push_back({session.strict ? Severity::error : Severity::warning, "", text});
+  return found;
+}
+
+/// A project with all that it names; also the target and the settings of a design, where it has them.
+std::vector<std::string> project_warnings(const std::string& path, Session& session) {
+  Project project = read_project(path, session.progress());
+  std::vector<std::string> warnings = project.warnings;
+  if (is_lens_design(project)) {
+    static_cast<void>(lens_problem(std::move(project), path));
+  } else if (is_finished_lens(project)) {
+    static_cast<void>(finished_lens_target(project, path));
+  } else if (toml_tables(project).contains("target") || toml_tables(project).contains("design")) {
+    static_cast<void>(design_problem(std::move(project), path));
+  }
+  return warnings;
+}
+
 std::vector<Diagnostic> check_file(const std::string& path, const PhotometricArguments& photometric,
                                    Session& session) {
   try {
+    if (is_glass_catalogue(path)) return as_faults(describe_catalogue(path).warnings, session);
+    if (is_bsdf_file(path)) {
+      static_cast<void>(read_bsdf(path));  // throws where it is faulty, as the others
+      return {};
+    }
+    if (is_project_file(path)) return as_faults(project_warnings(path, session), session);
     if (is_source_model(path)) {
       static_cast<void>(load_source_model(path));  // throws where the file is damaged
       return {};
@@ -45,7 +77,7 @@ std::vector<Diagnostic> check_file(const std::string& path, const PhotometricArg
 /// Whether a file below a folder is one to be checked, by its content, or by its ending where that is
 /// damaged.
 bool is_known_kind(const std::filesystem::path& path) {
-  constexpr std::array kEndings{".nfl", ".ies", ".ldt"};
+  constexpr std::array kEndings{".nfl", ".ies", ".ldt", ".agf", ".bsdf"};
   const std::string ending = path.extension().string();
   if (std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end()) return true;
   const auto formats = ray_formats();
@@ -114,8 +146,9 @@ void check(const std::vector<std::string>& paths, const PhotometricArguments& ph
   session.print_line(
       fmt::format("{} files: {} ok, {} with warnings, {} with errors", files.size(), clean, warned, failed));
   if (expanded.others > 0) {
-    session.print_line(fmt::format("{} other files are no ray files, source models or light distributions",
-                                   expanded.others));
+    session.print_line(fmt::format(
+        "{} other files are no ray files, source models, light distributions, catalogues of glasses or BRDFs",
+        expanded.others));
   }
   if (session.json) {
     Json result = session.json_head(std::nullopt);
@@ -135,7 +168,7 @@ void add_check(CLI::App& app, Session& session, int& exit_code) {
   Command command(app, "check", "Name every fault of files or folders with its place");
   auto paths = std::make_shared<std::vector<std::string>>();
   auto photometric = std::make_shared<PhotometricArguments>();
-  command.required("FILE", *paths, "Files or folders");
+  command.required("FILE", *paths, "Ray files, models, IES, EULUMDAT, .agf, .bsdf, projects; or folders");
   photometric->add_read(command);
   session.add_json(command);
   session.add_strict(command);

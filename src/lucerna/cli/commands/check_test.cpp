@@ -56,6 +56,33 @@ TEST_F(CheckCli, OfAFolderOnlyFilesOfItsKinds) {
   EXPECT_EQ(run_lucerna(dir.path(), "check good/result.json").exit_code, 1);
 }
 
+TEST_F(CheckCli, GlassesBrdfsAndProjectsHaveFaultsToo) {
+  const auto check = [&](const std::string& file, const std::string& text) {
+    write_file(dir / file, text);
+    return run_lucerna(dir.path(), "check " + file);
+  };
+  const std::string corpus = test::slurp(test::source_dir() / "fuzz/corpus/bsdf/plane.bsdf");
+  EXPECT_EQ(check("even.bsdf", corpus).exit_code, 0);
+  const auto cut = check("cut.bsdf", corpus.substr(0, corpus.size() / 2));
+  EXPECT_EQ(cut.exit_code, 1);
+  EXPECT_TRUE(has(cut.out, "error: cut.bsdf: line ")) << cut.out;
+  const auto glasses =
+      check("g.agf", "NM A 2 1 1.5 60\nCD 1 0.01 0 0 0 0\nLD 0.4 0.7\nNM B 99 1 1.5 60\nLD 0.4 0.7\n");
+  EXPECT_EQ(glasses.exit_code, 0) << glasses.out;
+  EXPECT_TRUE(has(glasses.out, "warning: B: ")) << glasses.out;
+  EXPECT_EQ(run_lucerna(dir.path(), "check g.agf --strict").exit_code, 1);
+  const std::string lamp =
+      "[[source]]\nkind = 'disk'\nradius_mm = 1\n[[reflector]]\nfamily = 'revolution'\npreset = 'parabola'\n"
+      "focal_mm = 15\ndiameter_mm = 60\n";
+  EXPECT_EQ(check("lamp.toml", lamp).exit_code, 0);
+  const auto unknown = check("unknown.toml", lamp + "radius = 3\n");
+  EXPECT_EQ(unknown.exit_code, 1);
+  EXPECT_TRUE(has(unknown.out, "unknown.toml: line 9: reflector[0].radius")) << unknown.out;
+  const auto target = check("target.toml", lamp + "[target]\nfile = 'none.ldt'\n");
+  EXPECT_EQ(target.exit_code, 1) << "what a design reads";
+  EXPECT_TRUE(has(target.out, "none.ldt")) << target.out;
+}
+
 TEST_F(CheckCli, GoesOnAfterABadFileAndCountsIt) {
   const std::string whole = test::slurp(dir / "good/s.tm25ray");
   write_file(dir / "cut.tm25ray", whole.substr(0, 20000));

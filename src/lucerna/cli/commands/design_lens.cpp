@@ -51,9 +51,9 @@ void design_lens_command(Project project, const std::string& name, const DesignS
     return write_lens_files(folder, problem, run.result, run.figures, run.trace.result, watch.history(),
                             json);
   };
-  exit_code = write_design_output(
-      {folder.string(), report, settings.seed, "cpu", watch.history()},
-      {problem.target, run.result, design_form(run.result), run, problem.project.scene}, write, session);
+  exit_code = write_design_output({folder.string(), report, settings.seed, "cpu", watch.history()},
+                                  {problem.target, run.result, design_form(run.result), run, problem.project},
+                                  write, session);
 }
 
 }  // namespace lucerna::cli

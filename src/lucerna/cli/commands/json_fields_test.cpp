@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lucerna/core/io/file.h"
+#include "lucerna/ray_file.h"
 #include "lucerna/results/json/result_fields.h"
 #include "tests/support/paths.h"
 #include "tests/support/result_paths.h"
@@ -61,6 +62,15 @@ TEST_F(JsonFieldsCli, Info) {
   write_file(dir / "rays.txt", "0 0 0 0 0 1 1\n1 0 0 0 0 1 1\n0 1 0 0 0 1 1\n");
   expect_known("info", "rays.txt --format text");
   expect_known("info", "disk.tm25ray rod.tm25ray disk.nfl rod.nfl clusters.nfl");
+  RaySet coloured = read_ray_set(dir / "disk.tm25ray");
+  coloured.header.wavelength_nm = 550.0F;
+  write_ray_set(dir / "line.tm25ray", coloured, "tm25");
+  coloured.header.wavelength_nm.reset();
+  coloured.header.spectra = {{{440.0F, 460.0F}, {1.0F, 1.0F}}};
+  write_ray_set(dir / "blue.tm25ray", coloured, "tm25");
+  run("compress line.tm25ray -o line.nfl --held-out 0");
+  run("compress blue.tm25ray -o blue.nfl --held-out 0");
+  expect_known("info", "line.nfl blue.nfl");
   expect_known("info", "lamp/far-field.ldt lamp/far-field.ies");
   write_file(dir / "made.agf", "NM A 1 0 1.5\nCD 2.25 0 0 0 0 0\nLD 0.4 0.7\nNM B 1\nLD 0.4 0.7\n");
   expect_known("info", "made.agf");

@@ -76,8 +76,8 @@ void run_trace(const TraceArguments& a, Session& session, int& exit_code) {
     }
     exit_code = 3;
   }
-  const auto names =
-      write_trace_output(a.output, result, origin, figures, trace_warnings(figures, project.scene), session);
+  const auto names = write_trace_output(a.output, result, origin, figures,
+                                        trace_warnings(figures, project.scene, project.warnings), session);
   const double seconds = session.seconds("trace");
   session.print_line(fmt::format(
       "{}: {} rays in {:.3g} s, {:.3g} M rays/s ({}, {} threads); read {:.3g} s, figures {:.3g} s", a.output,

@@ -155,5 +155,21 @@ TEST_F(TraceInputCli, BenchTellsOfEveryScene) {
   EXPECT_NE(json["isa"], "scalar");
 }
 
+// What a project assumes is told once, and stands in result.json too.
+TEST_F(TraceInputCli, WarningsOfTheProjectAreInTheResult) {
+  write_file(dir / "p.toml", std::string(kLamp) + kBowl +
+                                 "[reflector.data_sheet]\ntotal = 0.8\ndiffuse = 0.2\ngloss_60 = 400\n");
+  const auto run = run_lucerna(dir.path(), "trace p.toml -o out --rays 2000 --json");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto warnings = nlohmann::json::parse(run.out)["warnings"];
+  ASSERT_FALSE(warnings.empty());
+  const std::string first = warnings[0];
+  EXPECT_NE(first.find("data_sheet: assumed"), std::string::npos) << first;
+  EXPECT_NE(run.err.find(first), std::string::npos);
+  EXPECT_EQ(run.err.find(first), run.err.rfind(first)) << run.err;
+  const auto written = nlohmann::json::parse(read_file(dir / "out/result.json", 1 << 20));
+  EXPECT_EQ(written["warnings"], warnings);
+}
+
 }  // namespace
 }  // namespace lucerna

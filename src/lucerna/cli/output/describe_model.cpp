@@ -51,6 +51,21 @@ void describe_start(Description& d) {
                                 : fmt::format("  rays start          on a {}", surface));
 }
 
+std::string wavelengths_text(const Json& json) {
+  if (json.contains("wavelengths_nm")) {
+    const Json& w = json["wavelengths_nm"];
+    const auto min = w["min"].get<double>(), max = w["max"].get<double>();
+    if (min == max) return fmt::format("{:g} nm", min);
+    const auto bands = w["bands"].get<std::size_t>();
+    return fmt::format("{:.4g} to {:.4g} nm, {}", min, max,
+                       bands > 1 ? fmt::format("in {} bands with layers of their own", bands)
+                                 : std::string("the same of all light"));
+  }
+  if (json.contains("spectra"))
+    return json["spectra"].get<std::size_t>() == 1 ? "a spectrum, the same of all light" : "spectra, by ray";
+  return "not known";
+}
+
 }  // namespace
 
 Description describe_model(const std::string& path) {
@@ -66,7 +81,8 @@ Description describe_model(const std::string& path) {
       fmt::format("  size                {} layer(s), {} leaves", model->layers(), model->leaves()),
       fmt::format(
           "  etendue (mm2 sr)    {:.4g} / {:.4g} / {:.4g} for the brightest 50 / 90 / 99 % of the flux",
-          etendue["p50"].get<double>(), etendue["p90"].get<double>(), etendue["p99"].get<double>())};
+          etendue["p50"].get<double>(), etendue["p90"].get<double>(), etendue["p99"].get<double>()),
+      fmt::format("  wavelengths         {}", wavelengths_text(d.json))};
   if (d.json.contains("starting_surface")) describe_start(d);
   if (d.json.contains("chosen")) describe_layers(d);
   if (d.json.contains("clusters")) {

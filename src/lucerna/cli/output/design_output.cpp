@@ -51,7 +51,8 @@ int write_design_output(const DesignOutput& output, const FinishedDesign& design
   const DesignFindings& result = design.result;
   const DesignMetrics& figures = design.run.figures;
   Json json = session.json_head(output.seed, design.run.trace.result.isa);
-  json.update(finished_design_json(output.device, design.target, result, design.form, figures, design.scene));
+  json.update(finished_design_json(output.device, design.target, result, design.form, figures,
+                                   design.project.scene, design.project.warnings));
   for (const auto& warning : json["warnings"]) session.note(warning.get<std::string>());
   session.print_json(json);
   session.print_line(
@@ -84,8 +85,7 @@ int write_design_output(const DesignOutput& output, const DesignProblem& problem
                               output.history, json);
   };
   return write_design_output(
-      output, {problem.target, made.result, design_form(made.result), made, problem.project.scene}, write,
-      session);
+      output, {problem.target, made.result, design_form(made.result), made, problem.project}, write, session);
 }
 
 }  // namespace lucerna::cli

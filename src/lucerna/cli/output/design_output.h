@@ -64,7 +64,7 @@ struct FinishedDesign {
   const DesignFindings& result;
   DesignForm form;
   const FollowUp& run;
-  const Scene& scene;
+  const Project& project;
 };
 /// Fills the folder, `result.json` with these fields last; returns the names.
 using DesignFiles = std::function<std::vector<std::string>(const nlohmann::ordered_json&)>;

@@ -24,7 +24,7 @@ std::string other_kind(const std::filesystem::path& path) {
   }
   if (is_photometric_file(path))
     return "a light distribution (IES or EULUMDAT); lucerna info, check, convert and compare take it";
-  if (path.extension() == ".toml") return "a project file; lucerna trace and lucerna design take it";
+  if (is_project_file(path)) return "a project file; lucerna trace, design and check take it";
   return "";
 }
 
@@ -37,6 +37,8 @@ bool is_damaged_photometry(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+bool is_project_file(const std::filesystem::path& path) { return lower_ending(path) == ".toml"; }
 
 void require_ray_file(const std::filesystem::path& path) {
   const std::string kind = other_kind(path);

@@ -11,4 +11,7 @@ namespace lucerna::cli {
 /// says what is wrong with it.
 void require_ray_file(const std::filesystem::path& path);
 
+/// Whether the name says that it is a project (.toml).
+bool is_project_file(const std::filesystem::path& path);
+
 }  // namespace lucerna::cli

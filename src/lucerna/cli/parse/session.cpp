@@ -170,6 +170,7 @@ void Session::print_line(const std::string& line) {
 }
 
 void Session::note(const std::string& line) {
+  if (!notes_.insert(line).second) return;
   if (progress_) progress_->clear();
   fmt::print(stderr, "lucerna: {}\n", line);
 }

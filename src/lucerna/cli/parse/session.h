@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -82,7 +83,7 @@ class Session {
   /// run_json of this run.
   Json json_head(std::optional<std::uint64_t> seed, const std::string& isa = "scalar") const;
 
-  /// Prints the line unless --quiet or --json; `note` goes to stderr also with --json.
+  /// Prints the line unless --quiet or --json; `note` goes to stderr also with --json, the same line once.
   void print_line(const std::string& line);
   void note(const std::string& line);
   void print_json(const Json& object);
@@ -101,6 +102,7 @@ class Session {
   std::unique_ptr<ThreadLimit> limit_;
   std::unique_ptr<TerminalProgress> progress_;
   RunRecord run_;
+  std::set<std::string> notes_;
 };
 
 /// The folder that a command writes to: made if missing; refused (InputError) when it holds files, unless

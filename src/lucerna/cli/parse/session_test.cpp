@@ -42,5 +42,15 @@ TEST(SessionCli, SigtermAsksHoweverOften) {
   EXPECT_EXIT(ask_twice(), testing::ExitedWithCode(3), "");
 }
 
+TEST(SessionCli, ANoteIsToldOnce) {
+  Session session;
+  session.start();
+  testing::internal::CaptureStderr();
+  session.note("one");
+  session.note("two");
+  session.note("one");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "lucerna: one\nlucerna: two\n");
+}
+
 }  // namespace
 }  // namespace lucerna::cli

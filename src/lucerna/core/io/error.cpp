@@ -3,6 +3,27 @@
 
 namespace lucerna {
 
+namespace {
+
+/// All of a message: what() ends at a zero byte, and a terminal obeys others.
+std::string printable(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f) {
+      out += fmt::format("\\x{:02x}", byte);
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Error::Error(const std::string& what, ErrorCause cause, std::string_view option)
+    : std::runtime_error(printable(what)), cause_(cause), option_(option) {}
+
 std::string_view to_string(ErrorCause cause) {
   switch (cause) {
     case ErrorCause::invalid:

@@ -165,12 +165,19 @@ class BsdfReader {
   BsdfTable table_;
 };
 
+/// LightTools states an incidence in each block; Zemax lists them in the header, after keys that LightTools
+/// has not. A file that ends before its first block is told by those.
+bool is_of_lighttools(const BsdfWords& words) {
+  if (words.have("AOI")) return true;
+  return !words.have("Source") && !words.have("SampleRotation") && !words.have("AngleOfIncidence");
+}
+
 }  // namespace
 
 BsdfTable parse_bsdf(std::string_view text, const std::string& name, double wavelength_nm) {
   BsdfWords words(text, name);
-  // Zemax lists the incidences in the header; LightTools states one in each block.
-  return words.have("AOI") ? read_lighttools_bsdf(words, wavelength_nm) : BsdfReader(std::move(words)).read();
+  return is_of_lighttools(words) ? read_lighttools_bsdf(words, wavelength_nm)
+                                 : BsdfReader(std::move(words)).read();
 }
 
 BsdfTable read_bsdf(const std::filesystem::path& path, double wavelength_nm) {

@@ -115,6 +115,8 @@ TEST(BsdfFile, EveryTruncationIsRefused) {
   for (std::size_t n = 0; n < complete; ++n)
     EXPECT_THAT(bsdf_fault(whole.substr(0, n)), HasSubstr("made.bsdf: ")) << n;
   EXPECT_EQ(bsdf_fault(whole.substr(0, complete)), "");
+  EXPECT_THAT(bsdf_fault(whole.substr(0, whole.find("ScatterAzimuth"))), HasSubstr("ends in its header"))
+      << "as a file of Zemax, not of LightTools";
 }
 
 }  // namespace

@@ -22,7 +22,14 @@ constexpr double kSame_deg = 0.01;
 struct Header {
   bool is_symmetrical = false, is_tristimulus = false;
   std::vector<double> azimuth_deg, radial_deg;
+  std::size_t azimuth_line = 0;
 };
+
+void check_radials(const std::vector<double>& radial_deg, const BsdfWords& words) {
+  if (radial_deg.size() < 2) words.fail("found one radial angle, expected 2 or more");
+  if (radial_deg.front() != 0.0)
+    words.fail("found radial angles that begin at {}, expected 0", radial_deg.front());
+}
 
 Header read_header(BsdfWords& words) {
   Header out;
@@ -38,18 +45,17 @@ Header read_header(BsdfWords& words) {
         words.fail("found '{}', expected Monochrome or XYZ", words.shown(word));
       out.is_tristimulus = word == "XYZ";
     } else if (key == "ScatterAzimuth") {
+      out.azimuth_line = words.line();
       out.azimuth_deg = words.angles("ScatterAzimuth", -360.0, 360.0);
     } else if (key == "ScatterRadial") {
       out.radial_deg = words.angles("ScatterRadial", 0.0, 90.0);
+      check_radials(out.radial_deg, words);
     } else {
       words.skip_line();  // names, comments
     }
   }
-  if (out.azimuth_deg.empty() || out.radial_deg.size() < 2)
-    words.fail("found {} angles of ScatterAzimuth and {} of ScatterRadial, expected 1 and 2 or more",
-               out.azimuth_deg.size(), out.radial_deg.size());
-  if (out.radial_deg.front() != 0.0)
-    words.fail("found radial angles that begin at {}, expected 0", out.radial_deg.front());
+  if (out.azimuth_deg.empty()) words.fail("found no ScatterAzimuth before the data, expected one");
+  if (out.radial_deg.empty()) words.fail("found no ScatterRadial before the data, expected one");
   return out;
 }
 
@@ -160,7 +166,8 @@ std::vector<Column> full_circle(std::vector<Column> columns, const BsdfWords& wo
   return columns;
 }
 
-std::vector<Column> columns_of(const Header& header, const BsdfWords& words) {
+std::vector<Column> columns_of(const Header& header, BsdfWords& words) {
+  words.point_at(header.azimuth_line);
   std::vector<Column> columns = sorted_columns(header.azimuth_deg);
   if (columns.size() == 1) return {{0.0, 0, 0, 0.0}, {180.0, 0, 0, 0.0}};  // the same all around
   const double span = header.azimuth_deg.back() - header.azimuth_deg.front();

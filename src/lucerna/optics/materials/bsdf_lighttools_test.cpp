@@ -91,6 +91,8 @@ TEST(LightToolsBsdf, HalfACircleStandsForBothSides) {
               HasSubstr("expected half a circle"));
   EXPECT_THAT(lighttools_fault(with(kFull, "0 90 180 270", "0 20 40 60")),
               HasSubstr("expected the whole circle"));
+  EXPECT_THAT(lighttools_fault(with(kFull, "0 90 180 270", "0 20 40 60")), HasSubstr("made.bsdf: line 4: "))
+      << "where the azimuths are";
 }
 
 TEST(LightToolsBsdf, OfTristimulusValuesYIsTaken) {
@@ -126,9 +128,11 @@ TEST(LightToolsBsdf, FaultsAreNamedWithTheirLine) {
   EXPECT_THAT(fault("1 .1 .2", "1 .1 x"), HasSubstr("line 15: found 'x', expected a value"));
   EXPECT_THAT(fault("1 .1 .2", "1 .1"), HasSubstr("found 'AOI', expected a value"));
   EXPECT_THAT(fault("0 30 90", "0 30 95"), HasSubstr("found an angle of 95 degrees for ScatterRadial"));
-  EXPECT_THAT(fault("0 30 90", "10 30 90"), HasSubstr("radial angles that begin at 10"));
+  EXPECT_THAT(fault("0 30 90", "10 30 90"), HasSubstr("line 7: found radial angles that begin at 10"));
+  EXPECT_THAT(fault("ScatterRadial 3\r\n0 30 90", "ScatterRadial 1\r\n0"),
+              HasSubstr("found one radial angle"));
   EXPECT_THAT(fault("Asymmetric", "Skew"), HasSubstr("found symmetry 'Skew'"));
-  EXPECT_THAT(fault("ScatterRadial 3\r\n0 30 90\r\n", ""), HasSubstr("4 angles of ScatterAzimuth and 0"));
+  EXPECT_THAT(fault("ScatterRadial 3\r\n0 30 90\r\n", ""), HasSubstr("line 6: found no ScatterRadial"));
   EXPECT_THAT(fault("DataEnd\r\n", "DataEnd 1\r\n"), HasSubstr("after DataEnd"));
   std::string through = kFull;
   for (std::size_t at = 0; (at = through.find("BRDF")) != std::string::npos;) through.replace(at, 4, "BTDF");
@@ -141,6 +145,9 @@ TEST(LightToolsBsdf, EveryTruncationIsRefused) {
   for (std::size_t n = 0; n < complete; ++n)
     EXPECT_THAT(lighttools_fault(whole.substr(0, n)), HasSubstr("made.bsdf: ")) << n;
   EXPECT_EQ(lighttools_fault(whole.substr(0, complete)), "");
+  EXPECT_THAT(lighttools_fault(whole.substr(0, whole.find("DataBegin"))),
+              HasSubstr("expected a line of the header, or DataBegin"))
+      << "as a file of LightTools, not of Zemax";
 }
 
 }  // namespace

@@ -42,6 +42,10 @@ class BsdfWords {
   bool have(std::string_view word) const;
 
   std::string_view next(const char* expected);
+  /// The line of the word that was read last.
+  std::size_t line() const { return line_; }
+  /// Errors name this line until the next word is read.
+  void point_at(std::size_t line) { line_ = line; }
   /// Passes over what stands behind the last word on its line.
   void skip_line();
   double number(const char* expected);

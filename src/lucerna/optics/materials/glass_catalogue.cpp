@@ -221,21 +221,44 @@ double transmittance_of_1_mm(const std::vector<InternalTransmittance>& rows, dou
                    (wavelength_nm - a->wavelength_nm) / (b->wavelength_nm - a->wavelength_nm));
 }
 
+/// The longest run of samples that a medium may have, as [first, last).
+std::pair<std::size_t, std::size_t> usable_samples(const std::vector<double>& index) {
+  std::pair<std::size_t, std::size_t> longest{0, 0};
+  for (std::size_t first = 0; first < index.size(); ++first) {
+    std::size_t last = first;
+    while (last < index.size() && index[last] >= 1.0 && index[last] <= 4.0) ++last;
+    if (last - first > longest.second - longest.first) longest = {first, last};
+    first = last;
+  }
+  return longest;
+}
+
 }  // namespace
 
 Dispersion dispersion(const CatalogueGlass& glass) {
   constexpr double kDark = 1e-30;
+  std::vector<double> index = each_nanometre(glass.min_nm, glass.max_nm, [&](double nm) {
+    return agf_index(glass.formula, glass.coefficients, 1e-3 * nm);
+  });
+  const auto [first, last] = usable_samples(index);
+  if (last < first + 2) {
+    throw InputError(fmt::format("formula {} of glass '{}' gives no index of 1 to 4 within {} to {} nm",
+                                 glass.formula, glass.name, glass.min_nm, glass.max_nm));
+  }
+  const double step_nm = (glass.max_nm - glass.min_nm) / static_cast<double>(index.size() - 1);
+  const double min_nm = glass.min_nm + step_nm * static_cast<double>(first);
+  const double max_nm = glass.min_nm + step_nm * static_cast<double>(last - 1);
+  index = {index.begin() + static_cast<std::ptrdiff_t>(first),
+           index.begin() + static_cast<std::ptrdiff_t>(last)};
   const auto& rows = glass.transmittance;
   std::vector<double> absorption_per_mm;
-  if (!rows.empty()) {
-    absorption_per_mm = each_nanometre(glass.min_nm, glass.max_nm, [&](double nm) {
-      const double within = std::clamp(nm, rows.front().wavelength_nm, rows.back().wavelength_nm);
-      return std::max(0.0, -std::log(std::max(kDark, transmittance_of_1_mm(rows, within))));
-    });
+  for (std::size_t i = 0; i < index.size() && !rows.empty(); ++i) {
+    const double within = std::clamp(min_nm + step_nm * static_cast<double>(i), rows.front().wavelength_nm,
+                                     rows.back().wavelength_nm);
+    absorption_per_mm.push_back(
+        std::max(0.0, -std::log(std::max(kDark, transmittance_of_1_mm(rows, within)))));
   }
-  return {glass.min_nm, glass.max_nm,
-          each_nanometre(glass.min_nm, glass.max_nm, [&](double nm) { return glass_index(glass, nm); }),
-          std::move(absorption_per_mm)};
+  return {min_nm, max_nm, std::move(index), std::move(absorption_per_mm)};
 }
 
 double glass_absorption_per_mm(const CatalogueGlass& glass, double wavelength_nm) {

@@ -94,6 +94,22 @@ TEST(GlassCatalogue, DispersionIsIndexAndAbsorptionOfEachWavelength) {
   EXPECT_FALSE(dispersion(read_glass(file, "Flint")).has_absorption());
 }
 
+// A resonance at 0.5 um within the range: below it the formula of this glass has no index.
+TEST(GlassCatalogue, DispersionLeavesOutWhereTheFormulaFails) {
+  const TempDir dir;
+  const auto file =
+      written(dir,
+              "NM Odd 2 1 2.01207 60\nCD 1.2 0.01 0.5 0.25 0 0\nLD 0.3 1.5\nNM None 1 1 1.5 60\nCD "
+              "-2 0 0 0 0 0\nLD 0.4 0.7\n");
+  const CatalogueGlass odd = read_glass(file, "Odd");
+  const Dispersion d = dispersion(odd);
+  EXPECT_GT(d.min_nm(), 500.0);
+  EXPECT_LT(d.min_nm(), 560.0) << "where the index falls below 4";
+  EXPECT_DOUBLE_EQ(d.max_nm(), 1500.0);
+  for (const double nm : {600.0, 587.56, 1200.0}) EXPECT_NEAR(d.index(nm), glass_index(odd, nm), 1e-4) << nm;
+  EXPECT_THROW((void)dispersion(read_glass(file, "None")), InputError);
+}
+
 TEST(GlassCatalogue, IsReadInUtf16Too) {
   const TempDir dir;
   std::string wide = "\xFF\xFE";

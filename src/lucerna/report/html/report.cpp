@@ -46,7 +46,7 @@ std::vector<std::string> write_trace(const std::filesystem::path& folder, const 
   make_folder(folder);
   const Project project = save_memory(given, folder);
   nlohmann::ordered_json json = run_json({.inputs = project.inputs}, result.seed, result.isa);
-  std::vector<std::string> found = trace_warnings(figures, project.scene);
+  std::vector<std::string> found = trace_warnings(figures, project.scene, project.warnings);
   auto names = write_trace_results(folder, result, trace_origin(project), figures, json, found);
   if (warnings != nullptr) warnings->insert(warnings->end(), found.begin(), found.end());
   return names;
@@ -60,7 +60,7 @@ std::vector<std::string> write_lens(const std::filesystem::path& folder, const D
   problem.project = save_memory(problem.project, folder);
   nlohmann::ordered_json json = run_json({.inputs = problem.project.inputs}, record.seed, lens.traced.isa);
   json.update(finished_design_json("cpu", problem.target, record.result, design_form(record.result),
-                                   record.figures, problem.project.scene));
+                                   record.figures, problem.project.scene, problem.project.warnings));
   return write_lens_files(folder, problem, record.result, record.figures, lens.traced,
                           history_csv(record.result.history), json);
 }
@@ -75,7 +75,7 @@ std::vector<std::string> write_design(const std::filesystem::path& folder, const
   problem.project = save_memory(problem.project, folder);
   nlohmann::ordered_json json = run_json({.inputs = problem.project.inputs}, record.seed, mirror.traced.isa);
   json.update(finished_design_json(record.device, problem.target, record.result, design_form(record.result),
-                                   record.figures, problem.project.scene));
+                                   record.figures, problem.project.scene, problem.project.warnings));
   return write_design_files(folder, problem, record.result, record.figures, mirror.traced,
                             history_csv(record.result.history), json);
 }

@@ -306,11 +306,12 @@ Json design_json(const DesignTarget& target, const DesignFindings& result, const
 }
 
 Json finished_design_json(const std::string& device, const DesignTarget& target, const DesignFindings& result,
-                          const DesignForm& form, const DesignMetrics& figures, const Scene& scene) {
+                          const DesignForm& form, const DesignMetrics& figures, const Scene& scene,
+                          std::vector<std::string> of_project) {
   Json json{{"device", device}};
   json.update(design_json(target, result, form, figures));
   json.update(trace_json(figures.trace));
-  json["warnings"] = trace_warnings(figures.trace, scene);
+  json["warnings"] = trace_warnings(figures.trace, scene, std::move(of_project));
   return json;
 }
 

@@ -25,10 +25,11 @@ nlohmann::ordered_json design_json(const DesignTarget& target, const DesignFindi
                                    const DesignForm& form, const DesignMetrics& figures);
 
 /// All that a design adds: the device that evaluated it, design_json, trace_json of the figures' trace of
-/// `scene`, and its warnings.
+/// `scene`, and trace_warnings.
 nlohmann::ordered_json finished_design_json(const std::string& device, const DesignTarget& target,
                                             const DesignFindings& result, const DesignForm& form,
-                                            const DesignMetrics& figures, const Scene& scene);
+                                            const DesignMetrics& figures, const Scene& scene,
+                                            std::vector<std::string> of_project);
 
 /// The table of target against result, losses, limits and tolerances for people, one line an entry.
 std::vector<std::string> design_summary(const DesignTarget& target, const DesignFindings& result,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/results/json/model_json.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "lucerna/source/adaptive/sampling/adaptive_model.h"
@@ -48,6 +49,18 @@ Json layer_json(const AdaptiveLayer& layer) {
   return json;
 }
 
+/// What the model knows of colour: bands that differ in place or direction, or spectra that drawn rays name.
+void add_wavelengths(const AdaptiveData& data, Json& json) {
+  if (!data.spectra.empty()) json["spectra"] = data.spectra.size();
+  if (data.wavelengths.empty()) return;
+  float min_nm = data.wavelengths.front().nm.front(), max_nm = min_nm;
+  for (const WavelengthTable& band : data.wavelengths) {
+    min_nm = std::min(min_nm, band.nm.front());
+    max_nm = std::max(max_nm, band.nm.back());
+  }
+  json["wavelengths_nm"] = {{"min", min_nm}, {"max", max_nm}, {"bands", data.wavelengths.size()}};
+}
+
 Json etendue_json(const SourceModel& model) {
   const bool clusters = model.method() == "clusters";
   const EtendueCurve curve = etendue_curve(model, clusters ? kClusterEtendueRays : kEtendueRays);
@@ -71,6 +84,7 @@ Json model_json(const SourceModel& model, const std::filesystem::path& path) {
     json["starting_surface"] = std::string(to_string(adaptive->data().surface.kind));
     json["chosen"] = Json::array();
     for (const AdaptiveLayer& layer : adaptive->data().layers) json["chosen"].push_back(layer_json(layer));
+    add_wavelengths(adaptive->data(), json);
   }
   if (const auto* clusters = dynamic_cast<const ClusterModel*>(&model)) {
     json["starting_surface"] = std::string(to_string(clusters->data().surface.kind));

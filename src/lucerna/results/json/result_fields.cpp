@@ -26,7 +26,7 @@ constexpr std::array kFields{
     ResultField{"sequence", "trace", "text", "", "`sobol` or `random`."},
     ResultField{"rays.first", "trace", "count", "", "Number of the first ray."},
     ResultField{"rays.last", "trace", "count", "", "Number after the last ray."},
-    ResultField{"warnings[]", "trace", "text", "", "What the figures and files may mislead about: a grid that is too coarse for the peak, mirrors that no light reaches."},
+    ResultField{"warnings[]", "trace", "text", "", "What was odd in the files of the project, and what the figures and files may mislead about: a grid that is too coarse for the peak, mirrors that no light reaches."},
     ResultField{"ledger.unit", "trace", "text", "", "`lm` or `W`."},
     ResultField{"ledger.emitted", "trace", "number", "light", "Flux of all sources."},
     ResultField{"ledger.out_direct", "trace", "estimate", "light", "What leaves without a reflection."},

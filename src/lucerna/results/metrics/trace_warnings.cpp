@@ -85,10 +85,12 @@ std::vector<std::string> trace_warnings(const TraceMetrics& figures) {
   return warnings;
 }
 
-std::vector<std::string> trace_warnings(const TraceMetrics& figures, const Scene& scene) {
-  std::vector<std::string> warnings = trace_warnings(figures);
+std::vector<std::string> trace_warnings(const TraceMetrics& figures, const Scene& scene,
+                                        std::vector<std::string> of_project) {
+  std::vector<std::string> warnings = std::move(of_project);
   if (std::string warning = dark_mirrors(figures.ledger, scene); !warning.empty())
-    warnings.insert(warnings.begin(), std::move(warning));
+    warnings.push_back(std::move(warning));
+  for (std::string& warning : trace_warnings(figures)) warnings.push_back(std::move(warning));
   return warnings;
 }
 

@@ -14,6 +14,8 @@ namespace lucerna {
 std::vector<std::string> trace_warnings(const TraceMetrics& figures);
 
 /// The same with the scene that was traced: also mirrors that no light reaches, or at their backs alone.
-std::vector<std::string> trace_warnings(const TraceMetrics& figures, const Scene& scene);
+/// Begins with what was odd in the files of its project (Project::warnings).
+std::vector<std::string> trace_warnings(const TraceMetrics& figures, const Scene& scene,
+                                        std::vector<std::string> of_project = {});
 
 }  // namespace lucerna

@@ -111,5 +111,12 @@ TEST(TraceWarnings, ASourceThatFacesAwayIsNamed) {
                   "axis of source and reflector"));
 }
 
+TEST(TraceWarnings, ThoseOfTheProjectComeFirst) {
+  TraceMetrics figures;
+  figures.far_fields.push_back(beam(81300.0, 66152.0));
+  const std::vector<std::string> found = trace_warnings(figures, Scene(), {"lamp.toml: odd"});
+  EXPECT_THAT(found, ElementsAre("lamp.toml: odd", HasSubstr("too coarse")));
+}
+
 }  // namespace
 }  // namespace lucerna
