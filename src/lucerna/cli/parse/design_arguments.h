@@ -19,7 +19,8 @@ struct DesignArguments {
 /// it.
 void add_design_options(Command& command, DesignArguments& arguments, Session& session, bool device);
 
-/// The options without accelerator and checkpoint. Throws UsageError on what cannot be.
+/// The options without accelerator and checkpoint. Throws UsageError on words that are none of what is
+/// expected, InputError on too few rays.
 DesignOptions design_options(const DesignArguments& arguments);
 
 }  // namespace lucerna::cli
