@@ -160,8 +160,9 @@ void print_table(std::size_t train, std::uint64_t tests) {
       "| source | rays | file | leaves | far | near | focus | beam | 4-D | compress | peak of all so far | "
       "sample, one core |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const char* name :
-       {"point", "disk", "rectangle", "cylinder", "sphere", "filament", "led", "phong500", "phong25",
-        "radial", "cosine", "dome", "egg", "tilted", "strip", "arc", "ghost", "remote", "twin"}) {
+       {"point",   "disk",   "rectangle", "cylinder", "sphere", "filament", "led",   "phong500",
+        "phong25", "radial", "cosine",    "dome",     "egg",    "tilted",   "strip", "arc",
+        "ghost",   "remote", "twin",      "board",    "xenon",  "caustic"}) {
     const Case c = make_case(name, train, tests);
     std::uint64_t bytes = ~std::uint64_t{0};
     for (const std::uint64_t max : {256'000u, 64'000u, 16'000u}) {

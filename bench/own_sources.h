@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sources that no method was tuned on, for bench_adaptive: dome, tilted, strip, arc, egg, ghost, remote; and
-// the twin of the measured LED (led_twin.h).
+// Sources that no method was tuned on, for bench_adaptive: dome, tilted, strip, arc, egg, ghost, remote,
+// board, xenon, caustic; and the twin of the measured LED (led_twin.h).
 #pragma once
 
 #include <cmath>
@@ -23,21 +23,37 @@ struct WeightedRay {
 };
 using OwnNumbers = std::array<double, 5>;
 
+/// Moved along its line to where it leaves a sphere about the origin.
+inline WeightedRay caught(const WeightedRay& from, double radius_mm) {
+  const double far = *BoundingSurface::sphere(radius_mm).exit_distance_mm(from.ray);
+  return {{from.ray.at(far), from.ray.direction}, from.weight};
+}
+
+/// What passes a smooth boundary: where to, and which share of unpolarised light.
+struct Passed {
+  Direction direction;
+  double share = 0.0;
+};
+
+/// `n` is unit and on the side that light goes to; `ratio` is the index before the boundary over that behind
+/// it.
+inline Passed passed(const Direction& d, const Vec3& n, double ratio) {
+  const double ci = dot(d.vec(), n), sine2 = ratio * ratio * (1.0 - ci * ci);
+  if (sine2 >= 1.0) return {Direction::from_unit(n), 0.0};
+  const double ct = std::sqrt(1.0 - sine2);
+  const double rs = (ratio * ci - ct) / (ratio * ci + ct), rp = (ratio * ct - ci) / (ratio * ct + ci);
+  return {Direction::from(ratio * d.vec() + (ct - ratio * ci) * n), 1.0 - 0.5 * (rs * rs + rp * rp)};
+}
+
 /// A 1 mm die in a hemisphere of index 1.5 and radius 1.4 mm; Fresnel transmission as weight; what is totally
 /// reflected is lost. Caught on a sphere of 3 mm.
 inline WeightedRay dome_ray(const OwnNumbers& u) {
   constexpr double kIndex = 1.5, kRadius = 1.4;
   const Ray inside{{u[2] - 0.5, u[3] - 0.5, 0.0}, warp::cosine_hemisphere(u[0], u[1])};
   const double t = *BoundingSurface::sphere(kRadius).exit_distance_mm(inside);
-  const Vec3 p = inside.at(t), n = p / kRadius;
-  const double ci = dot(inside.direction.vec(), n), sine2 = kIndex * kIndex * (1.0 - ci * ci);
-  if (sine2 >= 1.0) return {{p, Direction::from_unit(n)}, 0.0};
-  const double ct = std::sqrt(1.0 - sine2);
-  const Direction d = Direction::from(kIndex * inside.direction.vec() + (ct - kIndex * ci) * n);
-  const double rs = (kIndex * ci - ct) / (kIndex * ci + ct), rp = (kIndex * ct - ci) / (kIndex * ct + ci);
-  const Ray out{p, d};
-  const double far = *BoundingSurface::sphere(3.0).exit_distance_mm(out);
-  return {{out.at(far), d}, 1.0 - 0.5 * (rs * rs + rp * rp)};
+  const Vec3 p = inside.at(t);
+  const Passed out = passed(inside.direction, p / kRadius, kIndex);
+  return caught({{p, out.direction}, out.share}, 3.0);
 }
 
 /// What a dome in the model cannot copy: a die off the axis and below the centre of an ellipsoid of
@@ -53,14 +69,8 @@ inline WeightedRay ellipsoidal_dome_ray(const OwnNumbers& u) {
   const Vec3 o = stretched(inside.origin_mm), k = stretched(inside.direction.vec());
   const double kk = dot(k, k), ok = dot(o, k);
   const Vec3 p = inside.at((std::sqrt(ok * ok + kk * (1.0 - dot(o, o))) - ok) / kk);
-  const Vec3 n = Direction::from(stretched(stretched(p))).vec();
-  const double ci = dot(inside.direction.vec(), n), sine2 = kIndex * kIndex * (1.0 - ci * ci);
-  if (sine2 >= 1.0) return {{p, Direction::from_unit(n)}, 0.0};
-  const double ct = std::sqrt(1.0 - sine2);
-  const Direction d = Direction::from(kIndex * inside.direction.vec() + (ct - kIndex * ci) * n);
-  const double rs = (kIndex * ci - ct) / (kIndex * ci + ct), rp = (kIndex * ct - ci) / (kIndex * ct + ci);
-  const Ray out{p, d};
-  return {{out.at(*BoundingSurface::sphere(4.0).exit_distance_mm(out)), d}, 1.0 - 0.5 * (rs * rs + rp * rp)};
+  const Passed out = passed(inside.direction, Direction::from(stretched(stretched(p))).vec(), kIndex);
+  return caught({{p, out.direction}, out.share}, 4.0);
 }
 
 /// Three 0.4 x 2 mm bars, tilted and far off centre, weights from 0 to 2 whatever the ray.
@@ -93,7 +103,7 @@ inline WeightedRay arc_ray(const OwnNumbers& u) {
   const double side = u[3] < 0.5 ? 1.0 : -1.0, v = u[3] < 0.5 ? 2.0 * u[3] : 2.0 * u[3] - 1.0;
   const double z = side * (0.9 + 0.25 * std::log(1.0 - 0.97 * v));
   const Ray ray{{r * std::cos(phi), r * std::sin(phi), z}, d};
-  return {{ray.at(*BoundingSurface::sphere(10.0).exit_distance_mm(ray)), d}};
+  return caught({ray}, 10.0);
 }
 
 /// A straight filament along x and its weak image in a mirror above it (12 % of the light): two cylinders
@@ -109,7 +119,7 @@ inline WeightedRay ghost_ray(const OwnNumbers& u) {
     d = Direction::from({d.x(), d.y(), -d.z()});
   }
   const Ray ray{p, d};
-  return {{ray.at(*BoundingSurface::sphere(15.0).exit_distance_mm(ray)), d}};
+  return caught({ray}, 15.0);
 }
 
 /// A 1 mm die and a tenth of its light scattered by the round wall of its package, 3 mm across and 2 mm high.
@@ -121,15 +131,78 @@ inline WeightedRay remote_ray(const OwnNumbers& u) {
     ray = {1.5 * n + Vec3{0, 0, 2.0 * u[3]},
            warp::about(Direction::from_unit(n), warp::cosine_hemisphere(u[0], u[1]))};
   }
-  return {{ray.at(*BoundingSurface::sphere(4.0).exit_distance_mm(ray)), ray.direction}};
+  return caught({ray}, 4.0);
+}
+
+/// A board with 5 x 5 dies of 0.8 mm, no two equally bright, and the phosphor over them: half of the light
+/// comes from a layer 0.3 mm higher, about the dies and less with the distance from them.
+inline WeightedRay board_ray(const OwnNumbers& u) {
+  constexpr double kPitch = 1.8, kDie = 0.8, kHalo = 0.5, kLayer = 0.3;
+  const bool phosphor = u[4] >= 0.5;
+  const double part = 2.0 * (phosphor ? u[4] - 0.5 : u[4]);
+  // Brightness rises by a third from the first die to the last.
+  const double place = 25.0 * (std::sqrt(9.0 + 7.0 * part) - 3.0);
+  const double die = std::floor(std::min(place, 24.999)), row = std::floor(die / 5.0);
+  double x = kPitch * (row - 2.0), y = kPitch * (die - 5.0 * row - 2.0);
+  if (phosphor) {
+    const double r = -kHalo * std::log(1.0 - 0.9999 * u[2]), phi = 2.0 * std::numbers::pi * u[3];
+    x += r * std::cos(phi), y += r * std::sin(phi);
+  } else {
+    x += kDie * (u[2] - 0.5), y += kDie * (u[3] - 0.5);
+  }
+  return caught({{{x, y, phosphor ? kLayer : 0.0}, warp::cosine_hemisphere(u[0], u[1])}}, 12.0);
+}
+
+/// Does a ray from between the electrodes meet one? The upper is a cylinder of 1.5 mm that begins at z = 2,
+/// the lower a cone of 20 degrees whose tip is at z = -2.
+inline bool is_in_shadow(const Ray& ray) {
+  constexpr double kTip = 2.0, kAnode = 1.5, kSlope = 0.36397;
+  const Vec3& o = ray.origin_mm;
+  const Vec3& d = ray.direction.vec();
+  if (d.z > 0.0) {
+    const Vec3 p = ray.at((kTip - o.z) / d.z);
+    return std::hypot(p.x, p.y) < kAnode;
+  }
+  // r^2 = (slope depth)^2, the depth below the tip being -2 - z.
+  const double depth = -kTip - o.z, k2 = kSlope * kSlope;
+  const double a = d.x * d.x + d.y * d.y - k2 * d.z * d.z;
+  const double b = o.x * d.x + o.y * d.y + k2 * depth * d.z, c = o.x * o.x + o.y * o.y - k2 * depth * depth;
+  const double root = b * b - a * c;
+  if (root < 0.0) return false;
+  for (const double sign : {-1.0, 1.0}) {
+    const double t = (-b + sign * std::sqrt(root)) / a;
+    if (t > 0.0 && o.z + t * d.z < -kTip) return true;
+  }
+  return false;
+}
+
+/// A high-pressure arc of 4 mm, brightest at the cathode's tip and wider towards the anode: light from a
+/// volume into all directions, but for those in which an electrode stands, which hang on where it starts.
+inline WeightedRay xenon_ray(const OwnNumbers& u) {
+  const double z = -1.95 - 0.9 * std::log(1.0 - u[3] * (1.0 - std::exp(-3.9 / 0.9)));
+  const double r = (0.12 + 0.12 * (z + 1.95)) * std::sqrt(-2.0 * std::log(1.0 - 0.9999 * u[2]));
+  const double phi = 2.0 * std::numbers::pi * u[4];
+  const Ray ray{{r * std::cos(phi), r * std::sin(phi), z}, warp::sphere(u[0], u[1])};
+  return caught({ray, is_in_shadow(ray) ? 0.0 : 1.0}, 20.0);
+}
+
+/// A die of 0.5 mm a millimetre below a half ball of glass of 3 mm, flat below: its spherical aberration
+/// folds the light to a caustic with a sharp edge. What misses the glass is absorbed.
+inline WeightedRay caustic_ray(const OwnNumbers& u) {
+  constexpr double kIndex = 1.5, kGap = 1.0, kRadius = 3.0;
+  const Vec3 start{0.5 * (u[2] - 0.5), 0.5 * (u[3] - 0.5), -kGap};
+  const Direction up = warp::cosine_hemisphere(u[0], u[1]);
+  const Vec3 flat = start + (kGap / std::max(1e-9, up.z())) * up.vec();
+  if (std::hypot(flat.x, flat.y) >= kRadius) return {{{0, 0, 6.0}, Direction()}, 0.0};
+  const Passed in = passed(up, {0, 0, 1}, 1.0 / kIndex);
+  const Ray inside{flat, in.direction};
+  const Vec3 top = inside.at(*BoundingSurface::sphere(kRadius).exit_distance_mm(inside));
+  const Passed out = passed(in.direction, top / kRadius, kIndex);
+  return caught({{top, out.direction}, in.share * out.share}, 6.0);
 }
 
 /// The twin of the measured LED, caught on a sphere.
-inline WeightedRay twin_ray(const OwnNumbers& u) {
-  const Ray ray = twin::ray(u);
-  const double far = *BoundingSurface::sphere(twin::kCaughtRadius).exit_distance_mm(ray);
-  return {{ray.at(far), ray.direction}};
-}
+inline WeightedRay twin_ray(const OwnNumbers& u) { return caught({twin::ray(u)}, twin::kCaughtRadius); }
 
 class OwnSource final : public RaySource {
  public:
@@ -159,6 +232,9 @@ inline std::unique_ptr<RaySource> own_source(std::string_view name) {
   if (name == "strip") return std::make_unique<OwnSource>(strip_ray);
   if (name == "twin") return std::make_unique<OwnSource>(twin_ray);
   if (name == "arc") return std::make_unique<OwnSource>(arc_ray);
+  if (name == "board") return std::make_unique<OwnSource>(board_ray);
+  if (name == "xenon") return std::make_unique<OwnSource>(xenon_ray);
+  if (name == "caustic") return std::make_unique<OwnSource>(caustic_ray);
   return nullptr;
 }
 

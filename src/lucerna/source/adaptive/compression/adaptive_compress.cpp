@@ -169,6 +169,7 @@ std::unique_ptr<AdaptiveModel> compress(const RayBlock& rays, std::span<const fl
   }
   std::optional<LayerSplit> split;
   if (options.overlap) split = split_layers(rays, search, data.surface, options.seed + 4, progress);
+  if (split) search.best.on = split->first();
   ColourBands bands;
   if (!nm.empty()) bands = colour_bands(rays, nm, search.best.on, tolerance, options.seed + 5);
   if (nm.empty() && header.wavelength_nm)

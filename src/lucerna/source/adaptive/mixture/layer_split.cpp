@@ -153,6 +153,16 @@ std::vector<float> LayerSplit::second_responsibilities(const RayBlock& rays) con
   return out;
 }
 
+/// Two supports, and the rays shared out between them.
+struct Mixture {
+  BoundedSupport first, second;
+  HalfNumbers part;  ///< of each ray, in the second
+  double share = 0.0;
+  std::vector<Fitted> fitted;
+  HalfNumbers logs;  ///< log density of every ray
+  double leaves = 0.0;
+};
+
 /// The first support alone, and what it leaves to a second.
 struct LayerSplitter {
   const SplitHalves& halves;
@@ -176,46 +186,101 @@ struct LayerSplitter {
     }
   }
 
-  /// Rays, weighted by how badly the first support explains them.
-  RayBlock odd_rays() const {
-    RayBlock odd;
+  /// Rays with what they have in the second layer (`second`) or the first as their weights.
+  RayBlock rays_of(const HalfNumbers& parts, bool second) const {
+    RayBlock own;
     for (std::size_t k = 0; k < 2; ++k) {
       RayBlock weighted = halves.rays[k];
-      weighted.weight = parted(halves.rays[k], part[k], true);
-      odd.append(weighted);
+      weighted.weight = parted(halves.rays[k], parts[k], second);
+      own.append(weighted);
     }
-    return odd;
+    return own;
   }
+  /// Rays, weighted by how badly the first support explains them.
+  RayBlock odd_rays() const { return rays_of(part, true); }
 
-  /// The rays shared out between the first support and `second`; nothing if that is not worth its leaves.
-  std::optional<LayerSplit> with(const BoundedSupport& second, Progress& progress) const {
-    LayerSplit split;
-    split.second_ = second;
-    HalfNumbers its_part = part, one, two;
-    double its_share = share, more_leaves = -leaves;
+  /// The rays shared out between two supports, from a first guess on.
+  Mixture mixture(const BoundedSupport& one, const BoundedSupport& two, HalfNumbers parts, double its_share,
+                  Progress& progress) const {
+    Mixture m{one, two, std::move(parts), its_share, {}, {}, 0.0};
+    HalfNumbers of_one, of_two;
     for (int step = 0; step < kSteps; ++step) {
       if (progress.stop_requested()) throw Interrupted();
-      const auto fitted = maximisation(halves, its_part, first, &second, tolerance_mm);
-      one = crossed(halves, fitted[0]), two = crossed(halves, fitted[1]);
-      its_share = expectation(halves, one, two, its_share, its_part);
-      if (step < kSteps - 1) continue;
-      for (std::size_t layer = 0; layer < 2; ++layer) {
-        for (const FittedSupport& f : fitted[layer]) more_leaves += static_cast<double>(f.leaves());
-        split.densities_[layer] = {fitted[layer][0], fitted[layer][1]};
-      }
+      m.fitted = maximisation(halves, m.part, m.first, &m.second, tolerance_mm);
+      of_one = crossed(halves, m.fitted[0]), of_two = crossed(halves, m.fitted[1]);
+      m.share = expectation(halves, of_one, of_two, m.share, m.part);
     }
-    const auto [nats, error] = gain(halves, logs(halves, alone, two, 0.0), logs(halves, one, two, its_share));
+    m.logs = logs(halves, of_one, of_two, m.share);
+    for (const Fitted& layer : m.fitted) {
+      for (const FittedSupport& f : layer) m.leaves += static_cast<double>(f.leaves());
+    }
+    return m;
+  }
+  Mixture mixture(const BoundedSupport& second, Progress& progress) const {
+    return mixture(first, second, part, share, progress);
+  }
+
+  /// Is a mixture clearly likelier than densities with `logs`, and worth its leaves beyond `leaves`?
+  bool is_likelier(const Mixture& m, const HalfNumbers& other_logs, double other_leaves) const {
+    const auto [nats, error] = gain(halves, other_logs, m.logs);
     const auto rays = static_cast<double>(halves.rays[0].size() + halves.rays[1].size());
-    const bool worth = nats * rays > kQuickPenaltyNats * more_leaves;
-    if (its_share < kMinLayerShare || nats < kClear * error || !worth) return std::nullopt;
-    split.gain_nats_ = nats, split.gain_error_ = error, split.second_share_ = its_share;
+    return m.share >= kMinLayerShare && nats >= kClear * error &&
+           nats * rays > kQuickPenaltyNats * (m.leaves - other_leaves);
+  }
+  HalfNumbers logs_alone() const { return logs(halves, alone, alone, 0.0); }
+  bool is_worth(const Mixture& m) const { return is_likelier(m, logs_alone(), leaves); }
+
+  LayerSplit split_of(Mixture m) const {
+    LayerSplit split;
+    const auto [nats, error] = gain(halves, logs_alone(), m.logs);
+    split.gain_nats_ = nats, split.gain_error_ = error, split.second_share_ = m.share;
+    for (std::size_t layer = 0; layer < 2; ++layer)
+      split.densities_[layer] = {m.fitted[layer][0], m.fitted[layer][1]};
+    split.first_ = std::move(m.first), split.second_ = std::move(m.second);
     return split;
   }
 };
 
+namespace {
+
+/// Searches for one of two supports with the rays that the mixture gives it, and takes what is found where
+/// that makes the mixture clearly likelier: then true.
+bool is_improved(const LayerSplitter& splitter, bool second, const BoundingSurface& surface,
+                 std::uint64_t seed, Progress& progress, Mixture& best) {
+  const RayBlock own = splitter.rays_of(best.part, second);
+  SearchResult found = search_support(own, surface, seed, progress);
+  if (found.degenerate) return false;
+  const auto with = [&](const BoundedSupport& on) {
+    return splitter.mixture(second ? best.first : on, second ? on : best.second, best.part, best.share,
+                            progress);
+  };
+  // As above: before it is exact.
+  Mixture better = with(found.best.on);
+  if (!splitter.is_likelier(better, best.logs, best.leaves)) return false;
+  polish(found, own, seed, progress);
+  Mixture exact = with(found.best.on);
+  best = splitter.is_likelier(exact, best.logs, best.leaves) ? std::move(exact) : std::move(better);
+  return true;
+}
+
+/// Shares the rays out again and again, until the mixture hardly gains.
+void settle(const LayerSplitter& splitter, Progress& progress, Mixture& best) {
+  constexpr int kMost = 6;
+  constexpr double kHardly = 0.002;
+  for (int i = 0; i < kMost; ++i) {
+    Mixture next = splitter.mixture(best.first, best.second, best.part, best.share, progress);
+    const double nats = gain(splitter.halves, best.logs, next.logs)[0];
+    if (nats > 0.0) best = std::move(next);
+    if (nats < kHardly) return;
+  }
+}
+
+}  // namespace
+
 std::optional<LayerSplit> split_layers(const RayBlock& rays, const SearchResult& first,
                                        const BoundingSurface& surface, std::uint64_t seed,
                                        Progress& progress) {
+  constexpr std::uint64_t kRounds = 3;
   if (first.degenerate) return std::nullopt;
   const RayBlock some = stratified_choice(rays, kSplitRays, seed);
   const RaySummary summary = summarize(some);
@@ -223,15 +288,22 @@ std::optional<LayerSplit> split_layers(const RayBlock& rays, const SearchResult&
   const double tolerance_mm = rounding_mm(some, focus_mm);
   const std::optional<SplitHalves> both = halves_of(some, focus_mm, tolerance_mm);
   if (!both) return std::nullopt;
-  const SplitHalves& halves = *both;
-  const LayerSplitter splitter(halves, first.best.on, tolerance_mm);
+  const LayerSplitter splitter(*both, first.best.on, tolerance_mm);
   if (splitter.share < kMinLayerShare) return std::nullopt;
   const RayBlock odd = splitter.odd_rays();
   SearchResult found = search_support(odd, surface, seed + 1, progress);
   // Most of what is odd is no second source: that shows before the support is exact.
-  if (found.degenerate || !splitter.with(found.best.on, progress)) return std::nullopt;
+  if (found.degenerate || !splitter.is_worth(splitter.mixture(found.best.on, progress))) return std::nullopt;
   polish(found, odd, seed + 1, progress);
-  return splitter.with(found.best.on, progress);
+  Mixture best = splitter.mixture(found.best.on, progress);
+  if (!splitter.is_worth(best)) return std::nullopt;
+  for (std::uint64_t round = 0, changed = 1; round < kRounds && changed > 0; ++round) {
+    changed = 0;
+    for (const bool second : {false, true})
+      changed += is_improved(splitter, second, surface, seed + 2 + round, progress, best) ? 1 : 0;
+  }
+  settle(splitter, progress, best);
+  return splitter.split_of(std::move(best));
 }
 
 }  // namespace lucerna

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "lucerna/random.h"
 #include "lucerna/source.h"
 #include "lucerna/source/emitters/draw_rays.h"
+#include "lucerna/source/emitters/warp.h"
 
 namespace lucerna {
 namespace {
@@ -55,6 +57,43 @@ TEST(LayerSplitSlow, ADieAndItsTubeAreToldApart) {
   // Much of the wall's light has lines that the die's has too: a perfect classifier could not part them all.
   // A split that knows nothing has 0 here.
   EXPECT_GT(std::abs(of_wall / walls - of_die / dies), 0.35);
+}
+
+/// A filament along x, and an eighth of its light as from its image in a mirror at z = 1.3 mm.
+RayBlock filament_and_image(std::size_t n) {
+  RayBlock rays;
+  rays.resize(n, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    Rng rng(7, i);
+    const double phi = 2.0 * std::numbers::pi * rng.uniform(), along = 6.0 * (rng.uniform() - 0.5);
+    const Vec3 out{0.0, std::cos(phi), std::sin(phi)};
+    const double u = rng.uniform(), v = rng.uniform();
+    Vec3 p = 0.3 * out + Vec3{along, 0, 0};
+    Direction d = warp::about(Direction::from_unit(out), warp::cosine_hemisphere(u, v));
+    if (rng.uniform() < 0.125) {
+      p.z = 2.6 - p.z;
+      d = Direction::from({d.x(), d.y(), -d.z()});
+    }
+    rays.set(i, {p, d});
+    rays.weight[i] = 1.0F;
+  }
+  return rays;
+}
+
+// What the first support leaves over looks as if it came from between the two. Searched for anew, the second
+// is where its light starts.
+TEST(LayerSplitSlow, TheImageOfAFilamentIsWhereItIs) {
+  const RayBlock rays = filament_and_image(60'000);
+  const auto split = split_of(rays);
+  ASSERT_TRUE(split.has_value());
+  const auto z_of_axis = [](const BoundedSupport& on) {
+    EXPECT_TRUE(on.support.kind == SupportKind::axis || on.support.kind == SupportKind::cylinder)
+        << to_string(on.support.kind);
+    EXPECT_GT(std::abs(on.support.world_from_support.ez().x), 0.99);
+    return on.support.world_from_support.origin_mm().z;
+  };
+  EXPECT_NEAR(z_of_axis(split->first()), 0.0, 0.1);
+  EXPECT_NEAR(z_of_axis(split->second()), 2.6, 0.15);
 }
 
 }  // namespace
