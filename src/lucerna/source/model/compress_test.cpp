@@ -159,10 +159,10 @@ double right_share(const RayBlock& rays) {
   return right / all;
 }
 
-// 20,000 of 400,000 rays lie on the right by chance to 0.35 %; all of them by the file's share, which the
+// 5000 of 100,000 rays lie on the right by chance to 0.7 %; all of them by the file's share, which the
 // model has to within what its trees smooth.
 TEST_F(Compress, RaysThatAreNotInMemoryCount) {
-  RaySet set = lobe_rays(400'000, 1.0, 100.0, 5);
+  RaySet set = lobe_rays(100'000, 1.0, 100.0, 5);
   for (std::size_t i = 0; i < set.rays.size(); ++i) {
     // Half of the rays right of the middle are faint; nothing of 0.01 mm lies astride of it.
     set.rays.x_mm[i] += set.rays.x_mm[i] > 0.0F ? 0.01F : -0.01F;
@@ -174,33 +174,46 @@ TEST_F(Compress, RaysThatAreNotInMemoryCount) {
     return right_share(draw_rays(model, Sequence(SequenceKind::sobol, 1), 1 << 20));
   };
   double worst_of_some = 0.0;
-  for (const std::uint64_t seed : {1, 2, 3}) {
-    const CompressedFiles made = compress({dir_ / "rays"}, {.seed = seed, .max_rays_in_memory = 20'000});
-    EXPECT_EQ(made.rays, 400'000u);
-    EXPECT_EQ(made.model->training_rays(), 400'000u);
+  for (const std::uint64_t seed : {1, 2}) {
+    const CompressedFiles made = compress({dir_ / "rays"}, {.seed = seed, .max_rays_in_memory = 5000});
+    EXPECT_EQ(made.rays, 100'000u);
+    EXPECT_EQ(made.model->training_rays(), 100'000u);
     ASSERT_EQ(made.notes.size(), 1u);
-    EXPECT_NEAR(model_share(*made.model), share, 0.0005) << seed;
+    EXPECT_NEAR(model_share(*made.model), share, 0.0015) << seed;
     RaySet some = set;
     some.rays = {};
     for (std::size_t i = seed; i < set.rays.size(); i += 20) some.rays.append(set.rays, i);
     worst_of_some = std::max(worst_of_some, std::abs(model_share(*compress(some)) - share));
   }
-  EXPECT_GT(worst_of_some, 0.001) << "without the other rays";
+  EXPECT_GT(worst_of_some, 0.003) << "without the other rays";
 }
 
-// Two layers, a background and colours, each counted.
 TEST_F(Compress, AModelOfAllRaysIsTheSameForAnyNumberOfThreads) {
-  RaySet blue = lobe_rays(30'000, 8.0, 30.0, 1), yellow = lobe_rays(30'000, 1.0, 70.0, 2);
+  const auto rays = file("a", 1.0, 1);
+  const auto bytes = [&](const std::string& name) {
+    save_source_model(dir_ / name, *compress({rays}, {.max_rays_in_memory = 5000}).model);
+    return read_file(dir_ / name, 1 << 20);
+  };
+  const std::string many = bytes("many.nfl");
+  const ThreadLimit one(1);
+  EXPECT_EQ(bytes("one.nfl"), many);
+}
+
+using CompressSlow = Compress;
+
+// Two layers, a background and colours, each counted.
+TEST_F(CompressSlow, AModelOfAllRaysWithColoursIsTheSameForAnyNumberOfThreads) {
+  RaySet blue = lobe_rays(8000, 8.0, 30.0, 1), yellow = lobe_rays(8000, 1.0, 70.0, 2);
   for (std::size_t i = 0; i < yellow.rays.size(); i += 3) yellow.rays.z_mm[i] -= 3.0F;
   blue.header.wavelength_nm = 450.0F;
   yellow.header.wavelength_nm = 580.0F;
   write_ray_set(dir_ / "blue", blue, "tm25");
   write_ray_set(dir_ / "yellow", yellow, "tm25");
-  const CompressOptions options{.max_rays_in_memory = 12'000};
+  const CompressOptions options{.max_rays_in_memory = 4000};
   const auto bytes = [&](const std::string& name) {
     const CompressedFiles made = compress({dir_ / "blue", dir_ / "yellow"}, options);
     EXPECT_TRUE(made.model->has_wavelengths());
-    EXPECT_EQ(made.model->training_rays(), 60'000u);
+    EXPECT_EQ(made.model->training_rays(), 16'000u);
     save_source_model(dir_ / name, *made.model);
     return read_file(dir_ / name, 1 << 20);
   };

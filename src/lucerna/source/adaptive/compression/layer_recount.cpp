@@ -63,7 +63,8 @@ class LayerTally {
   std::vector<OneTree> tallies_;
 };
 
-/// Counts a block for the layers of one band, the last of which has what the others miss.
+/// Counts a block for the layers of one band. The last of them has what the others miss, if there is one; if
+/// not, that little light was too faint to have a layer, and is the others'.
 void add_band(std::span<LayerTally> layers, const LightParts& parts, const RayBlock& rays,
               std::span<const float> weight, std::span<const float> second) {
   RayBlock missed;
