@@ -12,6 +12,7 @@
 #include "lucerna/cli/parse/input_kind.h"
 #include "lucerna/cli/parse/photometric_arguments.h"
 #include "lucerna/core/io/error.h"
+#include "lucerna/core/io/file.h"
 #include "lucerna/design/lens/lens_problem.h"
 #include "lucerna/design/run/design_problem.h"
 #include "lucerna/project/schema/project_tables.h"
@@ -78,7 +79,7 @@ std::vector<Diagnostic> check_file(const std::string& path, const PhotometricArg
 /// damaged.
 bool is_known_kind(const std::filesystem::path& path) {
   constexpr std::array kEndings{".nfl", ".ies", ".ldt", ".agf", ".bsdf"};
-  const std::string ending = path.extension().string();
+  const std::string ending = lower_ending(path);
   if (std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end()) return true;
   const auto formats = ray_formats();
   const auto own = [&](std::string_view format) {

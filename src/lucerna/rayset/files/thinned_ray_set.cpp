@@ -205,12 +205,13 @@ ThinnedRaySet thinned_ray_set(const std::vector<std::filesystem::path>& files, c
   return out;
 }
 
-void for_each_ray_block(const std::vector<std::filesystem::path>& files, const ThinOptions& options,
+void for_each_ray_block(const std::vector<std::filesystem::path>& files,
                         const std::function<void(const RayBlock&)>& use, Progress& progress) {
   constexpr std::size_t kBlock = std::size_t{1} << 20;
   std::uint64_t all = 0, done = 0;
   std::vector<std::string> told;
-  const auto opened_files = opened(files, {.seed = options.seed}, all);
+  const ThinOptions options{.only_wavelengths = true};
+  const auto opened_files = opened(files, options, all);
   const Columns columns = columns_of(opened_files, files, options, told);
   RayBlock some;
   const auto pass_on = [&] {

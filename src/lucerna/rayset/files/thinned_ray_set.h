@@ -41,11 +41,11 @@ struct ThinnedRaySet {
 ThinnedRaySet thinned_ray_set(const std::vector<std::filesystem::path>& files, const ThinOptions& options,
                               Progress& progress);
 
-/// All rays of the same files in blocks of a million, one after the other: with the columns that
-/// thinned_ray_set gives them, and weights whose sum is each file's flux where there are several. What they
-/// had to warn of is in the thinned set. `max_rays` and `peers` do not count. Holds one block at a time;
-/// several files are read twice. Progress phase "count rays".
-void for_each_ray_block(const std::vector<std::filesystem::path>& files, const ThinOptions& options,
+/// All rays of the same files in blocks of a million, one after the other: with the wavelengths that
+/// thinned_ray_set gives them (only_wavelengths), and weights whose sum is each file's flux where there are
+/// several. What they had to warn of is in the thinned set. Holds one block at a time; several files are read
+/// twice. Progress phase "count rays".
+void for_each_ray_block(const std::vector<std::filesystem::path>& files,
                         const std::function<void(const RayBlock&)>& use, Progress& progress);
 
 }  // namespace lucerna

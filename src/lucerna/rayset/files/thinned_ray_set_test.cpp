@@ -200,25 +200,24 @@ TEST(RayReader, PassesOverRays) {
 }
 
 /// All rays of files, block by block, as one.
-RayBlock streamed(const std::vector<std::filesystem::path>& files, const ThinOptions& options) {
+RayBlock streamed(const std::vector<std::filesystem::path>& files) {
   RayBlock all;
   for_each_ray_block(
-      files, options, [&](const RayBlock& block) { all.append(block); }, no_progress());
+      files, [&](const RayBlock& block) { all.append(block); }, no_progress());
   return all;
 }
 
 TEST(ForEachRayBlock, HasTheRaysOfTheWholeSet) {
   const test::TempDir dir;
   const auto one = file_of(dir, "one", 200'000, 3.0);
-  EXPECT_EQ(streamed({one}, {.max_rays = 10}), thinned_ray_set({one}, {}, no_progress()).set.rays);
+  EXPECT_EQ(streamed({one}), thinned_ray_set({one}, {}, no_progress()).set.rays);
   const std::vector<std::filesystem::path> files{
       coloured_file(dir, "blue", 500, {.spectra = {kBlue}}), one,
       coloured_file(dir, "both", 1500, {.spectra = {kBlue, kYellow}})};
   const std::vector<std::filesystem::path> coloured{files[0], files[2]};
-  const ThinOptions options{.max_rays = 100, .only_wavelengths = true};
-  EXPECT_EQ(streamed(coloured, options),
+  EXPECT_EQ(streamed(coloured),
             thinned_ray_set(coloured, {.only_wavelengths = true}, no_progress()).set.rays);
-  const RayBlock dropped = streamed(files, options);  // of `one` no colour is known
+  const RayBlock dropped = streamed(files);  // of `one` no colour is known
   EXPECT_TRUE(dropped.extra.empty());
   EXPECT_EQ(dropped.size(), 202'000u);
   EXPECT_NEAR(weight_of(dropped, 500, 200'500), 3.0, 1e-4);
@@ -229,7 +228,7 @@ TEST(ForEachRayBlock, BlocksAreOfAMillion) {
   const std::size_t n = (std::size_t{1} << 20) + 100'000;
   std::vector<std::size_t> sizes;
   for_each_ray_block(
-      {file_of(dir, "a", n, 1.0)}, {}, [&](const RayBlock& block) { sizes.push_back(block.size()); },
+      {file_of(dir, "a", n, 1.0)}, [&](const RayBlock& block) { sizes.push_back(block.size()); },
       no_progress());
   ASSERT_EQ(sizes.size(), 2u);
   EXPECT_EQ(sizes[0], std::size_t{1} << 20);

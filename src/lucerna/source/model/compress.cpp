@@ -89,7 +89,7 @@ CompressedFiles compress_files(const std::vector<std::filesystem::path>& files,
   made.warnings = std::move(read.warnings);
   RayStream all_rays;
   if (read.set.rays.size() < read.of) {
-    all_rays = [&](const auto& use) { for_each_ray_block(files, thin, use, progress); };
+    all_rays = [&](const auto& use) { for_each_ray_block(files, use, progress); };
     made.notes.push_back(fmt::format(
         "{}: {} of {} rays, one of each stretch of equal length, say where the model's pieces lie; "
         "all of them say how bright these are",

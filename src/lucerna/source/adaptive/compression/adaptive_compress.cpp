@@ -169,9 +169,9 @@ std::unique_ptr<AdaptiveModel> compress(const RayBlock& rays, std::span<const fl
   }
   std::optional<LayerSplit> split;
   if (options.overlap) split = split_layers(rays, search, data.surface, options.seed + 4, progress);
-  if (split) search.best.on = split->first();
   ColourBands bands;
-  if (!nm.empty()) bands = colour_bands(rays, nm, search.best.on, tolerance, options.seed + 5);
+  if (!nm.empty())
+    bands = colour_bands(rays, nm, split ? split->first() : search.best.on, tolerance, options.seed + 5);
   if (nm.empty() && header.wavelength_nm)
     bands.tables = {{{0.0f, 1.0f}, {*header.wavelength_nm, *header.wavelength_nm}}};
   const LightParts parts{search, split, bands, tolerance, options.seed + 6};

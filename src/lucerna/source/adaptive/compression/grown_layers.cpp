@@ -166,17 +166,22 @@ struct LayerGrower {
 /// The layers of one band of wavelengths.
 void add_layers(LayerGrower& grower, std::span<const float> weight, std::span<const float> second) {
   const SearchResult& search = grower.parts.search;
-  const std::string why = fmt::format("{}; {} trees, {:.1f} nats a split", describe_choice(search),
-                                      grower.setting.trees, grower.setting.penalty_nats);
+  const BoundedSupport& first = grower.parts.first();
+  // What the search says of a support is not true of one that took its place.
+  const std::string choice = first.support == search.best.on.support
+                                 ? describe_choice(search)
+                                 : "searched for again without the light that overlaps";
+  const std::string why = fmt::format("{}; {} trees, {:.1f} nats a split", choice, grower.setting.trees,
+                                      grower.setting.penalty_nats);
   if (const auto& split = grower.parts.split) {
-    grower.add(LayerPart::first, search.best.on, of_part(LayerPart::first, weight, second), true, why);
+    grower.add(LayerPart::first, first, of_part(LayerPart::first, weight, second), true, why);
     grower.add(LayerPart::second, split->second(), of_part(LayerPart::second, weight, second), true,
                fmt::format("light that overlaps: {:.4f} +- {:.4f} nats per ray better than without",
                            split->gain_nats(), split->gain_error()));
   } else {
-    grower.add(LayerPart::whole, search.best.on, weight, !search.degenerate, why);
+    grower.add(LayerPart::whole, first, weight, !search.degenerate, why);
   }
-  grower.add_background(search.best.on);
+  grower.add_background(first);
 }
 
 }  // namespace
@@ -197,7 +202,7 @@ std::vector<float> LightParts::second(const RayBlock& rays, bool as_a_whole) con
 
 std::vector<float> LightParts::of_band(const RayBlock& rays, std::span<const float> nm,
                                        std::uint32_t band) const {
-  if (bands.cuts_nm.empty()) return rays.weight;
+  if (bands.cuts_nm.empty()) return {};
   std::vector<float> weight(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) weight[i] = bands.band(nm[i]) == band ? rays.weight[i] : 0.0f;
   return weight;
@@ -227,7 +232,8 @@ std::vector<GrownLayer> grown_layers(const RayBlock& rays, std::span<const float
   LayerGrower grower{rays, parts, setting, sum_of(rays.weight), progress};
   const std::vector<float> second = parts.second(rays, rays.size() > kWholeRays);
   for (std::uint32_t b = 0; b < parts.band_count(); ++b) {
-    const std::vector<float> weight = parts.of_band(rays, nm, b);
+    const std::vector<float> of_band = parts.of_band(rays, nm, b);
+    const std::span<const float> weight = of_band.empty() ? rays.weight : of_band;
     if (!parts.bands.cuts_nm.empty()) {
       const WavelengthTable& table = parts.bands.tables[b];
       grower.band = b;

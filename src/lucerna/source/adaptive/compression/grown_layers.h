@@ -46,7 +46,9 @@ struct LightParts {
   /// The part of each ray that the second of two layers has; empty where there is one. `as_a_whole`: each ray
   /// goes to one of them, by chance.
   std::vector<float> second(const RayBlock& rays, bool as_a_whole) const;
-  /// The weights of the rays of one band; `nm` is empty where all have the same colours.
+  /// The support that comes first in every band.
+  const BoundedSupport& first() const { return split ? split->first() : search.best.on; }
+  /// The weights of the rays of one of several bands, 0 for rays of others; empty where there is one.
   std::vector<float> of_band(const RayBlock& rays, std::span<const float> nm, std::uint32_t band) const;
   /// How many bands have layers of their own.
   std::uint32_t band_count() const;

@@ -68,6 +68,7 @@ class LayerTally {
 void add_band(std::span<LayerTally> layers, const LightParts& parts, const RayBlock& rays,
               std::span<const float> weight, std::span<const float> second) {
   RayBlock missed;
+  missed.resize(0, rays.extra.size());
   for (LayerTally& tally : layers) {
     const LayerPart part = tally.layer().part;
     if (part == LayerPart::rest) {
@@ -87,13 +88,12 @@ std::uint64_t recount(std::vector<GrownLayer>& layers, const LightParts& parts, 
   all_rays([&](const RayBlock& block) {
     const std::vector<float> second = parts.second(block, false);
     const std::span<const float> nm = block.extra.empty() ? std::span<const float>() : block.extra.front();
-    RayBlock rays = block;
-    rays.extra.clear();
     for (auto first = tallies.begin(); first != tallies.end();) {
       const std::uint32_t band = first->layer().layer.band;
       const auto last = std::find_if(first, tallies.end(),
                                      [&](const LayerTally& t) { return t.layer().layer.band != band; });
-      add_band({first, last}, parts, rays, parts.of_band(rays, nm, band), second);
+      const std::vector<float> of_band = parts.of_band(block, nm, band);
+      add_band({first, last}, parts, block, of_band.empty() ? block.weight : of_band, second);
       first = last;
     }
     count += block.size();

@@ -20,6 +20,7 @@ class LayerSplit {
   double gain_nats() const { return gain_nats_; }
   double gain_error() const { return gain_error_; }
   double second_share() const { return second_share_; }
+  /// The first support again, or the one that took its place.
   const BoundedSupport& first() const { return first_; }
   const BoundedSupport& second() const { return second_; }
 
