@@ -54,6 +54,8 @@ struct FitProblem {
   /// So many of them are compared at the screening stage before the best goes on; further ones are the first
   /// restarts.
   std::size_t compared = 5;
+  /// Free forms: what the search begins with was chosen among others, so that it goes on before others begin.
+  bool start_is_chosen = false;
   /// Rays that were traced to find them.
   std::uint64_t search_rays = 0;
   /// While the result is above the noise the fit restarts, alternately from `guesses` and from the incumbent,

@@ -17,9 +17,6 @@ namespace lucerna {
 
 namespace {
 
-/// Cells across the source's light, and the rounds in which what the aperture catches is found.
-constexpr int kSourceCells = 40;
-constexpr int kTransportRounds = 4;
 /// Meridians and places along each where the mirror is put together; fewer where only its edges are asked
 /// for.
 constexpr int kMeridians = 96, kPlaces = 160, kPlacesForEdges = 64;
@@ -114,12 +111,13 @@ struct SplitLight {
 
 SplitLight split(const TransportProblem& problem, const Vec3& source, const Catch& edges) {
   const double reach = std::tan(0.5 * std::min(edges.widest(), 0.95 * std::numbers::pi)) * (1.0 + 1e-9);
-  const double cell = 2.0 * reach / kSourceCells;
+  const int across = problem.source_cells;
+  const double cell = 2.0 * reach / across;
   struct Cell {
     Vec3 direction;
     double flux = 0.0;
   };
-  std::vector<Cell> cells(static_cast<std::size_t>(kSourceCells) * kSourceCells);
+  std::vector<Cell> cells(static_cast<std::size_t>(across) * static_cast<std::size_t>(across));
   SplitLight out;
   out.direct = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(problem.bins.size()));
   double all = 0.0;
@@ -141,9 +139,9 @@ SplitLight split(const TransportProblem& problem, const Vec3& source, const Catc
         continue;
       }
       const double x = d.x() / (1.0 - d.z()), y = d.y() / (1.0 - d.z());
-      const int u = std::clamp(static_cast<int>((x + reach) / cell), 0, kSourceCells - 1);
-      const int v = std::clamp(static_cast<int>((y + reach) / cell), 0, kSourceCells - 1);
-      Cell& c = cells[static_cast<std::size_t>(v * kSourceCells + u)];
+      const int u = std::clamp(static_cast<int>((x + reach) / cell), 0, across - 1);
+      const int v = std::clamp(static_cast<int>((y + reach) / cell), 0, across - 1);
+      Cell& c = cells[static_cast<std::size_t>(v * across + u)];
       c.direction += w * d.vec();
       c.flux += w;
     }
@@ -329,11 +327,11 @@ std::optional<DesignShape> transport_guess(const TransportProblem& problem, cons
   Catch edges = first_catch(aperture, choice.vertex_distance_mm);
   std::optional<Outline> mirror;
   Eigen::VectorXf potentials = Eigen::VectorXf::Zero(problem.target.size());
-  for (int round = 0; round < kTransportRounds; ++round) {
+  for (int round = 0; round < problem.rounds; ++round) {
     const SplitLight light = split(problem, source, edges);
     const PrescribedLight to = prescribed_light(problem, light, vertex);
     if (light.caught.size() < 16 || to.bins.size() < 4) return std::nullopt;
-    const double source_cell = 2.0 * edges.widest() / kSourceCells;
+    const double source_cell = 2.0 * edges.widest() / problem.source_cells;
     const double bin = bin_width_rad(problem.bins, vertex);
     // What the aperture catches changes from round to round, and the transport little.
     const Eigen::VectorXf guess = potentials(to.bins);
@@ -344,7 +342,7 @@ std::optional<DesignShape> transport_guess(const TransportProblem& problem, cons
     if (medium) {
       face = {widest_light(light.caught, light.half_cell), 0.5 * kRiseOfKnots * family.intervals_x()};
     }
-    const bool last = round + 1 == kTransportRounds;
+    const bool last = round + 1 == problem.rounds;
     mirror = outline(transport, aperture, source, choice.vertex_distance_mm, last ? kPlaces : kPlacesForEdges,
                      face ? &*face : nullptr);
     edges = mirror->edges;

@@ -28,6 +28,8 @@ struct TransportProblem {
   Eigen::VectorXd target;
   /// Square bins or those of a plane, over the window and a little more.
   TentBins bins;
+  /// Cells across the source's light, and the rounds in which what the aperture catches is found.
+  int source_cells = 40, rounds = 4;
 };
 
 /// The free form that would throw the source's light as prescribed, were the source a point: the light that

@@ -167,7 +167,9 @@ DesignShape within_limits(const LensLimits& limits, const FaceSeat& seat, const 
   constexpr double kRoom = 0.1;
   // Heights are bent over about a step between knots: a spline through sharply cut ones swings.
   const double bend = face.radius_mm() / face.intervals_x();
-  const auto below = [&](double z, double high) { return high - bend * softplus((high - z) / bend); };
+  const auto below = [&](double z, double high) {
+    return std::isinf(high) ? z : high - bend * softplus((high - z) / bend);
+  };
   return face.through([&](double x, double y) {
     const HeightBounds b = height_bounds(limits, seat, x, y);
     const double high = b.high_mm - kRoom, low = std::min(b.low_mm + kRoom, high);

@@ -179,6 +179,8 @@ TEST(FreeFace, HeightsAreBentWithinTheirLimits) {
   const DesignShape bent = within_limits(limits, seat, steep);
   EXPECT_LT(cost.cost(bent, nullptr), 0.01);
   EXPECT_NEAR(bent.at(2.0, 0.0).z_mm, steep.at(2.0, 0.0).z_mm, 0.05);
+  const DesignShape above = within_limits({}, seat, steep);
+  EXPECT_NEAR(above.at(2.0, 0.0).z_mm, steep.at(2.0, 0.0).z_mm, 0.05) << "without a greatest height";
 }
 
 // A wide lens with a flat base: light within its cone comes to a third of the rim only. The point source's
@@ -215,7 +217,7 @@ TEST(FreeFace, APointSourcesFaceNeedsNoLightAtItsRim) {
 TEST(FreeFace, SaysWhichFacesCannotBeOne) {
   const std::string dome_text = kDomeText;
   EXPECT_EQ(dome_refusal(dome_text), "");
-  EXPECT_NE(dome_refusal(dome_with(dome_text, "free_sides = 3", "free_sides = [1, 3]"))
+  EXPECT_NE(dome_refusal(dome_with(dome_text, "free_sides = 3", "free_sides = [2, 3]"))
                 .find("found 2 free faces, expected one"),
             std::string::npos);
   EXPECT_NE(
@@ -232,6 +234,25 @@ TEST(FreeFace, SaysWhichFacesCannotBeOne) {
                 .find("max_height_mm"),
             std::string::npos);
   EXPECT_NE(dome_refusal(dome_text + "[design.limits]\nmax_diameter_mm = 17\n").find("max_diameter_mm = 17"),
+            std::string::npos);
+}
+
+LensProblem dome_of_text(const std::string& text) {
+  ProjectMemory memory;
+  memory.targets["beam.ldt"] = oval_up();
+  return lens_problem(parse_project(text, "lens.toml", memory), "lens.toml");
+}
+
+TEST(FreeFace, AFreeEntryIsTheFaceFromTheAxis) {
+  const std::string text = kDomeText;
+  EXPECT_FALSE(dome().free_face->shapes_entry);
+  // Sides 0 and 1 are one face.
+  for (const char* sides : {"free_sides = [0, 3]", "free_sides = [3, 1]", "free_sides = [0, 1, 3, 4]"}) {
+    const LensProblem problem = dome_of_text(dome_with(text, "free_sides = 3", sides));
+    EXPECT_TRUE(problem.free_face->shapes_entry) << sides;
+    EXPECT_EQ(problem.start.corners(), dome().start.corners()) << sides;
+  }
+  EXPECT_NE(dome_refusal(dome_with(text, "free_sides = 3", "free_sides = [0, 2, 3]")).find("2 free faces"),
             std::string::npos);
 }
 
@@ -260,6 +281,48 @@ TEST(FreeFaceDesign, ComesNearerToAnOvalBeamWithinItsLimits) {
   ASSERT_EQ(found.limits.size(), 2u);
   for (const LimitCheck& c : found.limits) EXPECT_TRUE(c.held) << c.limit << ' ' << c.found;
   EXPECT_NEAR(found.efficiency.mean + found.bodies.mean + found.lost.mean, 1.0, 1e-9);
+}
+
+/// A flat lens of 9 mm radius and 6.6 mm height before a disk.
+std::string wide_text(const std::string& sides) {
+  return dome_with(dome_with(kDomeText, "free_sides = 3", sides),
+                   "[[0, 3.5], [3, 3.2], [9, 3], [9, 5], [6, 7.6], [3, 9.1], [0, 9.6]]",
+                   "[[0, 0.1], [9, 0.1], [9, 2.1], [6, 4.7], [3, 6.2], [0, 6.7]]");
+}
+
+/// Even light on a plane, to 68 degrees along it and 45 across.
+std::shared_ptr<const IntensityDistribution> wide_up() {
+  IntensityDistribution beam = uniform_distribution(3.0, 1.0);
+  const std::size_t rows = beam.gamma_deg.size();
+  for (std::size_t c = 0; c < beam.c_deg.size(); ++c) {
+    for (std::size_t g = 0; g < rows; ++g) {
+      const double turn = radians(beam.c_deg[c]), off = radians(180.0 - beam.gamma_deg[g]),
+                   far = std::tan(off);
+      const bool lit =
+          off < radians(85.0) && std::abs(far * std::cos(turn)) < 2.5 && std::abs(far * std::sin(turn)) < 1.0;
+      beam.cd[c * rows + g] = lit ? std::pow(std::cos(off), -3.0) : 0.0;
+    }
+  }
+  return std::make_shared<const IntensityDistribution>(beam);
+}
+
+// Behind a flat base light is within 42 degrees, from where one face brings little of it to 68.
+TEST(FreeFaceDesignSlow, ACavityMakesALightWider) {
+  LensOptions options;
+  options.time_s = 1e6;
+  options.max_rays = 1 << 15;
+  options.validation_rays = 1 << 17;
+  const auto ends_at = [&](const std::string& sides) {
+    ProjectMemory memory;
+    memory.targets["beam.ldt"] = wide_up();
+    return design_lens(lens_problem(parse_project(wide_text(sides), "lens.toml", memory), "lens.toml"),
+                       options);
+  };
+  const LensResult flat = ends_at("free_sides = 2"), wide = ends_at("free_sides = [0, 2]");
+  EXPECT_LT(error_with_light(wide.error, 0.1), 0.8 * error_with_light(flat.error, 0.1))
+      << wide.error.c48.excess << " beside " << flat.error.c48.excess;
+  ASSERT_FALSE(wide.remarks.empty());
+  EXPECT_NE(wide.remarks.front().find("cavity"), std::string::npos) << wide.remarks.front();
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "lucerna/design/lens/free_face.h"
@@ -64,6 +65,12 @@ bool given_is_better(const LensProblem& problem, const DesignError& given, const
   return error_with_light(given, light_weight) + noise < error_with_light(found, light_weight);
 }
 
+std::string entry_text(const Cavity& c) {
+  return c.depth_mm > 0.0 ? fmt::format("the light enters by a cavity {:.3g} mm wide and {:.3g} mm deep",
+                                        2.0 * c.radius_mm, c.depth_mm)
+                          : "the light enters by a flat base";
+}
+
 void add_lens_remarks(LensResult& result) {
   const BoxErrorEstimate& e = result.error.c48;
   if (e.excess <= 2.0 * e.standard_error) {
@@ -111,7 +118,7 @@ LensResult design_lens(const LensProblem& problem, const LensOptions& options, P
   result.start_error = given.error;
   const auto signs = draft_signs(problem.start);
   result.limits = result.lens.face
-                      ? check_face_limits(problem.limits, face_seat(problem.start), *result.lens.face)
+                      ? check_face_limits(problem.limits, face_seat(result.lens.outline), *result.lens.face)
                       : check_lens_limits(problem.limits, result.lens.outline, signs);
   const auto given_limits = check_lens_limits(problem.limits, problem.start, signs);
   const bool given_holds =
@@ -121,6 +128,8 @@ LensResult design_lens(const LensProblem& problem, const LensOptions& options, P
     result.limits = given_limits;
     set_findings(check(result.lens, options.validation_rays, left_s), result);
     result.remarks.emplace_back("the given lens is the result: nothing that was found is better");
+  } else if (fit.cavity) {
+    result.remarks.push_back(entry_text(*fit.cavity));
   }
   add_lens_remarks(result);
   return result;

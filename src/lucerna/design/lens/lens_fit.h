@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "lucerna/design.h"
 #include "lucerna/design/evaluation/design_rays.h"
 #include "lucerna/design/fit/fit_record.h"
+#include "lucerna/design/lens/entry_face.h"
 #include "lucerna/design/lens/lens_problem.h"
 #include "lucerna/progress.h"
 
@@ -25,6 +27,8 @@ struct LensFitOptions {
 struct LensFitResult {
   explicit LensFitResult(ShapedLens found) : lens(std::move(found)) {}
   ShapedLens lens;
+  /// What the entry has become, where that was free; nothing where it is the given one.
+  std::optional<Cavity> cavity;
   std::vector<FitRecord> history;
   DesignTermination end = DesignTermination::converged;
   bool at_noise = false;

@@ -8,6 +8,7 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/design/evaluation/window.h"
+#include "lucerna/design/lens/entry_face.h"
 #include "lucerna/design/lens/free_face.h"
 #include "lucerna/design/problem/design_detectors.h"
 #include "lucerna/design/problem/target_rectangle.h"
@@ -110,6 +111,38 @@ void check_free_face(const LensShape& lens, int intervals, const LensLimits& lim
                      ErrorCause::contradiction);
 }
 
+/// The faces of a lens by what becomes of them: those that begin on the axis below are entries.
+struct FreeSides {
+  std::vector<std::size_t> entry, others;
+};
+
+FreeSides sorted_sides(const Solid& solid, const std::vector<std::size_t>& sides) {
+  FreeSides out;
+  for (const std::size_t side : sides) {
+    const LensShape one(solid.outline_mm, solid.smooth_below_deg, std::vector<std::size_t>{side}, 0);
+    const LensForm& form = one.form();
+    const auto free =
+        std::find_if(form.faces.begin(), form.faces.end(), [](const LensFace& f) { return f.is_free; });
+    const bool is_entry = form.corners[corner_number(form, free->run.from)][0] == 0.0;
+    (is_entry ? out.entry : out.others).push_back(side);
+  }
+  return out;
+}
+
+/// The lens that a design begins with. Where a free form has an entry that is free, only the other face
+/// remains free in it.
+LensShape lens_to_begin_with(const Solid& solid, const std::vector<std::size_t>& sides, int intervals,
+                             const LensLimits& limits, std::optional<FreeFaceProblem>& free_face) {
+  if (!free_face) return {solid.outline_mm, solid.smooth_below_deg, sides, intervals};
+  const FreeSides sorted = sorted_sides(solid, sides);
+  free_face->shapes_entry = !sorted.entry.empty() && !sorted.others.empty();
+  LensShape shape(solid.outline_mm, solid.smooth_below_deg, free_face->shapes_entry ? sorted.others : sides,
+                  0);
+  check_free_face(shape, free_face->intervals, limits);
+  if (free_face->shapes_entry) static_cast<void>(cavity_range(shape, limits));
+  return shape;
+}
+
 /// A face as [body.face] has it.
 toml::table face_table(const DesignShape& face) {
   const FaceSpline spline = face_spline(face);
@@ -165,7 +198,7 @@ LensProblem lens_problem(Project project, const std::filesystem::path& path) {
   const Solid& solid = project.scene.solids.front();
   const auto sides = read_sides(*design);
   const int intervals = read_lens_intervals(*design);
-  const auto free_face = read_free_face(*design, intervals);
+  auto free_face = read_free_face(*design, intervals);
   const double time_s = design->number("time_s", 60.0);
   const double restarts = design->number("restarts", 1e6);
   const std::string optimizer = design->word("optimizer").value_or("auto");
@@ -179,9 +212,7 @@ LensProblem lens_problem(Project project, const std::filesystem::path& path) {
   design->finish();
   const LensShape start = [&] {
     try {
-      LensShape shape(solid.outline_mm, solid.smooth_below_deg, sides, free_face ? 0 : intervals);
-      if (free_face) check_free_face(shape, free_face->intervals, limits);
-      return shape;
+      return lens_to_begin_with(solid, sides, intervals, limits, free_face);
     } catch (const InputError& e) {
       design->fail("free_sides", e.what());
     }

@@ -18,6 +18,8 @@ namespace lucerna {
 struct FreeFaceProblem {
   /// Knot intervals across: to begin with, and at most.
   int intervals = 24, max_intervals = 48;
+  /// Whether the face opposite to it may become a cavity.
+  bool shapes_entry = false;
   /// What light costs that misses the target's rectangle.
   double light_weight = 0.1;
 };

@@ -38,6 +38,9 @@ constexpr double kFewKnotsError = 0.03;
 constexpr int kNoApproach = kApproach + kApproaches;
 constexpr int kFirstCandidates =
     kNoApproach + static_cast<int>(std::tuple_size_v<decltype(FirstChoices::after)>);
+/// Where the given shape was chosen among others, the better of it and a point source's at its distance is
+/// fitted to the end before the others begin.
+constexpr int kChosenCandidates = 2;
 /// How many of them are fitted finely.
 constexpr int kFine = 3;
 /// A neighbour of the best goes on where its cost is at most so many times the best's at that level.
@@ -83,9 +86,6 @@ constexpr std::size_t kSteps = 2, kFaceSteps = 4;
 /// blurred by the source's size a rough surface costs no light. At a three-hundredth of it slopes jump by a
 /// degree from knot to knot, at the same error.
 constexpr double kSmoothing = 0.03;
-/// Light that a start is made for, in rays.
-constexpr std::uint64_t kStartRays = std::uint64_t{1} << 19;
-constexpr int kStartBins = 36;
 /// That tell where the source is.
 constexpr std::uint64_t kUnitRays = std::uint64_t{1} << 14;
 constexpr double kStartWiden = 1.1;
@@ -108,13 +108,13 @@ double distance_unit_mm(const FitProblem& problem, const DesignShape& given) {
 }  // namespace
 
 std::optional<DesignShape> free_form_guess(const FitProblem& problem, const DesignShape& family,
-                                           const TransportChoice& choice) {
+                                           const TransportChoice& choice, const StartLight& light) {
   if (family.is_trough()) return trough_guess(problem, family, choice);
-  problem.rays->grow(kStartRays);
-  const TentBins bins = graded_bins(problem.rectangle, problem.mirror_from_world, kStartBins, kStartWiden, 0);
-  return transport_guess(
-      {problem.rays, kStartRays, problem.reflectance.max(), problem.direct_light, problem.target(bins), bins},
-      family, choice);
+  problem.rays->grow(light.rays);
+  const TentBins bins = graded_bins(problem.rectangle, problem.mirror_from_world, light.bins, kStartWiden, 0);
+  return transport_guess({problem.rays, light.rays, problem.reflectance.max(), problem.direct_light,
+                          problem.target(bins), bins, light.cells, light.rounds},
+                         family, choice);
 }
 
 FreeFormSearch::FreeFormSearch(const FitProblem& problem, const DesignShape& given, int max_intervals,
@@ -259,7 +259,8 @@ const FreeFormSnapshot* FreeFormSearch::next_promotion() const {
                     !given_is_stuck();
   const bool alone = approach_is_alone();
   const FreeFormSnapshot* rough = best_waiting(0);
-  if (state_.begun < kFirstCandidates && !near && !alone && best_of(kEnd) == nullptr) {
+  const int compared = problem_.start_is_chosen ? kChosenCandidates : kFirstCandidates;
+  if (state_.begun < compared && !near && !alone && best_of(kEnd) == nullptr) {
     // The best of a few is fitted finely before the others begin, for a search that has little time.
     const int few = worth_an_approach() ? kApproach + 1 : kApproach;
     return state_.begun >= few && best_of(1) == nullptr ? rough : nullptr;

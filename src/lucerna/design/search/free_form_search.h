@@ -11,10 +11,17 @@
 
 namespace lucerna {
 
+/// How finely the light of a start is transported: rays of the source in so many cells across, to so many
+/// bins across, in so many rounds.
+struct StartLight {
+  std::uint64_t rays = std::uint64_t{1} << 19;
+  int cells = 40, bins = 36, rounds = 4;
+};
+
 /// What a point source's mirror would be for a fit's target, with the knots and the symmetry of `family`; see
 /// transport_guess. Grows the problem's rays.
 std::optional<DesignShape> free_form_guess(const FitProblem& problem, const DesignShape& family,
-                                           const TransportChoice& choice);
+                                           const TransportChoice& choice, const StartLight& light = {});
 
 /// Finds a free form or a trough by successive halving: candidates (the given mirror; a point source's
 /// mirrors of both signs at several vertex distances) are fitted roughly, the best of them finely (the best
@@ -51,9 +58,12 @@ class FreeFormSearch {
   DesignShape best() const;
   const FreeFormState& state() const { return state_; }
 
- private:
+  /// How finely level `number` fits.
   FreeFormLevel level(int number) const;
+  /// The transport that candidate `number` of the first ones begins with.
   TransportChoice first_choice(int number) const;
+
+ private:
   /// Whether an approach of the given mirror may help: it has few knots, and came nearer than the candidates
   /// after it, or none came near; a further one, where none is at the target.
   bool worth_an_approach() const;

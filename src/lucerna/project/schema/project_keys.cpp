@@ -198,10 +198,10 @@ constexpr std::array kKeys{
     ProjectKey{"target.zone", "mean_of", Type::text, kAny, "", "the zone itself", "Name of the zone that the mean is of."},
 
     ProjectKey{"design", "reflector", Type::number, kAny, "", "0 where there is one", "Number, from 0, of the reflector that is shaped."},
-    ProjectKey{"design", "free_sides", Type::number_or_numbers, whole(0, 10000), "", "none", "Of a lens, instead of a reflector: numbers, from 0, of the sides of its `outline_mm` that are shaped, each with all of its face; side 0 leads from the first corner to the second."},
+    ProjectKey{"design", "free_sides", Type::number_or_numbers, whole(0, 10000), "", "none", "Of a lens, instead of a reflector: numbers, from 0, of the sides of its `outline_mm` that are shaped, each with all of its face; side 0 leads from the first corner to the second. Beside a bspline, the face from the axis to the base may be free: it becomes a cavity, or stays."},
     ProjectKey{"design", "optimizer", Type::word, kAny, "auto least-squares tree annealing cma-es direct", "\"auto\"", "How the shape is searched for."},
     ProjectKey{"design", "time_s", Type::number, kAboveZero, "", "60", "Time for the search. Rays per step follow from it."},
-    ProjectKey{"design", "family", Type::word, kAny, "revolution bspline", "\"revolution\"", "Of a lens: what its one free face becomes. A bspline is a free form; the face leads from the upper end of a wall, parallel to the axis, to the axis."},
+    ProjectKey{"design", "family", Type::word, kAny, "revolution bspline", "\"revolution\"", "Of a lens: what its free face becomes. A bspline is a free form; the face leads from the upper end of a wall, parallel to the axis, to the axis."},
     ProjectKey{"design", "intervals", Type::number_or_numbers, whole(1, 60), "", "chosen by the search", "Fixes the intervals between knots: one number, or two along x and y."},
     ProjectKey{"design", "restarts", Type::number, whole(0, 1000), "", "while there is time", "Restarts in a row without gain that end the search."},
     ProjectKey{"design", "light_weight", Type::number, within(0, 100), "", "0.1", "Weight of light that misses the target's rectangle: 0.1 counts a tenth of it as an error of 3.2 %."},

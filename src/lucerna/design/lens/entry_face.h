@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "lucerna/design/lens/lens_limits.h"
+
+namespace lucerna {
+
+// The face by which light comes into a lens whose last face is a free form, as a cavity: half an ellipsoid of
+// revolution, from the plane of the base up.
+
+/// A cavity by its semi-axes; without depth the base is flat.
+struct Cavity {
+  double radius_mm = 0.0, depth_mm = 0.0;
+};
+
+/// What cavities a lens may have.
+struct CavityRange {
+  double max_radius_mm = 0.0, max_depth_mm = 0.0;
+};
+
+/// Throws InputError where the face opposite to the free one does not lead from the axis to a base or the
+/// wall.
+CavityRange cavity_range(const LensShape& lens, const LensLimits& limits);
+
+/// The lens with a cavity in the place of the face opposite to its free face, which is lifted where the
+/// cavity would cut it. Throws InputError for one that does not fit.
+LensShape with_cavity(const LensShape& lens, const Cavity& cavity);
+
+}  // namespace lucerna

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/lens/entry_face.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "lucerna/design/lens/free_face.h"
+#include "lucerna/error.h"
+
+namespace lucerna {
+namespace {
+
+/// A dome of 12 mm radius whose free face is side 2, over a flat base.
+LensShape flat_lens(double smooth_below_deg = 20.0) {
+  std::vector<OutlinePoint> corners{{0, 1}, {12, 1}};
+  for (const double r : {12.0, 11.0, 10.0, 9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.0, 0.0})
+    corners.push_back({r, 9.0 - r * r / 24.0});
+  return {corners, smooth_below_deg, std::vector<std::size_t>{2}, 0};
+}
+
+double ellipse_mm(const Cavity& c, double r) {
+  return r < c.radius_mm ? c.depth_mm * std::sqrt(1.0 - std::pow(r / c.radius_mm, 2.0)) : 0.0;
+}
+
+TEST(EntryFace, IsHalfAnEllipsoidOverTheBase) {
+  for (const Cavity& c : {Cavity{4.0, 1.0}, Cavity{4.0, 4.0}, Cavity{3.0, 6.0}}) {
+    const LensShape lens = with_cavity(flat_lens(), c);
+    ASSERT_TRUE(lens.is_valid());
+    const FaceSeat seat = face_seat(lens);
+    EXPECT_EQ(seat.radius_mm(), 12.0);
+    for (double r = 0.0; r < 12.0; r += 0.3) {
+      if (std::abs(r - c.radius_mm) < 0.05) continue;
+      EXPECT_NEAR(seat.height_mm(r), 1.0 + ellipse_mm(c, r), 0.004 * c.depth_mm)
+          << r << ": " << c.radius_mm << " x " << c.depth_mm;
+    }
+  }
+}
+
+TEST(EntryFace, LiftsAFaceThatItWouldCutAndNoOther) {
+  const LensShape flat = flat_lens();
+  const auto vertex = [](const LensShape& lens) { return -face_of(lens, 24).at(0.0, 0.0).z_mm; };
+  EXPECT_NEAR(vertex(with_cavity(flat, {4.0, 4.0})), 9.0, 0.01);
+  const LensShape deep = with_cavity(flat, {8.0, 9.0});
+  EXPECT_TRUE(deep.is_valid());
+  EXPECT_GT(vertex(deep), 10.3) << "over the cavity's 10 mm";
+  EXPECT_NEAR(-face_of(deep, 24).at(11.9, 0.0).z_mm, -face_of(flat, 24).at(11.9, 0.0).z_mm, 0.2)
+      << "the wall is where it was";
+}
+
+TEST(EntryFace, WithoutDepthTheBaseIsFlat) {
+  const FaceSeat seat = face_seat(with_cavity(with_cavity(flat_lens(), {4.0, 4.0}), {}));
+  EXPECT_EQ(seat.height_mm(0.0), 1.0);
+  EXPECT_EQ(seat.height_mm(6.0), 1.0);
+}
+
+// Light of a point in the middle of a hemisphere enters without a bend; with a flat base it bends.
+TEST(EntryFace, AHemisphereAboutTheSourceBendsNothing) {
+  const LensShape round = with_cavity(flat_lens(), {5.0, 5.0});
+  const auto into = into_lens(round, {1.5, 0.0}), into_flat = into_lens(flat_lens(), {1.5, 0.0});
+  for (const double deg : {5.0, 40.0, 75.0}) {
+    const double a = deg * std::numbers::pi / 180.0;
+    // A design's light goes down.
+    const Ray given{{0.0, 0.0, -1.0}, Direction::from({std::sin(a), 0.0, -std::cos(a)})};
+    Ray ray = given;
+    EXPECT_NEAR(into(ray), 0.96, 1e-4) << "Fresnel's loss at normal incidence";
+    EXPECT_NEAR(angle_between(ray.direction, given.direction), 0.0, 2e-3) << deg;
+    EXPECT_NEAR(std::hypot(ray.origin_mm.x, ray.origin_mm.z + 1.0), 5.0, 5e-3);
+  }
+  Ray bent{{0.0, 0.0, -0.5}, Direction::from({0.6, 0.0, -0.8})};
+  ASSERT_GT(into_flat(bent), 0.9);
+  EXPECT_NEAR(bent.direction.x(), 0.4, 1e-9);
+}
+
+TEST(EntryFace, FitsWithinTheBaseAndTheHeight) {
+  const CavityRange free = cavity_range(flat_lens(), {});
+  EXPECT_NEAR(free.max_radius_mm, 0.95 * 12.0, 1e-12);
+  EXPECT_NEAR(free.max_depth_mm, 0.8 * 12.0, 1e-12) << "of the wall's radius, which is more than the height";
+  LensLimits limits;
+  limits.max_height_mm = 10.0;
+  EXPECT_NEAR(cavity_range(flat_lens(), limits).max_depth_mm, 8.0, 1e-12);
+  // A cavity that is there, with a flat base about it.
+  const CavityRange again = cavity_range(with_cavity(flat_lens(), {4.0, 4.0}), limits);
+  EXPECT_NEAR(again.max_radius_mm, free.max_radius_mm, 1e-12);
+  // A cavity whose base rises ends at its rim.
+  const std::vector<OutlinePoint> cone{{0, 3}, {5, 1}, {12, 2}, {12, 4}, {8, 6.2}, {4, 7.3}, {0, 7.6}};
+  const LensShape rising(cone, 20.0, std::vector<std::size_t>{3}, 0);
+  EXPECT_NEAR(cavity_range(rising, limits).max_radius_mm, 0.95 * 5.0, 1e-12);
+}
+
+TEST(EntryFace, SmoothOutlinesHaveMoreCorners) {
+  const LensShape fine = with_cavity(flat_lens(5.0), {6.0, 1.0});
+  EXPECT_GT(fine.corners().size(), with_cavity(flat_lens(), {6.0, 1.0}).corners().size());
+  EXPECT_NEAR(face_seat(fine).height_mm(5.0), 1.0 + ellipse_mm({6.0, 1.0}, 5.0), 1e-3) << "no edges within";
+}
+
+}  // namespace
+}  // namespace lucerna
