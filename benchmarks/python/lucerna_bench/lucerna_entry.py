@@ -142,9 +142,9 @@ def _plane_target(task, folder, place, cells=250, widened=1.25):
 
 
 def _lens_design(task, kind):
-    """Of a lens of revolution 16 pieces of its face move; a free form chooses its knots."""
-    shape = 'family = "bspline"\n' if kind == "free-lens" else "intervals = 16\n"
-    return (f"[design]\nfree_sides = 2\n{shape}[design.limits]\n"
+    """Of a lens of revolution 16 pieces of its face move; a free form chooses its knots, and a cavity in the bottom."""
+    shape = 'free_sides = [0, 2]\nfamily = "bspline"\n' if kind == "free-lens" else "free_sides = 2\nintervals = 16\n"
+    return (f"[design]\n{shape}[design.limits]\n"
             f"max_diameter_mm = {2 * task.room.half_mm - MARGIN_MM}\n"
             f"max_height_mm = {task.room.high_mm - task.room.low_mm - 2 * MARGIN_MM}\nmin_thickness_mm = 0.5\n")
 
@@ -246,6 +246,15 @@ def _revolution(reflector, vertex_mm):
     return [{**mirror(surface, vertex_mm), "flip": True}], len(r)
 
 
+def _curve_from_axis(corners):
+    """Knots and control points (r, z) of the curve through corners that Lucerna has from the axis to an edge."""
+    r, z = np.array(corners, float).T
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(r), np.diff(z)))])
+    knots, height = spline_through(way, z, flat_start=True)
+    _, radius = spline_through(way, r, natural_start=True)
+    return knots, np.stack([radius, height], axis=-1)
+
+
 def _lens_surfaces(body):
     """Bottom, wall and outer face of the outline that `project` gave. Between edges and on the axis Lucerna's face is
     the cubic spline through the corners over the length of the chords, level on the axis."""
@@ -254,25 +263,25 @@ def _lens_surfaces(body):
     if abs(corners[0][0]) > 1e-9 or abs(outer[-1][0]) > 1e-9 or len(outer) < 4:
         raise ValueError(f"outline_mm: found {corners.tolist()}, expected bottom, wall and an outer face to the axis")
     # From the axis to the rim, as the spline's start is the one with the condition.
-    r, z = outer[::-1].T
-    way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(r), np.diff(z)))])
-    knots, height = spline_through(way, z, flat_start=True)
-    _, radius = spline_through(way, r, natural_start=True)
+    knots, curve = _curve_from_axis(outer[::-1])
     faces = {"bottom": revolved([0, 0, 1, 1], corners[:2], degree=1), "wall": revolved([0, 0, 1, 1], wall, degree=1),
-             "outer": revolved(way[-1] - knots[::-1], np.stack([radius, height], axis=-1)[::-1])}
+             "outer": revolved(knots[-1] - knots[::-1], curve[::-1])}
     parts = [{"name": name, "role": "interface", "bspline": face, "refractive_index": body["refractive_index"]}
              for name, face in faces.items()]
     return parts, len(outer) - 1
 
 
 def _free_lens_surfaces(body):
-    """Bottom, wall and free face of the body that `project` gave."""
+    """Bottom, wall and free face of the body that `project` gave; the bottom may have got a cavity."""
     outline = body["outline_mm"]
-    if len(outline) != 3 or outline[0][1] != outline[1][1]:
-        raise ValueError(f"outline_mm: found {outline}, expected a flat bottom and a wall")
-    rim, bottom = outline[1]
+    if len(outline) < 3 or len(outline) > 3 and outline[-3][1] != outline[-2][1] or outline[-2][0] != outline[-1][0]:
+        raise ValueError(f"outline_mm: found {outline}, expected a flat bottom, with a cavity or not, and a wall")
+    rim, bottom = outline[-2]
+    cavity = _curve_from_axis(outline[:-2]) if len(outline) > 3 else None
     face, half = body["face"], body["face"]["half_mm"]
     # Both are bicubic splines on the same knots, as of mirrors.
     sheet = height_field(_even_spline(face, 2 * [half]), half, half, intervals=tuple(face["intervals"]),
                          trim={"kind": "circle", "diameter_mm": 2.0 * rim})
-    return free_lens_surfaces(sheet, rim, bottom, body["refractive_index"]), len(face["coefficients_mm"])
+    shape = 0 if cavity is None else 2
+    return (free_lens_surfaces(sheet, rim, bottom, body["refractive_index"], cavity),
+            len(face["coefficients_mm"]) + shape)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Entries of Lucerna: projects of tasks, and the surfaces of what it designs."""
 import json
+import math
 import re
 import subprocess
 import tomllib
@@ -144,20 +145,26 @@ def test_lens_is_the_one_that_lucerna_traces(scorer, lucerna, tmp_path):
     assert off(moved, theirs) > 10.0
 
 
-def free_lens_body(nx=3, ny=4):
+def free_lens_body(nx=3, ny=4, entry=([0.0, 2.0],)):
     """A dome of another curvature along x than along y, leaning to one side."""
     half = 8.5
     x, y = ((np.arange(n + 3) - 1.0) * 2.0 * half / n - half for n in (nx, ny))
     c = 6.0 - x**2 / 22.0 - y[:, None] ** 2 / 38.0 + 0.04 * x + 0.03 * y[:, None]
-    outline = [[0.0, 2.0], [8.0, 2.0], [8.0, 3.0]]
+    outline = [*entry, [8.0, 2.0], [8.0, 3.0]]
     return (f'[[body]]\nrole = "solid"\nrefractive_index = 1.5\noutline_mm = {outline}\n[body.face]\nhalf_mm = {half}\n'
             f"intervals = [{nx}, {ny}]\ncoefficients_mm = {c.ravel().tolist()}\n")
 
 
-def test_free_lens_is_the_one_that_lucerna_traces(scorer, lucerna, tmp_path):
-    text = free_lens_body()
+CAVITY = [[3.0 * math.sin(a), 2.0 + 2.0 * math.cos(a)] for a in np.linspace(0.0, 0.5 * math.pi, 10)]
+
+
+@pytest.mark.parametrize("entry", [[[0.0, 2.0]], [*CAVITY[:-1], [3.0, 2.0]]], ids=["flat", "cavity"])
+def test_free_lens_is_the_one_that_lucerna_traces(scorer, lucerna, tmp_path, entry):
+    text = free_lens_body(entry=entry)
     surfaces, free = lucerna_entry.surfaces_of(text, "free-lens")
-    assert free == 42 and [s["name"] for s in surfaces] == ["bottom", "wall", "outer"]
+    has_cavity = len(entry) > 1
+    assert free == 42 + 2 * has_cavity
+    assert [s["name"] for s in surfaces] == ["bottom", "wall", "outer", "cavity"][:3 + has_cavity]
     glass = {"roles": ["interface"], "interface": {"model": "fresnel", "refractive_index": [1.5, 1.5],
                                                    "absorption_per_mm": 0.0}}
     ours, _, found = boxes_of(scorer, tmp_path / "a", disk_task(glass, plane(100, -1, 250)), surfaces)

@@ -25,7 +25,8 @@ constexpr std::array<StepKind, 3> kKinds{{{0, 1, 0}, {0, 0, 1}, {1, 1, 0}}};
 
 class CavitySearch {
  public:
-  CavitySearch(const CavityRange& range, const CavityCost& cost) : range_(range), cost_(cost) {}
+  CavitySearch(const CavityRange& range, const CavityCost& cost, std::size_t max_trials)
+      : range_(range), cost_(cost), max_trials_(max_trials) {}
 
   CavityTrial run() {
     look({{}, kDistance});
@@ -41,7 +42,7 @@ class CavitySearch {
   }
 
  private:
-  bool can_look() const { return !ended_ && looked_at_.size() < kCavityTrials; }
+  bool can_look() const { return !ended_ && looked_at_.size() < max_trials_; }
 
   /// Steps may lead back.
   bool was_looked_at(const CavityTrial& trial) const {
@@ -82,6 +83,7 @@ class CavitySearch {
 
   const CavityRange& range_;
   const CavityCost& cost_;
+  std::size_t max_trials_;
   CavityTrial best_;
   std::vector<CavityTrial> looked_at_;
   bool ended_ = false;
@@ -89,8 +91,8 @@ class CavitySearch {
 
 }  // namespace
 
-CavityTrial search_cavity(const CavityRange& range, const CavityCost& cost) {
-  return CavitySearch(range, cost).run();
+CavityTrial search_cavity(const CavityRange& range, const CavityCost& cost, std::size_t max_trials) {
+  return CavitySearch(range, cost, max_trials).run();
 }
 
 }  // namespace lucerna

@@ -21,11 +21,8 @@ struct CavityTrial {
 /// the search is to end.
 using CavityCost = std::function<std::optional<double>(const CavityTrial&)>;
 
-/// Trials at most.
-inline constexpr std::size_t kCavityTrials = 24;
-
 /// The best that is found: of a grid of radii and depths, the flat base among them, and of steps from the
-/// best of these. Costs are asked for one after the other.
-CavityTrial search_cavity(const CavityRange& range, const CavityCost& cost);
+/// best of these. Costs are asked for one after the other, `max_trials` at most.
+CavityTrial search_cavity(const CavityRange& range, const CavityCost& cost, std::size_t max_trials);
 
 }  // namespace lucerna

@@ -11,6 +11,7 @@ namespace lucerna {
 namespace {
 
 constexpr CavityRange kRange{19.0, 12.0};
+constexpr std::size_t kTrials = 24;
 
 /// A smooth valley about a best trial; a flat base costs 1.
 CavityCost valley(const CavityTrial& best, std::vector<CavityTrial>& seen) {
@@ -28,17 +29,25 @@ TEST(CavitySearch, ComesNearToTheBest) {
   for (const CavityTrial& best :
        {CavityTrial{{5.0, 3.8}, 1.1}, CavityTrial{{17.0, 7.0}, 1.3}, CavityTrial{{3.0, 4.0}, 0.95}}) {
     std::vector<CavityTrial> seen;
-    const CavityTrial found = search_cavity(kRange, valley(best, seen));
-    EXPECT_LE(seen.size(), kCavityTrials);
+    const CavityTrial found = search_cavity(kRange, valley(best, seen), kTrials);
+    EXPECT_LE(seen.size(), kTrials);
     EXPECT_NEAR(std::log(found.cavity.depth_mm / best.cavity.depth_mm), 0.0, 0.25) << best.cavity.depth_mm;
     EXPECT_NEAR(std::log(found.distance / best.distance), 0.0, 0.16) << best.distance;
     EXPECT_LT(found.cost, 0.15);
   }
 }
 
+TEST(CavitySearch, MakesAsManyTrialsAsItMay) {
+  for (const std::size_t max : {std::size_t{1}, std::size_t{5}, std::size_t{12}}) {
+    std::vector<CavityTrial> seen;
+    static_cast<void>(search_cavity(kRange, valley({{5.0, 3.8}, 1.1}, seen), max));
+    EXPECT_EQ(seen.size(), max);
+  }
+}
+
 TEST(CavitySearch, LooksAtNothingTwiceAndAtNothingBeyondTheRange) {
   std::vector<CavityTrial> seen;
-  static_cast<void>(search_cavity(kRange, valley({{25.0, 14.0}, 1.2}, seen)));
+  static_cast<void>(search_cavity(kRange, valley({{25.0, 14.0}, 1.2}, seen), kTrials));
   for (std::size_t i = 0; i < seen.size(); ++i) {
     EXPECT_LE(seen[i].cavity.radius_mm, kRange.max_radius_mm);
     EXPECT_LE(seen[i].cavity.depth_mm, kRange.max_depth_mm);
@@ -51,19 +60,25 @@ TEST(CavitySearch, LooksAtNothingTwiceAndAtNothingBeyondTheRange) {
 }
 
 TEST(CavitySearch, KeepsAFlatBaseThatIsTheBest) {
-  const CavityTrial found = search_cavity(kRange, [](const CavityTrial& t) -> std::optional<double> {
-    return 0.1 + t.cavity.depth_mm + std::abs(t.distance - 1.3);
-  });
+  const CavityTrial found = search_cavity(
+      kRange,
+      [](const CavityTrial& t) -> std::optional<double> {
+        return 0.1 + t.cavity.depth_mm + std::abs(t.distance - 1.3);
+      },
+      kTrials);
   EXPECT_EQ(found.cavity.depth_mm, 0.0);
   EXPECT_NEAR(found.distance, 1.3, 0.1);
 }
 
 TEST(CavitySearch, EndsWhereNothingIsToFollow) {
   int asked = 0;
-  const CavityTrial found = search_cavity(kRange, [&](const CavityTrial& t) -> std::optional<double> {
-    if (++asked > 3) return std::nullopt;
-    return asked == 2 ? 0.5 : std::numeric_limits<double>::infinity() - t.distance;
-  });
+  const CavityTrial found = search_cavity(
+      kRange,
+      [&](const CavityTrial& t) -> std::optional<double> {
+        if (++asked > 3) return std::nullopt;
+        return asked == 2 ? 0.5 : std::numeric_limits<double>::infinity() - t.distance;
+      },
+      kTrials);
   EXPECT_EQ(asked, 4);
   EXPECT_EQ(found.cost, 0.5);
 }

@@ -28,7 +28,7 @@ class BaseChoice {
  public:
   BaseChoice(const LensProblem& problem, const LensFitOptions& options, const LensFitWatcher& watch)
       : problem_(problem),
-        seed_(options.seed),
+        options_(options),
         watch_(watch),
         flux_reference_(FaceSearch(problem, options).flux_reference()),
         outline_(problem.start) {}
@@ -37,14 +37,15 @@ class BaseChoice {
   void run() {
     static_cast<void>(cost(problem_.start, 1.0));
     const CavityRange range = cavity_range(problem_.start, problem_.limits);
-    const CavityTrial best = search_cavity(range, [&](const CavityTrial& trial) -> std::optional<double> {
+    const auto judged = [&](const CavityTrial& trial) -> std::optional<double> {
       if (ended_) return std::nullopt;
       try {
         return cost(with_cavity(problem_.start, trial.cavity), trial.distance);
       } catch (const InputError&) {  // no lens
         return std::numeric_limits<double>::infinity();
       }
-    });
+    };
+    const CavityTrial best = search_cavity(range, judged, options_.cavity_trials);
     if (best.cost <= least_) cavity_ = best.cavity;
   }
 
@@ -63,7 +64,7 @@ class BaseChoice {
   double cost(const LensShape& outline, double distance) {
     LensProblem rough = with_start(problem_, outline);
     rough.free_face->intervals = rough.free_face->max_intervals = kBaseIntervals;
-    FaceSearch search(std::move(rough), {seed_, kBaseRays}, flux_reference_, std::nullopt);
+    FaceSearch search(std::move(rough), {options_.seed, kBaseRays}, flux_reference_, std::nullopt);
     const auto found = search.rough(distance);
     if (!found) return std::numeric_limits<double>::infinity();
     evaluations_ += found->record.evaluations;
@@ -78,7 +79,7 @@ class BaseChoice {
   }
 
   const LensProblem& problem_;
-  std::uint64_t seed_;
+  const LensFitOptions& options_;
   const LensFitWatcher& watch_;
   double flux_reference_;
   double least_ = std::numeric_limits<double>::infinity();

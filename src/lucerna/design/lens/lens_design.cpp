@@ -21,6 +21,8 @@ namespace {
 /// Rays that the given lens is validated with, at most, and the share of the time that validation may take.
 constexpr std::uint64_t kGivenRays = std::uint64_t{1} << 20;
 constexpr double kValidationShare = 0.15;
+/// Cavities that are compared, by the time: a trial takes about a second.
+constexpr double kTrialsPerSecond = 0.4, kMinTrials = 10.0, kMaxTrials = 24.0;
 
 /// Against the target, as often as it is asked for.
 class LensCheck {
@@ -107,7 +109,9 @@ LensResult design_lens(const LensProblem& problem, const LensOptions& options, P
     last_s = now;
     return !progress.stop_requested() && now + step_s + after_s < time_s;
   };
-  LensFitResult fit = fitted(problem, {options.seed, options.max_rays}, watch);
+  const double trials = std::clamp(kTrialsPerSecond * time_s, kMinTrials, kMaxTrials);
+  LensFitResult fit =
+      fitted(problem, {options.seed, options.max_rays, static_cast<std::size_t>(trials)}, watch);
   LensResult result(fit.lens);
   result.end = progress.stop_requested() ? DesignTermination::interrupted : fit.end;
   result.evaluations = fit.evaluations;

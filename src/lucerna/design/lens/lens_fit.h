@@ -21,6 +21,8 @@ struct LensFitOptions {
   std::uint64_t seed = 1;
   /// Rays of the finest evaluations, at most.
   std::uint64_t max_rays = std::uint64_t{1} << 22;
+  /// Cavities that are compared where the entry is free, at most.
+  std::size_t cavity_trials = 24;
 };
 
 /// What a fit came to.

@@ -266,7 +266,7 @@ const FreeFormSnapshot* FreeFormSearch::next_promotion() const {
     return state_.begun >= few && best_of(1) == nullptr ? rough : nullptr;
   }
   const bool hopeful = rough != nullptr && rough->cost < kHopeless * best_of(0)->cost;
-  if (hopeful && count(1) < (near ? 1 : kFine)) return rough;
+  if (hopeful && count(1) < (near || problem_.start_is_chosen ? 1 : kFine)) return rough;
   const FreeFormSnapshot* fine = best_waiting(1);
   const FreeFormSnapshot* end = best_of(kEnd);
   if (end == nullptr) return fine;
