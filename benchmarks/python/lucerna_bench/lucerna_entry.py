@@ -17,6 +17,8 @@ from .tasks import Task
 TROUGH_LENGTH_MM = 400.0
 # Large beside the source, so that its size does not matter.
 COLLECTOR_RADIUS_MM = 50.0
+# The others' sources are small and their light is within 60 degrees: a search for a cavity takes its time from the face.
+FAMILIES_WITH_CAVITY = ("LB-3", "LB-4")
 # Of LB-2 only the light counts.
 LIGHT_WEIGHT_OF_COLLECTOR = 100
 # Beside the project and its target, which are there before.
@@ -142,9 +144,11 @@ def _plane_target(task, folder, place, cells=250, widened=1.25):
 
 
 def _lens_design(task, kind):
-    """Of a lens of revolution 16 pieces of its face move; a free form chooses its knots, and a cavity in the bottom."""
-    shape = 'free_sides = [0, 2]\nfamily = "bspline"\n' if kind == "free-lens" else "free_sides = 2\nintervals = 16\n"
-    return (f"[design]\n{shape}[design.limits]\n"
+    """Of a lens of revolution 16 pieces of its face move. A free form chooses its knots; where the source is wide beside
+    the lens, or the light wide beside what comes through a flat bottom, it chooses a cavity there, too."""
+    sides = "[0, 2]" if kind == "free-lens" and task.family in FAMILIES_WITH_CAVITY else "2"
+    shape = 'family = "bspline"\n' if kind == "free-lens" else "intervals = 16\n"
+    return (f"[design]\nfree_sides = {sides}\n{shape}[design.limits]\n"
             f"max_diameter_mm = {2 * task.room.half_mm - MARGIN_MM}\n"
             f"max_height_mm = {task.room.high_mm - task.room.low_mm - 2 * MARGIN_MM}\nmin_thickness_mm = 0.5\n")
 
