@@ -42,10 +42,11 @@ std::vector<OutlineSide> LensCurves::make_sides(const LensShape& shape) {
   const double tolerance_mm = kSideTolerance * outline_reach_mm(shape.corners());
   std::vector<OutlineSide> sides;
   std::vector<int> number_of_edge(form.corners.size(), -1);
-  for (const LensFace& face : form.faces) {
+  for (std::size_t face_number = 0; face_number < form.faces.size(); ++face_number) {
+    const LensFace& face = form.faces[face_number];
     const std::size_t first = pieces_.size();
     for (const OutlinePiece<double>& curve : run_curve(shape.corners(), face.run)) {
-      LensPiece piece{curve};
+      LensPiece piece{curve, face_number};
       if (face.is_free) {
         piece.first_number = static_cast<int>(numbers_);
         numbers_ += kPieceNumbers;

@@ -17,6 +17,8 @@ inline constexpr int kPieceNumbers = 8;
 /// A piece of a lens's surface as rays meet it.
 struct LensPiece {
   OutlinePiece<double> curve;
+  /// Number of its face.
+  std::size_t face = 0;
   /// Of its numbers in the derivatives, or -1 where no parameter changes it.
   int first_number = -1;
   /// The piece begins (ends) at an edge to another face.

@@ -164,6 +164,38 @@ TEST(LensStart, PointSourceMakesItsTarget) {
   EXPECT_LT(best, 0.15);
 }
 
+// Even light on a plane within 50 degrees, from a wide disk: behind a flat base no start comes near it.
+TEST(LensStart, AFreeEntryIsDomed) {
+  std::string text = kLens;
+  text.replace(text.find("radius_mm = 0.5"), 15, "radius_mm = 2");
+  text.replace(text.find("[[0, 3], [9, 3], [9, 5], [6, 7.6], [3, 9.1], [0, 9.6]]"), 54,
+               "[[0, 0.1], [9, 0.1], [9, 2.1], [6, 4.7], [3, 6.2], [0, 6.7]]");
+  const std::string both = std::string(text).replace(text.find("free_sides = 2"), 14, "free_sides = [0, 2]");
+  const auto wide = std::make_shared<IntensityDistribution>(*beam_up(50.0));
+  for (std::size_t g = 0; g < wide->cd.size(); ++g) {
+    const double off = radians(180.0 - wide->gamma_deg[g]);
+    wide->cd[g] = off < radians(50.0) ? std::pow(std::cos(off), -3.0) : 0.0;
+  }
+  const auto best_of = [&](const std::string& project) {
+    const LensProblem problem =
+        lens_problem(parse_project(project, "lens.toml", memory_of(wide)), "lens.toml");
+    DesignRays rays(problem.project.scene.sources, problem.world_from_lens.inverse(), 3);
+    rays.grow(1 << 16);
+    const auto flux = target_flux(problem.target, problem.world_from_lens, rays.flux());
+    const TentBins bins = rebinned(lens_window(problem), 1.0, 24);
+    LensEvaluationOptions plain;
+    plain.derivatives = false;
+    double best = 1e9;
+    for (const LensShape& s : zero_etendue_lenses(problem.start, problem.medium, rays, flux)) {
+      EXPECT_TRUE(s.is_valid());
+      const Evaluation e = evaluate_lens(s, problem.medium, rays, bins, plain);
+      best = std::min(best, bin_error(e, flux(bins), bins, TargetMode::shape).relative_rms);
+    }
+    return best;
+  };
+  EXPECT_LT(best_of(both), 0.8 * best_of(text));
+}
+
 TEST(LensProblem, RingsAreHalfAsWideAsTheBoxesOfTheError) {
   const auto rings = [](double half_width_deg) {
     return lens_window(problem_of("", memory_of(beam_up(half_width_deg))));

@@ -2,6 +2,7 @@
 #include "lucerna/design/lens/lens_start.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -15,6 +16,9 @@ namespace {
 
 constexpr int kRings = 360, kMeridianSteps = 2000;
 constexpr std::uint64_t kPointRays = std::uint64_t{1} << 15;
+/// Heights of domes that an entry begins with, over the lens's radius; flat ones do not bend light enough
+/// where it is wide, or its source.
+constexpr std::array<double, 4> kDomes{0.0, 0.12, 0.25, 0.4};
 
 /// A ray of the half plane where it meets the free face from within: r and z of its last point and of its
 /// direction, and of the face.
@@ -23,10 +27,11 @@ struct MeridianRay {
   OutlinePoint from{}, along{}, face{};
 };
 
-/// The rays from the point on the axis that meet the free face first of all free ones, from the axis on.
-std::vector<MeridianRay> meridian_rays(const LensShape& start, const MediumView& medium,
+/// The rays from the point on the axis that meet a face from within, straight through the others, from the
+/// axis on.
+std::vector<MeridianRay> meridian_rays(const LensShape& lens, std::size_t face, const MediumView& medium,
                                        const PointSource& source) {
-  const LensCurves curves(start);
+  const LensCurves curves(lens);
   const LensTracer tracer(curves, medium);
   std::vector<double> light(kMeridianSteps + 1, 0.0);
   for (const DirectedFlux& l : source.light) {
@@ -42,17 +47,17 @@ std::vector<MeridianRay> meridian_rays(const LensShape& start, const MediumView&
     tracer.follow({0.0, 0.0, source.at_mm.z}, {std::sin(theta), 0.0, std::cos(theta)}, kNoGhost, path);
     double passed = 1.0;
     int k = 0;
-    const auto is_free = [&](const LensHit& h) {
-      return curves.pieces()[static_cast<std::size_t>(h.piece)].first_number >= 0;
+    const auto is_on_face = [&](const LensHit& h) {
+      return curves.pieces()[static_cast<std::size_t>(h.piece)].face == face;
     };
     // Light that a wall has reflected comes from elsewhere.
-    while (k < path.hits && !is_free(path.hit[static_cast<std::size_t>(k)]) &&
+    while (k < path.hits && !is_on_face(path.hit[static_cast<std::size_t>(k)]) &&
            !path.hit[static_cast<std::size_t>(k)].reflected) {
       const LensHit& h = path.hit[static_cast<std::size_t>(k++)];
       passed *= 0.5 * (h.s + h.p);
     }
     if (k == path.hits || !path.hit[static_cast<std::size_t>(k)].inside ||
-        !is_free(path.hit[static_cast<std::size_t>(k)]))
+        !is_on_face(path.hit[static_cast<std::size_t>(k)]))
       break;
     const LensHit& hit = path.hit[static_cast<std::size_t>(k)];
     const Vec3 from = hit.point - hit.t * hit.d;
@@ -129,17 +134,74 @@ std::optional<double> way_to_curve(const std::vector<OutlinePoint>& curve, const
   return best;
 }
 
-/// The start with its free corners on the curve.
-std::optional<LensShape> through_points(const LensShape& start, const std::vector<OutlinePoint>& curve) {
-  Eigen::VectorXd p = start.parameters();
-  for (const CornerMove& m : start.form().moves) {
-    const auto x = way_to_curve(curve, start.form().corners[m.corner], m.direction);
-    if (!x || std::abs(*x) > start.radius_mm()) return std::nullopt;
+bool has_corner(const LensForm& form, const LensFace& face, std::size_t corner) {
+  for (std::size_t i = face.run.from; i <= face.run.to; ++i) {
+    if (corner_number(form, i) == corner) return true;
+  }
+  return false;
+}
+
+/// The lens with the free corners of a face on the curve.
+std::optional<LensShape> through_points(const LensShape& lens, const LensFace& face,
+                                        const std::vector<OutlinePoint>& curve) {
+  const LensForm& form = lens.form();
+  Eigen::VectorXd p = lens.parameters();
+  for (const CornerMove& m : form.moves) {
+    if (!has_corner(form, face, m.corner)) continue;
+    const auto x = way_to_curve(curve, form.corners[m.corner], m.direction);
+    if (!x || std::abs(*x) > lens.radius_mm()) return std::nullopt;
     p[static_cast<Eigen::Index>(m.parameter)] = *x;
   }
-  LensShape shape = start.with(p);
+  LensShape shape = lens.with(std::move(p));
   if (!shape.is_valid()) return std::nullopt;
   return shape;
+}
+
+/// The number of the free face that ends on the axis above, or that begins on it below.
+std::optional<std::size_t> free_face_on_axis(const LensForm& form, bool above) {
+  for (std::size_t i = 0; i < form.faces.size(); ++i) {
+    const OutlineRun& run = form.faces[i].run;
+    if (form.faces[i].is_free && form.corners[corner_number(form, above ? run.to : run.from)][0] == 0.0)
+      return i;
+  }
+  return std::nullopt;
+}
+
+/// What solutions are sought for.
+struct PointProblem {
+  const MediumView& medium;
+  PointSource source;
+  PrescribedAngle angle;
+};
+
+/// The lens with the four solutions in the place of a face.
+std::vector<LensShape> solutions(const LensShape& lens, std::size_t face, const PointProblem& problem) {
+  std::vector<LensShape> out;
+  const auto meridian = meridian_rays(lens, face, problem.medium, problem.source);
+  if (meridian.size() < 16 || !(meridian.back().flux > 0.0)) return out;
+  for (const bool from_axis : {true, false}) {
+    for (const double side : {1.0, -1.0}) {
+      const auto points = face_points(meridian, problem.angle, problem.medium.index, side, from_axis);
+      if (points.empty()) continue;
+      if (auto shape = through_points(lens, lens.form().faces[face], points))
+        out.push_back(std::move(*shape));
+    }
+  }
+  return out;
+}
+
+/// The start with its entry risen as a paraboloid by `depth_mm` on the axis, and the other face with it.
+LensShape domed(const LensShape& start, const LensFace& entry, double depth_mm) {
+  const LensForm& form = start.form();
+  const std::size_t rim = corner_number(form, entry.run.to);
+  Eigen::VectorXd p = start.parameters();
+  for (const CornerMove& m : form.moves) {
+    const double radius = has_corner(form, entry, m.corner) ? form.corners[rim][0] : start.radius_mm();
+    const double x = form.corners[m.corner][0] / radius;
+    if (!(x < 1.0)) continue;
+    p[static_cast<Eigen::Index>(m.parameter)] += depth_mm * (1.0 - x * x) * m.direction[1];
+  }
+  return start.with(std::move(p));
 }
 
 }  // namespace
@@ -147,18 +209,22 @@ std::optional<LensShape> through_points(const LensShape& start, const std::vecto
 std::vector<LensShape> zero_etendue_lenses(const LensShape& start, const MediumView& medium,
                                            const DesignRays& rays,
                                            const std::function<Eigen::VectorXd(const TentBins&)>& flux) {
+  const LensForm& form = start.form();
+  const auto free =
+      std::count_if(form.faces.begin(), form.faces.end(), [](const LensFace& f) { return f.is_free; });
+  const PointProblem problem{medium, point_source(rays, kPointRays), PrescribedAngle(flux)};
+  if (free == 1) {
+    const auto face =
+        std::find_if(form.faces.begin(), form.faces.end(), [](const LensFace& f) { return f.is_free; });
+    return solutions(start, static_cast<std::size_t>(face - form.faces.begin()), problem);
+  }
   std::vector<LensShape> out;
-  const auto& faces = start.form().faces;
-  if (std::count_if(faces.begin(), faces.end(), [](const LensFace& f) { return f.is_free; }) != 1) return out;
-  const auto meridian = meridian_rays(start, medium, point_source(rays, kPointRays));
-  if (meridian.size() < 16 || !(meridian.back().flux > 0.0)) return out;
-  const PrescribedAngle angle(flux);
-  for (const bool from_axis : {true, false}) {
-    for (const double side : {1.0, -1.0}) {
-      const auto points = face_points(meridian, angle, medium.index, side, from_axis);
-      if (points.empty()) continue;
-      if (auto shape = through_points(start, points)) out.push_back(std::move(*shape));
-    }
+  const auto entry = free_face_on_axis(form, false), last = free_face_on_axis(form, true);
+  if (free != 2 || !entry || !last) return out;
+  for (const double share : kDomes) {
+    const LensShape dome = domed(start, form.faces[*entry], share * start.radius_mm());
+    if (!dome.is_valid()) continue;
+    for (LensShape& s : solutions(dome, *last, problem)) out.push_back(std::move(s));
   }
   return out;
 }

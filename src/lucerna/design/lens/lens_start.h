@@ -13,12 +13,14 @@
 namespace lucerna {
 
 /// Lenses that a point source would need to throw exactly the prescribed light: where a design of one free
-/// face begins, if it is the last that light meets. In the half plane, light that leaves the source at the
-/// angle theta from +z goes out at gamma(theta), where the flux within theta (less what the other faces
-/// reflect) is the share of the prescribed flux within gamma. Snell's law gives the face's normal there, and
-/// its distance follows from the ordinary differential equation that the face is across it. Four solutions:
-/// held at the axis or at the edge, the rays crossing the axis or not; those without a valid shape are left
-/// out. `flux` in any bins of the lens's frame; the source is the point that the first rays pass nearest to.
+/// face begins, if it is the last that light meets; and one of two, where the other is the entry, which
+/// begins on the axis. That is then flat or domed, to several heights. In the half plane, light that leaves
+/// the source at the angle theta from +z goes out at gamma(theta), where the flux within theta (less what the
+/// other faces reflect) is the share of the prescribed flux within gamma. Snell's law gives the face's normal
+/// there, and its distance follows from the ordinary differential equation that the face is across it. Four
+/// solutions: held at the axis or at the edge, the rays crossing the axis or not; those without a valid shape
+/// are left out. `flux` in any bins of the lens's frame; the source is the point that the first rays pass
+/// nearest to.
 std::vector<LensShape> zero_etendue_lenses(const LensShape& start, const MediumView& medium,
                                            const DesignRays& rays,
                                            const std::function<Eigen::VectorXd(const TentBins&)>& flux);
