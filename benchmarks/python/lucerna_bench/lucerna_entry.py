@@ -95,8 +95,8 @@ def _keep_out(task, kind):
 
 
 def _lens(task, wall_mm=2.0, corners=12):
-    """A flat face next to the source, a wall, and a spherical cap whose corners are free: three fifths of the room that
-    is left over the wall."""
+    """A flat face next to the source, a wall, and a spherical cap of some corners: three fifths of the room that is left
+    over the wall."""
     rim, bottom = task.room.half_mm - MARGIN_MM, task.room.low_mm + MARGIN_MM
     cap_mm = round(0.6 * (task.room.high_mm - MARGIN_MM - bottom - wall_mm), 3)
     r = np.linspace(rim, 0.0, corners)
@@ -144,9 +144,9 @@ def _plane_target(task, folder, place, cells=250, widened=1.25):
 
 
 def _lens_design(task, kind):
-    """Of a lens of revolution 16 pieces of its face move. A free form chooses its knots; where the source is wide beside
+    """Of a lens of revolution 16 pieces of both faces move. A free form chooses its knots; where the source is wide beside
     the lens, or the light wide beside what comes through a flat bottom, it chooses a cavity there, too."""
-    sides = "[0, 2]" if kind == "free-lens" and task.family in FAMILIES_WITH_CAVITY else "2"
+    sides = "[0, 2]" if kind == "lens" or task.family in FAMILIES_WITH_CAVITY else "2"
     shape = 'family = "bspline"\n' if kind == "free-lens" else "intervals = 16\n"
     return (f"[design]\nfree_sides = {sides}\n{shape}[design.limits]\n"
             f"max_diameter_mm = {2 * task.room.half_mm - MARGIN_MM}\n"
@@ -260,19 +260,23 @@ def _curve_from_axis(corners):
 
 
 def _lens_surfaces(body):
-    """Bottom, wall and outer face of the outline that `project` gave. Between edges and on the axis Lucerna's face is
-    the cubic spline through the corners over the length of the chords, level on the axis."""
+    """Bottom, wall and outer face of the outline that `project` gave: from the axis out, up the wall and back. Between edges
+    and on the axis Lucerna's faces are cubic splines through the corners over the length of the chords, level on the
+    axis; a face of one side is straight."""
     corners = np.array(body["outline_mm"], float)
-    wall, outer = corners[1:3], corners[2:]
-    if abs(corners[0][0]) > 1e-9 or abs(outer[-1][0]) > 1e-9 or len(outer) < 4:
+    walls = [i for i in range(1, len(corners) - 1) if abs(corners[i, 0] - corners[i + 1, 0]) < 1e-9]
+    ends_on_axis = abs(corners[0][0]) < 1e-9 and abs(corners[-1][0]) < 1e-9
+    if not ends_on_axis or len(walls) != 1 or len(corners) - walls[0] < 5:
         raise ValueError(f"outline_mm: found {corners.tolist()}, expected bottom, wall and an outer face to the axis")
+    bottom, outer = corners[:walls[0] + 1], corners[walls[0] + 1:]
     # From the axis to the rim, as the spline's start is the one with the condition.
     knots, curve = _curve_from_axis(outer[::-1])
-    faces = {"bottom": revolved([0, 0, 1, 1], corners[:2], degree=1), "wall": revolved([0, 0, 1, 1], wall, degree=1),
+    faces = {"bottom": revolved([0, 0, 1, 1], bottom, degree=1) if len(bottom) == 2 else revolved(*_curve_from_axis(bottom)),
+             "wall": revolved([0, 0, 1, 1], corners[walls[0]:walls[0] + 2], degree=1),
              "outer": revolved(knots[-1] - knots[::-1], curve[::-1])}
     parts = [{"name": name, "role": "interface", "bspline": face, "refractive_index": body["refractive_index"]}
              for name, face in faces.items()]
-    return parts, len(outer) - 1
+    return parts, len(outer) - 1 + (len(bottom) if len(bottom) > 2 else 0)
 
 
 def _free_lens_surfaces(body):

@@ -110,18 +110,24 @@ def test_swept_curves_are_round_and_look_to_the_right():
     assert normal[0] > 0.0 and normal[2] < 0.0
 
 
-def lens_body():
+def lens_body(bottom):
     r = np.linspace(8.0, 0.0, 7)
-    outline = [[0.0, 2.0], [8.0, 2.0], *([float(a), 7.0 - a * a / 20.0 + 1e-3 * a**3] for a in r)]
+    outline = [*bottom, *([float(a), 7.0 - a * a / 20.0 + 1e-3 * a**3] for a in r)]
     return outline, f'[[body]]\nrole = "solid"\nrefractive_index = 1.5\nsmooth_below_deg = 25\noutline_mm = {outline}\n'
 
 
-def test_lens_is_the_one_that_lucerna_traces(scorer, lucerna, tmp_path):
-    outline, text = lens_body()
+FLAT = [[0.0, 2.0], [8.0, 2.0]]
+DOME = [[float(r), 3.0 - r * r / 64.0] for r in np.linspace(0.0, 8.0, 6)]
+
+
+@pytest.mark.parametrize("bottom,count", [(FLAT, 6), (DOME, 12)], ids=["flat", "dome"])
+def test_lens_is_the_one_that_lucerna_traces(scorer, lucerna, tmp_path, bottom, count):
+    outline, text = lens_body(bottom)
+    outer = outline[len(bottom):]
     surfaces, free = lucerna_entry.surfaces_of(text, "lens")
-    assert free == 6 and [s["name"] for s in surfaces] == ["bottom", "wall", "outer"]
+    assert free == count and [s["name"] for s in surfaces] == ["bottom", "wall", "outer"]
     curve = np.array(surfaces[2]["bspline"]["points_mm"])[0][:, [0, 2]]
-    assert np.allclose(curve[0], outline[2]) and np.allclose(curve[-1], outline[-1])
+    assert np.allclose(curve[0], outer[0]) and np.allclose(curve[-1], outer[-1])
     glass = {"roles": ["interface"], "interface": {"model": "fresnel", "refractive_index": [1.5, 1.5],
                                                    "absorption_per_mm": 0.0}}
     ours, _, found = boxes_of(scorer, tmp_path / "a", disk_task(glass, plane(100, -1, 300)), surfaces)
