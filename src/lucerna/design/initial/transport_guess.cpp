@@ -226,7 +226,7 @@ Outline outline(const PointTransport& transport, const Aperture& aperture, const
       const Vec3 at = source + (scale * transport.radius(d)) * d.vec();
       const double r = std::hypot(at.x, at.y);
       if (r <= r_before) break;  // it turns back inwards
-      const bool beyond = theta > lit && !out.points.empty();
+      const bool beyond = face != nullptr && theta > lit && !out.points.empty();
       if (beyond && std::abs(at.z - out.points.back().z_mm) > face->steepest * (r - r_before)) break;
       const double per = (theta - theta_before) / (r - r_before);
       if (r_before < hole && r >= hole) out.hole = theta_before + (hole - r_before) * per;

@@ -12,8 +12,8 @@ namespace lucerna {
 
 namespace {
 
-/// A cavity leaves so much of the base's radius, and of the height above it.
-constexpr double kMaxRadiusShare = 0.95, kMaxDepthShare = 0.8;
+/// A cavity leaves so much of the base's radius, and comes to so much of the height above it.
+constexpr double kRingShare = 0.05, kMaxDepthShare = 0.8;
 /// Between a cavity and a face that is lifted for it, over the wall's radius.
 constexpr double kGap = 0.05;
 /// Points of the free face that are lifted, at least.
@@ -68,34 +68,60 @@ LensParts parts_of(const LensShape& lens) {
   return out;
 }
 
-double cavity_height_mm(const Cavity& c, double r_mm) {
-  const double x = c.radius_mm > 0.0 ? r_mm / c.radius_mm : 1.0;
-  return x < 1.0 ? c.depth_mm * std::sqrt(1.0 - x * x) : 0.0;
-}
-
-/// From the axis to the rim, at equal turns of the tangent.
-std::vector<OutlinePoint> cavity_corners(const Cavity& c, double base_mm, double smooth_below_deg) {
-  if (!(c.depth_mm > 0.0)) return {{0.0, base_mm}};
-  const int n =
-      std::clamp(static_cast<int>(std::ceil(90.0 / (kTurnShare * smooth_below_deg))), kMinPieces, kMaxPieces);
-  std::vector<OutlinePoint> out;
-  for (int i = 0; i < n; ++i) {
-    const double turn = 0.5 * std::numbers::pi * i / n;
-    const double along = std::atan2(c.radius_mm * std::sin(turn), c.depth_mm * std::cos(turn));
-    out.push_back({c.radius_mm * std::sin(along), base_mm + c.depth_mm * std::cos(along)});
+/// The cap of an ellipsoid whose tangent at its rim leaves the axis by the draft.
+class CavityCurve {
+ public:
+  CavityCurve(const Cavity& cavity, double min_draft_deg) : cavity_(cavity) {
+    if (!(cavity.depth_mm > 0.0)) return;
+    // With semi-axes A, B and the eccentric angle e of the rim: radius = A sin e, depth = B (1 - cos e), and
+    // the tangent of the slope there is (B / A) tan e.
+    const double flatness = cavity.radius_mm / (cavity.depth_mm * std::tan(radians(min_draft_deg)));
+    if (!(flatness > 2.0)) {
+      throw InputError(
+          fmt::format("a cavity of radius {:.4g} mm is {:.4g} mm deep: expected a flatter one for a "
+                      "draft of {} degrees",
+                      cavity.radius_mm, cavity.depth_mm, min_draft_deg));
+    }
+    rim_ = std::acos(1.0 / (flatness - 1.0));
+    across_mm_ = cavity.radius_mm / std::sin(rim_);
+    up_mm_ = cavity.depth_mm / (1.0 - std::cos(rim_));
   }
-  out.push_back({c.radius_mm, base_mm});
-  return out;
-}
+
+  double height_mm(double r_mm) const {
+    if (!(r_mm < cavity_.radius_mm)) return 0.0;
+    const double x = r_mm / across_mm_;
+    return up_mm_ * (std::sqrt(1.0 - x * x) - std::cos(rim_));
+  }
+
+  /// From the axis to the rim, at equal turns of the tangent, over a base.
+  std::vector<OutlinePoint> corners(double base_mm, double smooth_below_deg) const {
+    if (!(cavity_.depth_mm > 0.0)) return {{0.0, base_mm}};
+    const int n = std::clamp(static_cast<int>(std::ceil(90.0 / (kTurnShare * smooth_below_deg))), kMinPieces,
+                             kMaxPieces);
+    const double turn_of_rim = std::atan2(up_mm_ * std::sin(rim_), across_mm_ * std::cos(rim_));
+    std::vector<OutlinePoint> out;
+    for (int i = 0; i < n; ++i) {
+      const double turn = turn_of_rim * i / n;
+      const double e = std::atan2(across_mm_ * std::sin(turn), up_mm_ * std::cos(turn));
+      out.push_back({across_mm_ * std::sin(e), base_mm + up_mm_ * (std::cos(e) - std::cos(rim_))});
+    }
+    out.push_back({cavity_.radius_mm, base_mm});
+    return out;
+  }
+
+ private:
+  Cavity cavity_;
+  double rim_ = 0.0, across_mm_ = 1.0, up_mm_ = 0.0;
+};
 
 /// By how much of a paraboloid a face has to be lifted to clear a cavity.
-double lift_mm(const LensParts& parts, const Cavity& c) {
+double lift_mm(const LensParts& parts, const CavityCurve& cavity) {
   const double radius = parts.wall_radius_mm();
   double lift = 0.0;
   for (const OutlinePoint& p : parts.face) {
     const double x = p[0] / radius, room = 1.0 - x * x;
     if (!(room > 0.0)) continue;
-    const double least = parts.base_mm() + cavity_height_mm(c, p[0]) + kGap * radius * room;
+    const double least = parts.base_mm() + cavity.height_mm(p[0]) + kGap * radius * room;
     lift = std::max(lift, (least - p[1]) / room);
   }
   return lift;
@@ -112,18 +138,20 @@ CavityRange cavity_range(const LensShape& lens, const LensLimits& limits) {
   }
   const double room = limits.max_height_mm ? lowest + *limits.max_height_mm - parts.base_mm()
                                            : std::max(highest - parts.base_mm(), parts.wall_radius_mm());
-  return {kMaxRadiusShare * parts.base_radius_mm(), kMaxDepthShare * room};
+  const double ring = std::max(kRingShare * parts.base_radius_mm(), limits.min_thickness_mm.value_or(0.0));
+  return {parts.base_radius_mm() - ring, kMaxDepthShare * room};
 }
 
-LensShape with_cavity(const LensShape& lens, const Cavity& cavity) {
+LensShape with_cavity(const LensShape& lens, const Cavity& cavity, double min_draft_deg) {
   const LensParts parts = parts_of(lens);
-  std::vector<OutlinePoint> corners = cavity_corners(cavity, parts.base_mm(), lens.smooth_below_deg());
+  const CavityCurve curve(cavity, min_draft_deg);
+  std::vector<OutlinePoint> corners = curve.corners(parts.base_mm(), lens.smooth_below_deg());
   const double rim = corners.back()[0];
   for (std::size_t i = parts.entry_end; i < parts.below.size(); ++i) {
     if (parts.below[i][0] > rim) corners.push_back(parts.below[i]);
   }
   const std::size_t free_side = corners.size() - 1;
-  const double lift = lift_mm(parts, cavity), radius = parts.wall_radius_mm();
+  const double lift = lift_mm(parts, curve), radius = parts.wall_radius_mm();
   for (std::size_t i = 1; i < parts.face.size(); ++i) {
     const double x = parts.face[i][0] / radius;
     corners.push_back({parts.face[i][0], parts.face[i][1] + lift * (1.0 - x * x)});

@@ -5,10 +5,10 @@
 
 namespace lucerna {
 
-// The face by which light comes into a lens whose last face is a free form, as a cavity: half an ellipsoid of
-// revolution, from the plane of the base up.
+// The face by which light comes into a lens whose last face is a free form, as a cavity: an ellipsoid of
+// revolution from the plane of the base up, its upper half or, with a draft, a cap of it.
 
-/// A cavity by its semi-axes; without depth the base is flat.
+/// A cavity by its radius and depth; without depth the base is flat.
 struct Cavity {
   double radius_mm = 0.0, depth_mm = 0.0;
 };
@@ -23,7 +23,7 @@ struct CavityRange {
 CavityRange cavity_range(const LensShape& lens, const LensLimits& limits);
 
 /// The lens with a cavity in the place of the face opposite to its free face, which is lifted where the
-/// cavity would cut it. Throws InputError for one that does not fit.
-LensShape with_cavity(const LensShape& lens, const Cavity& cavity);
+/// cavity would cut it. Throws InputError for one that does not fit, or is too deep for its draft.
+LensShape with_cavity(const LensShape& lens, const Cavity& cavity, double min_draft_deg = 0.0);
 
 }  // namespace lucerna

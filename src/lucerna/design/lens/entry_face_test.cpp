@@ -74,6 +74,25 @@ TEST(EntryFace, AHemisphereAboutTheSourceBendsNothing) {
   EXPECT_NEAR(bent.direction.x(), 0.4, 1e-9);
 }
 
+/// The angle between the side of a cavity at its rim and the axis.
+double draft_deg(const LensShape& lens, const Cavity& c) {
+  const FaceSeat seat = face_seat(lens);
+  const double r = 0.98 * c.radius_mm, d = 0.01 * c.radius_mm;
+  return degrees(std::atan2(d, seat.height_mm(r) - seat.height_mm(r + d)));
+}
+
+TEST(EntryFace, HasADraft) {
+  const Cavity c{5.0, 3.0};
+  const LensShape upright = with_cavity(flat_lens(), c), drafted = with_cavity(flat_lens(), c, 25.0);
+  EXPECT_LT(draft_deg(upright, c), 20.0);
+  EXPECT_GT(draft_deg(drafted, c), 25.0);
+  EXPECT_LT(draft_deg(drafted, c), 32.0);
+  EXPECT_NEAR(face_seat(drafted).height_mm(0.0), 4.0, 1e-9) << "as deep as without";
+  EXPECT_EQ(face_seat(drafted).height_mm(5.5), 1.0);
+  EXPECT_THROW(static_cast<void>(with_cavity(flat_lens(), {3.0, 6.0}, 15.0)), InputError)
+      << "no ellipsoid so deep has that draft";
+}
+
 TEST(EntryFace, FitsWithinTheBaseAndTheHeight) {
   const CavityRange free = cavity_range(flat_lens(), {});
   EXPECT_NEAR(free.max_radius_mm, 0.95 * 12.0, 1e-12);
@@ -81,6 +100,9 @@ TEST(EntryFace, FitsWithinTheBaseAndTheHeight) {
   LensLimits limits;
   limits.max_height_mm = 10.0;
   EXPECT_NEAR(cavity_range(flat_lens(), limits).max_depth_mm, 8.0, 1e-12);
+  LensLimits thick;
+  thick.min_thickness_mm = 2.0;
+  EXPECT_NEAR(cavity_range(flat_lens(), thick).max_radius_mm, 10.0, 1e-12) << "of the ring about it";
   // A cavity that is there, with a flat base about it.
   const CavityRange again = cavity_range(with_cavity(flat_lens(), {4.0, 4.0}), limits);
   EXPECT_NEAR(again.max_radius_mm, free.max_radius_mm, 1e-12);

@@ -21,7 +21,7 @@ constexpr StartLight kRoughLight{std::uint64_t{1} << 15, 28, 20, 3};
 constexpr int kRoughBins = 40, kRoughSteps = 3;
 
 /// Share of the source's flux that is within the medium.
-double share_within(const DesignRays& rays, std::uint64_t count) {
+double flux_within(const DesignRays& rays, std::uint64_t count) {
   double within = 0.0, n = 0.0;
   for (std::uint64_t b = 0; b < count / kBlockRays; ++b) {
     for (const float w : rays.block(b).weight) within += static_cast<double>(w);
@@ -42,10 +42,10 @@ DesignShape with_heights_of(const DesignShape& given, const std::optional<Design
 
 }  // namespace
 
-FaceSearch::FaceSearch(LensProblem problem, const LensFitOptions& options)
+FaceSearch::FaceSearch(const LensProblem& problem, const LensFitOptions& options)
     : FaceSearch(problem, options, std::nullopt, given_face(problem), false) {}
 
-FaceSearch::FaceSearch(LensProblem problem, const LensFitOptions& options, double flux_reference,
+FaceSearch::FaceSearch(const LensProblem& problem, const LensFitOptions& options, double flux_reference,
                        const std::optional<DesignShape>& begin)
     : FaceSearch(problem, options, flux_reference, with_heights_of(given_face(problem), begin), true) {}
 
@@ -64,7 +64,7 @@ FaceSearch::FaceSearch(LensProblem problem, const LensFitOptions& options,
 double FaceSearch::entered() {
   rays_.refract(problem_.medium, into_lens(problem_.start, problem_.medium));
   rays_.grow(kLightRays);
-  return share_within(rays_, kLightRays);
+  return flux_within(rays_, kLightRays);
 }
 
 FitProblem FaceSearch::fit_problem(std::optional<double> flux_reference, bool is_chosen) {

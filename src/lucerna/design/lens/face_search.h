@@ -14,10 +14,10 @@ namespace lucerna {
 class FaceSearch {
  public:
   /// Begins with the face of `problem.start`.
-  FaceSearch(LensProblem problem, const LensFitOptions& options);
+  FaceSearch(const LensProblem& problem, const LensFitOptions& options);
   /// Begins with a face that was chosen among others. `flux_reference`: that of the search whose costs are
   /// compared with this one's.
-  FaceSearch(LensProblem problem, const LensFitOptions& options, double flux_reference,
+  FaceSearch(const LensProblem& problem, const LensFitOptions& options, double flux_reference,
              const std::optional<DesignShape>& begin);
   FaceSearch(const FaceSearch&) = delete;
   FaceSearch& operator=(const FaceSearch&) = delete;

@@ -8,6 +8,7 @@
 #include "lucerna/core/io/error.h"
 #include "lucerna/design/lens/cavity_search.h"
 #include "lucerna/design/lens/face_search.h"
+#include "lucerna/design/lens/lens_evaluation.h"
 
 namespace lucerna {
 
@@ -16,6 +17,8 @@ namespace {
 /// A base is judged by faces of so many knots, and rays.
 constexpr int kBaseIntervals = 16;
 constexpr std::uint64_t kBaseRays = std::uint64_t{1} << 15;
+/// That tell where the source is.
+constexpr std::uint64_t kBaseSourceRays = std::uint64_t{1} << 12;
 
 LensProblem with_start(const LensProblem& problem, LensShape start) {
   LensProblem out = problem;
@@ -31,7 +34,10 @@ class BaseChoice {
         options_(options),
         watch_(watch),
         flux_reference_(FaceSearch(problem, options).flux_reference()),
-        outline_(problem.start) {}
+        source_(problem.project.scene.sources, problem.world_from_lens.inverse(), options.seed),
+        outline_(problem.start) {
+    source_.grow(kBaseSourceRays);
+  }
 
   /// Looks at the given base and at cavities in its place.
   void run() {
@@ -40,7 +46,8 @@ class BaseChoice {
     const auto judged = [&](const CavityTrial& trial) -> std::optional<double> {
       if (ended_) return std::nullopt;
       try {
-        return cost(with_cavity(problem_.start, trial.cavity), trial.distance);
+        const double draft_deg = problem_.limits.min_draft_deg.value_or(0.0);
+        return cost(with_cavity(problem_.start, trial.cavity, draft_deg), trial.distance);
       } catch (const InputError&) {  // no lens
         return std::numeric_limits<double>::infinity();
       }
@@ -62,9 +69,13 @@ class BaseChoice {
 
  private:
   double cost(const LensShape& outline, double distance) {
+    // A base that takes the source into the medium is none.
+    if (share_within(outline, source_, kBaseSourceRays) >
+        share_within(problem_.start, source_, kBaseSourceRays))
+      return std::numeric_limits<double>::infinity();
     LensProblem rough = with_start(problem_, outline);
     rough.free_face->intervals = rough.free_face->max_intervals = kBaseIntervals;
-    FaceSearch search(std::move(rough), {options_.seed, kBaseRays}, flux_reference_, std::nullopt);
+    FaceSearch search(rough, {options_.seed, kBaseRays}, flux_reference_, std::nullopt);
     const auto found = search.rough(distance);
     if (!found) return std::numeric_limits<double>::infinity();
     evaluations_ += found->record.evaluations;
@@ -82,6 +93,7 @@ class BaseChoice {
   const LensFitOptions& options_;
   const LensFitWatcher& watch_;
   double flux_reference_;
+  DesignRays source_;
   double least_ = std::numeric_limits<double>::infinity();
   LensShape outline_;
   std::optional<DesignShape> face_;
