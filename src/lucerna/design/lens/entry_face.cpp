@@ -7,6 +7,7 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/design/lens/free_face.h"
+#include "lucerna/design/lens/lens_evaluation.h"
 
 namespace lucerna {
 
@@ -157,6 +158,10 @@ LensShape with_cavity(const LensShape& lens, const Cavity& cavity, double min_dr
     corners.push_back({parts.face[i][0], parts.face[i][1] + lift * (1.0 - x * x)});
   }
   return {corners, lens.smooth_below_deg(), std::vector<std::size_t>{free_side}, 0};
+}
+
+bool takes_source_in(const LensShape& lens, const LensShape& given, const DesignRays& rays) {
+  return share_within(lens, rays, rays.size()) > share_within(given, rays, rays.size());
 }
 
 }  // namespace lucerna

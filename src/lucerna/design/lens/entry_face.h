@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "lucerna/design/evaluation/design_rays.h"
 #include "lucerna/design/lens/lens_limits.h"
 
 namespace lucerna {
@@ -25,5 +26,9 @@ CavityRange cavity_range(const LensShape& lens, const LensLimits& limits);
 /// The lens with a cavity in the place of the face opposite to its free face, which is lifted where the
 /// cavity would cut it. Throws InputError for one that does not fit, or is too deep for its draft.
 LensShape with_cavity(const LensShape& lens, const Cavity& cavity, double min_draft_deg = 0.0);
+
+/// Whether more of the rays (in the lens's frame) begin in the medium than with the given lens: such a base
+/// is none.
+bool takes_source_in(const LensShape& lens, const LensShape& given, const DesignRays& rays);
 
 }  // namespace lucerna

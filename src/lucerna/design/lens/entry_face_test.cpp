@@ -9,6 +9,7 @@
 
 #include "lucerna/design/lens/free_face.h"
 #include "lucerna/error.h"
+#include "lucerna/project.h"
 
 namespace lucerna {
 namespace {
@@ -116,6 +117,25 @@ TEST(EntryFace, SmoothOutlinesHaveMoreCorners) {
   const LensShape fine = with_cavity(flat_lens(5.0), {6.0, 1.0});
   EXPECT_GT(fine.corners().size(), with_cavity(flat_lens(), {6.0, 1.0}).corners().size());
   EXPECT_NEAR(face_seat(fine).height_mm(5.0), 1.0 + ellipse_mm({6.0, 1.0}, 5.0), 1e-3) << "no edges within";
+}
+
+// A disk of 2 mm radius at 1.5 mm, half a millimetre over the plane of the base, within a cavity.
+TEST(EntryFace, MayNotTakeTheSourceIn) {
+  const LensShape given = with_cavity(flat_lens(), {5.0, 5.0});
+  const Project project = parse_project(R"([[source]]
+kind = "disk"
+radius_mm = 2
+position_mm = [0, 0, 1.5]
+)",
+                                        "source.toml");
+  DesignRays rays(project.scene.sources, Frame(), 1);
+  rays.grow(1 << 12);
+  EXPECT_FALSE(takes_source_in(given, given, rays));
+  EXPECT_FALSE(takes_source_in(with_cavity(given, {3.0, 3.0}), given, rays));
+  EXPECT_TRUE(takes_source_in(with_cavity(given, {1.5, 3.0}), given, rays)) << "the disk's rim";
+  EXPECT_TRUE(takes_source_in(with_cavity(given, {}), given, rays));
+  // Where all of the source is in the medium to begin with, it may be.
+  EXPECT_FALSE(takes_source_in(with_cavity(flat_lens(), {0.5, 0.2}), flat_lens(), rays));
 }
 
 }  // namespace

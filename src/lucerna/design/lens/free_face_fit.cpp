@@ -8,7 +8,6 @@
 #include "lucerna/core/io/error.h"
 #include "lucerna/design/lens/cavity_search.h"
 #include "lucerna/design/lens/face_search.h"
-#include "lucerna/design/lens/lens_evaluation.h"
 
 namespace lucerna {
 
@@ -69,10 +68,7 @@ class BaseChoice {
 
  private:
   double cost(const LensShape& outline, double distance) {
-    // A base that takes the source into the medium is none.
-    if (share_within(outline, source_, kBaseSourceRays) >
-        share_within(problem_.start, source_, kBaseSourceRays))
-      return std::numeric_limits<double>::infinity();
+    if (takes_source_in(outline, problem_.start, source_)) return std::numeric_limits<double>::infinity();
     LensProblem rough = with_start(problem_, outline);
     rough.free_face->intervals = rough.free_face->max_intervals = kBaseIntervals;
     FaceSearch search(rough, {options_.seed, kBaseRays}, flux_reference_, std::nullopt);

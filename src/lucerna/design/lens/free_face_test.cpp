@@ -325,22 +325,5 @@ TEST(FreeFaceDesignSlow, ACavityMakesALightWider) {
   EXPECT_NE(wide.remarks.front().find("cavity"), std::string::npos) << wide.remarks.front();
 }
 
-// The source is within the cavity that is given: without it, it would be in the medium.
-TEST(FreeFaceDesignSlow, ABaseThatTakesTheSourceInIsNone) {
-  const std::string text =
-      dome_with(wide_text("free_sides = [0, 3]"), "[[0, 0.1], [9, 0.1]", "[[0, 3], [4, -1], [9, -1]");
-  ProjectMemory memory;
-  memory.targets["beam.ldt"] = oval_up();
-  LensOptions options;
-  options.time_s = 1e6;
-  options.max_rays = 1 << 13;
-  options.validation_rays = 1 << 16;
-  const LensResult found = design_lens(
-      lens_problem(parse_project(dome_with(text, "restarts = 1", "restarts = 0"), "lens.toml", memory),
-                   "lens.toml"),
-      options);
-  EXPECT_GT(face_seat(found.lens.outline).height_mm(0.0), 0.05);
-}
-
 }  // namespace
 }  // namespace lucerna
