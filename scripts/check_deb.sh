@@ -95,7 +95,7 @@ test "$(python3 -m lucerna --version)" = "$(lucerna --version)"
 echo "== the tutorials, block by block"
 $install python3-scipy >install.log 2>&1 || { cat install.log; exit 1; }
 python3 run_tutorial.py tutorials/led-to-model.md tutorials/paraboloid-to-ldt.md tutorials/design-a-floodlight.md \
-  tutorials/as-a-library.md tutorials/python.md
+  tutorials/as-a-library.md tutorials/python.md tutorials/lens-for-a-desk.md
 
 if ls lucerna-mpi_*.deb >found.log 2>&1; then
   echo "== many machines"

@@ -79,6 +79,7 @@ set(lucerna_long_tests
   TutorialsCli.AsALibrary
   TutorialsCli.DesignAFloodlight
   TutorialsCli.LedToModel
+  TutorialsCli.LensForADesk
   TutorialsCli.ParaboloidToLdt
   Wavelengths.GoFromFileThroughModelToFile
   Wavelengths.HangTogetherWithThePlaceWhereTheyDidInTheFile

@@ -80,6 +80,13 @@ TEST(TutorialsCli, DesignAFloodlight) {
   expect_true("design-a-floodlight");
 }
 
+TEST(TutorialsCli, LensForADesk) {
+#ifdef LUCERNA_SANITIZED
+  GTEST_SKIP() << "with a sanitizer the time may be over first";
+#endif
+  expect_true("lens-for-a-desk");
+}
+
 // Compiled against what this build installs, so that nothing but the page and the package is needed.
 TEST(TutorialsCli, AsALibrary) {
 #ifdef LUCERNA_SANITIZED
@@ -105,7 +112,7 @@ TEST(TutorialsCli, NoneIsLeftOut) {
   for (const auto& entry : fs::directory_iterator(source_dir() / "docs" / "tutorials"))
     if (entry.path().extension() == ".md") pages.insert(entry.path().stem().string());
   EXPECT_EQ(pages, (std::set<std::string>{"as-a-library", "design-a-floodlight", "index", "led-to-model",
-                                          "paraboloid-to-ldt", "python"}));
+                                          "lens-for-a-desk", "paraboloid-to-ldt", "python"}));
 }
 
 TEST(TutorialsCli, CheckSeesWhatIsNotPrinted) {
