@@ -283,6 +283,34 @@ TEST(FreeFaceDesign, ComesNearerToAnOvalBeamWithinItsLimits) {
   EXPECT_NEAR(found.efficiency.mean + found.bodies.mean + found.lost.mean, 1.0, 1e-9);
 }
 
+/// Asks to stop after so many steps.
+class StopsAfterSteps final : public Progress {
+ public:
+  explicit StopsAfterSteps(int steps) : left_(steps) {}
+  void update(std::string_view, std::uint64_t, std::uint64_t) override {}
+  bool stop_requested() const override { return left_ <= 0; }
+  void stepped() { --left_; }
+
+ private:
+  int left_;
+};
+
+// Whether it is stopped while cavities are compared or after that, the best so far is a lens.
+TEST(FreeFaceDesign, StopsWhileItComparesCavities) {
+  const LensProblem problem = dome_of_text(dome_with(kDomeText, "free_sides = 3", "free_sides = [0, 3]"));
+  LensOptions options;
+  options.time_s = 1e6;
+  options.max_rays = 1 << 13;
+  options.validation_rays = 1 << 14;
+  StopsAfterSteps progress(2);
+  const LensResult found = design_lens(problem, options, progress,
+                                       [&](const FitRecord&, const ShapedLens&) { progress.stepped(); });
+  EXPECT_EQ(found.end, DesignTermination::interrupted);
+  EXPECT_TRUE(found.history.empty()) << "no step of the search";
+  EXPECT_EQ(found.evaluations, 8) << "two bases, four evaluations each";
+  EXPECT_NO_THROW(check(shaped_solid(problem, found.lens)));
+}
+
 /// A flat lens of 9 mm radius and 6.6 mm height before a disk.
 std::string wide_text(const std::string& sides) {
   return dome_with(dome_with(kDomeText, "free_sides = 3", sides),
