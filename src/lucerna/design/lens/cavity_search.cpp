@@ -19,9 +19,9 @@ constexpr std::array<double, 2> kSteps{1.35, 1.16};
 
 /// Which of radius, depth and distance a step changes.
 struct StepKind {
-  int radius, depth, distance;
+  bool radius, depth, distance;
 };
-constexpr std::array<StepKind, 3> kKinds{{{0, 1, 0}, {0, 0, 1}, {1, 1, 0}}};
+constexpr std::array<StepKind, 3> kKinds{{{false, true, false}, {false, false, true}, {true, true, false}}};
 
 class CavitySearch {
  public:
@@ -56,12 +56,12 @@ class CavitySearch {
   bool has_stepped(double factor) {
     const CavityTrial from = best_;
     for (const StepKind& kind : kKinds) {
-      if (from.cavity.depth_mm == 0.0 && kind.distance == 0) continue;
+      if (from.cavity.depth_mm == 0.0 && !kind.distance) continue;
       for (const double f : {factor, 1.0 / factor}) {
         CavityTrial to = from;
-        if (kind.radius != 0) to.cavity.radius_mm *= f;
-        if (kind.depth != 0) to.cavity.depth_mm *= f;
-        if (kind.distance != 0) to.distance *= f;
+        if (kind.radius) to.cavity.radius_mm *= f;
+        if (kind.depth) to.cavity.depth_mm *= f;
+        if (kind.distance) to.distance *= f;
         look(to);
         if (best_.cost < from.cost) return true;
       }

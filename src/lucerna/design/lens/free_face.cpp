@@ -24,14 +24,10 @@ constexpr double kBaseTolerance_mm = 1e-4;
 constexpr double kUpright = 1e-9;
 
 std::size_t free_face_of(const LensForm& form) {
-  std::size_t found = form.faces.size(), count = 0;
-  for (std::size_t i = 0; i < form.faces.size(); ++i) {
-    if (!form.faces[i].is_free) continue;
-    found = i;
-    ++count;
-  }
-  if (count != 1) throw InputError(fmt::format("found {} free faces, expected one for a free form", count));
-  return found;
+  const std::vector<std::size_t> free = form.free_faces();
+  if (free.size() != 1)
+    throw InputError(fmt::format("found {} free faces, expected one for a free form", free.size()));
+  return free.front();
 }
 
 const OutlinePoint& corner(const LensForm& form, std::size_t i) {

@@ -40,19 +40,18 @@ class BaseChoice {
 
   /// Looks at the given base and at cavities in its place.
   void run() {
-    static_cast<void>(cost(problem_.start, 1.0));
+    static_cast<void>(cost(problem_.start, std::nullopt, 1.0));
     const CavityRange range = cavity_range(problem_.start, problem_.limits);
     const auto judged = [&](const CavityTrial& trial) -> std::optional<double> {
       if (ended_) return std::nullopt;
       try {
         const double draft_deg = problem_.limits.min_draft_deg.value_or(0.0);
-        return cost(with_cavity(problem_.start, trial.cavity, draft_deg), trial.distance);
+        return cost(with_cavity(problem_.start, trial.cavity, draft_deg), trial.cavity, trial.distance);
       } catch (const InputError&) {  // no lens
         return std::numeric_limits<double>::infinity();
       }
     };
-    const CavityTrial best = search_cavity(range, judged, options_.cavity_trials);
-    if (best.cost <= least_) cavity_ = best.cavity;
+    static_cast<void>(search_cavity(range, judged, options_.cavity_trials));
   }
 
   double flux_reference() const { return flux_reference_; }
@@ -67,7 +66,7 @@ class BaseChoice {
   bool has_ended() const { return ended_; }
 
  private:
-  double cost(const LensShape& outline, double distance) {
+  double cost(const LensShape& outline, const std::optional<Cavity>& cavity, double distance) {
     if (takes_source_in(outline, problem_.start, source_)) return std::numeric_limits<double>::infinity();
     LensProblem rough = with_start(problem_, outline);
     rough.free_face->intervals = rough.free_face->max_intervals = kBaseIntervals;
@@ -79,6 +78,7 @@ class BaseChoice {
     if (found->cost < least_) {
       least_ = found->cost;
       outline_ = outline;
+      cavity_ = cavity;
       face_ = found->face;
     }
     ended_ = !watch_(found->record, {outline_, face_});

@@ -121,9 +121,8 @@ FreeSides sorted_sides(const Solid& solid, const std::vector<std::size_t>& sides
   for (const std::size_t side : sides) {
     const LensShape one(solid.outline_mm, solid.smooth_below_deg, std::vector<std::size_t>{side}, 0);
     const LensForm& form = one.form();
-    const auto free =
-        std::find_if(form.faces.begin(), form.faces.end(), [](const LensFace& f) { return f.is_free; });
-    const bool is_entry = form.corners[corner_number(form, free->run.from)][0] == 0.0;
+    const OutlineRun& run = form.faces[form.free_faces().front()].run;
+    const bool is_entry = form.corners[corner_number(form, run.from)][0] == 0.0;
     (is_entry ? out.entry : out.others).push_back(side);
   }
   return out;

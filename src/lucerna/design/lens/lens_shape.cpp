@@ -129,6 +129,14 @@ class FormMaker {
 
 }  // namespace
 
+std::vector<std::size_t> LensForm::free_faces() const {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (faces[i].is_free) out.push_back(i);
+  }
+  return out;
+}
+
 LensShape::LensShape(std::span<const OutlinePoint> outline_mm, double smooth_below_deg,
                      std::span<const std::size_t> free_sides, int intervals) {
   static_cast<void>(outline_sides(outline_mm, smooth_below_deg, kCoarse * outline_reach_mm(outline_mm)));

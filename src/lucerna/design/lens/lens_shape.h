@@ -31,6 +31,9 @@ struct LensForm {
   std::vector<LensFace> faces;
   std::vector<CornerMove> moves;
   std::size_t parameters = 0;
+
+  /// Numbers of the faces that are free.
+  std::vector<std::size_t> free_faces() const;
 };
 
 /// A body of revolution whose faces are shaped: the outline of a `Solid`. Parameters, in mm: each corner

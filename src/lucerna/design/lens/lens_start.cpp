@@ -157,12 +157,20 @@ std::optional<LensShape> through_points(const LensShape& lens, const LensFace& f
   return shape;
 }
 
-/// The number of the free face that ends on the axis above, or that begins on it below.
-std::optional<std::size_t> free_face_on_axis(const LensForm& form, bool above) {
-  for (std::size_t i = 0; i < form.faces.size(); ++i) {
-    const OutlineRun& run = form.faces[i].run;
-    if (form.faces[i].is_free && form.corners[corner_number(form, above ? run.to : run.from)][0] == 0.0)
-      return i;
+/// Of two free faces: the entry, which begins on the axis, and the last, which ends there.
+struct EntryAndLast {
+  std::size_t entry, last;
+};
+
+std::optional<EntryAndLast> entry_and_last(const LensForm& form) {
+  const std::vector<std::size_t> free = form.free_faces();
+  if (free.size() != 2) return std::nullopt;
+  const auto is_on_axis = [&](std::size_t corner) {
+    return form.corners[corner_number(form, corner)][0] == 0.0;
+  };
+  for (const auto& [entry, last] : {EntryAndLast{free[0], free[1]}, EntryAndLast{free[1], free[0]}}) {
+    if (is_on_axis(form.faces[entry].run.from) && is_on_axis(form.faces[last].run.to))
+      return EntryAndLast{entry, last};
   }
   return std::nullopt;
 }
@@ -210,21 +218,15 @@ std::vector<LensShape> zero_etendue_lenses(const LensShape& start, const MediumV
                                            const DesignRays& rays,
                                            const std::function<Eigen::VectorXd(const TentBins&)>& flux) {
   const LensForm& form = start.form();
-  const auto free =
-      std::count_if(form.faces.begin(), form.faces.end(), [](const LensFace& f) { return f.is_free; });
   const PointProblem problem{medium, point_source(rays, kPointRays), PrescribedAngle(flux)};
-  if (free == 1) {
-    const auto face =
-        std::find_if(form.faces.begin(), form.faces.end(), [](const LensFace& f) { return f.is_free; });
-    return solutions(start, static_cast<std::size_t>(face - form.faces.begin()), problem);
-  }
+  if (form.free_faces().size() == 1) return solutions(start, form.free_faces().front(), problem);
   std::vector<LensShape> out;
-  const auto entry = free_face_on_axis(form, false), last = free_face_on_axis(form, true);
-  if (free != 2 || !entry || !last) return out;
+  const auto faces = entry_and_last(form);
+  if (!faces) return out;
   for (const double share : kDomes) {
-    const LensShape dome = domed(start, form.faces[*entry], share * start.radius_mm());
+    const LensShape dome = domed(start, form.faces[faces->entry], share * start.radius_mm());
     if (!dome.is_valid()) continue;
-    for (LensShape& s : solutions(dome, *last, problem)) out.push_back(std::move(s));
+    for (LensShape& s : solutions(dome, faces->last, problem)) out.push_back(std::move(s));
   }
   return out;
 }

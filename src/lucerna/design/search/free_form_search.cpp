@@ -257,16 +257,17 @@ const FreeFormSnapshot* FreeFormSearch::next_promotion() const {
   const FreeFormSnapshot* given = best_of(0);
   const bool near = state_.begun == 1 && given != nullptr && given->cost < kErrorShare[0] * kNear * kNear &&
                     !given_is_stuck();
+  // No others are waited for.
+  const bool decided = near || (problem_.start_is_chosen && state_.begun >= kChosenCandidates);
   const bool alone = approach_is_alone();
   const FreeFormSnapshot* rough = best_waiting(0);
-  const int compared = problem_.start_is_chosen ? kChosenCandidates : kFirstCandidates;
-  if (state_.begun < compared && !near && !alone && best_of(kEnd) == nullptr) {
+  if (state_.begun < kFirstCandidates && !decided && !alone && best_of(kEnd) == nullptr) {
     // The best of a few is fitted finely before the others begin, for a search that has little time.
     const int few = worth_an_approach() ? kApproach + 1 : kApproach;
     return state_.begun >= few && best_of(1) == nullptr ? rough : nullptr;
   }
   const bool hopeful = rough != nullptr && rough->cost < kHopeless * best_of(0)->cost;
-  if (hopeful && count(1) < (near || problem_.start_is_chosen ? 1 : kFine)) return rough;
+  if (hopeful && count(1) < (decided ? 1 : kFine)) return rough;
   const FreeFormSnapshot* fine = best_waiting(1);
   const FreeFormSnapshot* end = best_of(kEnd);
   if (end == nullptr) return fine;

@@ -257,7 +257,8 @@ bins = "hard"                 # tent: a ray counts for its four neighbours; smoo
 #mode = "absolute"
 
 # Instead of a reflector, faces of the one solid with outline_mm: free_sides = 2 in [design] (side 0 leads from the
-# first corner to the second; with family = "bspline" also [0, 2], for light that is to be wide), with max_height_mm, max_diameter_mm, min_thickness_mm, min_draft_deg as limits.
+# first corner to the second; with family = "bspline" also [0, 2], for light that is to be wide), with max_height_mm,
+# max_diameter_mm, min_thickness_mm, min_draft_deg as limits.
 
 # Beside a file or without one a free form may have bounds by zone, as standards have them:
 #   [[target.zone]] name, gamma_deg and c_deg (or h_deg and v_deg about the target's axis; x_mm and y_mm on a plane),
