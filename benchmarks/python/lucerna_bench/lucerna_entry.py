@@ -17,7 +17,7 @@ from .tasks import Task
 TROUGH_LENGTH_MM = 400.0
 # Large beside the source, so that its size does not matter.
 COLLECTOR_RADIUS_MM = 50.0
-# The others' sources are small and their light is within 60 degrees: a search for a cavity takes its time from the face.
+# The others' sources are small beside the lens: a search for a cavity takes its time from the face.
 FAMILIES_WITH_CAVITY = ("LB-3", "LB-4")
 # Of LB-2 only the light counts.
 LIGHT_WEIGHT_OF_COLLECTOR = 100
