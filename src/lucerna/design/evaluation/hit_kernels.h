@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "lucerna/design/evaluation/first_hit.h"
+#include "lucerna/trace/kernels/first_hit.h"
 
 namespace lucerna {
 

@@ -5,12 +5,11 @@
 #include <array>
 #include <cmath>
 
-#include "lucerna/design/evaluation/first_hit.h"
 #include "lucerna/geometry.h"
 #include "lucerna/host_device.h"
 #include "lucerna/optics/shapes/smooth_view.h"
 #include "lucerna/reflector.h"
-#include "lucerna/simd/scalar_double.h"
+#include "lucerna/trace/kernels/hit_table.h"
 
 namespace lucerna {
 
@@ -37,31 +36,6 @@ struct Path {
   /// Where the ray leaves from, the last hit or its start, and along what.
   Vec3 origin, direction;
 };
-
-LUCERNA_HD inline HitRow hit_row(const KnotRow& row) {
-  return {row.start_mm, 1.0 / row.step_mm, row.intervals};
-}
-/// The mirror as the searches of first_hit.h read it.
-LUCERNA_HD inline BsplineHitTable hit_table(const BsplineView& s) {
-  return {hit_row(s.row_x), hit_row(s.row_y), s.coefficients, s.near_curvatures};
-}
-LUCERNA_HD inline RevolutionHitTable hit_table(const RevolutionView& s) {
-  return {hit_row(s.row), s.coefficients, s.near_curvatures};
-}
-template <class Shape>
-LUCERNA_HD auto hit_mirror(const Shape& shape, const Aperture& a) {
-  using Table = decltype(hit_table(shape));
-  return HitMirror<Table>{hit_table(shape),
-                          0.25 / shape.focal_mm,
-                          shape.band.low_mm,
-                          shape.band.high_mm,
-                          shape.curvature_bound,
-                          shape.cell_mm(),
-                          a.shape() == ApertureShape::circle,
-                          a.half_x_mm(),
-                          a.half_y_mm(),
-                          a.hole_radius_mm()};
-}
 
 /// Where a ray goes on after meeting the mirror, and what it hit.
 template <class Shape>
@@ -92,41 +66,27 @@ class SmoothTracer {
     bool on_mirror = false;
     double slope = 0.0;
     for (;;) {
-      double t = 0.0;
-      const int32_t what = first_hit(o, d, on_mirror, slope, t);
-      if (what == kHitNothing) {
+      const HitEnd found = search_first(mirror_, o, d, on_mirror, slope);
+      if (found.what == kHitNothing) {
         path.end = path.hits == 0 ? PathEnd::direct : PathEnd::reflected;
         path.origin = o;
         path.direction = d;
         return;
       }
-      if (what != kHitFront || path.hits == kMaxPathHits) {
-        path.end = what == kHitBack ? PathEnd::back : PathEnd::lost;
+      if (found.what != kHitFront || path.hits == kMaxPathHits) {
+        path.end = found.what == kHitBack ? PathEnd::back : PathEnd::lost;
         return;
       }
       auto& hit = path.hit[static_cast<std::size_t>(path.hits++)];
-      reflect_path(shape_, t, o, d, hit);
+      reflect_path(shape_, found.t_mm, o, d, hit);
       on_mirror = true;
       slope = -hit.m;  // reflection turns f' round
     }
   }
 
  private:
-  using Table = decltype(hit_table(Shape()));
-
-  /// `slope` is f' where the ray starts on the mirror.
-  LUCERNA_HD int32_t first_hit(const Vec3& o, const Vec3& d, bool on_mirror, double slope, double& t) const {
-    HitSearch<ScalarDouble, Table> search;
-    const ScalarDouble from[3] = {o.x, o.y, o.z}, along[3] = {d.x, d.y, d.z};
-    if (!search.begin(mirror_, from, along, on_mirror ? 1.0 : 0.0, slope).m) return kHitNothing;
-    while (!search.step(mirror_).m) {
-    }
-    t = search.t().v;
-    return static_cast<int32_t>(search.what().v);
-  }
-
   Shape shape_;
-  HitMirror<Table> mirror_;
+  HitMirror<decltype(hit_table(Shape()))> mirror_;
 };
 
 /// Sensitivity of one figure of the leaving ray to a change of the surface at one of its hits: d(figure) =

@@ -64,7 +64,7 @@ BackwardScene::BackwardScene(const Scene& scene, int max_bounces)
   if (!reason.empty()) throw InputError("light cannot be followed backward: " + reason);
   for (const PlacedReflector& r : scene.reflectors) {
     mirrors_.push_back(
-        {&r, ReferenceTracer(r.reflector), r.world_from_reflector.inverse(), 1e-3 * r.slope_error_mrad});
+        {&r, MirrorTracer(r.reflector), r.world_from_reflector.inverse(), 1e-3 * r.slope_error_mrad});
   }
   for (const PlacedSource& s : scene.sources) {
     sources_.push_back(

@@ -10,7 +10,7 @@
 #include "lucerna/scene.h"
 #include "lucerna/source/emitters/luminance_source.h"
 #include "lucerna/trace/engines/body_tracer.h"
-#include "lucerna/trace/engines/reference_tracer.h"
+#include "lucerna/trace/engines/mirror_tracer.h"
 #include "lucerna/trace/kernels/slope_error.h"
 
 namespace lucerna {
@@ -27,7 +27,7 @@ class BackwardScene {
  public:
   struct Mirror {
     const PlacedReflector* placed;
-    ReferenceTracer tracer;
+    MirrorTracer tracer;
     Frame mirror_from_world;
     double slope_error_rad;
   };

@@ -61,9 +61,9 @@ SurfaceHit FacedBody::first_below(const Ray& ray, double t_min_mm, double t_max_
 
 SurfaceHit FacedBody::first(const Ray& ray, double t_min_mm, double t_max_mm) const {
   const SurfaceHit below = first_below(ray, t_min_mm, t_max_mm);
-  const auto face = face_tracer_.first_hit({ray.at(t_min_mm), ray.direction});
-  if (!face) return below;
-  const double t_mm = t_min_mm + face->t_mm;
+  const auto face_mm = face_tracer_.first_mm({ray.at(t_min_mm), ray.direction});
+  if (!face_mm) return below;
+  const double t_mm = t_min_mm + *face_mm;
   if (t_mm >= (below.part < 0 ? t_max_mm : below.t_mm)) return below;
   return {top_, t_mm, 0.0, 0.0};
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lucerna/optics/shapes/outline.h"
-#include "lucerna/trace/engines/reference_tracer.h"
+#include "lucerna/trace/engines/mirror_tracer.h"
 #include "lucerna/trace/kernels/revolved_tree.h"
 #include "lucerna/trace/kernels/solid_kernel.h"
 
@@ -40,7 +40,7 @@ class FacedBody {
   std::vector<std::size_t> corners_;
   /// The parts that are wall and face, which come last.
   std::int32_t wall_, top_;
-  ReferenceTracer face_tracer_;
+  MirrorTracer face_tracer_;
 };
 
 }  // namespace lucerna

@@ -173,12 +173,14 @@ std::optional<MirrorHit> ReferenceTracer::first_hit(const Ray& ray) const {
   if (array_ != nullptr) return first_hit_with_array(ray);
   const auto found = Walk(reflector_, *mipmap_, ray).run();
   if (!found) return std::nullopt;
-  const Vec3 p = ray.at(found->t);
-  const SurfacePoint& s = found->surface;
-  return MirrorHit{found->t,
-                   {p.x, p.y, s.z_mm + (found->front ? offset_mm_ : -offset_mm_)},
-                   Direction::from({-s.dzdx, -s.dzdy, 1.0}),
-                   found->front};
+  return hit_on(found->surface, ray.at(found->t), found->t, found->front);
+}
+
+MirrorHit ReferenceTracer::hit_on(const SurfacePoint& s, const Vec3& p, double t_mm, bool front) const {
+  return {t_mm,
+          {p.x, p.y, s.z_mm + (front ? offset_mm_ : -offset_mm_)},
+          Direction::from({-s.dzdx, -s.dzdy, 1.0}),
+          front};
 }
 
 }  // namespace lucerna

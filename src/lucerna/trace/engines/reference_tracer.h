@@ -40,6 +40,9 @@ class ReferenceTracer {
   /// passes by or through the hole.
   std::optional<MirrorHit> first_hit(const Ray& ray) const;
 
+  /// The hit of a ray that met a height field at distance `t_mm`, over (p.x, p.y), where it is `s`.
+  MirrorHit hit_on(const SurfacePoint& s, const Vec3& p, double t_mm, bool front) const;
+
  private:
   std::optional<MirrorHit> first_hit_with_curve(const Ray& ray) const;
   std::optional<MirrorHit> first_hit_with_facets(const Ray& ray) const;

@@ -265,13 +265,17 @@ class HitSearch {
     const V far = (c1_ + w) / (V(2.0) * c2_), back = (c1_ - w) / (V(2.0) * c2_);
     rise_ = select(crosses, select(up, V(-2.0) * above / (c1_ + w), back), V(0.0));
     fall_ = select(crosses, select(up, far, V(2.0) * above / (w - c1_)), V(-1.0));
-    const V low_root = c1_ * c1_ + V(4.0) * c2_ * (c0_ - V(m.low));
-    const V low = (c1_ + sqrt(max(low_root, V(0.0)))) / (V(2.0) * c2_);
+    const V over_low = c0_ - V(m.low), low_root = c1_ * c1_ + V(4.0) * c2_ * over_low;
+    const V low_w = sqrt(max(low_root, V(0.0)));
+    // Without a base c2 is next to nothing: the root is taken where no digits are lost.
+    const V low = select(up, (c1_ + low_w) / (V(2.0) * c2_), V(2.0) * over_low / (low_w - c1_));
     low_ = select(V(0.0) < low_root, low, V(-1.0));
   }
 
+  /// From behind a ray comes into the air only through the surface, which may touch the top of the band.
   LUCERNA_HD void skip_air(Mask searching) {
-    const Mask air = searching & ~is(only_one_) & (rise_ <= t_) & (t_ < fall_);
+    const Mask behind = side_ < V(0.0);
+    const Mask air = searching & ~behind & ~is(only_one_) & (rise_ <= t_) & (t_ < fall_);
     side_ = select(air, V(1.0), side_);
     t_ = select(air, fall_, t_);
   }
