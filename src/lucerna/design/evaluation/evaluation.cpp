@@ -60,9 +60,9 @@ struct SparseTaskSums : TaskSums {
   struct Row {
     SparseSums* blocks;
     std::uint32_t bin, across;
-    SparseSums::Block& block(const std::array<int, 2>& first) const {
-      return blocks->block(
-          bin, static_cast<std::uint32_t>(first[1]) * across + static_cast<std::uint32_t>(first[0]));
+    void add(const std::array<int, 2>& first, const SparseSums::Block& values) const {
+      blocks->add(bin, static_cast<std::uint32_t>(first[1]) * across + static_cast<std::uint32_t>(first[0]),
+                  values);
     }
   };
   Row row(int bin) const { return {blocks, static_cast<std::uint32_t>(bin), across}; }
@@ -293,9 +293,10 @@ class FaceTracer {
     }
     const Support none{};
     for (std::size_t k = 0; k < static_cast<std::size_t>(to.n); ++k) {
-      const auto row = sums.row(to.bin[k]);
-      view_.shape.add(hit_.local, flux * to.du[k], u.data(), flux * to.dv[k], v.data(), row);
-      view_.shape.add(hit_.local, flux * to.weight[k], share.data(), 0.0, none.data(), row);
+      Support all;
+      for (std::size_t i = 0; i < all.size(); ++i)
+        all[i] = to.du[k] * u[i] + to.dv[k] * v[i] + to.weight[k] * share[i];
+      view_.shape.add(hit_.local, flux, all.data(), 0.0, none.data(), sums.row(to.bin[k]));
     }
   }
 
@@ -426,8 +427,8 @@ Evaluation evaluate_sparse(const DesignShape& design, const Reflectance& reflect
   const auto across = static_cast<std::uint32_t>(shape.row_x().intervals);
   const std::size_t groups = jacobian_groups(derived * kBlockRays * kDesignTasks),
                     each = kDesignTasks / groups;
-  std::vector<SparseSums> blocks(groups,
-                                 SparseSums(across * static_cast<std::uint32_t>(shape.row_y().intervals)));
+  std::vector<SparseSums> blocks =
+      sparse_sums(groups, across * static_cast<std::uint32_t>(shape.row_y().intervals));
   std::vector<SparseTaskSums> sums(kDesignTasks);
   const ItemRange own = own_items(rays.peers(), groups);
   parallel_blocks(own.size(), 1, [&](std::size_t i, std::size_t) {
@@ -440,6 +441,7 @@ Evaluation evaluate_sparse(const DesignShape& design, const Reflectance& reflect
         for (std::uint64_t b = 0; b < derived; ++b) tracer.add(rays.block(b * kDesignTasks + r), sums[r]);
         sums[r].derived = sums[r].weight;
       }
+      blocks[group].settle();
     });
   });
   auto light_only = view;

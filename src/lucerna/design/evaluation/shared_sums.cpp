@@ -132,14 +132,15 @@ std::vector<SparseSums> exchanged_blocks(Peers& peers, const std::vector<SparseS
     for (std::size_t r = 0; r < to.size(); ++r) append(to[r], sent[r]);
   }
   const std::vector<std::string> from = peers.exchange(to);
-  std::vector<SparseSums> out(parts.size(), SparseSums(parts.front().cells()));
+  std::vector<SparseSums> out = sparse_sums(parts.size(), parts.front().cells());
   for (int r = 0; r < peers.size(); ++r) {
     std::string_view bytes = from[static_cast<std::size_t>(r)];
     const ItemRange theirs = items_of(r, peers.size(), parts.size());
     for (std::size_t p = theirs.first; p < theirs.last; ++p) {
       std::vector<SentBlock> blocks;
       take(bytes, blocks);
-      for (const SentBlock& b : blocks) out[p].block(b.bin, b.cell) = b.block;
+      for (const SentBlock& b : blocks) out[p].add(b.bin, b.cell, b.block);
+      out[p].settle();
     }
   }
   return out;

@@ -5,30 +5,53 @@
 #include <numeric>
 #include <variant>
 
+#include "lucerna/core/cpu/huge_pages.h"
 #include "lucerna/core/parallel/parallel.h"
 
 namespace lucerna {
+
+std::vector<SparseSums> sparse_sums(std::size_t count, std::uint32_t cells) {
+  std::vector<SparseSums> out;
+  for (std::size_t i = 0; i < count; ++i) out.emplace_back(cells);
+  return out;
+}
+
+void SparseSums::settle() {
+  for (std::size_t i = 0; i < kWaiting; ++i) {
+    Waiting& w = waiting_[added_++ % kWaiting];
+    if (w.block == nullptr) find(w);
+    settle(w);
+  }
+}
 
 SparseSums::Block& SparseSums::insert(std::uint64_t key, std::size_t at) {
   if (2 * (keys_.size() + 1) > table_.size()) {
     grow();
     at = slot(key);
-    while (table_[at] != kEmpty) at = (at + 1) & mask_;
+    while (table_[at].key != kNone) at = (at + 1) & mask_;
   }
-  table_[at] = static_cast<std::uint32_t>(keys_.size());
-  if (keys_.size() % kChunk == 0) chunks_.emplace_back().reserve(kChunk);
+  if (keys_.size() % kChunk == 0) {
+    chunks_.emplace_back().reserve(kChunk);
+    advise_huge_pages(chunks_.back().data(), kChunk * sizeof(Block));
+  }
   keys_.push_back(key);
-  return chunks_.back().emplace_back(Block{});
+  Block& block = chunks_.back().emplace_back(Block{});
+  table_[at] = {key, &block};
+  return block;
 }
 
 void SparseSums::grow() {
-  const std::size_t size = 4 * table_.size();
-  table_.assign(size, kEmpty);
-  mask_ = size - 1;
-  for (std::size_t i = 0; i < keys_.size(); ++i) {
-    std::size_t at = slot(keys_[i]);
-    while (table_[at] != kEmpty) at = (at + 1) & mask_;
-    table_[at] = static_cast<std::uint32_t>(i);
+  std::vector<Slot> old;
+  old.swap(table_);
+  table_.reserve(4 * old.size());
+  advise_huge_pages(table_.data(), table_.capacity() * sizeof(Slot));
+  table_.resize(4 * old.size());
+  mask_ = table_.size() - 1;
+  for (const Slot& s : old) {
+    if (s.key == kNone) continue;
+    std::size_t at = slot(s.key);
+    while (table_[at].key != kNone) at = (at + 1) & mask_;
+    table_[at] = s;
   }
 }
 

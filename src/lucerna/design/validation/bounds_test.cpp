@@ -12,7 +12,7 @@ namespace {
 /// A Lambertian source of even luminance: the share of its flux grows with the etendue until all is in.
 EtendueCurve even(double etendue_mm2sr) { return EtendueCurve({{0.0, 0.0}, {1.0, etendue_mm2sr}}); }
 
-const Vec3 kDown{0, 0, -1};
+const Vec3 kNadir{0, 0, -1};
 
 struct Spot {
   ErrorBoxes boxes;
@@ -35,7 +35,7 @@ TEST(Bounds, NothingForbidsWhatFits) {
   const Spot s = two_levels(0.1, 0.9);
   // The opening towards the core: 1000 mm2 * 0.05^2 = 2.5 mm2 sr; 0.9 of 2 mm2 sr fits.
   const DesignBound b =
-      etendue_bound(s.boxes, s.target, TargetMode::shape, 1.0, even(2.0), kDown, 1000.0, 0.0);
+      etendue_bound(s.boxes, s.target, TargetMode::shape, 1.0, even(2.0), kNadir, 1000.0, 0.0);
   EXPECT_EQ(b.error, 0.0);
 }
 
@@ -51,20 +51,20 @@ TEST(Bounds, TheCoreTakesNoMoreThanItsEtendue) {
   }
   const double expected = std::sqrt(min / (0.81 / core_sr + 0.01 / rest_sr));
   const DesignBound b =
-      etendue_bound(s.boxes, s.target, TargetMode::shape, 1.0, even(5.0), kDown, 1000.0, 0.0);
+      etendue_bound(s.boxes, s.target, TargetMode::shape, 1.0, even(5.0), kNadir, 1000.0, 0.0);
   EXPECT_NEAR(b.error, expected, 0.02 * expected);
   EXPECT_GT(expected, 0.1);
   EXPECT_NEAR(b.target_share, 0.9, 0.02);
   EXPECT_NEAR(b.max_share, 0.525, 0.01);
   // Light may be discarded: with half of it in the rectangle the core's share fits.
-  EXPECT_EQ(etendue_bound(s.boxes, s.target, TargetMode::shape, 0.5, even(5.0), kDown, 1000.0, 0.0).error,
+  EXPECT_EQ(etendue_bound(s.boxes, s.target, TargetMode::shape, 0.5, even(5.0), kNadir, 1000.0, 0.0).error,
             0.0);
 }
 
 TEST(Bounds, AbsoluteTargetsAreBoundByTheirMissingLight) {
   const Spot s = two_levels(0.1, 0.9);
   const DesignBound b =
-      etendue_bound(s.boxes, s.target, TargetMode::absolute, 0.1, even(5.0), kDown, 1000.0, 0.0);
+      etendue_bound(s.boxes, s.target, TargetMode::absolute, 0.1, even(5.0), kNadir, 1000.0, 0.0);
   const double core_sr = 0.05 * 0.05, rest_sr = 0.2 * 0.2 - core_sr;
   const double expected =
       std::sqrt((0.9 - 0.525) * (0.9 - 0.525) / core_sr / (0.81 / core_sr + 0.01 / rest_sr));
@@ -76,7 +76,7 @@ TEST(Bounds, IsNeverAboveAnErrorThatLightOfTheEtendueHas) {
   const Spot s = two_levels(0.1, 0.9);
   for (const double etendue : {3.0, 5.0, 10.0, 50.0}) {
     const DesignBound b =
-        etendue_bound(s.boxes, s.target, TargetMode::shape, 1.0, even(etendue), kDown, 1000.0, 0.0);
+        etendue_bound(s.boxes, s.target, TargetMode::shape, 1.0, even(etendue), kNadir, 1000.0, 0.0);
     const double core = std::min(0.9, 2.5 / etendue);
     BoxSums light;
     light.flux.assign(s.boxes.size(), 0.0);

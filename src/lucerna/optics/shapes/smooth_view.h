@@ -116,14 +116,15 @@ struct BsplineView {
       }
     }
   }
-  /// row.add(coefficient k, a * u[k] + b * v[k]) for the kSupport coefficients at `local`; or all at once
-  /// into row.block(local.first), where a row has blocks.
+  /// row.add(coefficient k, a * u[k] + b * v[k]) for the kSupport coefficients at `local`; or all at once,
+  /// row.add(local.first, {...}), where a row takes blocks.
   template <class Row>
   LUCERNA_HD void add(const Local& local, double a, const double* u, double b, const double* v,
                       const Row& row) const {
-    if constexpr (requires { row.block(local.first); }) {  // a block of all that count
-      auto& block = row.block(local.first);
-      for (std::size_t k = 0; k < kSupport; ++k) block[k] += a * u[k] + b * v[k];
+    if constexpr (requires(std::array<double, kSupport> block) { row.add(local.first, block); }) {
+      std::array<double, kSupport> block;
+      for (std::size_t k = 0; k < kSupport; ++k) block[k] = a * u[k] + b * v[k];
+      row.add(local.first, block);
     } else {
       for (int j = 0; j < 4; ++j) {
         const int first = (local.first[1] + j) * row_x.coefficients() + local.first[0];
