@@ -126,8 +126,9 @@ void hidden(const LensKind& kind, int count, double seconds, std::uint64_t table
     const LensProblem problem = lens_problem(parse_project(text, "hidden.toml", memory), "hidden.toml");
     const ErrorBoxes boxes(target_rectangle(problem.target));
     const LensValidation own =
-        validate_lens(exact.scene, boxes, box_target(boxes, problem.target, total_flux(exact.scene.sources)),
-                      TargetMode::shape, 9, std::uint64_t{1} << 20);
+        validate_lens(exact.scene, LensSurface::triangles, boxes,
+                      box_target(boxes, problem.target, total_flux(exact.scene.sources)), TargetMode::shape,
+                      9, std::uint64_t{1} << 20);
     const auto begin = std::chrono::steady_clock::now();
     const DesignedMirror found = design(parse_project(text, "hidden.toml", memory), "hidden");
     const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -10,12 +10,12 @@ namespace {
 /// Of the mesh, over the lens's size: with ten times as much exact lenses had an error of 0.7 %, not 0.4.
 constexpr double kMeshTolerance = 1e-5;
 
-/// The scene's bodies by triangles.
-std::vector<Solid> meshed(const Scene& scene) {
+std::vector<Solid> followed(const Scene& scene, LensSurface surface) {
   check(scene);
   std::vector<Solid> out = scene.solids;
+  if (surface == LensSurface::exact) return out;
   for (Solid& s : out) {
-    if (s.face != nullptr) continue;  // is traced by its triangles anyway
+    if (s.face != nullptr) continue;
     s.mesh = surface_mesh(s, kMeshTolerance);
     s.outline_mm.clear();
   }
@@ -24,7 +24,7 @@ std::vector<Solid> meshed(const Scene& scene) {
 
 }  // namespace
 
-LensBlocks::LensBlocks(const Scene& scene, std::uint64_t seed)
-    : scene_(scene), numbering_(scene.sources, seed), solids_(meshed(scene)), colours_(scene) {}
+LensBlocks::LensBlocks(const Scene& scene, LensSurface surface, std::uint64_t seed)
+    : scene_(scene), numbering_(scene.sources, seed), solids_(followed(scene, surface)), colours_(scene) {}
 
 }  // namespace lucerna

@@ -12,13 +12,16 @@
 
 namespace lucerna {
 
-/// Blocks of rays of a scene's sources on their way through its solids, as triangles with smooth normals
-/// (`surface_mesh`) or, with a face, as they are, with all reflections at all boundaries by chance. Immutable
-/// and thread safe.
+/// How the bodies of a scene are followed: as triangles with smooth normals (`surface_mesh`), which no fit
+/// has seen, or as they are. Bodies with a face are never made of triangles: they would be too many.
+enum class LensSurface { triangles, exact };
+
+/// Blocks of rays of a scene's sources on their way through its solids, with all reflections at all
+/// boundaries by chance. Immutable and thread safe.
 class LensBlocks {
  public:
   /// Throws InputError as `check(Scene)` does. Keeps `scene`.
-  LensBlocks(const Scene& scene, std::uint64_t seed);
+  LensBlocks(const Scene& scene, LensSurface surface, std::uint64_t seed);
 
   /// Draws block `block` into `rays` and follows it. `sums` is told what becomes of each ray's flux, in units
   /// of the mean ray: emitted(flux), absorbed(flux), lost(flux) and left(ray, flux, surfaces), with how many

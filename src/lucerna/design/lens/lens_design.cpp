@@ -31,11 +31,13 @@ class LensCheck {
       : problem_(problem),
         options_(options),
         progress_(progress),
+        // Lenses with a face are compared with the given one, which has none, by exact surfaces both.
+        surface_(problem.free_face ? LensSurface::exact : LensSurface::triangles),
         boxes_(target_rectangle(problem.target)),
         target_(box_target(boxes_, problem.target, total_flux(problem.project.scene.sources))) {}
 
   LensValidation operator()(const ShapedLens& lens, std::uint64_t rays, double max_s) const {
-    return validate_lens(with_lens(problem_, lens).scene, boxes_, target_, problem_.target.mode,
+    return validate_lens(with_lens(problem_, lens).scene, surface_, boxes_, target_, problem_.target.mode,
                          options_.seed, rays, max_s, progress_);
   }
 
@@ -43,6 +45,7 @@ class LensCheck {
   const LensProblem& problem_;
   const LensOptions& options_;
   Progress& progress_;
+  LensSurface surface_;
   ErrorBoxes boxes_;
   std::vector<double> target_;
 };

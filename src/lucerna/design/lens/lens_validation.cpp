@@ -8,7 +8,6 @@
 
 #include "lucerna/core/parallel/counted_progress.h"
 #include "lucerna/core/parallel/parallel.h"
-#include "lucerna/design/lens/lens_blocks.h"
 
 namespace lucerna {
 
@@ -45,11 +44,11 @@ double error_with_light(const DesignError& error, double light_weight) {
   return std::hypot(error.c48.excess, std::sqrt(light_weight) * (1.0 - error.in_rectangle.mean));
 }
 
-LensValidation validate_lens(const Scene& scene, const ErrorBoxes& boxes, std::span<const double> target,
-                             TargetMode mode, std::uint64_t seed, std::uint64_t max_rays, double max_s,
-                             Progress& progress) {
+LensValidation validate_lens(const Scene& scene, LensSurface surface, const ErrorBoxes& boxes,
+                             std::span<const double> target, TargetMode mode, std::uint64_t seed,
+                             std::uint64_t max_rays, double max_s, Progress& progress) {
   const auto begin = std::chrono::steady_clock::now();
-  const LensBlocks lens(scene, seed ^ 0x56414C4944415445ull);
+  const LensBlocks lens(scene, surface, seed ^ 0x56414C4944415445ull);
   std::vector<BoxSums> replicates(kReplicates);
   for (BoxSums& r : replicates) {
     r.flux.assign(boxes.size(), 0.0);

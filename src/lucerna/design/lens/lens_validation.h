@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "lucerna/design/lens/lens_blocks.h"
 #include "lucerna/design/validation/box_error.h"
 #include "lucerna/progress.h"
 #include "lucerna/scene.h"
@@ -26,14 +27,14 @@ struct LensValidation {
 /// evenly everywhere has a small error, and lights nothing.
 double error_with_light(const DesignError& error, double light_weight);
 
-/// Traces the scene's sources through its solids (LensBlocks), with all
-/// reflections at all boundaries by chance, into the cells of the boxes: 16 replicates of independent
-/// Owen-scrambled Sobol sequences. Rays are doubled from 2^18 to `max_rays`, or until the floor is half of
-/// the excess; `max_s` stops them earlier. `target`: flux per cell (box_target). The same bits for any number
-/// of threads where time does not stop it. Progress phase "validate".
-LensValidation validate_lens(const Scene& scene, const ErrorBoxes& boxes, std::span<const double> target,
-                             TargetMode mode, std::uint64_t seed, std::uint64_t max_rays,
-                             double max_s = std::numeric_limits<double>::infinity(),
+/// Traces the scene's sources through its solids (LensBlocks), with all reflections at all boundaries by
+/// chance, into the cells of the boxes: 16 replicates of independent Owen-scrambled Sobol sequences. Rays are
+/// doubled from 2^18 to `max_rays`, or until the floor is half of the excess; `max_s` stops them earlier.
+/// `target`: flux per cell (box_target). The same bits for any number of threads where time does not stop it.
+/// Progress phase "validate".
+LensValidation validate_lens(const Scene& scene, LensSurface surface, const ErrorBoxes& boxes,
+                             std::span<const double> target, TargetMode mode, std::uint64_t seed,
+                             std::uint64_t max_rays, double max_s = std::numeric_limits<double>::infinity(),
                              Progress& progress = no_progress());
 
 }  // namespace lucerna

@@ -115,7 +115,7 @@ Eigen::VectorXd other_light(const LensProblem& problem, const DesignShape& face,
   const Project project = with_lens(problem, {problem.start, face});
   if (!is_closed(project.scene.solids.front()))
     return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(bins.size()));
-  const LensBlocks lens(project.scene, seed ^ 0x4F54484552ull);
+  const LensBlocks lens(project.scene, LensSurface::exact, seed ^ 0x4F54484552ull);
   const Frame design_from_world = (problem.world_from_lens * lens_from_design()).inverse();
   const Blur blur(blur_of(problem));
   std::vector<OtherTally> parts;

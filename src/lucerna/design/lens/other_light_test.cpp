@@ -85,7 +85,7 @@ TEST(OtherLight, WithWhatGoesStraightIsAllLight) {
   const Eigen::VectorXd other = other_light(problem, face, bins, kOtherRays, 5);
 
   const Project project = with_lens(problem, {problem.start, face});
-  const LensBlocks lens(project.scene, 77);
+  const LensBlocks lens(project.scene, LensSurface::exact, 77);
   BinTally traced{design_from_world, bins, Eigen::VectorXd::Zero(straight.size())};
   RayBlock block;
   for (std::uint64_t b = 0; b < kOtherRays / kBlockRays; ++b) lens.follow(b, block, traced);
