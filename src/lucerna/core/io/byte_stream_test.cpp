@@ -18,7 +18,8 @@ namespace {
 std::string some_bytes(std::size_t n) {
   Rng rng(1, 0);
   std::string out(n, 'a');
-  for (std::size_t i = 0; i < n / 2; ++i) out[i] = static_cast<char>(256.0 * rng.uniform());
+  for (std::size_t i = 0; i < n / 2; ++i)
+    out[i] = static_cast<char>(static_cast<int>(256.0 * rng.uniform()) - 128);
   return out;
 }
 
