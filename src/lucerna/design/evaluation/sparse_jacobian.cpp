@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "lucerna/core/cpu/huge_pages.h"
+#include "lucerna/core/io/error.h"
 #include "lucerna/core/parallel/parallel.h"
 
 namespace lucerna {
@@ -22,6 +23,10 @@ void SparseSums::settle() {
     if (w.block == nullptr) find(w);
     settle(w);
   }
+}
+
+bool SparseSums::is_settled() const {
+  return std::all_of(waiting_.begin(), waiting_.end(), [](const Waiting& w) { return w.key == kNone; });
 }
 
 SparseSums::Block& SparseSums::insert(std::uint64_t key, std::size_t at) {
@@ -72,6 +77,7 @@ BlocksByBin by_bin(const std::vector<SparseSums>& parts, std::size_t bins) {
   BlocksByBin out;
   out.begin.assign(bins + 1, 0);
   for (const SparseSums& p : parts) {
+    LUCERNA_CHECK(p.is_settled(), "of {} blocks some are not whole", p.size());
     for (std::size_t i = 0; i < p.size(); ++i) ++out.begin[p.bin(i) + 1];
   }
   std::partial_sum(out.begin.begin(), out.begin.end(), out.begin.begin());

@@ -40,8 +40,9 @@ class SparseSums {
     oldest.values = values;
     __builtin_prefetch(&table_[slot(oldest.key)]);
   }
-  /// To be called when all is added: what still waits is not in the blocks.
+  /// To be called when all is added, before anything is read: what still waits is not in the blocks.
   void settle();
+  bool is_settled() const;
 
   std::uint32_t cells() const { return cells_; }
   std::size_t size() const { return keys_.size(); }

@@ -46,8 +46,10 @@ TEST(SparseSums, FewThatWereAddedAreThereToo) {
   one.fill(1.0);
   for (int i = 0; i < 3; ++i) sums.add(2, 6, one);
   sums.add(3, 0, one);
-  EXPECT_EQ(sums.size(), 0u);  // they wait
+  EXPECT_EQ(sums.size(), 0u);
+  EXPECT_FALSE(sums.is_settled());
   sums.settle();
+  EXPECT_TRUE(sums.is_settled());
   sums.settle();
   ASSERT_EQ(sums.size(), 2u);
   EXPECT_EQ(sums.bin(0), 2u);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/trace/engines/mirror_tracer.h"
 
+#include <type_traits>
+
 #include "lucerna/optics/shapes/smooth_shape.h"
 
 namespace lucerna {

@@ -12,8 +12,9 @@ namespace lucerna {
 
 /// The first hit with a mirror, one ray at a time, in double, on the exact surface: of free forms and of
 /// splines of revolution by the search of first_hit.h, whose steps pass no hit; of others by a
-/// ReferenceTracer, several times slower. The same hits as that one's but for rounding. Immutable and thread
-/// safe.
+/// ReferenceTracer. The same hits as that one's but for rounding, and where a ray grazes the surface twice
+/// within one of its cells. Immutable and thread safe. Cost: about 0.1 us a look at the surface, 3 to 13 of
+/// them.
 class MirrorTracer {
  public:
   /// `levels`: as a ReferenceTracer has them.
