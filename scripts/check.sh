@@ -13,12 +13,12 @@
 #   api           the API pages are made, and no public type or function is without a comment (needs doxygen)
 #   site          the site of the documentation is made without a warning (needs sphinx and doxygen)
 #   deb           Debian packages, by lintian, and installed, used and removed in a bare Debian 12 (needs root and debootstrap)
-#   clang         the same tests under that preset
-#   asan          under that preset, all but the long ones (tests/LongTests.cmake)
+#   clang         under that preset, all but the long ones (tests/LongTests.cmake) and the module's, which asan-python has from clang
+#   asan          under that preset, all but the long ones
 #   tsan          under that preset, those of label unit and cli: statistical tests judge numbers of the same threads, corpora and real
 #                 files are read by one
 #   asan-python   the Python module with the address sanitizer, and its quick tests (needs scripts/packages-python.txt)
-#   asan-long tsan-long   the long ones, only where they are asked for
+#   asan-long tsan-long clang-long   the long ones, only where they are asked for
 set -u
 cd "$(dirname "$0")/.."
 stages="${*:-format tidy tree docs release install consumers api site deb clang asan asan-python tsan}"
@@ -143,7 +143,7 @@ stage() {
     consumers) within_sources ;;
     clang) build_and_test clang all benchmarks ;;
     asan | tsan) build_and_test "$1" all ;;
-    asan-long | tsan-long) build_preset "${1%-long}" all && ctest --preset "$1" ;;
+    *-long) build_preset "${1%-long}" all && ctest --preset "$1" ;;
     asan-python) module_under_asan ;;
     *)
       echo "no stage $1" >&2

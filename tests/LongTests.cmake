@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Tests of ten seconds and more on two cores, or of forty under the thread sanitizer, label long: whole designs, traces by many
 # ranks, models of many rays, whose code other tests run in smaller pieces. They take much of a sanitizer's time, and are left
-# out there (scripts/check.sh asan-long tsan-long runs them). A name that is no test fails Tree.LongTestsAreThere.
+# out there and by the preset clang (scripts/check.sh asan-long tsan-long clang-long runs them). A name that is no test fails Tree.LongTestsAreThere.
 set(lucerna_long_tests
   Advice.SaysWhatHelps
   BackwardIntensity.FiguresThatAreStoppedAreThoseOfTheCountedRays
@@ -11,6 +11,10 @@ set(lucerna_long_tests
   CadExport.WhatAMillionTrianglesCannotKeepIsRaisedByLittle
   CompareCli.TwoSetsOfOneSourceDifferByNoiseInEveryFigure
   Comparison.OfRayFilesIsThatOfTheirRays
+  Compress.AGivenFluxTakesThePlaceOfWhatFilesState
+  Compress.ColoursAreKeptOrDroppedAloud
+  Compress.RaysThatAreNotInMemoryCount
+  Compress.TwoFilesAreOneSourceWithColourOverAngle
   CompressCli.ALargestSizeHolds
   CompressCli.FluxesOfSeveralFilesAdd
   CompressCli.SaysHowFarAModelIsFromRaysThatItHasNotSeen
@@ -31,6 +35,7 @@ set(lucerna_long_tests
   DesignRuns.GiveTheMirrorItsErrorAndItsLight
   DesignRuns.LeaveAProjectThatMakesTheSameLight
   DesignRuns.TraceTheResultAndTryTolerancesOnlyWhereAsked
+  DesignZonesCli.ZonesThatAreMetExitWithNought
   DeviceTrace.AdaptiveModelsAreSampledOnTheDevice
   DeviceTrace.AgreesRayByRayWithTheFastestInstructionSetOffExactMirrors
   DeviceTrace.BodiesAgreeRayByRayWithEmbree
@@ -49,6 +54,10 @@ set(lucerna_long_tests
   ExamplesCli.MirrorForATarget
   ExamplesCli.RaysModelAndBeam
   ExamplesCli.TroughDownlightAndFloodlight
+  FreeFaceDesign.ComesNearerToAnOvalBeamWithinItsLimits
+  FreeFaceSearch.FindsLightThatAnotherFaceMakes
+  FreeFormSearch.ANeighbourThatIsTheBestHasNeighbours
+  FreeFormSearch.ATroughReachesAFarTarget
   FreeFormSearch.EndsAtTheSameBitsHoweverOftenItWasStopped
   FreeFormSearch.NeverEndsWorseThanItsStartAndNeverCoarsensIt
   FreeFormSearch.OfALongSourceALevelGoesOnToTheSameBits
@@ -59,6 +68,7 @@ set(lucerna_long_tests
   JsonFieldsCli.Bench
   JsonFieldsCli.Compare
   JsonFieldsCli.Info
+  LensDesign.ComesNearerToTheTarget
   LensDesign.KeepsItsLimits
   LensEvaluation.DerivativesAgreeWithCentralDifferences
   MergeCli.SaysWhatDoesNotFit
@@ -70,10 +80,13 @@ set(lucerna_long_tests
   ProjectContent.IsThatOfModelsAndTargetsInMemory
   Report.ADesignsFolderIsWrittenAndReported
   Report.AModelIsReportedAgainstItsRays
+  ReportCli.ModelsWithAndWithoutTheirRays
   ReportModel.IsWellFormedAndItsFiguresAreThoseOfTheJson
   ResultFields.AreThoseOfRealFiles
   SharedDesign.TolerancesAreSharedByCase
+  SolidTracer.LightThatLeftAWideBodyIsOutOfIt
   SourceEtendue.OfOneModelAndOfTwo
+  Tolerances.NothingMovesNothing
   Tolerances.TheSweepSeesWhatOpticsSays
   TraceNoiseCli.ATraceThatWasTooNoisyGoesOnToTheSameBits
   TutorialsCli.AsALibrary

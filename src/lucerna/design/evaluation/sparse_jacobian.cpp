@@ -92,6 +92,13 @@ BlocksByBin by_bin(const std::vector<SparseSums>& parts, std::size_t bins) {
   return out;
 }
 
+/// The blocks of a bin lie anywhere: each is asked for while so many before it are added.
+constexpr std::size_t kAhead = 12;
+void prefetch(const SparseSums::Block& block) {
+  __builtin_prefetch(block.data());
+  __builtin_prefetch(block.data() + 8);
+}
+
 /// Some rows of the Jacobian, and what noise adds to the square of each.
 struct SparseRows {
   std::vector<int> count, column;
@@ -164,6 +171,10 @@ SparseDerivatives sparse_derivatives(const std::vector<SparseSums>& parts, std::
     RowSums sums(shape.parameter_count());
     for (std::size_t b = first; b < last; ++b) {
       for (std::size_t k = blocks.begin[b]; k < blocks.begin[b + 1]; ++k) {
+        if (k + kAhead < blocks.place.size()) {
+          const BlockPlace& soon = blocks.place[k + kAhead];
+          prefetch(parts[soon.part].at(soon.number));
+        }
         const BlockPlace& place = blocks.place[k];
         const std::uint32_t cell = parts[place.part].cell(place.number);
         const SparseSums::Block& block = parts[place.part].at(place.number);

@@ -25,8 +25,10 @@ namespace lucerna {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-/// Rays that validate a result for which there is no time left.
+/// Rays that validate the result of a search that was interrupted.
 constexpr std::uint64_t kMinValidationRays = std::uint64_t{1} << 18;
+/// Share of a design's time that is set aside for the validation of its result.
+constexpr double kMaxValidationShare = 0.1;
 /// Rays that measure how much light leaves the mirror to begin with.
 constexpr std::uint64_t kFluxRays = std::uint64_t{1} << 16;
 
@@ -63,13 +65,10 @@ void check_result(const FitProblem& fit, const DesignOptions& options, const Tim
                   ResultCheck& check, DesignResult& result, Progress& progress) {
   std::uint64_t rays = options.validation_rays;
   double max_s = kNoLimit;
-  if (result.end != DesignTermination::converged) {
-    const std::uint64_t min = std::min(rays, kMinValidationRays);
-    const double left = of_first(options.peers, time.left_s() - time.rays_after_s());
-    if (result.end == DesignTermination::interrupted) rays = min;
-    while (rays / 2 >= min && check.seconds(rays) > left) rays /= 2;
-    if (result.end == DesignTermination::time) max_s = left;  // the first round of rays it takes anyway
-  }
+  if (result.end == DesignTermination::interrupted) rays = std::min(rays, kMinValidationRays);
+  // The first round of rays it takes anyway.
+  if (result.end == DesignTermination::time)
+    max_s = of_first(options.peers, time.left_s() - time.rays_after_s());
   check.fill(fit, rays, max_s, result, progress);
 }
 
@@ -120,11 +119,13 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
                     const DesignObserver& observer) {
   check(options);
   LUCERNA_CHECK(options.peers == nullptr || !options.accelerator, "a device is not shared with peers");
-  TimeBudget time(options.time_s.value_or(problem.time_s), options.peers);
+  const double time_s = options.time_s.value_or(problem.time_s);
+  TimeBudget time(time_s, options.peers);
   DesignRays rays = design_rays(problem, options, options.seed);
   FitProblem fit = fit_problem(problem, options, rays);
   ResultCheck result_check(problem, options, progress);
-  time.begin_search(result_check.seconds(options.validation_rays), options.rays_after);
+  time.begin_search(std::min(result_check.seconds(options.validation_rays), kMaxValidationShare * time_s),
+                    options.rays_after);
   DesignResult result(problem.start);
   search_mirror({problem, options, problem_key(problem, options), time, progress, observer}, fit, result);
   result.shape = ShapeLimits(problem.limits, problem.start).nearest(result.shape);

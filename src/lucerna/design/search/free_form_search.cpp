@@ -264,7 +264,9 @@ const FreeFormSnapshot* FreeFormSearch::next_promotion() const {
   if (state_.begun < kFirstCandidates && !decided && !alone && best_of(kEnd) == nullptr) {
     // The best of a few is fitted finely before the others begin, for a search that has little time.
     const int few = worth_an_approach() ? kApproach + 1 : kApproach;
-    return state_.begun >= few && best_of(1) == nullptr ? rough : nullptr;
+    if (state_.begun < few) return nullptr;
+    if (best_of(1) == nullptr) return rough;
+    return is_approach(*best_of(1)) ? best_waiting(1) : nullptr;
   }
   const bool hopeful = rough != nullptr && rough->cost < kHopeless * best_of(0)->cost;
   if (hopeful && count(1) < (decided ? 1 : kFine)) return rough;

@@ -87,9 +87,7 @@ SparseSymmetric squared_rows(const SparseJacobian& j) {
     Columns out;
     std::vector<double> sum(static_cast<std::size_t>(n), 0.0);
     std::vector<char> seen(static_cast<std::size_t>(n), 0);
-    std::vector<int> touched;
     for (auto p = static_cast<Eigen::Index>(first); p < static_cast<Eigen::Index>(last); ++p) {
-      touched.assign(1, static_cast<int>(p));
       seen[static_cast<std::size_t>(p)] = 1;
       for (Eigen::SparseMatrix<double>::InnerIterator b(by_column, p); b; ++b) {
         const int begin = j.outerIndexPtr()[b.index()], end = j.outerIndexPtr()[b.index() + 1];
@@ -97,21 +95,19 @@ SparseSymmetric squared_rows(const SparseJacobian& j) {
         for (int k = static_cast<int>(std::lower_bound(row + begin, row + end, static_cast<int>(p)) - row);
              k < end; ++k) {
           const auto q = static_cast<std::size_t>(row[k]);
-          if (seen[q] == 0) {
-            seen[q] = 1;
-            touched.push_back(row[k]);
-          }
+          seen[q] = 1;
           sum[q] += b.value() * j.valuePtr()[k];
         }
       }
-      std::sort(touched.begin(), touched.end());
-      out.count.push_back(static_cast<int>(touched.size()));
-      for (const int q : touched) {
-        out.row.push_back(q);
-        out.value.push_back(sum[static_cast<std::size_t>(q)]);
-        sum[static_cast<std::size_t>(q)] = 0.0;
-        seen[static_cast<std::size_t>(q)] = 0;
+      const std::size_t before = out.row.size();
+      for (auto q = static_cast<std::size_t>(p); q < seen.size(); ++q) {
+        if (seen[q] == 0) continue;
+        out.row.push_back(static_cast<int>(q));
+        out.value.push_back(sum[q]);
+        sum[q] = 0.0;
+        seen[q] = 0;
       }
+      out.count.push_back(static_cast<int>(out.row.size() - before));
     }
     return out;
   };

@@ -10,8 +10,9 @@
 
 namespace lucerna {
 
-/// Rays that are sent through triangles together, float32, mm.
-inline constexpr std::size_t kMeshBatch = 32768;
+/// Rays that are sent through triangles together, float32, mm. In their order neighbours are the nearer the
+/// more there are: a mesh of a million triangles does not fit a cache.
+inline constexpr std::size_t kMeshBatch = std::size_t{1} << 18;
 struct MeshRays {
   alignas(64) float x[kMeshBatch], y[kMeshBatch], z[kMeshBatch];
   alignas(64) float dx[kMeshBatch], dy[kMeshBatch], dz[kMeshBatch];

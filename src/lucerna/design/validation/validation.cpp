@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -25,6 +26,9 @@ namespace {
 constexpr int kMaxReflections = 100;
 /// Rays of the first round; each further one doubles what there is.
 constexpr std::uint64_t kFirstRound = std::uint64_t{1} << 18;
+/// An error is known where its standard error is this share of it, from so many rays on.
+constexpr double kKnown = 0.01;
+constexpr std::uint64_t kFewestRays = std::uint64_t{1} << 20;
 /// Rays that are one block of every replicate.
 constexpr std::uint64_t kRoundUnit = kReplicates * kBlockRays;
 /// Reflected rays start this share of the scene's size in front of the facet: some roundings of float32, so
@@ -60,6 +64,7 @@ class Meshes {
       body.world_from_body = local_from_world_ * body.world_from_body;
       add(body);
     }
+    set_sphere();
     embree_ = options.engine == HitEngine::best ? has_embree() : options.engine == HitEngine::embree;
     const auto finder = [&](const std::vector<Body>& bodies) {
       return std::shared_ptr<const MeshHitFinder>(embree_ ? embree_hits(bodies) : tree_hits(bodies));
@@ -81,6 +86,13 @@ class Meshes {
   const CadTolerance& tolerance() const { return tolerance_; }
   bool embree() const { return embree_; }
   double lift_mm() const { return kLift * size_mm_; }
+  /// Where a ray that starts within a sphere about the mirrors leaves it, seen from its middle in radii: near
+  /// its hit. Of others the direction.
+  Vec3 on_sphere(const Vec3& from, const Vec3& along) const {
+    const Vec3 p = (1.0 / radius_mm_) * (from - middle_mm_);
+    const double b = dot(p, along), outside = dot(p, p) - 1.0;
+    return outside < 0.0 ? p + (std::sqrt(b * b - outside) - b) * along : along;
+  }
   /// The mirror of a mesh, or null for a body.
   const PlacedReflector* mirror(std::uint32_t mesh) const {
     return mesh < mirrors_ ? &scene_.reflectors[mesh] : nullptr;
@@ -117,8 +129,26 @@ class Meshes {
     bodies_.push_back(body);
   }
 
+  void set_sphere() {
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    Vec3 low{kFar, kFar, kFar}, high = -low;
+    for (std::size_t m = 0; m < mirrors_; ++m) {
+      for (const Vec3& p : bodies_[m].mesh->vertices_mm) {
+        const Vec3 q = bodies_[m].world_from_body.point(p);
+        low = {std::min(low.x, q.x), std::min(low.y, q.y), std::min(low.z, q.z)};
+        high = {std::max(high.x, q.x), std::max(high.y, q.y), std::max(high.z, q.z)};
+      }
+    }
+    if (mirrors_ == 0) return;
+    middle_mm_ = 0.5 * (low + high);
+    radius_mm_ = 0.5 * length(high - low);
+  }
+
   const Scene& scene_;
   std::size_t mirrors_, triangles_ = 0;
+  /// A sphere about the mirrors.
+  Vec3 middle_mm_{};
+  double radius_mm_ = 1.0;
   /// The coarsest of the mirrors'.
   CadTolerance tolerance_{.chord_mm = 0.0, .slope_deg = 0.0};
   Frame local_from_world_;
@@ -160,7 +190,7 @@ class BatchTracer {
 
   /// Traces what is in the batch to its end.
   void finish(BoxSums& sums) {
-    sort_by_direction();
+    sort_by_place();
     for (int reflections = 0; count_ > 0; ++reflections) {
       meshes_.finder(reflections > 0).first_hits(rays_, count_, hits_);
       std::size_t retained = 0;
@@ -174,18 +204,19 @@ class BatchTracer {
   }
 
  private:
-  /// Rays of a Sobol sequence are far apart from one to the next; packets of neighbours find their hits
-  /// several times faster. A counting sort in a Morton order of direction cosines.
-  void sort_by_direction() {
+  /// Rays of a Sobol sequence are far apart from one to the next; neighbours share what they need of the
+  /// meshes. A counting sort in a Morton order of where they go to, for a long source has rays of one
+  /// direction everywhere.
+  void sort_by_place() {
     std::fill(std::begin(begin_), std::end(begin_), 0u);
     for (std::size_t i = 0; i < count_; ++i) {
-      const auto cell = [](float cosine) {
-        constexpr float kHalf = 0.5F * static_cast<float>(kSortSide);
-        return static_cast<std::uint32_t>(
-            std::clamp(kHalf + kHalf * cosine, 0.0F, static_cast<float>(kSortSide - 1)));
+      const auto cell = [](double cosine) {
+        constexpr double kHalf = 0.5 * kSortSide;
+        return static_cast<std::uint32_t>(std::clamp(kHalf + kHalf * cosine, 0.0, kSortSide - 1.0));
       };
-      const std::uint32_t behind = rays_.dz[i] < 0.0F ? 0u : kSortSide * kSortSide;
-      sort_key_[i] = behind + spread_bits(cell(rays_.dx[i])) + 2 * spread_bits(cell(rays_.dy[i]));
+      const Vec3 to = meshes_.on_sphere(origin(i), direction(i));
+      const std::uint32_t behind = to.z < 0.0 ? 0u : kSortSide * kSortSide;
+      sort_key_[i] = behind + spread_bits(cell(to.x)) + 2 * spread_bits(cell(to.y));
       ++begin_[sort_key_[i] + 1];
     }
     for (std::size_t k = 1; k < std::size(begin_); ++k) begin_[k] += begin_[k - 1];
@@ -320,7 +351,7 @@ class BatchTracer {
   /// Kept only where chance decides where a reflection goes.
   bool keyed_;
   ReflectionKey key_[kMeshBatch], spare_key_[kMeshBatch];
-  static constexpr std::uint32_t kSortSide = 128;
+  static constexpr std::uint32_t kSortSide = 256;
   std::uint32_t sort_key_[kMeshBatch], order_[kMeshBatch], begin_[2 * kSortSide * kSortSide + 1];
 };
 
@@ -363,11 +394,18 @@ void trace_round(const Scene& scene, const RayNumbering& numbering, const Meshes
       [&](std::size_t r, std::string_view& bytes) { take_sums(replicates[r], bytes); });
 }
 
+/// No more rays are needed.
+bool is_clear(const ValidationOptions& options, const Validation& found) {
+  const BoxErrorEstimate& e = found.error.c48;
+  const bool known = e.standard_error <= kKnown * e.excess;
+  return e.floor <= 0.5 * e.excess && !any_undetermined(found.zones) &&
+         (found.rays >= options.min_rays || (known && found.rays >= kFewestRays));
+}
+
 /// Rays to trace in all after `rays` took `seconds` and the meshes `before_s`, or 0: enough.
 std::uint64_t next_rays(const ValidationOptions& options, std::uint64_t rays, double seconds, double before_s,
                         bool clear) {
-  if (rays >= options.max_rays) return 0;
-  if (rays >= options.min_rays && clear) return 0;
+  if (rays >= options.max_rays || clear) return 0;
   std::uint64_t next = std::min(2 * rays, options.max_rays);
   const double left = options.max_s - before_s - seconds, per_ray = seconds / static_cast<double>(rays);
   if (static_cast<double>(next - rays) * per_ray > left) {
@@ -427,10 +465,9 @@ Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const
     out.error = box_error(boxes, target, replicates, mode);
     if (options.zones != nullptr)
       out.zones = check_zones(*options.zones, replicates, total_flux(scene.sources));
-    const bool clear = out.error.c48.floor <= 0.5 * out.error.c48.excess && !any_undetermined(out.zones);
     if (progress.stop_requested()) break;
     const double seconds = of_first(options.peers, seconds_since(traced));
-    next = next_rays(options, out.rays, seconds, out.mesh_s, clear) / kRoundUnit;
+    next = next_rays(options, out.rays, seconds, out.mesh_s, is_clear(options, out)) / kRoundUnit;
   }
   set_shares(replicates, out);
   out.seconds = of_first(options.peers, seconds_since(start));

@@ -21,8 +21,8 @@ enum class HitEngine { best, embree, tree };
 struct ValidationOptions {
   /// Of the rays; they are others than those of any fit, also with the same seed.
   std::uint64_t seed = 1;
-  /// Rays that are always traced, and what they are doubled to until the floor at n = 48 is half of the
-  /// excess.
+  /// Rays that are traced, and what they are doubled to until the floor at n = 48 is half of the excess.
+  /// Fewer than `min_rays`, but 2^20, are enough where the excess is also known to a hundredth of itself.
   std::uint64_t min_rays = std::uint64_t{1} << 24;
   std::uint64_t max_rays = std::uint64_t{1} << 27;
   /// Time only stops: fewer rays are traced than the above where they would take longer (at least 2^18).

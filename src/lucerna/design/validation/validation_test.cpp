@@ -132,6 +132,25 @@ TEST(Validation, LosesNoLight) {
   EXPECT_GT(v.triangles, 1000u);
 }
 
+TEST(Validation, StopsWhereALargeErrorIsKnown) {
+  const ErrorBoxes b = boxes();
+  ValidationOptions o = rays(1 << 23);
+  o.max_rays = 1 << 24;
+  const Validation far = validate(bumpy_scene(), b, lambert(b), TargetMode::shape, o);
+  EXPECT_LT(far.rays, o.min_rays);
+  EXPECT_GE(far.rays, 1u << 20);
+  EXPECT_LE(far.error.c48.standard_error, 0.01 * far.error.c48.excess);
+  // Its own light as target: nothing but noise is left, and all rays are traced.
+  std::vector<double> own(b.size(), 0.0);
+  for (const BoxSums& r : far.replicates) {
+    for (std::size_t c = 0; c < b.size(); ++c) own[c] += r.flux[c] / r.emitted / kReplicates;
+  }
+  o.min_rays = 1 << 21;
+  o.max_rays = 1 << 22;
+  o.seed = 5;
+  EXPECT_EQ(validate(bumpy_scene(), b, own, TargetMode::shape, o).rays, o.max_rays);
+}
+
 TEST(Validation, OwnTreeAndEmbreeAgree) {
   if (!has_embree()) GTEST_SKIP() << "built without Embree";
   const ErrorBoxes b = boxes();
