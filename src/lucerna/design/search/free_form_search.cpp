@@ -58,6 +58,8 @@ constexpr double kHopeless = 4.0;
 /// further: it would need many more steps than there are.
 constexpr int kEarlySteps = 5;
 constexpr double kSlow = 2.0;
+/// Steps of the last level for an approach that others are to follow: in little time it is the result.
+constexpr int kTrialSteps = 5;
 /// Candidates in a row that have no start, after which there are no others.
 constexpr int kMaxFailed = 8;
 /// Steps in a row, each five times as damped as the one before, after which a level is at its end.
@@ -178,8 +180,12 @@ bool FreeFormSearch::worth_an_approach() const {
   return best->candidate == 0 || best->error > near;
 }
 
+bool FreeFormSearch::others_are_to_be_approached() const {
+  return state_.begun < kNoApproach && worth_an_approach();
+}
+
 bool FreeFormSearch::approach_is_alone() const {
-  if (worth_an_approach() && state_.begun < kNoApproach) return false;
+  if (others_are_to_be_approached()) return false;
   const FreeFormSnapshot *approach = nullptr, *other = nullptr;
   for (const FreeFormSnapshot& m : state_.done) {
     if (m.level != 0) continue;
@@ -250,10 +256,8 @@ const FreeFormSnapshot* FreeFormSearch::next_promotion() const {
     }
     return best;
   };
-  const auto count = [&](int level) {
-    return std::count_if(state_.done.begin(), state_.done.end(),
-                         [&](const FreeFormSnapshot& m) { return m.level == level; });
-  };
+  const auto fitted_finely = std::count_if(state_.done.begin(), state_.done.end(),
+                                           [](const FreeFormSnapshot& m) { return m.level == 1; });
   const FreeFormSnapshot* given = best_of(0);
   const bool near = state_.begun == 1 && given != nullptr && given->cost < kErrorShare[0] * kNear * kNear &&
                     !given_is_stuck();
@@ -265,14 +269,15 @@ const FreeFormSnapshot* FreeFormSearch::next_promotion() const {
     // The best of a few is fitted finely before the others begin, for a search that has little time.
     const int few = worth_an_approach() ? kApproach + 1 : kApproach;
     if (state_.begun < few) return nullptr;
-    if (best_of(1) == nullptr) return rough;
-    return is_approach(*best_of(1)) ? best_waiting(1) : nullptr;
+    return best_of(1) == nullptr ? rough : is_approach(*best_of(1)) ? best_waiting(1) : nullptr;
   }
-  const bool hopeful = rough != nullptr && rough->cost < kHopeless * best_of(0)->cost;
-  if (hopeful && count(1) < (decided ? 1 : kFine)) return rough;
-  const FreeFormSnapshot* fine = best_waiting(1);
   const FreeFormSnapshot* end = best_of(kEnd);
+  if (end != nullptr && is_approach(*end) && others_are_to_be_approached()) return nullptr;
+  const bool hopeful = rough != nullptr && rough->cost < kHopeless * best_of(0)->cost;
+  if (hopeful && fitted_finely < (decided ? 1 : kFine)) return rough;
+  const FreeFormSnapshot* fine = best_waiting(1);
   if (end == nullptr) return fine;
+  if (is_approach(*end) && fine != nullptr && fine == best_of(1)) return fine;
   // The best goes on with more rays where noise is a good part of its error, else after some neighbours; then
   // the others, while they may win, and neighbours.
   const int neighbours_before = std::min(kNeighboursBefore, problem_.max_failed_restarts);
@@ -460,6 +465,8 @@ bool FreeFormSearch::is_slow_approach() const {
 
 bool FreeFormSearch::level_ended() const {
   const FreeFormLevel l = level(state_.now.level);
+  const bool is_trial = state_.now.level == kEnd && is_approach(state_.now) && others_are_to_be_approached();
+  if (is_trial && state_.step >= kTrialSteps) return true;
   if (state_.step >= l.max_steps || state_.refused >= kMaxRefusedInARow) return true;
   const std::vector<double>& c = state_.costs;
   const FreeFormSnapshot* best = best_of(0);

@@ -76,6 +76,7 @@ class FreeFormSearch {
   bool is_slow_approach() const;
   /// Whether the given mirror was near, went on alone, and its few knots ended it above the noise.
   bool given_is_stuck() const;
+  bool others_are_to_be_approached() const;
   /// Whether what the approaches led to is so much better that no mirror of a point source needs to be tried.
   bool approach_is_alone() const;
   /// Whether the given mirror has few knots and is to have no more.

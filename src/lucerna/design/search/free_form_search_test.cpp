@@ -378,6 +378,12 @@ TEST(FreeFormSearch, FurtherApproachesFollowUntilOneIsNear) {
   state.done.push_back(state.now);
   state.now = {};
   state = run(problem, plain(), 1, state).state();
+  ASSERT_EQ(state.now.candidate, 3);
+  ASSERT_EQ(state.now.level, 2);
+  state.step = 4;  // the fifth is the last before others begin
+  state = run(problem, plain(), 1, state).state();
+  ASSERT_FALSE(state.now.exists());
+  state = run(problem, plain(), 1, state).state();
   ASSERT_EQ(state.now.candidate, 4);
   EXPECT_FALSE(state.now.transport.exists());
   state.done.push_back(state.now);
@@ -389,7 +395,31 @@ TEST(FreeFormSearch, FurtherApproachesFollowUntilOneIsNear) {
     m.error_to_noise = 1.0;
   }
   state = run(problem, plain(), 1, state).state();
-  EXPECT_GT(state.begun, 11) << "no more approaches";
+  EXPECT_EQ(state.begun, 5) << "no more approaches";
+  EXPECT_EQ(state.now.level, 1);
+}
+
+TEST(FreeFormSearch, TheNearestOfAllApproachesGoesToTheEnd) {
+  DesignRays rays = disk_rays();
+  const FitProblem problem = oval_problem(rays);
+  for (const double cost : {1e-3, 3e-3}) {
+    FreeFormState state = candidates_of({3e-3, 4e-3, 5e-3});
+    FreeFormSnapshot approach = state.done.front();
+    const auto add = [&](int candidate, int level, double with) {
+      approach.candidate = candidate;
+      approach.level = level;
+      approach.cost = with;
+      state.done.push_back(approach);
+    };
+    for (const int candidate : {3, 7, 8}) add(candidate, 0, 2e-3);
+    for (const int level : {1, 2}) add(3, level, 2e-3);
+    add(7, 1, cost);
+    add(8, 1, 1.0);
+    state.begun = 11;
+    state = run(problem, plain(), 1, state).state();
+    EXPECT_EQ(state.now.candidate, cost < 2e-3 ? 7 : 3);
+    EXPECT_EQ(state.now.level, cost < 2e-3 ? 2 : 3);
+  }
 }
 
 // What five fine steps of the best had left says whether another is worth its time.
