@@ -143,7 +143,7 @@ stage() {
     consumers) within_sources ;;
     clang) build_and_test clang all benchmarks ;;
     asan | tsan) build_and_test "$1" all ;;
-    *-long) build_preset "${1%-long}" all && ctest --preset "$1" ;;
+    asan-long | tsan-long | clang-long) build_preset "${1%-long}" all && ctest --preset "$1" ;;
     asan-python) module_under_asan ;;
     *)
       echo "no stage $1" >&2

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/message_bytes.h"
@@ -59,12 +60,15 @@ class Meshes {
       if (tolerance.slope_deg > tolerance_.slope_deg) tolerance_ = tolerance;
       add(body);
     }
+    if (mirrors_ > 0) {
+      middle_mm_ = 0.5 * (low_mm_ + high_mm_);
+      radius_mm_ = 0.5 * length(high_mm_ - low_mm_);
+    }
     for (Body body : scene.bodies) {
       check(body);
       body.world_from_body = local_from_world_ * body.world_from_body;
       add(body);
     }
-    set_sphere();
     embree_ = options.engine == HitEngine::best ? has_embree() : options.engine == HitEngine::embree;
     const auto finder = [&](const std::vector<Body>& bodies) {
       return std::shared_ptr<const MeshHitFinder>(embree_ ? embree_hits(bodies) : tree_hits(bodies));
@@ -123,31 +127,19 @@ class Meshes {
     for (const Vec3& p : mesh.vertices_mm) {
       const Vec3 q = body.world_from_body.point(p);
       size_mm_ = std::max({size_mm_, std::abs(q.x), std::abs(q.y), std::abs(q.z)});
+      low_mm_ = {std::min(low_mm_.x, q.x), std::min(low_mm_.y, q.y), std::min(low_mm_.z, q.z)};
+      high_mm_ = {std::max(high_mm_.x, q.x), std::max(high_mm_.y, q.y), std::max(high_mm_.z, q.z)};
     }
     smooth_.push_back(smooth_normals(body));
     triangles_ += mesh.triangles.size();
     bodies_.push_back(body);
   }
 
-  void set_sphere() {
-    constexpr double kFar = std::numeric_limits<double>::infinity();
-    Vec3 low{kFar, kFar, kFar}, high = -low;
-    for (std::size_t m = 0; m < mirrors_; ++m) {
-      for (const Vec3& p : bodies_[m].mesh->vertices_mm) {
-        const Vec3 q = bodies_[m].world_from_body.point(p);
-        low = {std::min(low.x, q.x), std::min(low.y, q.y), std::min(low.z, q.z)};
-        high = {std::max(high.x, q.x), std::max(high.y, q.y), std::max(high.z, q.z)};
-      }
-    }
-    if (mirrors_ == 0) return;
-    middle_mm_ = 0.5 * (low + high);
-    radius_mm_ = 0.5 * length(high - low);
-  }
-
   const Scene& scene_;
   std::size_t mirrors_, triangles_ = 0;
-  /// A sphere about the mirrors.
-  Vec3 middle_mm_{};
+  /// Corners of what was added, and a sphere about the mirrors, which come first.
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+  Vec3 low_mm_{kFar, kFar, kFar}, high_mm_ = -low_mm_, middle_mm_{};
   double radius_mm_ = 1.0;
   /// The coarsest of the mirrors'.
   CadTolerance tolerance_{.chord_mm = 0.0, .slope_deg = 0.0};
@@ -177,7 +169,9 @@ class BatchTracer {
         boxes_(boxes),
         zones_(zones),
         world_from_local_(meshes.local_from_world().inverse()),
-        keyed_(is_rough(scene)) {}
+        keyed_(is_rough(scene)),
+        key_(keyed_ ? kMeshBatch : 0),
+        spare_key_(key_) {}
 
   /// Adds the rays of a block of numbers to the batch, and traces it when it is full.
   void add_block(std::uint64_t block, BoxSums& sums) {
@@ -223,7 +217,7 @@ class BatchTracer {
     for (std::size_t i = 0; i < count_; ++i) order_[begin_[sort_key_[i]]++] = static_cast<std::uint32_t>(i);
     const auto reorder = [&](auto& values, auto& spare) {
       for (std::size_t i = 0; i < count_; ++i) spare[i] = values[order_[i]];
-      std::copy(spare, spare + count_, values);
+      std::copy_n(&spare[0], count_, &values[0]);
     };
     for (auto* values : {&rays_.x, &rays_.y, &rays_.z, &rays_.dx, &rays_.dy, &rays_.dz}) {
       reorder(*values, hits_.t);
@@ -289,7 +283,7 @@ class BatchTracer {
       sums.lost += flux_[i];
       return false;
     }
-    key_[i].bounce = reflections;
+    if (keyed_) key_[i].bounce = reflections;
     return meshes_.mirror(hits_.mesh[i]) != nullptr ? off_mirror(i, sums) : off_body(i, sums);
   }
 
@@ -333,7 +327,7 @@ class BatchTracer {
     const Direction d = Direction::from(direction(i));
     const Vec3 at =
         origin(i) + static_cast<double>(hits_.t[i]) * d.vec() + meshes_.lift_mm() * hit.face.vec();
-    set(i, at, reflected_off(finish, d, hit, key_[i]));
+    set(i, at, reflected_off(finish, d, hit, keyed_ ? key_[i] : ReflectionKey{}));
     return true;
   }
 
@@ -350,7 +344,7 @@ class BatchTracer {
   double flux_[kMeshBatch], spare_flux_[kMeshBatch];
   /// Kept only where chance decides where a reflection goes.
   bool keyed_;
-  ReflectionKey key_[kMeshBatch], spare_key_[kMeshBatch];
+  std::vector<ReflectionKey> key_, spare_key_;
   static constexpr std::uint32_t kSortSide = 256;
   std::uint32_t sort_key_[kMeshBatch], order_[kMeshBatch], begin_[2 * kSortSide * kSortSide + 1];
 };
