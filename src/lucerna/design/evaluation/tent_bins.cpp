@@ -2,6 +2,7 @@
 #include "lucerna/design/evaluation/tent_bins.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -9,6 +10,13 @@
 #include "lucerna/core/parallel/parallel.h"
 
 namespace lucerna {
+
+namespace {
+
+/// Directions of a circle that a function of direction is summed over, and circles of a ring.
+constexpr int kAround = 360, kCircles = 64;
+
+}  // namespace
 
 TentBins::TentBins(TentKind kind, const Frame& axes, double extent, int count) {
   view_.kind = kind;
@@ -82,6 +90,7 @@ TentBins TentBins::zone(const Frame& axes, double gamma_min_rad, int rings, int 
 
 std::vector<double> TentBins::flux_of(const std::function<double(const Direction&)>& intensity) const {
   LUCERNA_CHECK(view_.kind != TentKind::plane, "intensity on a plane");
+  if (is_rings()) return flux_of_rings(intensity);
   std::vector<double> flux(static_cast<std::size_t>(view_.size()), 0.0);
   Deposit d;
   const auto add = [&](const Direction& inner, double weight) {
@@ -94,11 +103,10 @@ std::vector<double> TentBins::flux_of(const std::function<double(const Direction
     }
   };
   constexpr int kFineParts = 8;
-  if (view_.kind != TentKind::square) {
-    const int fine = is_rings() ? 64 : kFineParts,
-              around = is_rings() ? 360 : std::max(360, kFineParts * view_.sectors);
-    const double step = view_.cell / fine, turn = 2.0 * std::numbers::pi / around;
-    for (int g = 0; g < (view_.count + 1) * fine; ++g) {
+  if (view_.kind == TentKind::zone) {
+    const int around = std::max(kAround, kFineParts * view_.sectors);
+    const double step = view_.cell / kFineParts, turn = 2.0 * std::numbers::pi / around;
+    for (int g = 0; g < (view_.count + 1) * kFineParts; ++g) {
       const double gamma = view_.gamma_min + (g + 0.5) * step;
       if (gamma >= std::numbers::pi) break;
       const double s = std::sin(gamma);
@@ -115,6 +123,36 @@ std::vector<double> TentBins::flux_of(const std::function<double(const Direction
     const double w = std::sqrt(w2);
     add(Direction::from_unit({u, v, w}), area / w);
   });
+  return flux;
+}
+
+std::vector<double> TentBins::flux_of_rings(const std::function<double(const Direction&)>& intensity) const {
+  std::vector<std::array<double, 2>> around(kAround);
+  const double turn = 2.0 * std::numbers::pi / kAround;
+  for (std::size_t c = 0; c < around.size(); ++c) {
+    const double a = (static_cast<double>(c) + 0.5) * turn;
+    around[c] = {std::cos(a), std::sin(a)};
+  }
+  const double step = view_.cell / kCircles;
+  // All directions of a circle are in the same rings.
+  std::vector<double> circles(static_cast<std::size_t>(view_.count + 1) * kCircles, 0.0);
+  const auto gamma = [&](std::size_t g) { return (static_cast<double>(g) + 0.5) * step; };
+  parallel_blocks(circles.size(), 64, [&](std::size_t first, std::size_t last) {
+    for (std::size_t g = first; g < last && gamma(g) < std::numbers::pi; ++g) {
+      const double s = std::sin(gamma(g)), z = std::cos(gamma(g));
+      double sum = 0.0;
+      for (const auto& [x, y] : around)
+        sum += intensity(view_.axes.direction(Direction::from_unit({s * x, s * y, z})));
+      circles[g] = step * turn * s * sum;
+    }
+  });
+  std::vector<double> flux(static_cast<std::size_t>(view_.size()), 0.0);
+  Deposit d;
+  for (std::size_t g = 0; g < circles.size() && gamma(g) < std::numbers::pi; ++g) {
+    deposit({}, view_.axes.direction(Direction::from_unit({std::sin(gamma(g)), 0.0, std::cos(gamma(g))})), d);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(d.n); ++k)
+      flux[static_cast<std::size_t>(d.bin[k])] += d.weight[k] * circles[g];
+  }
   return flux;
 }
 

@@ -52,8 +52,9 @@ class TentBins {
   /// beyond the horizon.
   const std::vector<double>& measure() const { return measure_; }
 
-  /// Integral of intensity * tent over solid angle for every bin (8 x 8 points per cell; 64 per ring and 360
-  /// around): the flux that an intensity function puts into the bins. Not for planes.
+  /// Integral of intensity * tent over solid angle for every bin (8 x 8 points per cell; 64 circles per ring,
+  /// 360 points each): the flux that an intensity function puts into the bins. Not for planes. Calls
+  /// `intensity` from several threads where bins are rings.
   std::vector<double> flux_of(const std::function<double(const Direction&)>& intensity) const;
   /// Integral of a density over (x, y) in mm * tent over the plane's area in mm2 (8 x 8 points per cell).
   std::vector<double> flux_on(const std::function<double(double x_mm, double y_mm)>& density_per_mm2) const;
@@ -84,6 +85,7 @@ class TentBins {
   /// areas.
   void over_grid(int fine, const std::function<void(double u, double v, double area)>& visit) const;
   void set_axes(const TentAxis& u, const TentAxis& v);
+  std::vector<double> flux_of_rings(const std::function<double(const Direction&)>& intensity) const;
 
   TentBinsView view_;
   std::vector<double> measure_;
