@@ -33,6 +33,29 @@ TEST(TentBins, MeasuresAreTheWindows) {
   EXPECT_GT(zone, 0.95 * cap);
 }
 
+// Light that is uneven around a tilted axis, summed direction by direction.
+TEST(TentBins, FluxOfRingsIsTheIntegralOfTheIntensity) {
+  const Frame tilted{Vec3{0.8, 0, -0.6}, Vec3{0, 1, 0}, Vec3{0.6, 0, 0.8}, Vec3{}};
+  const TentBins bins = TentBins::rings(tilted, 1.2, 12);
+  const auto intensity = [](const Direction& d) { return std::exp(3.0 * d.x() + d.y()); };
+  std::vector<double> expected(bins.size(), 0.0);
+  constexpr int kGammas = 1500, kTurns = 97;
+  const double step = std::numbers::pi / kGammas, turn = 2.0 * std::numbers::pi / kTurns;
+  TentBins::Deposit d;
+  for (int g = 0; g < kGammas; ++g) {
+    for (int c = 0; c < kTurns; ++c) {
+      const double gamma = (g + 0.5) * step, a = c * turn, s = std::sin(gamma);
+      const Direction to =
+          tilted.direction(Direction::from({s * std::cos(a), s * std::sin(a), std::cos(gamma)}));
+      bins.deposit({}, to.vec(), d);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(d.n); ++k)
+        expected[static_cast<std::size_t>(d.bin[k])] += d.weight[k] * intensity(to) * s * step * turn;
+    }
+  }
+  const std::vector<double> found = bins.flux_of(intensity);
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-3 * expected[i]) << i;
+}
+
 TEST(TentBins, PlanesTakeLightWhereItFalls) {
   const TentBins bins = TentBins::plane(floor_below(), 500, 300, 10);
   TentBins::Deposit d;

@@ -12,8 +12,9 @@
 
 namespace lucerna {
 
-/// What a lens does with light, found by code that shares nothing with its fit but Fresnel's formulas and, of
-/// a free face, the way of light that does not go straight (other_light.h).
+/// What a lens does with light, found by code that shares nothing with its fit but Fresnel's formulas; of
+/// exact surfaces the tree of an outline's sides (revolved_tree.h); and of a free face the way of light that
+/// does not go straight (other_light.h).
 struct LensValidation {
   DesignError error;
   /// Shares of the sources' flux: what leaves, what the medium keeps, rays that were given up.
