@@ -2,13 +2,14 @@
 // Designs as the command line makes them, each validated by fresh rays through the mesh of the mirror:
 //   bench_real_targets [options] files FILE.ldt|FILE.ies ...   real targets, for an LED (or --source FILE)
 //   bench_real_targets [options] synthetic [NAME ...]          the functions of synthetic_targets.h
-//   bench_real_targets [options] attainable [NAME ...]         the light of mirrors designed for these
+//   bench_real_targets [options] attainable [NAME ...]         the light of mirrors designed for these once
 //   bench_real_targets [options] hidden [CASE ...]             random mirrors: n10, n49-near, n49-far,
 //   n49-wild, n400
 // options: --time S (60), --rays N (of the validation, 16 M), --target-rays N (of tables, 64 M), --family
 // bspline|revolution, --light-weight W (0.1), --source led|filament|FILE (led; `attainable`: both in turn),
 // --targets N (of `hidden`, 10), --seed S, --start (judges only the mirror to begin with), --history (prints
-// every step), --keep (the models and tables that were made), --fixed-knots (of `hidden`), --slope DEG
+// every step), --keep (the models and tables that were made), --fixed-knots (of `hidden`), --mirrors FOLDER
+// (of `attainable`, bench/attainable: mirrors and models; what is missing is made and kept), --slope DEG
 // (largest angle between facets and surface in the validation; default: the design's own), --device cuda. The
 // mirror of all but `hidden`: 120 mm over f = 20 mm, hole 8 mm, reflectance 0.9. Each line: excess at n = 12,
 // 24 and 48 with its standard error, noise, light in the rectangle, light and error outside, bound, seconds
@@ -56,7 +57,7 @@ struct Run {
   std::optional<double> slope_deg;
   bool start_only = false, history = false, keep = false, fixed_knots = false;
   std::vector<std::string> names;
-  fs::path folder;
+  fs::path folder, mirrors = "bench/attainable";
   std::shared_ptr<Accelerator> device;
 };
 
@@ -105,12 +106,17 @@ class Table {
 
 std::string source_of(const Run& run) { return run.source.empty() ? "led" : run.source; }
 
-std::string luminaire(const Run& run, const std::string& source) {
-  return fmt::format(
-      "[[source]]\nfile = \"{}\"\n[[reflector]]\nfamily = \"{}\"\n{}focal_mm = 20.0\ndiameter_mm = 120.0\n"
-      "hole_diameter_mm = 8.0\nposition_mm = [0, 0, 20]\naxis = \"-z\"\nreflectance = 0.9\n",
-      model_of(run, source).string(), run.family,
-      run.family == "revolution" ? "preset = \"parabola\"\n" : "");
+std::string source_toml(const fs::path& model) {
+  return fmt::format("[[source]]\nfile = \"{}\"\n", model.string());
+}
+
+/// The source and the plain paraboloid.
+std::string luminaire(const Run& run, const fs::path& model) {
+  return source_toml(model) +
+         fmt::format(
+             "[[reflector]]\nfamily = \"{}\"\n{}focal_mm = 20.0\ndiameter_mm = 120.0\nhole_diameter_mm = "
+             "8.0\nposition_mm = [0, 0, 20]\naxis = \"-z\"\nreflectance = 0.9\n",
+             run.family, run.family == "revolution" ? "preset = \"parabola\"\n" : "");
 }
 
 DesignProblem problem(const Run& run, const std::string& scene, const fs::path& target,
@@ -228,7 +234,8 @@ void files(const Run& run) {
   for (const std::string& file : run.names) {
     Validated j;
     const std::string name = fs::path(file).filename().string().substr(0, 28);
-    solve(run, name, problem(run, luminaire(run, source_of(run)), file, "shape"), run.time_s, j);
+    solve(run, name, problem(run, luminaire(run, model_of(run, source_of(run))), file, "shape"), run.time_s,
+          j);
     add_row(table, name, j);
   }
   table.print();
@@ -240,33 +247,57 @@ void synthetic(const Run& run) {
     if (!selected(run, target.name)) continue;
     const fs::path file = written(run, target.name, bench::table_of(target, 2.5, 1.0));
     Validated j;
-    solve(run, target.name, problem(run, luminaire(run, source_of(run)), file, "shape"), run.time_s, j);
+    solve(run, target.name, problem(run, luminaire(run, model_of(run, source_of(run))), file, "shape"),
+          run.time_s, j);
     add_row(table, target.name, j);
   }
   table.print();
 }
 
-/// Designs for a function, writes the light of the result as a table, and designs for that from scratch.
+/// The model of a source in the folder of mirrors.
+fs::path fixed_model(const Run& run, const std::string& source) {
+  if (fs::exists(source)) return model_of(run, source);
+  fs::path file = fs::absolute(run.mirrors / (source + ".nfl"));
+  if (!fs::exists(file)) fs::copy_file(model_of(run, source), file);
+  return file;
+}
+
+/// The mirror of that name in the folder of mirrors, its coefficients in whole nanometres.
+fs::path fixed_mirror(const Run& run, const std::string& name, const bench::SyntheticTarget& target,
+                      const fs::path& model) {
+  fs::path file = run.mirrors / (name + ".toml");
+  if (fs::exists(file)) return file;
+  const fs::path table = written(run, name, bench::table_of(target, 2.5, 1.0));
+  const DesignProblem p = problem(run, luminaire(run, model), table, "shape");
+  Validated j;
+  const DesignShape made = solve(run, name + " made", p, run.time_s, j);
+  const Eigen::VectorXd rounded = (1e6 * made.parameters()).array().round() / 1e6;
+  write_file(file, reflector_toml(p, made.with(rounded)));
+  return file;
+}
+
+/// Designs for the light of mirrors that were themselves designed for a function.
 void attainable(const Run& run) {
   double worst = -1.0;
   Table table("| source | target | exact mirror | from scratch | above | light, exact | light, found |");
   const std::vector<std::string> both{"led", "filament"};
   for (const std::string& source : run.source.empty() ? both : std::vector{run.source}) {
+    const fs::path model = fixed_model(run, source);
     for (const auto& target : bench::synthetic_targets()) {
       if (!selected(run, target.name)) continue;
-      const std::string scene = luminaire(run, source), name = target.name + "-" + source;
-      const DesignProblem first =
-          problem(run, scene, written(run, name, bench::table_of(target, 2.5, 1.0)), "shape");
-      Validated j, exact, again;
-      const DesignShape maker = solve(run, name + " maker", first, run.time_s, j);
-      Scene made = first.project.scene;
-      made.reflectors.front().reflector = maker.reflector();
-      const fs::path made_light = written(run, name + ".att", traced_table(made, 2.5, 1.0, run.target_rays));
-      const DesignProblem second = problem(run, scene, made_light, "shape");
-      exact = validated(run, second, maker);
+      const std::string name = target.name + "-" + fs::path(source).stem().string();
+      const std::string mirror =
+          source_toml(model) + read_file(fixed_mirror(run, name, target, model), 1 << 20);
+      const fs::path own = run.folder / (name + ".toml");
+      write_file(own, mirror);
+      const fs::path light =
+          written(run, name, traced_table(read_project(own).scene, 2.5, 1.0, run.target_rays));
+      const DesignProblem known = problem(run, mirror, light, "shape");
+      const Validated exact = validated(run, known, known.start);
       print_line(name + " exact", exact, "not designed");
-      solve(run, name + " again", second, run.time_s, again);
-      const double above = again.validation.error.c48.excess - exact.validation.error.c48.excess;
+      Validated again;
+      solve(run, name, problem(run, luminaire(run, model), light, "shape"), run.time_s, again);
+      const double above = again.error().c48.excess - exact.error().c48.excess;
       fmt::print("{:28} above the exact mirror at n = 48: {:.2f} %\n", name, 100.0 * above);
       worst = std::max(worst, above);
       table.row("| {} | {} | {} | {} | {:.2f} | {:.3f} | {:.3f} |", source, target.name,
@@ -423,6 +454,8 @@ Run parsed(int argc, char** argv) {
       run.light_weight = std::stod(value(i));
     } else if (a == "--family") {
       run.family = value(i);
+    } else if (a == "--mirrors") {
+      run.mirrors = value(i);
     } else if (a == "--source") {
       run.source = value(i);
     } else if (a == "--device") {

@@ -130,7 +130,7 @@ const std::map<std::string, Layers> kSubRooms{
          {"evaluation", {"shape"}},
          {"problem", {"evaluation", "shape"}},
          {"solver", {"evaluation", "problem", "shape"}},
-         {"constraints", {"problem", "solver"}},
+         {"constraints", {"evaluation", "problem", "solver"}},
          {"fit", {"constraints", "evaluation", "problem", "shape", "solver"}},
          {"initial", {"constraints", "evaluation", "fit", "shape"}},
          {"optimizers", {}},

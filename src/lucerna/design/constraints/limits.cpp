@@ -26,7 +26,7 @@ constexpr int kMaxSteps = 200;
 
 /// Places where the surface is looked at: a grid of `per_interval` to a knot interval, and the outline.
 template <class Place>
-std::vector<Place> places(const DesignShape& shape, int per_interval) {
+std::vector<Place> places_of(const DesignShape& shape, int per_interval) {
   const Aperture& a = shape.aperture();
   std::vector<Place> out;
   const double hole = a.hole_radius_mm();
@@ -197,7 +197,7 @@ double ShapeLimits::cost(const DesignShape& shape, std::span<const Limit* const>
     fill(row);
     row.add_to(*rows, excess);
   };
-  const std::vector<Place> look = places<Place>(shape, per_interval);
+  const std::vector<Place> look = places(shape, limits, per_interval);
   for (const Limit* limit : limits) {
     if (limit->kind == Kind::height) {  // both ways from the middle of lowest and highest
       const auto ends = std::minmax_element(look.begin(), look.end(), [&](const Place& p, const Place& q) {
@@ -243,13 +243,21 @@ double ShapeLimits::cost(const DesignShape& shape, std::span<const Limit* const>
   return cost;
 }
 
+std::vector<ShapeLimits::Place> ShapeLimits::places(const DesignShape& shape,
+                                                    std::span<const Limit* const> limits, int per_interval) {
+  // Walls have places of their own.
+  const bool look = std::ranges::any_of(limits, [](const Limit* l) { return l->kind != Kind::keep_out; });
+  return look ? places_of<Place>(shape, per_interval) : std::vector<Place>();
+}
+
 bool ShapeLimits::held(const DesignShape& shape) const { return held(shape, all()); }
 
 bool ShapeLimits::held(const DesignShape& shape, std::span<const Limit* const> limits) const {
-  const std::vector<Place> look = places<Place>(shape, kFinePlaces);
+  const std::vector<Place> look = places(shape, limits, kFinePlaces);
   for (const Limit* limit : limits) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Place& p : look) {
+    for (std::size_t i = 0; limit->kind != Kind::keep_out && i < look.size(); ++i) {
+      const Place& p = look[i];
       const SurfacePoint s = shape.at(p.x, p.y);
       low = std::min(low, s.z_mm);
       high = std::max(high, s.z_mm);

@@ -60,6 +60,9 @@ class ShapeLimits {
   };
   struct Terms;
 
+  /// Where the limits look at the surface.
+  static std::vector<Place> places(const DesignShape& shape, std::span<const Limit* const> limits,
+                                   int per_interval);
   Limit keep_out(const KeepOut& zone, const DesignShape& start) const;
   bool held(const DesignShape& shape, std::span<const Limit* const> limits) const;
   /// `per_interval`: places looked at in a knot interval.

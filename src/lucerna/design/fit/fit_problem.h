@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "lucerna/design/constraints/limits.h"
@@ -43,8 +44,9 @@ struct FitProblem {
   std::function<double(const DesignShape&, std::uint64_t rays, ResidualRows* rows)> limits;
   /// Those of `limits` on the form, for steps that look ahead at them; may be null.
   std::shared_ptr<const ShapeLimits> form;
-  /// Brings what a search begins with within limits on its heights; empty: it begins as it is.
-  std::function<DesignShape(const DesignShape&)> within;
+  /// Brings what a search begins with within limits on its heights; nothing where it is too far beyond them
+  /// to be a start. Empty: it begins as it is.
+  std::function<std::optional<DesignShape>(const DesignShape&)> within;
   /// Flux, as an evaluation has it, that a shape sends into bins by ways that an evaluation does not
   /// follow, looked at by some of `rays` rays. A free form's levels keep that of the shape that they begin
   /// with. Empty: none.

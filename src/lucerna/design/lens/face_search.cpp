@@ -119,7 +119,7 @@ std::optional<FaceSearch::RoughFace> FaceSearch::rough(double distance) {
   FreeFormLevel level = search_.level(0);
   level.bins = kRoughBins;
   const FreeFormFit fit(straight, level);
-  FreeFormPoint point = fit.at(straight.within(*guess));
+  FreeFormPoint point = fit.at(*straight.within(*guess));
   double lambda = FreeFormState{}.lambda;
   for (int k = 0; k < kRoughSteps; ++k) static_cast<void>(fit.step(point, lambda));
   const BinError error = fit.error(point);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "lucerna/core/io/sha256.h"
 #include "lucerna/design/constraints/light_limits.h"
 #include "lucerna/design/constraints/limits.h"
+#include "lucerna/design/constraints/source_side.h"
 #include "lucerna/design/evaluation/body_shadows.h"
 #include "lucerna/design/evaluation/window.h"
 #include "lucerna/design/fit/approach.h"
@@ -32,17 +34,32 @@ constexpr double kMaxValidationShare = 0.1;
 /// Rays that measure how much light leaves the mirror to begin with.
 constexpr std::uint64_t kFluxRays = std::uint64_t{1} << 16;
 
-/// All limits as one cost; empty without any. `rays` must outlive it.
+/// A point source's mirror that has passed more of the source is none for it.
+constexpr double kMostStartsBehind = 0.02;
+
+/// All limits as one cost. `rays` must outlive it.
 std::function<double(const DesignShape&, std::uint64_t, ResidualRows*)> limits_cost(
-    const DesignProblem& problem, const DesignRays& rays) {
-  const ShapeLimits form(problem.limits, problem.start);
+    const DesignProblem& problem, const ShapeLimits& form, const DesignRays& rays) {
   const LightLimits light(problem.limits, problem.reflectance);
-  if (form.empty() && light.empty()) return {};
-  // The source is a body too: a limit must not be met by a mirror that has passed it.
   const double given = share_behind(problem.start, rays);
   return [form, light, given, &rays](const DesignShape& shape, std::uint64_t n, ResidualRows* rows) {
     const double past = std::max(0.0, share_behind(shape, rays) - given) / kMaxBehind;
     return form.cost(shape, rows) + light.cost(shape, rays, n, rows) + past * past;
+  };
+}
+
+/// Limits on the form and on the light, and that no mirror passes the source.
+void set_limits(const DesignProblem& problem, const DesignRays& rays, FitProblem& fit) {
+  const std::vector<HeightBounds> below = heights_below_source(problem.start, rays);
+  ShapeLimits form(problem.limits, problem.start, below);
+  fit.limits = limits_cost(problem, form, rays);
+  if (!form.empty()) fit.form = std::make_shared<const ShapeLimits>(std::move(form));
+  if (below.empty()) return;
+  const double given = share_behind(problem.start, rays);
+  fit.within = [side = ShapeLimits({}, problem.start, below), given,
+                &rays](const DesignShape& shape) -> std::optional<DesignShape> {
+    if (share_behind(shape, rays) > given + kMostStartsBehind) return std::nullopt;
+    return side.held_nearby(shape);
   };
 }
 
@@ -97,9 +114,7 @@ FitProblem fit_problem(const DesignProblem& problem, const DesignOptions& option
     fit.flux_reference = start.reflected + start.direct;
   }
   LightLimits(problem.limits, problem.reflectance).check(problem.start, rays);
-  fit.limits = limits_cost(problem, rays);
-  if (auto form = ShapeLimits(problem.limits, problem.start); !form.empty())
-    fit.form = std::make_shared<const ShapeLimits>(std::move(form));
+  set_limits(problem, rays, fit);
   fit.target = target_flux(problem.target, problem.world_from_mirror, rays.flux());
   fit.rectangle = target_rectangle(problem.target);
   fit.mirror_from_world = problem.world_from_mirror.inverse();

@@ -8,6 +8,7 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
+#include "lucerna/design/constraints/source_side.h"
 #include "lucerna/design/search/checkpoint.h"
 #include "lucerna/photometric_file.h"
 #include "lucerna/photometric_metrics.h"
@@ -265,6 +266,22 @@ TEST(Design, AFlatterMirrorDoesNotRisePastTheSource) {
   const DesignProblem p = problem(folder.path(), "intervals = 6\n[design.limits]\nmax_height_mm = 3\n");
   EXPECT_LE(p.start.height_mm(), 3.001);
   for (const double r : {0.0, 0.5, 1.0}) EXPECT_LT(p.start.at(r, 0.0).z_mm, 0.5) << r;
+}
+
+// Also where the project has no limits: the tracer refuses such a mirror.
+TEST(Design, AMirrorThatPassesTheSourceCostsMoreThanAnyError) {
+  const TempDir folder;
+  write_target(folder.path());
+  const DesignProblem p = problem(folder.path(), "", kFreeForm);
+  DesignRays rays = design_rays(p, small(), 1);
+  const FitProblem fit = fit_problem(p, small(), rays);
+  const Eigen::VectorXd higher = p.start.parameters().array() + 8.5;
+  const DesignShape through = p.start.with(higher);
+  ASSERT_GT(share_behind(through, rays), 0.5);
+  EXPECT_EQ(fit.limits(p.start, 1 << 13, nullptr), 0.0);
+  EXPECT_GT(fit.limits(through, 1 << 13, nullptr), 1.0);
+  EXPECT_FALSE(fit.within(through)) << "no start for a search";
+  EXPECT_EQ(fit.within(p.start)->parameters(), p.start.parameters());
 }
 
 TEST(Design, ShapesAFreeFormMirrorAndKeepsItsSymmetry) {

@@ -9,6 +9,7 @@
 
 #include "lucerna/cad.h"
 #include "lucerna/design/constraints/light_limits.h"
+#include "lucerna/design/constraints/source_side.h"
 #include "lucerna/design/validation/bounds.h"
 #include "lucerna/design/validation/etendue_limit.h"
 #include "lucerna/design/validation/validation.h"
@@ -90,22 +91,6 @@ void add_remarks(const DesignProblem& problem, DesignResult& result) {
 }
 
 }  // namespace
-
-double share_behind(const DesignShape& shape, const DesignRays& rays) {
-  constexpr std::uint64_t kBlocks = 16;
-  double behind = 0.0, all = 0.0;
-  for (std::uint64_t b = 0; b < std::min(kBlocks, rays.size() / kBlockRays); ++b) {
-    const DesignRays::Block& block = rays.block(b);
-    for (std::size_t i = 0; i < kBlockRays; ++i) {
-      const auto x = static_cast<double>(block.x_mm[i]), y = static_cast<double>(block.y_mm[i]);
-      const auto weight = static_cast<double>(block.weight[i]);
-      all += weight;
-      const bool over = shape.aperture().contains(x, y);
-      if (over && static_cast<double>(block.z_mm[i]) < shape.at(x, y).z_mm) behind += weight;
-    }
-  }
-  return behind / all;
-}
 
 ResultCheck::ResultCheck(const DesignProblem& problem, const DesignOptions& options, Progress& progress)
     : problem_(problem),

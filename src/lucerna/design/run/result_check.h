@@ -10,12 +10,6 @@
 
 namespace lucerna {
 
-/// What of the source may be behind a mirror beyond what the given mirror leaves there.
-inline constexpr double kMaxBehind = 1e-3;
-
-/// Share of the rays (of the first that are enough to tell) that begin behind a mirror.
-double share_behind(const DesignShape& shape, const DesignRays& rays);
-
 /// What a finished design says of its mirror. All that does not need the result is done at construction, so
 /// that a search knows what time is left for it: the start's error and the étendue of the sources.
 class ResultCheck {

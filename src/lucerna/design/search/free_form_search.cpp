@@ -11,7 +11,6 @@
 #include "lucerna/design/evaluation/point_source.h"
 #include "lucerna/design/fit/approach.h"
 #include "lucerna/design/initial/initial_guesses.h"
-#include "lucerna/design/search/first_choices.h"
 #include "lucerna/design/search/free_form_levels.h"
 #include "lucerna/random.h"
 
@@ -19,64 +18,24 @@ namespace lucerna {
 
 namespace {
 
-constexpr int kLevels = kFreeFormLevels, kEnd = 2, kMoreRays = 3;
 /// Knots of the rough level, at most.
 constexpr int kRoughIntervals = 32;
 /// A trough's few parameters are known from fewer rays.
 constexpr std::uint64_t kFewerRaysOfTroughs = 4;
-/// The approach is tried where the candidates before it stay kDoubtful from the target (relative error), for
-/// a point source's mirror is no guide for a source that is long or wide; and where the given mirror is the
-/// nearest of them. Further approaches, from perturbed copies, follow where the best is kFarError from it, or
-/// is an approach itself and not at it: they end in basins of their own, and how near they are once refined
-/// spreads by a factor of four in error.
-constexpr int kApproach = 1 + static_cast<int>(std::tuple_size_v<decltype(FirstChoices::before)>),
-              kApproaches = 8;
-constexpr double kDoubtful = 0.05, kFarError = 0.15;
 /// An approach that came no nearer than this has too few knots for the target.
 constexpr double kFewKnotsError = 0.03;
-/// The first candidate after the approaches; after the given mirror, the approaches and all transports.
-constexpr int kNoApproach = kApproach + kApproaches;
-constexpr int kFirstCandidates =
-    kNoApproach + static_cast<int>(std::tuple_size_v<decltype(FirstChoices::after)>);
-/// Where the given shape was chosen among others, the better of it and a point source's at its distance is
-/// fitted to the end before the others begin.
-constexpr int kChosenCandidates = 2;
-/// How many of them are fitted finely.
-constexpr int kFine = 3;
-/// A neighbour of the best goes on where its cost is at most so many times the best's at that level.
-constexpr double kWorthOn = 1.1;
-/// More rays help where the error is less than so many times the noise; else so many neighbours come first.
-constexpr double kNoisy = 1.6;
-constexpr int kNeighboursBefore = 4;
 /// Farthest neighbour of the best: its vertex distance is within this factor.
 constexpr double kFarthest = 1.3;
-/// A candidate that after so many rough steps that were accepted costs so many times the best of the rough
-/// level goes no further.
-constexpr std::size_t kHopelessAfter = 2;
-constexpr double kHopeless = 4.0;
-/// An approach that after so many fine steps costs so many times what the best had cost by then goes no
-/// further: it would need many more steps than there are.
+/// After so many steps of a level what an approach costs is compared with what the best had.
 constexpr int kEarlySteps = 5;
-constexpr double kSlow = 2.0;
 /// Steps of the last level for an approach that others are to follow: in little time it is the result.
 constexpr int kTrialSteps = 5;
-/// Candidates in a row that have no start, after which there are no others.
-constexpr int kMaxFailed = 8;
 /// Steps in a row, each five times as damped as the one before, after which a level is at its end.
 constexpr int kMaxRefusedInARow = 5;
 /// The squared error at the end is the noise's and this share more.
 constexpr double kNoiseShare = 0.1;
-/// What of the squared error counts where candidates are compared at a level: mirrors that are fitted roughly
-/// come nearer to the target later, but the light that they lose stays lost.
-constexpr std::array<double, kLevels> kErrorShare{0.3, 1.0, 1.0, 1.0};
-/// The given mirror keeps its own knots as long as a level ends below so many times the noise, or near.
-constexpr double kEnoughKnots = 2.0;
-/// Approaches follow until one is within kNear and so many times the noise: its family may hold the target.
-constexpr double kAtNoise = 1.15;
 /// A mirror that fits its own rays below their noise still costs so much of what it did.
 constexpr double kMinCostShare = 0.02;
-/// A given mirror that is this near (relative error) goes on alone.
-constexpr double kNear = 0.01;
 /// Least damping: with less, knots that little light tells of fit its noise.
 constexpr double kMinLambda = 1e-5;
 /// A lens's face is near a source that is wide beside the knots of finer levels. Steps there are short, and
@@ -126,6 +85,8 @@ FreeFormSearch::FreeFormSearch(const FitProblem& problem, const DesignShape& giv
       max_intervals_(std::max({max_intervals, given.intervals_x(), given.intervals_y()})),
       max_rays_(max_rays),
       unit_mm_(distance_unit_mm(problem, given)),
+      rules_{has_few_knots(given), max_intervals_ == std::max(given.intervals_x(), given.intervals_y()),
+             problem.rays->medium().has_value(), problem.start_is_chosen, problem.max_failed_restarts},
       state_(std::move(state)) {}
 
 FreeFormLevel FreeFormSearch::level(int number) const {
@@ -153,55 +114,21 @@ FreeFormLevel FreeFormSearch::level(int number) const {
 }
 
 TransportChoice FreeFormSearch::first_choice(int number) const {
-  if (number >= kApproach && number < kNoApproach) return {};
+  if (number >= kFirstApproach && number < kAfterApproaches) return {};
   const FirstChoices& first = first_choices(problem_.rays->medium().has_value(), given_.is_trough());
-  const TransportChoice c = number < kApproach ? first.before[static_cast<std::size_t>(number - 1)]
-                                               : first.after[static_cast<std::size_t>(number - kNoApproach)];
+  const TransportChoice c = number < kFirstApproach
+                                ? first.before[static_cast<std::size_t>(number - 1)]
+                                : first.after[static_cast<std::size_t>(number - kAfterApproaches)];
   return {c.sign, c.vertex_distance_mm * unit_mm_};
 }
 
-bool FreeFormSearch::fixed_to_few_knots() const {
-  return has_few_knots(given_) && max_intervals_ == std::max(given_.intervals_x(), given_.intervals_y());
-}
-
-bool FreeFormSearch::is_approach(const FreeFormSnapshot& snapshot) {
-  return !snapshot.transport.exists() && snapshot.candidate >= kApproach;
-}
-
-bool FreeFormSearch::may_approach() const {
-  return has_few_knots(given_) && !fixed_to_few_knots() && !problem_.rays->medium();
-}
-
-bool FreeFormSearch::worth_an_approach() const {
-  const FreeFormSnapshot* best = best_of(0);
-  if (best == nullptr || !may_approach()) return false;
-  if (is_approach(*best)) return best->error > kNear || best->error_to_noise > kAtNoise;
-  const double near = state_.begun <= kApproach ? kDoubtful : kFarError;
-  return best->candidate == 0 || best->error > near;
-}
-
-bool FreeFormSearch::others_are_to_be_approached() const {
-  return state_.begun < kNoApproach && worth_an_approach();
-}
-
-bool FreeFormSearch::approach_is_alone() const {
-  if (others_are_to_be_approached()) return false;
-  const FreeFormSnapshot *approach = nullptr, *other = nullptr;
-  for (const FreeFormSnapshot& m : state_.done) {
-    if (m.level != 0) continue;
-    const FreeFormSnapshot*& best = is_approach(m) ? approach : other;
-    if (best == nullptr || m.cost < best->cost) best = &m;
-  }
-  return approach != nullptr && other != nullptr && other->cost > kHopeless * approach->cost;
-}
-
 TransportChoice FreeFormSearch::choice(int number) const {
-  if (number < kFirstCandidates) return first_choice(number);
+  if (number < kFirstNeighbour) return first_choice(number);
   // A neighbour of the best; of the first choice where the given mirror is the best.
   Rng rng(problem_.seed, static_cast<std::uint64_t>(number), 77);
-  const FreeFormSnapshot* best = best_of(kEnd);
+  const FreeFormSnapshot* best = order().best_of(kEndLevel);
   const bool of_given = best != nullptr && !best->transport.exists();
-  if (of_given && (fixed_to_few_knots() || is_approach(*best))) return {};
+  if (of_given && (rules_.has_fixed_few_knots() || CandidateOrder::is_approach(*best))) return {};
   const TransportChoice about = best != nullptr && !of_given ? best->transport : first_choice(1);
   const double factor = std::pow(kFarthest, 2.0 * rng.uniform() - 1.0);
   return {about.sign, factor * about.vertex_distance_mm};
@@ -210,12 +137,11 @@ TransportChoice FreeFormSearch::choice(int number) const {
 std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormSnapshot& snapshot) {
   if (snapshot.candidate == 0) return nearer_of_given();
   // The first approach begins with the given mirror itself, later ones with perturbed copies.
-  if (!snapshot.transport.exists()) return approached(snapshot.candidate - kApproach);
+  if (!snapshot.transport.exists()) return approached(snapshot.candidate - kFirstApproach);
   const FreeFormLevel rough = level(0);
   const DesignShape family = given_.refined(rough.intervals_x, rough.intervals_y);
-  std::optional<DesignShape> guess = free_form_guess(problem_, family, snapshot.transport);
-  if (guess && problem_.within) guess = problem_.within(*guess);
-  return guess;
+  const std::optional<DesignShape> guess = free_form_guess(problem_, family, snapshot.transport);
+  return guess && problem_.within ? problem_.within(*guess) : guess;
 }
 
 DesignShape FreeFormSearch::approached(int restart) {
@@ -226,7 +152,7 @@ DesignShape FreeFormSearch::approached(int restart) {
 }
 
 DesignShape FreeFormSearch::nearer_of_given() {
-  if (!fixed_to_few_knots() || problem_.rays->medium()) return given_;
+  if (!rules_.has_fixed_few_knots() || problem_.rays->medium()) return given_;
   DesignShape near = approached(0);
   const FreeFormFit fit(problem_, level(0));
   state_.evaluations += 2;
@@ -234,74 +160,10 @@ DesignShape FreeFormSearch::nearer_of_given() {
   return fit.at(near).equations.cost < fit.at(given_).equations.cost ? near : given_;
 }
 
-const FreeFormSnapshot* FreeFormSearch::best_of(int level) const {
-  const FreeFormSnapshot* best = nullptr;
-  for (const FreeFormSnapshot& m : state_.done) {
-    if (m.level == level && (best == nullptr || m.cost < best->cost)) best = &m;
-  }
-  return best;
-}
-
-bool FreeFormSearch::was_at(int candidate, int level) const {
-  return std::any_of(state_.done.begin(), state_.done.end(),
-                     [&](const FreeFormSnapshot& m) { return m.candidate == candidate && m.level == level; });
-}
-
-const FreeFormSnapshot* FreeFormSearch::next_promotion() const {
-  const auto best_waiting = [&](int level) {
-    const FreeFormSnapshot* best = nullptr;
-    for (const FreeFormSnapshot& m : state_.done) {
-      if (m.level != level || m.parameters.empty() || was_at(m.candidate, level + 1)) continue;
-      if (best == nullptr || m.cost < best->cost) best = &m;
-    }
-    return best;
-  };
-  const auto fitted_finely = std::count_if(state_.done.begin(), state_.done.end(),
-                                           [](const FreeFormSnapshot& m) { return m.level == 1; });
-  const FreeFormSnapshot* given = best_of(0);
-  const bool near = state_.begun == 1 && given != nullptr && given->cost < kErrorShare[0] * kNear * kNear &&
-                    !given_is_stuck();
-  // No others are waited for.
-  const bool decided = near || (problem_.start_is_chosen && state_.begun >= kChosenCandidates);
-  const bool alone = approach_is_alone();
-  const FreeFormSnapshot* rough = best_waiting(0);
-  if (state_.begun < kFirstCandidates && !decided && !alone && best_of(kEnd) == nullptr) {
-    // The best of a few is fitted finely before the others begin, for a search that has little time.
-    const int few = worth_an_approach() ? kApproach + 1 : kApproach;
-    if (state_.begun < few) return nullptr;
-    return best_of(1) == nullptr ? rough : is_approach(*best_of(1)) ? best_waiting(1) : nullptr;
-  }
-  const FreeFormSnapshot* end = best_of(kEnd);
-  if (end != nullptr && is_approach(*end) && others_are_to_be_approached()) return nullptr;
-  const bool hopeful = rough != nullptr && rough->cost < kHopeless * best_of(0)->cost;
-  if (hopeful && fitted_finely < (decided ? 1 : kFine)) return rough;
-  const FreeFormSnapshot* fine = best_waiting(1);
-  if (end == nullptr) return fine;
-  if (is_approach(*end) && fine != nullptr && fine == best_of(1)) return fine;
-  // The best goes on with more rays where noise is a good part of its error, else after some neighbours; then
-  // the others, while they may win, and neighbours.
-  const int neighbours_before = std::min(kNeighboursBefore, problem_.max_failed_restarts);
-  const bool ready = end->error_to_noise < kNoisy || is_approach(*end) ||
-                     state_.begun >= kFirstCandidates + neighbours_before;
-  if (ready && !was_at(end->candidate, kMoreRays)) return end;
-  if (state_.begun < kFirstCandidates) return nullptr;
-  if (fine != nullptr && fine->cost < kWorthOn * best_of(1)->cost) return fine;
-  if (rough != nullptr && rough->cost < kWorthOn * best_of(0)->cost) return rough;
-  return nullptr;
-}
-
 DesignShape FreeFormSearch::shape_of(const FreeFormSnapshot& snapshot) const {
   return given_.refined(snapshot.intervals_x, snapshot.intervals_y)
       .with(Eigen::VectorXd::Map(snapshot.parameters.data(),
                                  static_cast<Eigen::Index>(snapshot.parameters.size())));
-}
-
-bool FreeFormSearch::knots_suffice(const FreeFormSnapshot& snapshot) const {
-  if (snapshot.transport.exists()) return false;
-  if (snapshot.level == 0) return true;
-  const bool own = snapshot.candidate == 0 || fixed_to_few_knots();
-  const double share = kErrorShare[static_cast<std::size_t>(snapshot.level - 1)];
-  return snapshot.cost < share * kNear * kNear || (own && snapshot.error_to_noise < kEnoughKnots);
 }
 
 FreeFormLevel FreeFormSearch::level_after(const FreeFormSnapshot& before, int number,
@@ -325,7 +187,7 @@ void FreeFormSearch::evaluate_at(const DesignShape& shape, std::uint64_t rays) {
 }
 
 bool FreeFormSearch::has_too_few_knots(const FreeFormSnapshot& approach) const {
-  if (approach.level != 0 || !is_approach(approach) || !may_approach()) return false;
+  if (approach.level != 0 || !CandidateOrder::is_approach(approach) || !order().may_approach()) return false;
   const BinError error = fit_->error(*point_);
   return error.relative_rms > std::hypot(error.floor, kFewKnotsError);
 }
@@ -336,7 +198,7 @@ void FreeFormSearch::begin(const DesignShape& shape, const FreeFormSnapshot& sna
   const int nx = std::max(shape.intervals_x(), with.intervals_x);
   const int ny = std::max(shape.intervals_y(), with.intervals_y);
   const bool has = shape.intervals_x() == nx && shape.intervals_y() == ny;
-  const bool own = has || knots_suffice(snapshot);
+  const bool own = has || order().knots_suffice(snapshot);
   const DesignShape first = own ? shape : shape.refined(nx, ny);
   const FreeFormLevel l = level_after(snapshot, snapshot.level, first);
   fit_.emplace(problem_, l, progress);
@@ -357,13 +219,13 @@ void FreeFormSearch::begin(const DesignShape& shape, const FreeFormSnapshot& sna
 }
 
 void FreeFormSearch::choose(Progress& progress) {
-  if (const FreeFormSnapshot* snapshot = next_promotion()) {
+  if (const FreeFormSnapshot* snapshot = order().next_promotion()) {
     FreeFormSnapshot next = *snapshot;
     ++next.level;
     begin(shape_of(next), next, progress);
     return;
   }
-  state_.begun = next_number(state_.begun);
+  state_.begun = order().next_number(state_.begun);
   const FreeFormSnapshot next = candidate(state_.begun);
   if (looks_ahead()) {
     if (!is_among(ahead_, next)) fit_ahead();
@@ -383,19 +245,6 @@ void FreeFormSearch::begin_candidate(const FreeFormSnapshot& candidate, Progress
   begin(*start, candidate, progress);
 }
 
-bool FreeFormSearch::given_is_stuck() const {
-  if (!may_approach()) return false;
-  return std::any_of(state_.done.begin(), state_.done.end(), [](const FreeFormSnapshot& m) {
-    return m.candidate == 0 && m.level == 1 && m.error_to_noise > kEnoughKnots;
-  });
-}
-
-int FreeFormSearch::next_number(int number) const {
-  // So near, only its own family may come nearer.
-  if (number == 1 && given_is_stuck()) number = kApproach;
-  return number >= kApproach && number < kNoApproach && !worth_an_approach() ? kNoApproach : number;
-}
-
 FreeFormSnapshot FreeFormSearch::candidate(int number) const {
   FreeFormSnapshot out;
   out.candidate = number;
@@ -407,11 +256,11 @@ FreeFormSnapshot FreeFormSearch::candidate(int number) const {
 std::vector<FreeFormSnapshot> FreeFormSearch::upcoming(std::size_t max) const {
   // Neighbours are those of a mirror that is fitted to the end; whether an approach is worth its time shows
   // when it is next.
-  const int neighbours = best_of(kEnd) == nullptr ? 0 : problem_.max_failed_restarts;
-  const int end = kFirstCandidates + neighbours;
+  const int neighbours = order().best_of(kEndLevel) == nullptr ? 0 : rules_.max_neighbours;
+  const int end = kFirstNeighbour + neighbours;
   std::vector<FreeFormSnapshot> out{candidate(state_.begun)};
   for (int n = state_.begun + 1; n < end && out.size() < max; ++n) {
-    n = state_.begun < kApproach && n == kApproach ? kNoApproach : next_number(n);
+    n = state_.begun < kFirstApproach && n == kFirstApproach ? kAfterApproaches : order().next_number(n);
     const FreeFormSnapshot next = candidate(n);
     if (!is_among(ahead_, next)) out.push_back(next);
   }
@@ -457,34 +306,21 @@ FitRecord FreeFormSearch::replayed() {
   return step.record;
 }
 
-bool FreeFormSearch::is_slow_approach() const {
-  const FreeFormSnapshot* best = best_of(1);
-  return state_.now.level == 1 && state_.step >= kEarlySteps && is_approach(state_.now) && best != nullptr &&
-         best->early_cost > 0.0 && state_.now.early_cost > kSlow * best->early_cost;
-}
-
 bool FreeFormSearch::level_ended() const {
   const FreeFormLevel l = level(state_.now.level);
-  const bool is_trial = state_.now.level == kEnd && is_approach(state_.now) && others_are_to_be_approached();
+  const bool is_trial = state_.now.level == kEndLevel && CandidateOrder::is_approach(state_.now) &&
+                        order().others_are_to_be_approached();
   if (is_trial && state_.step >= kTrialSteps) return true;
   if (state_.step >= l.max_steps || state_.refused >= kMaxRefusedInARow) return true;
   const std::vector<double>& c = state_.costs;
-  const FreeFormSnapshot* best = best_of(0);
-  const bool has_shown = c.size() > kHopelessAfter;
-  if (state_.now.level == 0 && best != nullptr && has_shown && state_.now.cost > kHopeless * best->cost)
-    return true;
-  if (is_slow_approach()) return true;
+  if (order().is_hopeless(state_.now, c.size() - 1) || order().is_slow_approach()) return true;
   const std::size_t steps = problem_.rays->medium() && state_.now.level > 0 ? kFaceSteps : kSteps;
   return c.size() > steps && std::sqrt(c.back()) > (1.0 - l.min_gain) * std::sqrt(c[c.size() - 1 - steps]);
 }
 
 void FreeFormSearch::forget_what_cannot_win() {
   for (FreeFormSnapshot& m : state_.done) {
-    const FreeFormSnapshot* best = best_of(m.level);
-    const bool passed = was_at(m.candidate, m.level + 1);
-    if (passed || (m.cost > kWorthOn * best->cost && best_of(kMoreRays) != nullptr && m.level < kEnd)) {
-      m.parameters.clear();
-    }
+    if (order().is_over(m)) m.parameters.clear();
   }
 }
 
@@ -536,8 +372,7 @@ FitRecord FreeFormSearch::measured(bool accepted) {
   const double squared = error.relative_rms * error.relative_rms, noise = error.floor * error.floor;
   const double excess = std::max(squared - noise, kMinCostShare * squared);
   state_.now.error = std::sqrt(excess);
-  state_.now.cost =
-      kErrorShare[static_cast<std::size_t>(state_.now.level)] * weight * excess + (cost - weight * squared);
+  state_.now.cost = error_share(state_.now.level) * weight * excess + (cost - weight * squared);
   state_.now.error_to_noise = std::sqrt(cost / std::max(weight * noise, 1e-24));
   if (state_.step == kEarlySteps) state_.now.early_cost = state_.now.cost;
   FitRecord record;
@@ -556,25 +391,20 @@ FitRecord FreeFormSearch::measured(bool accepted) {
   return record;
 }
 
-bool FreeFormSearch::out_of_candidates() const {
-  return state_.failed >= kMaxFailed && state_.begun >= kFirstCandidates && next_promotion() == nullptr;
-}
+bool FreeFormSearch::out_of_candidates() const { return order().is_out_of_candidates(); }
 
 bool FreeFormSearch::done() const {
-  const int neighbours = state_.begun - kFirstCandidates;
-  if (!state_.now.exists() && neighbours >= problem_.max_failed_restarts && next_promotion() == nullptr)
-    return true;
-  if (out_of_candidates()) return true;
-  const FreeFormSnapshot* best = best_of(kMoreRays);
+  if (order().is_at_end()) return true;
+  const FreeFormSnapshot* best = order().best_of(kMoreRaysLevel);
   return best != nullptr && best->error_to_noise * best->error_to_noise <= 1.0 + kNoiseShare;
 }
 
 std::uint64_t FreeFormSearch::next_rays() const {
   if (replay_) return 0;
   if (state_.now.exists()) return (point_ ? 1 : 2) * level(state_.now.level).rays;
-  const FreeFormSnapshot* next = next_promotion();
+  const FreeFormSnapshot* next = order().next_promotion();
   if (next == nullptr && looks_ahead()) {
-    const bool fitted = is_among(ahead_, candidate(next_number(state_.begun)));
+    const bool fitted = is_among(ahead_, candidate(order().next_number(state_.begun)));
     return fitted ? 0 : static_cast<std::uint64_t>(level(0).max_steps + 1) * level(0).rays;
   }
   return 2 * level(next != nullptr ? next->level + 1 : 0).rays;

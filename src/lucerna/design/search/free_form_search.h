@@ -6,6 +6,7 @@
 
 #include "lucerna/design/fit/fit_record.h"
 #include "lucerna/design/fit/free_form_fit.h"
+#include "lucerna/design/search/candidate_order.h"
 #include "lucerna/design/search/fits_ahead.h"
 #include "lucerna/design/search/free_form_state.h"
 
@@ -64,41 +65,17 @@ class FreeFormSearch {
   TransportChoice first_choice(int number) const;
 
  private:
-  /// Whether an approach of the given mirror may help: it has few knots, and came nearer than the candidates
-  /// after it, or none came near; a further one, where none is at the target.
-  bool worth_an_approach() const;
-  /// Whether the given mirror may be brought near as a candidate beside itself: it has few knots, is to have
-  /// more, and is no face of a lens, for the continuation of an approach has mirrors only.
-  bool may_approach() const;
-  /// A given mirror that was brought near.
-  static bool is_approach(const FreeFormSnapshot& snapshot);
-  /// Whether the approach at work lags so far behind the best at its level that it may end.
-  bool is_slow_approach() const;
-  /// Whether the given mirror was near, went on alone, and its few knots ended it above the noise.
-  bool given_is_stuck() const;
-  bool others_are_to_be_approached() const;
-  /// Whether what the approaches led to is so much better that no mirror of a point source needs to be tried.
-  bool approach_is_alone() const;
-  /// Whether the given mirror has few knots and is to have no more.
-  bool fixed_to_few_knots() const;
-  /// Whether a candidate keeps its knots on the next level; `snapshot` has that level already.
-  bool knots_suffice(const FreeFormSnapshot& snapshot) const;
+  CandidateOrder order() const { return {rules_, state_}; }
   /// What a candidate that is not the given mirror begins with.
   TransportChoice choice(int number) const;
   /// What an approach from the given mirror leads to. Counts its rays.
   DesignShape approached(int restart);
   /// The given mirror, or what an approach makes of it, whichever is nearer to the target.
   DesignShape nearer_of_given();
-  const FreeFormSnapshot* best_of(int level) const;
-  bool was_at(int candidate, int level) const;
-  /// The next snapshot to be taken up a level; null where a new candidate is to begin.
-  const FreeFormSnapshot* next_promotion() const;
   /// Begins a level of the next candidate, unless it has no start.
   void choose(Progress& progress);
   /// Begins the rough level of a candidate, unless it has no start.
   void begin_candidate(const FreeFormSnapshot& candidate, Progress& progress);
-  /// The number of the candidate at or after `number` that is next: approaches that do not help are left out.
-  int next_number(int number) const;
   FreeFormSnapshot candidate(int number) const;
   /// The next candidates that were not fitted ahead, `max` at most, if nothing changes what the choice of
   /// them depends on.
@@ -135,6 +112,7 @@ class FreeFormSearch {
   int max_intervals_;
   std::uint64_t max_rays_;
   double unit_mm_;
+  CandidateRules rules_;
   FreeFormState state_;
   std::optional<FreeFormFit> fit_;
   std::optional<FreeFormPoint> point_;

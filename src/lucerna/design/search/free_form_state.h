@@ -9,7 +9,7 @@
 namespace lucerna {
 
 /// Rough, fine, to the end; the last is gone through again with more rays.
-inline constexpr int kFreeFormLevels = 4;
+inline constexpr int kRoughLevel = 0, kFineLevel = 1, kEndLevel = 2, kMoreRaysLevel = 3, kFreeFormLevels = 4;
 
 /// A candidate that was fitted on a level.
 struct FreeFormSnapshot {
