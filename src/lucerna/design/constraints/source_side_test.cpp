@@ -43,25 +43,30 @@ TEST(SourceSide, TheGivenMirrorCostsNothing) {
   // Far below, nearer than a cell of the source is wide, and with the rod's ends behind it.
   for (const double mm : {0.0, 13.2, 14.0}) {
     const DesignShape shape = higher_by(given(), mm);
-    const ShapeLimits limits({}, shape, heights_below_source(shape, rays));
-    EXPECT_TRUE(limits.held(shape)) << mm;
-    EXPECT_EQ(limits.cost(shape, nullptr), 0.0) << mm;
+    const SourceSide side(shape, rays);
+    EXPECT_EQ(side.cost(shape, nullptr), 0.0) << mm;
+    const auto within = side.within(shape);
+    ASSERT_TRUE(within) << mm;
+    EXPECT_EQ(within->parameters(), shape.parameters()) << mm;
   }
 }
 
-TEST(SourceSide, WhatIsHeldLeavesTheSourceInFront) {
+// Also where the first look alone says so.
+TEST(SourceSide, WhatCostsNothingLeavesTheSourceInFront) {
   const DesignRays rays = rod();
-  const ShapeLimits limits({}, given(), heights_below_source(given(), rays));
+  const SourceSide side(given(), rays);
   Rng rng(5, 0);
   int held = 0, broken = 0;
   for (std::uint64_t k = 0; k < 300; ++k) {
     const DesignShape shape = perturbed(higher_by(given(), 15.0 * rng.uniform()), 0.03, Rng(k, 1));
-    if (limits.held(shape)) {
+    const double cost = side.cost(shape, nullptr);
+    if (cost == 0.0) {
       ++held;
       EXPECT_LE(share_behind(shape, rays), kMaxBehind) << k;
     } else {
       ++broken;
-      EXPECT_GT(limits.cost(shape, nullptr), 1.0) << k;
+      ResidualRows rows;
+      EXPECT_EQ(side.cost(shape, &rows), cost) << k;
     }
   }
   EXPECT_GT(held, 50);
@@ -70,16 +75,19 @@ TEST(SourceSide, WhatIsHeldLeavesTheSourceInFront) {
 
 TEST(SourceSide, AMirrorThatHasPassedComesBack) {
   const DesignRays rays = rod();
-  const ShapeLimits limits({}, given(), heights_below_source(given(), rays));
-  for (const double mm : {14.0, 18.0}) {
-    const DesignShape through = higher_by(given(), mm);
-    ASSERT_GT(share_behind(through, rays), 0.1);
-    const auto back = limits.held_nearby(through);
-    ASSERT_TRUE(back) << mm;
-    EXPECT_LE(share_behind(*back, rays), kMaxBehind) << mm;
-    EXPECT_NEAR(back->at(25.0, 20.0).z_mm, through.at(25.0, 20.0).z_mm, 0.5)
-        << "far from the source it stays";
-  }
+  const SourceSide side(given(), rays);
+  // The ends of the rod: some starts are passed, not a fiftieth of them.
+  double mm = 13.0;
+  while (share_behind(higher_by(given(), mm), rays) < 2.0 * kMaxBehind) mm += 0.01;
+  const DesignShape through = higher_by(given(), mm);
+  ASSERT_LT(share_behind(through, rays), 0.02);
+  EXPECT_GT(side.cost(through, nullptr), 1.0);
+  const auto back = side.within(through);
+  ASSERT_TRUE(back);
+  EXPECT_LE(share_behind(*back, rays), kMaxBehind);
+  EXPECT_LT(side.cost(*back, nullptr), 10.0) << "0.04 mm are between a wall and where costs begin";
+  EXPECT_NEAR(back->at(25.0, 20.0).z_mm, through.at(25.0, 20.0).z_mm, 0.5) << "far from the source it stays";
+  EXPECT_FALSE(side.within(higher_by(given(), 18.0))) << "through the middle of the rod";
 }
 
 TEST(SourceSide, ASourceBesideTheMirrorHasNoBounds) {
@@ -88,7 +96,9 @@ TEST(SourceSide, ASourceBesideTheMirrorHasNoBounds) {
   DesignRays rays({{make_emitter(options), Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {100, 0, 0}), {}}}, Frame(),
                   3);
   rays.grow(std::uint64_t{1} << 14);
-  EXPECT_TRUE(heights_below_source(given(), rays).empty());
+  const SourceSide side(given(), rays);
+  EXPECT_TRUE(side.bounds().empty());
+  EXPECT_EQ(side.cost(higher_by(given(), 20.0), nullptr), 0.0);
   EXPECT_EQ(share_behind(given(), rays), 0.0);
 }
 

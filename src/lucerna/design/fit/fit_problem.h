@@ -42,7 +42,13 @@ struct FitProblem {
   /// What the limits cost at a shape, to be added to the squared error: 0 where all are held. Adds its
   /// residuals to `rows` unless null. Limits on light trace the first `rays` rays. Empty: no limits.
   std::function<double(const DesignShape&, std::uint64_t rays, ResidualRows* rows)> limits;
-  /// Those of `limits` on the form, for steps that look ahead at them; may be null.
+  /// What a shape costs that passes the source, with or without limits. Empty: nothing.
+  std::function<double(const DesignShape&, ResidualRows* rows)> in_front;
+  /// Both.
+  double limits_cost(const DesignShape& shape, std::uint64_t from_rays, ResidualRows* rows) const {
+    return (limits ? limits(shape, from_rays, rows) : 0.0) + (in_front ? in_front(shape, rows) : 0.0);
+  }
+  /// Those of both that are on the form, for steps that look ahead at them; may be null.
   std::shared_ptr<const ShapeLimits> form;
   /// Brings what a search begins with within limits on its heights; nothing where it is too far beyond them
   /// to be a start. Empty: it begins as it is.

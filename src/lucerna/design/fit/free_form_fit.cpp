@@ -73,7 +73,7 @@ FreeFormPoint FreeFormFit::at(DesignShape shape, bool derivatives) const {
   ResidualRows* const wanted = derivatives ? &rows : nullptr;
   equations.cost +=
       smoothness_penalty(shape, smoothing_for(shape, level_.smoothing), kSmoothnessAtAxis, wanted);
-  if (problem_.limits) equations.cost += problem_.limits(shape, level_.rays, wanted);
+  equations.cost += problem_.limits_cost(shape, level_.rays, wanted);
   rows.add_to(equations);
   if (problem_.flux_weight > 0.0) {
     const double missing = 1.0 - inside_.dot(light.flux) / problem_.flux_reference;

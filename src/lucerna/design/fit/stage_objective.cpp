@@ -42,7 +42,7 @@ NormalEquations StageObjective::equations(const DesignShape& shape, const Evalua
              : normal_equations(light, target_, bins_, problem_.mode);
   ResidualRows rows;
   equations.cost += smoothness_penalty(shape, stage_.smoothing, 1.0, &rows);
-  if (problem_.limits) equations.cost += problem_.limits(shape, stage_.rays, &rows);
+  equations.cost += problem_.limits_cost(shape, stage_.rays, &rows);
   rows.add_to(equations);
   if (problem_.flux_weight > 0.0) {
     add_flux_term(light, problem_.flux_weight, problem_.flux_reference, equations);

@@ -99,7 +99,7 @@ double fit_cost(const FitProblem& problem, const DesignShape& shape, const Evalu
                 const TentBins& bins, const Eigen::VectorXd& target) {
   const double error = bin_error(e, target, bins, problem.mode).relative_rms;
   double cost = error * error;
-  if (problem.limits) cost += problem.limits(shape, e.rays, nullptr);
+  cost += problem.limits_cost(shape, e.rays, nullptr);
   const double missing = 1.0 - e.flux.sum() / problem.flux_reference;
   return cost + problem.flux_weight * missing * missing;
 }

@@ -34,33 +34,20 @@ constexpr double kMaxValidationShare = 0.1;
 /// Rays that measure how much light leaves the mirror to begin with.
 constexpr std::uint64_t kFluxRays = std::uint64_t{1} << 16;
 
-/// A point source's mirror that has passed more of the source is none for it.
-constexpr double kMostStartsBehind = 0.02;
-
-/// All limits as one cost. `rays` must outlive it.
-std::function<double(const DesignShape&, std::uint64_t, ResidualRows*)> limits_cost(
-    const DesignProblem& problem, const ShapeLimits& form, const DesignRays& rays) {
-  const LightLimits light(problem.limits, problem.reflectance);
-  const double given = share_behind(problem.start, rays);
-  return [form, light, given, &rays](const DesignShape& shape, std::uint64_t n, ResidualRows* rows) {
-    const double past = std::max(0.0, share_behind(shape, rays) - given) / kMaxBehind;
-    return form.cost(shape, rows) + light.cost(shape, rays, n, rows) + past * past;
-  };
-}
-
-/// Limits on the form and on the light, and that no mirror passes the source.
+/// Limits on the form and on the light, and that no mirror passes the source. `rays` must outlive `fit`.
 void set_limits(const DesignProblem& problem, const DesignRays& rays, FitProblem& fit) {
-  const std::vector<HeightBounds> below = heights_below_source(problem.start, rays);
-  ShapeLimits form(problem.limits, problem.start, below);
-  fit.limits = limits_cost(problem, form, rays);
-  if (!form.empty()) fit.form = std::make_shared<const ShapeLimits>(std::move(form));
-  if (below.empty()) return;
-  const double given = share_behind(problem.start, rays);
-  fit.within = [side = ShapeLimits({}, problem.start, below), given,
-                &rays](const DesignShape& shape) -> std::optional<DesignShape> {
-    if (share_behind(shape, rays) > given + kMostStartsBehind) return std::nullopt;
-    return side.held_nearby(shape);
-  };
+  const ShapeLimits form(problem.limits, problem.start);
+  const LightLimits light(problem.limits, problem.reflectance);
+  if (!form.empty() || !light.empty()) {
+    fit.limits = [form, light, &rays](const DesignShape& shape, std::uint64_t n, ResidualRows* rows) {
+      return form.cost(shape, rows) + light.cost(shape, rays, n, rows);
+    };
+  }
+  const auto side = std::make_shared<const SourceSide>(problem.start, rays);
+  fit.in_front = [side](const DesignShape& shape, ResidualRows* rows) { return side->cost(shape, rows); };
+  fit.within = [side](const DesignShape& shape) { return side->within(shape); };
+  if (ShapeLimits both(problem.limits, problem.start, side->bounds()); !both.empty())
+    fit.form = std::make_shared<const ShapeLimits>(std::move(both));
 }
 
 /// Tells checkpoints of different problems apart, also where a file behind a name has changed.

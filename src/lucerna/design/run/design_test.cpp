@@ -278,8 +278,8 @@ TEST(Design, AMirrorThatPassesTheSourceCostsMoreThanAnyError) {
   const Eigen::VectorXd higher = p.start.parameters().array() + 8.5;
   const DesignShape through = p.start.with(higher);
   ASSERT_GT(share_behind(through, rays), 0.5);
-  EXPECT_EQ(fit.limits(p.start, 1 << 13, nullptr), 0.0);
-  EXPECT_GT(fit.limits(through, 1 << 13, nullptr), 1.0);
+  EXPECT_EQ(fit.limits_cost(p.start, 1 << 13, nullptr), 0.0);
+  EXPECT_GT(fit.limits_cost(through, 1 << 13, nullptr), 1.0);
   EXPECT_FALSE(fit.within(through)) << "no start for a search";
   EXPECT_EQ(fit.within(p.start)->parameters(), p.start.parameters());
 }

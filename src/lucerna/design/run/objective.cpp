@@ -81,7 +81,7 @@ struct Objective::Problem {
   /// What breaking the limits costs, as one residual.
   void add_limits(const DesignShape& at, double& residual, Rows* jacobian) const {
     ResidualRows rows;
-    residual = std::sqrt(fit.limits(at, rays.size(), jacobian != nullptr ? &rows : nullptr));
+    residual = std::sqrt(fit.limits_cost(at, rays.size(), jacobian != nullptr ? &rows : nullptr));
     if (jacobian == nullptr || !(residual > 0.0)) return;
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(at.parameter_count()));
     rows.add_gradient_to(gradient);
