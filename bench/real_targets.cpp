@@ -104,8 +104,6 @@ class Table {
   std::vector<std::string> lines_;
 };
 
-std::string source_of(const Run& run) { return run.source.empty() ? "led" : run.source; }
-
 std::string source_toml(const fs::path& model) {
   return fmt::format("[[source]]\nfile = \"{}\"\n", model.string());
 }
@@ -117,6 +115,10 @@ std::string luminaire(const Run& run, const fs::path& model) {
              "[[reflector]]\nfamily = \"{}\"\n{}focal_mm = 20.0\ndiameter_mm = 120.0\nhole_diameter_mm = "
              "8.0\nposition_mm = [0, 0, 20]\naxis = \"-z\"\nreflectance = 0.9\n",
              run.family, run.family == "revolution" ? "preset = \"parabola\"\n" : "");
+}
+
+std::string own_luminaire(const Run& run) {
+  return luminaire(run, model_of(run, run.source.empty() ? "led" : run.source));
 }
 
 DesignProblem problem(const Run& run, const std::string& scene, const fs::path& target,
@@ -234,8 +236,7 @@ void files(const Run& run) {
   for (const std::string& file : run.names) {
     Validated j;
     const std::string name = fs::path(file).filename().string().substr(0, 28);
-    solve(run, name, problem(run, luminaire(run, model_of(run, source_of(run))), file, "shape"), run.time_s,
-          j);
+    solve(run, name, problem(run, own_luminaire(run), file, "shape"), run.time_s, j);
     add_row(table, name, j);
   }
   table.print();
@@ -247,8 +248,7 @@ void synthetic(const Run& run) {
     if (!selected(run, target.name)) continue;
     const fs::path file = written(run, target.name, bench::table_of(target, 2.5, 1.0));
     Validated j;
-    solve(run, target.name, problem(run, luminaire(run, model_of(run, source_of(run))), file, "shape"),
-          run.time_s, j);
+    solve(run, target.name, problem(run, own_luminaire(run), file, "shape"), run.time_s, j);
     add_row(table, target.name, j);
   }
   table.print();
@@ -257,6 +257,7 @@ void synthetic(const Run& run) {
 /// The model of a source in the folder of mirrors.
 fs::path fixed_model(const Run& run, const std::string& source) {
   if (fs::exists(source)) return model_of(run, source);
+  fs::create_directories(run.mirrors);
   fs::path file = fs::absolute(run.mirrors / (source + ".nfl"));
   if (!fs::exists(file)) fs::copy_file(model_of(run, source), file);
   return file;

@@ -256,8 +256,8 @@ bool ShapeLimits::held(const DesignShape& shape, std::span<const Limit* const> l
   const std::vector<Place> look = places(shape, limits, kFinePlaces);
   for (const Limit* limit : limits) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (std::size_t i = 0; limit->kind != Kind::keep_out && i < look.size(); ++i) {
-      const Place& p = look[i];
+    const std::span<const Place> looked_at = limit->kind == Kind::keep_out ? std::span<const Place>() : look;
+    for (const Place& p : looked_at) {
       const SurfacePoint s = shape.at(p.x, p.y);
       low = std::min(low, s.z_mm);
       high = std::max(high, s.z_mm);

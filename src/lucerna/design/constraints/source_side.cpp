@@ -15,8 +15,7 @@ constexpr double kNoBound = std::numeric_limits<double>::infinity();
 /// lowest of theirs are passed after it.
 constexpr std::size_t kSourceCells = 24;
 constexpr double kDepth = 2.0;
-/// Cells of a first look; and how many of them a surface may be higher nearby than its slope at one tells.
-constexpr std::size_t kFirstLook = 8;
+/// How many cells a surface may be higher within one than its height and slope at the middle tell.
 constexpr double kBend = 0.5;
 /// A point source's mirror that has passed more of the source is none for it.
 constexpr double kMostStartsBehind = 0.02;
@@ -108,7 +107,7 @@ SourceSide::SourceSide(const DesignShape& given, const DesignRays& rays)
   std::vector<Vec3> places;
   for (const HeightBounds& b : bounds_) places.push_back({b.x_mm, b.y_mm, b.high_mm});
   if (places.empty()) return;
-  const SquareCells cells(places, kFirstLook);
+  const SquareCells cells(places, kSourceCells);
   cell_mm_ = cells.edge_mm();
   std::vector<double> low_mm(cells.size(), kNoBound);
   for (const Vec3& p : places) low_mm[cells.of(p.x, p.y)] = std::min(low_mm[cells.of(p.x, p.y)], p.z);

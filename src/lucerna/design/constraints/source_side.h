@@ -26,8 +26,8 @@ class SourceSide {
   /// another the lower ones. None is nearer to the given mirror than costs begin.
   const std::vector<HeightBounds>& bounds() const { return bounds_; }
 
-  /// 0 where they are held. Else the hinges of `bounds`, added to `rows` unless null, and as much as an error
-  /// of 100 % for kMaxBehind. A shape that is far below the source is known by few looks.
+  /// 0 where they are held by 0.04 mm. Else the hinges of `bounds`, added to `rows` unless null, and as much
+  /// as an error of 100 % for kMaxBehind. A shape that is far below the source is known by one look a cell.
   double cost(const DesignShape& shape, ResidualRows* rows) const;
 
   /// The nearest shape of the same knots that holds them; nothing where there is none, or where so much of

@@ -58,7 +58,8 @@ TEST(SourceSide, WhatCostsNothingLeavesTheSourceInFront) {
   Rng rng(5, 0);
   int held = 0, broken = 0;
   for (std::uint64_t k = 0; k < 300; ++k) {
-    const DesignShape shape = perturbed(higher_by(given(), 15.0 * rng.uniform()), 0.03, Rng(k, 1));
+    const DesignShape shape =
+        perturbed(higher_by(given(), 15.0 * rng.uniform()), 1.5 * rng.uniform(), Rng(k, 1));
     const double cost = side.cost(shape, nullptr);
     if (cost == 0.0) {
       ++held;
