@@ -24,9 +24,8 @@ struct Approached {
 
 /// Brings a mirror of few knots near a target: coarse bins, large scales and few rays first, which show a way
 /// where fine bins see nothing but ripples, then perturbed restarts while it is near but not at the noise
-/// (Fit, up to its screening stage). `restart` 0 begins with `given`, any other with a copy perturbed at
-/// random. The result has the knots of `given`, which has few, and depends on the arguments alone.
-/// `max_rays`: of an evaluation. Traces about 2^23 rays at most.
-Approached approach(const FitProblem& problem, const DesignShape& given, int restart, std::uint64_t max_rays);
+/// (Fit, up to its screening stage). The result has the knots of the start, which has few, and depends on the
+/// arguments alone. `max_rays`: of an evaluation. Traces about 2^23 rays at most.
+Approached approach(const FitProblem& problem, const InitialGuess& start, std::uint64_t max_rays);
 
 }  // namespace lucerna

@@ -10,12 +10,15 @@ namespace {
 
 /// An approach is tried where the candidates before it stay kDoubtful from the target (relative error), for
 /// a point source's mirror is no guide for a source that is long or wide; and where the given mirror is the
-/// nearest of them. Further approaches, from perturbed copies, follow where the best is kFarError from it, or
+/// nearest of them. Further approaches, from other starts, follow where the best is kFarError from it, or
 /// is an approach itself and not at it: they end in basins of their own, and how near they are once refined
 /// spreads by a factor of four in error.
 constexpr double kDoubtful = 0.05, kFarError = 0.15;
 /// Approaches follow until one is within kNear and so many times the noise: its family may hold the target.
 constexpr double kAtNoise = 1.15;
+/// So many of them are compared roughly before the best goes ahead: the first is of the given mirror, the
+/// second of a mirror that may be far from it.
+constexpr int kApproachesCompared = 2;
 /// A given mirror that is this near (relative error) goes on alone.
 constexpr double kNear = 0.01;
 /// The given mirror keeps its own knots as long as a level ends below so many times the noise, or near.
@@ -121,7 +124,7 @@ bool CandidateOrder::is_decided() const {
 }
 
 const FreeFormSnapshot* CandidateOrder::ahead_of_others() const {
-  const int few = worth_an_approach() ? kFirstApproach + 1 : kFirstApproach;
+  const int few = worth_an_approach() ? kFirstApproach + kApproachesCompared : kFirstApproach;
   if (state_.begun < few) return nullptr;
   const FreeFormSnapshot* best = best_of(kFineLevel);
   if (best == nullptr) return best_waiting(kRoughLevel);

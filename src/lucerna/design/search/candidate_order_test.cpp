@@ -86,15 +86,30 @@ TEST(CandidateOrder, AMirrorOfFewKnotsIsApproachedWhereNoneIsNear) {
 }
 
 // A wide source's 60 s would be over before any mirror came to the end.
-TEST(CandidateOrder, TheFirstApproachComesToTheEndBeforeTheOthersBegin) {
-  FreeFormState s = after_rough({3e-3, 4e-3, 5e-3});
-  s.done.push_back(approach(0, 0, 2e-3));
-  s.begun = kFirstApproach + 1;
-  for (const int level : {1, 2}) {
-    EXPECT_EQ(next(kFewKnots, s), std::to_string(kFirstApproach) + " " + std::to_string(level));
-    s.done.push_back(approach(0, level, 1e-3));
+TEST(CandidateOrder, TheBetterOfTwoApproachesComesToTheEndBeforeOthersBegin) {
+  for (const int better : {0, 1}) {
+    FreeFormState s = after_rough({3e-3, 4e-3, 5e-3});
+    s.done.push_back(approach(0, 0, better == 0 ? 2e-3 : 2.5e-3));
+    s.begun = kFirstApproach + 1;
+    EXPECT_EQ(next(kFewKnots, s), "new " + std::to_string(kFirstApproach + 1));
+    s.done.push_back(approach(1, 0, better == 1 ? 2e-3 : 2.5e-3));
+    s.begun = kFirstApproach + 2;
+    for (const int level : {1, 2}) {
+      EXPECT_EQ(next(kFewKnots, s), std::to_string(kFirstApproach + better) + " " + std::to_string(level));
+      s.done.push_back(approach(better, level, 1e-3));
+    }
+    EXPECT_EQ(next(kFewKnots, s), "new " + std::to_string(kFirstApproach + 2));
   }
-  EXPECT_EQ(next(kFewKnots, s), "new " + std::to_string(kFirstApproach + 1));
+}
+
+// One that is at the target needs no other beside it.
+TEST(CandidateOrder, AnApproachThatIsNearGoesOnAlone) {
+  FreeFormState s = after_rough({3e-3, 4e-3, 5e-3});
+  FreeFormSnapshot near = approach(0, 0, 1e-6);
+  near.error_to_noise = 1.0;
+  s.done.push_back(near);
+  s.begun = kFirstApproach + 1;
+  EXPECT_EQ(next(kFewKnots, s), std::to_string(kFirstApproach) + " 1");
 }
 
 TEST(CandidateOrder, ThreeAreFittedFinelyAndTheBestToTheEnd) {

@@ -12,6 +12,8 @@
 #include "lucerna/design/fit/approach.h"
 #include "lucerna/design/initial/initial_guesses.h"
 #include "lucerna/design/search/free_form_levels.h"
+#include "lucerna/design/search/mode_search.h"
+#include "lucerna/design/shape/perturbed.h"
 #include "lucerna/random.h"
 
 namespace lucerna {
@@ -47,6 +49,8 @@ constexpr std::size_t kSteps = 2, kFaceSteps = 4;
 /// blurred by the source's size a rough surface costs no light. At a three-hundredth of it slopes jump by a
 /// degree from knot to knot, at the same error.
 constexpr double kSmoothing = 0.03;
+/// Random streams of perturbed starts of approaches begin here.
+constexpr std::uint64_t kApproachStream = std::uint64_t{1} << 34;
 /// That tell where the source is.
 constexpr std::uint64_t kUnitRays = std::uint64_t{1} << 14;
 constexpr double kStartWiden = 1.1;
@@ -136,7 +140,6 @@ TransportChoice FreeFormSearch::choice(int number) const {
 
 std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormSnapshot& snapshot) {
   if (snapshot.candidate == 0) return nearer_of_given();
-  // The first approach begins with the given mirror itself, later ones with perturbed copies.
   if (!snapshot.transport.exists()) return approached(snapshot.candidate - kFirstApproach);
   const FreeFormLevel rough = level(0);
   const DesignShape family = given_.refined(rough.intervals_x, rough.intervals_y);
@@ -144,8 +147,21 @@ std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormSnapshot& snap
   return guess && problem_.within ? problem_.within(*guess) : guess;
 }
 
+InitialGuess FreeFormSearch::start_of_approach(int restart) {
+  if (restart == 0) return {given_};
+  const auto number = static_cast<std::uint64_t>(restart);
+  if (given_.is_trough() || restart % 2 == 0) {
+    const double size_mm = problem_.perturbation * given_.radius_mm();
+    return {perturbed(given_, size_mm, Rng(problem_.seed, kApproachStream + number))};
+  }
+  ModeSearch found = mode_search(problem_, given_, problem_.seed + number);
+  state_.evaluations += found.evaluations;
+  state_.total_rays += found.rays;
+  return {std::move(found.shape), InitialKnots::own_knots};
+}
+
 DesignShape FreeFormSearch::approached(int restart) {
-  Approached result = approach(problem_, given_, restart, max_rays_);
+  Approached result = approach(problem_, start_of_approach(restart), max_rays_);
   state_.evaluations += result.evaluations;
   state_.total_rays += result.rays;
   return std::move(result.shape);

@@ -30,7 +30,7 @@ std::optional<DesignShape> free_form_guess(const FitProblem& problem, const Desi
 /// the best is fitted on with more rays, before neighbours of it where it is an approach or noise is a good
 /// part of its error, and after some of them elsewhere. A given mirror of few knots that is to have no more
 /// is first brought near the target (approach.h), any other of few knots where no mirror of a point source
-/// comes to it; perturbed copies of it then too, where all are far or the approach is the nearest, until one
+/// comes to it; other starts of it then too, where all are far or the approach is the nearest, until one
 /// is at the target. A given mirror keeps its knots as long as they bring it near the noise or the target.
 /// Knots are only ever refined. Every decision depends on the state alone: a search that is stopped after any
 /// step and taken up from its state continues bit-identically.
@@ -68,7 +68,10 @@ class FreeFormSearch {
   CandidateOrder order() const { return {rules_, state_}; }
   /// What a candidate that is not the given mirror begins with.
   TransportChoice choice(int number) const;
-  /// What an approach from the given mirror leads to. Counts its rays.
+  /// What an approach begins with: the given mirror, then in turn what a few modes make of it and a copy
+  /// perturbed at random. Counts its rays, as the next does.
+  InitialGuess start_of_approach(int restart);
+  /// What an approach leads to.
   DesignShape approached(int restart);
   /// The given mirror, or what an approach makes of it, whichever is nearer to the target.
   DesignShape nearer_of_given();

@@ -318,7 +318,7 @@ TEST(FreeFormSearch, TheBestOfAFewIsFittedFinelyBeforeTheOthersBegin) {
 }
 
 // Where no mirror of a point source is at the target, an approach of the given mirror comes next. What is
-// within a per cent then goes on alone, with its few knots.
+// at the noise then goes on alone, with its few knots.
 TEST(FreeFormSearch, AGivenMirrorIsBroughtNearerWhereNoneIsAtTheTarget) {
   DesignRays rays = disk_rays();
   const FitProblem problem = oval_problem(rays);
@@ -329,6 +329,7 @@ TEST(FreeFormSearch, AGivenMirrorIsBroughtNearerWhereNoneIsAtTheTarget) {
   state.done.back().candidate = 3;
   state.done.back().cost = 1e-5;
   state.done.back().error = 5e-3;
+  state.done.back().error_to_noise = 1.0;
   state.now = {};
   const FreeFormSearch next = run(problem, plain(), 1, state);
   EXPECT_EQ(next.state().now.candidate, 3);
@@ -361,7 +362,7 @@ TEST(FreeFormSearch, AGivenMirrorThatIsStuckIsApproachedAtOnce) {
   }
 }
 
-// Approaches from perturbed copies end in basins of their own, so that several are compared, as long as none
+// Approaches end in basins of their own, so that several are compared, as long as none
 // is at the target.
 TEST(FreeFormSearch, FurtherApproachesFollowUntilOneIsNear) {
   DesignRays rays = disk_rays();
@@ -371,6 +372,9 @@ TEST(FreeFormSearch, FurtherApproachesFollowUntilOneIsNear) {
   approach.candidate = state.begun++;
   approach.cost = 2e-3;
   approach.error = 0.08;
+  state.done.push_back(approach);
+  approach.candidate = state.begun++;
+  approach.cost = 2.5e-3;
   state.done.push_back(approach);
   state = run(problem, plain(), 1, state).state();
   ASSERT_EQ(state.now.candidate, 3);
@@ -384,7 +388,7 @@ TEST(FreeFormSearch, FurtherApproachesFollowUntilOneIsNear) {
   state = run(problem, plain(), 1, state).state();
   ASSERT_FALSE(state.now.exists());
   state = run(problem, plain(), 1, state).state();
-  ASSERT_EQ(state.now.candidate, 4);
+  ASSERT_EQ(state.now.candidate, 5);
   EXPECT_FALSE(state.now.transport.exists());
   state.done.push_back(state.now);
   state.now = {};
@@ -395,7 +399,7 @@ TEST(FreeFormSearch, FurtherApproachesFollowUntilOneIsNear) {
     m.error_to_noise = 1.0;
   }
   state = run(problem, plain(), 1, state).state();
-  EXPECT_EQ(state.begun, 5) << "no more approaches";
+  EXPECT_EQ(state.begun, 6) << "no more approaches";
   EXPECT_EQ(state.now.level, 1);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <utility>
 
 #include "lucerna/design/solver/least_squares.h"
@@ -18,8 +19,9 @@ struct LevenbergMarquardtStep {
 /// One step of Levenberg-Marquardt, without a state of its own. `now` has `equations` (normal or sparse),
 /// `move_of(lambda)` is their damped step; damping begins at `lambda` and grows until no parameter moves by
 /// more than `longest`. `at(move)` evaluates the point there. Where the cost falls, `now` moves and the
-/// damping follows Nielsen's rule; else `now` stays and the damping is five times as strong. Where no damping
-/// makes the step short enough (no light tells of any parameter) nothing is evaluated.
+/// damping follows Nielsen's rule, but does not fall so far that the next step would be too long; else `now`
+/// stays and the damping is five times as strong. Where no damping makes the step short enough (no light
+/// tells of any parameter) nothing is evaluated.
 template <class Point, class MoveOf, class PointAt>
 LevenbergMarquardtStep levenberg_marquardt_step(Point& now, const MoveOf& move_of, double lambda,
                                                 double longest, const PointAt& at) {
@@ -32,7 +34,9 @@ LevenbergMarquardtStep levenberg_marquardt_step(Point& now, const MoveOf& move_o
   }
   Point trial = at(std::as_const(move));
   if (!(trial.equations.cost < now.equations.cost)) return {false, lambda, kRefused * lambda};
-  const double next = next_lambda(lambda, now.equations, move, trial.equations.cost);
+  // Weaker damping makes a step longer in proportion at most, so the next one begins short enough.
+  const double short_enough = lambda * move.cwiseAbs().maxCoeff() / longest;
+  const double next = std::max(short_enough, next_lambda(lambda, now.equations, move, trial.equations.cost));
   now = std::move(trial);
   return {true, lambda, next};
 }

@@ -70,6 +70,20 @@ TEST(LevenbergMarquardt, ShortStepsGetThereTooAndNeverUphill) {
   EXPECT_NEAR(now.equations.cost, 1.0, 1e-9);
 }
 
+// Each step is as long as it may be; with Nielsen's rule alone every second damping is found too weak.
+TEST(LevenbergMarquardt, NoStepAfterTheFirstIsTooLong) {
+  const Quadratic surface(6, 3);
+  constexpr double kLongest = 0.02;
+  QuadraticPoint now = surface.at(Eigen::VectorXd::Constant(6, 3.0));
+  double lambda = step_on(surface, now, 1e-2, kLongest).next_lambda;
+  for (int k = 0; k < 50; ++k) {
+    const LevenbergMarquardtStep step = step_on(surface, now, lambda, kLongest);
+    ASSERT_TRUE(step.accepted) << k;
+    EXPECT_EQ(step.tried_lambda, lambda) << k;
+    lambda = step.next_lambda;
+  }
+}
+
 TEST(LevenbergMarquardt, ARefusedStepChangesNothingButTheDamping) {
   // Wherever the step leads, the cost is higher.
   struct Rising {

@@ -40,9 +40,10 @@ SparseSymmetric joined(const std::vector<Columns>& parts, Eigen::Index n) {
   return out;
 }
 
-/// A matrix with more of its triangle filled is factorised as a dense one: a sparse factor fills up, and is
-/// then five times slower (2601 parameters, one core, half filled: 1.3 s against 0.27 s; 6 % filled: 0.06 s).
-constexpr double kDenseShare = 0.2;
+/// A matrix with more of its triangle filled is factorised as a dense one: a sparse factor fills up, and each
+/// of its multiplications takes ten times as long (2601 parameters, two cores, 16 % filled: 1.0 s against
+/// 0.45; 6 % filled: 0.18 s).
+constexpr double kDenseShare = 0.13;
 
 bool is_dense(const SparseSymmetric& a) {
   const auto n = static_cast<double>(a.rows());
