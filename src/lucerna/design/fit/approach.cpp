@@ -19,7 +19,7 @@ bool has_few_knots(const DesignShape& shape) {
   return std::max(shape.intervals_x(), shape.intervals_y()) <= kApproachIntervals;
 }
 
-Approached approach(const FitProblem& problem, const InitialGuess& start, std::uint64_t max_rays) {
+FoundShape approach(const FitProblem& problem, const InitialGuess& start, std::uint64_t max_rays) {
   const int nx = start.shape.intervals_x(), ny = start.shape.intervals_y();
   LUCERNA_CHECK(has_few_knots(start.shape), "{} x {} intervals", nx, ny);
   FitProblem coarse = problem;

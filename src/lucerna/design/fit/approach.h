@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lucerna/design/fit/fit_problem.h"
+#include "lucerna/design/fit/found_shape.h"
 
 namespace lucerna {
 
@@ -15,17 +16,10 @@ inline constexpr int kApproachIntervals = 20;
 /// Whether a mirror is a matter for `approach`.
 bool has_few_knots(const DesignShape& shape);
 
-/// What an approach came to, and what it cost.
-struct Approached {
-  DesignShape shape;
-  int evaluations = 0;
-  std::uint64_t rays = 0;
-};
-
 /// Brings a mirror of few knots near a target: coarse bins, large scales and few rays first, which show a way
 /// where fine bins see nothing but ripples, then perturbed restarts while it is near but not at the noise
 /// (Fit, up to its screening stage). The result has the knots of the start, which has few, and depends on the
 /// arguments alone. `max_rays`: of an evaluation. Traces about 2^23 rays at most.
-Approached approach(const FitProblem& problem, const InitialGuess& start, std::uint64_t max_rays);
+FoundShape approach(const FitProblem& problem, const InitialGuess& start, std::uint64_t max_rays);
 
 }  // namespace lucerna

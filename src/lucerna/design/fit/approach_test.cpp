@@ -63,7 +63,7 @@ TEST(Approach, BringsAFewKnotMirrorNearAHiddenOneAtItsOwnKnots) {
   Hidden hidden(perturbed(square(3), 4.0, Rng(4, 0)));
   const DesignShape given = square(3);
   ASSERT_GT(hidden.error_of(given), 0.3) << "the start is far off, or the test says nothing";
-  const Approached result = approach(hidden.problem(), {given}, kFitRays);
+  const FoundShape result = approach(hidden.problem(), {given}, kFitRays);
   EXPECT_LT(hidden.error_of(result.shape), 0.06);
   EXPECT_EQ(result.shape.intervals_x(), 3);
   EXPECT_EQ(result.shape.intervals_y(), 3);
@@ -75,8 +75,8 @@ TEST(Approach, DependsOnItsArgumentsAlone) {
   const DesignShape truth = perturbed(square(2), 1.5, Rng(4, 0));
   Hidden one(truth), other(truth);
   other.problem().rays->grow(4 * kFitRays);  // rays beyond those that are asked for change nothing
-  const Approached a = approach(one.problem(), {square(2)}, kFitRays / 4);
-  const Approached b = approach(other.problem(), {square(2)}, kFitRays / 4);
+  const FoundShape a = approach(one.problem(), {square(2)}, kFitRays / 4);
+  const FoundShape b = approach(other.problem(), {square(2)}, kFitRays / 4);
   EXPECT_EQ(a.shape.parameters(), b.shape.parameters());
   EXPECT_EQ(a.rays, b.rays);
 }
@@ -85,7 +85,7 @@ TEST(Approach, DependsOnItsArgumentsAlone) {
 TEST(Approach, HasTheGivenKnots) {
   Hidden hidden(perturbed(square(2), 1.5, Rng(4, 0)));
   const DesignShape given = DesignShape::bspline(15, Aperture::rectangle(100, 100), 20, 14);
-  const Approached result = approach(hidden.problem(), {given}, kDesignTasks * kBlockRays);
+  const FoundShape result = approach(hidden.problem(), {given}, kDesignTasks * kBlockRays);
   EXPECT_EQ(result.shape.intervals_x(), given.intervals_x());
   EXPECT_EQ(result.shape.intervals_y(), given.intervals_y());
 }

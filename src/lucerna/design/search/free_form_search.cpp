@@ -154,17 +154,17 @@ InitialGuess FreeFormSearch::start_of_approach(int restart) {
     const double size_mm = problem_.perturbation * given_.radius_mm();
     return {perturbed(given_, size_mm, Rng(problem_.seed, kApproachStream + number))};
   }
-  ModeSearch found = mode_search(problem_, given_, problem_.seed + number);
-  state_.evaluations += found.evaluations;
-  state_.total_rays += found.rays;
-  return {std::move(found.shape), InitialKnots::own_knots};
+  return {paid_for(mode_search(problem_, given_, problem_.seed + number)), InitialKnots::own_knots};
 }
 
 DesignShape FreeFormSearch::approached(int restart) {
-  Approached result = approach(problem_, start_of_approach(restart), max_rays_);
-  state_.evaluations += result.evaluations;
-  state_.total_rays += result.rays;
-  return std::move(result.shape);
+  return paid_for(approach(problem_, start_of_approach(restart), max_rays_));
+}
+
+DesignShape FreeFormSearch::paid_for(FoundShape found) {
+  state_.evaluations += found.evaluations;
+  state_.total_rays += found.rays;
+  return std::move(found.shape);
 }
 
 DesignShape FreeFormSearch::nearer_of_given() {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lucerna/design/fit/fit_record.h"
+#include "lucerna/design/fit/found_shape.h"
 #include "lucerna/design/fit/free_form_fit.h"
 #include "lucerna/design/search/candidate_order.h"
 #include "lucerna/design/search/fits_ahead.h"
@@ -69,10 +70,12 @@ class FreeFormSearch {
   /// What a candidate that is not the given mirror begins with.
   TransportChoice choice(int number) const;
   /// What an approach begins with: the given mirror, then in turn what a few modes make of it and a copy
-  /// perturbed at random. Counts its rays, as the next does.
+  /// perturbed at random.
   InitialGuess start_of_approach(int restart);
   /// What an approach leads to.
   DesignShape approached(int restart);
+  /// Counts what a shape cost.
+  DesignShape paid_for(FoundShape found);
   /// The given mirror, or what an approach makes of it, whichever is nearer to the target.
   DesignShape nearer_of_given();
   /// Begins a level of the next candidate, unless it has no start.

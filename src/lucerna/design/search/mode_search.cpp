@@ -61,7 +61,7 @@ Eigen::VectorXd parameters_of(const Mode& mode, const DesignShape& shape) {
 
 }  // namespace
 
-ModeSearch mode_search(const FitProblem& problem, const DesignShape& given, std::uint64_t seed) {
+FoundShape mode_search(const FitProblem& problem, const DesignShape& given, std::uint64_t seed) {
   LUCERNA_CHECK(!given.is_trough() && !given.is_revolution(), "modes of a mirror that is no free form");
   std::vector<Mode> modes;
   std::copy_if(kModes.begin(), kModes.end(), std::back_inserter(modes),

@@ -4,21 +4,15 @@
 #include <cstdint>
 
 #include "lucerna/design/fit/fit_problem.h"
+#include "lucerna/design/fit/found_shape.h"
 
 namespace lucerna {
-
-/// A mirror with a few smooth modes of its heights, and what looking for them cost.
-struct ModeSearch {
-  DesignShape shape;
-  int evaluations = 0;
-  std::uint64_t rays = 0;
-};
 
 /// Deepens, shifts, tilts and bends a free form by those of nine low modes (height, tilts, defocus,
 /// astigmatisms, comas, spherical: Zernike's first, less what a symmetry forbids) that bring its light
 /// nearest to the target in coarse bins. CMA-ES finds them without derivatives, so a mirror far from the
 /// given one is found as easily as a near one. The result has the knots of `given` and depends on the
 /// arguments alone; other seeds end elsewhere. Not for troughs and mirrors of revolution. One to two seconds.
-ModeSearch mode_search(const FitProblem& problem, const DesignShape& given, std::uint64_t seed);
+FoundShape mode_search(const FitProblem& problem, const DesignShape& given, std::uint64_t seed);
 
 }  // namespace lucerna

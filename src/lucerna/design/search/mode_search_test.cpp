@@ -74,7 +74,7 @@ TEST(ModeSearch, FindsADeepTiltedMirrorFromAParaboloid) {
   }));
   const double before = far.error_of(given);
   ASSERT_GT(before, 1.0) << "the given mirror is far off, or the test says nothing";
-  const ModeSearch found = mode_search(far.problem(), given, 1);
+  const FoundShape found = mode_search(far.problem(), given, 1);
   EXPECT_LT(far.error_of(found.shape), 0.35 * before);
   EXPECT_EQ(found.shape.intervals_x(), given.intervals_x());
   EXPECT_EQ(found.shape.intervals_y(), given.intervals_y());
@@ -87,7 +87,7 @@ TEST(ModeSearch, DependsOnItsArgumentsAlone) {
   const DesignShape truth = with_heights(given, [](double x, double y) { return 0.002 * (x * x + y * y); });
   FarMirror one(truth), other(truth);
   other.problem().rays->grow(4 * kRays);  // rays beyond those that are asked for change nothing
-  const ModeSearch a = mode_search(one.problem(), given, 3), b = mode_search(other.problem(), given, 3);
+  const FoundShape a = mode_search(one.problem(), given, 3), b = mode_search(other.problem(), given, 3);
   EXPECT_EQ(a.shape.parameters(), b.shape.parameters());
   EXPECT_NE(a.shape.parameters(), mode_search(one.problem(), given, 4).shape.parameters());
 }
