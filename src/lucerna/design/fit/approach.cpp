@@ -19,12 +19,16 @@ bool has_few_knots(const DesignShape& shape) {
   return std::max(shape.intervals_x(), shape.intervals_y()) <= kApproachIntervals;
 }
 
+FitProblem with_fit_flux_weight(FitProblem problem) {
+  if (problem.flux_weight > 0.0) problem.flux_weight = kFitFluxWeight;
+  return problem;
+}
+
 FoundShape approach(const FitProblem& problem, const InitialGuess& start, std::uint64_t max_rays) {
   const int nx = start.shape.intervals_x(), ny = start.shape.intervals_y();
   LUCERNA_CHECK(has_few_knots(start.shape), "{} x {} intervals", nx, ny);
-  FitProblem coarse = problem;
+  FitProblem coarse = with_fit_flux_weight(problem);
   coarse.guesses = {start};
-  if (coarse.flux_weight > 0.0) coarse.flux_weight = kFitFluxWeight;
   const ContinuationSchedule schedule =
       continuation_schedule(start.shape, problem.bins, {.rays = max_rays}).up_to_screening();
   Fit fit(coarse, schedule, start.shape);

@@ -10,6 +10,9 @@ namespace lucerna {
 /// error of 4.5 %.
 inline constexpr double kFitFluxWeight = 0.2;
 
+/// The same problem with that weight, where lost light has one.
+FitProblem with_fit_flux_weight(FitProblem problem);
+
 /// Most intervals along a side of a mirror that `approach` works on.
 inline constexpr int kApproachIntervals = 20;
 

@@ -150,7 +150,8 @@ std::optional<DesignShape> FreeFormSearch::start_of(const FreeFormSnapshot& snap
 InitialGuess FreeFormSearch::start_of_approach(int restart) {
   if (restart == 0) return {given_};
   const auto number = static_cast<std::uint64_t>(restart);
-  if (given_.is_trough() || restart % 2 == 0) {
+  const bool has_modes = !given_.is_trough() && !problem_.rays->medium();
+  if (!has_modes || restart % 2 == 0) {
     const double size_mm = problem_.perturbation * given_.radius_mm();
     return {perturbed(given_, size_mm, Rng(problem_.seed, kApproachStream + number))};
   }

@@ -69,8 +69,8 @@ class FreeFormSearch {
   CandidateOrder order() const { return {rules_, state_}; }
   /// What a candidate that is not the given mirror begins with.
   TransportChoice choice(int number) const;
-  /// What an approach begins with: the given mirror, then in turn what a few modes make of it and a copy
-  /// perturbed at random.
+  /// What an approach begins with: the given mirror, then in turn what a few modes make of it (mirrors
+  /// but troughs) and a copy perturbed at random.
   InitialGuess start_of_approach(int restart);
   /// What an approach leads to.
   DesignShape approached(int restart);

@@ -20,8 +20,6 @@ namespace {
 constexpr std::uint64_t kModeRays = std::uint64_t{1} << 14;
 constexpr int kEvaluations = 400;
 constexpr double kWiden = 1.2;
-/// What a cost that is not finite, or of a mirror deep in a limit, counts as: CMA-ES ranks, and sums nothing.
-constexpr double kHopelessCost = 1e30;
 
 /// A height over the radius, at u = x / radius, v = y / radius, and the range of its coefficient. Mirrors
 /// that catch more light than the given one are deeper, and their vertex is farther from the source.
@@ -81,14 +79,11 @@ FoundShape mode_search(const FitProblem& problem, const DesignShape& given, std:
   problem.rays->grow(kModeRays);
   const TentBins bins = rebinned(problem.bins, kWiden, problem.bins.count() / 3);
   const Eigen::VectorXd target = problem.target(bins);
-  FitProblem coarse = problem;
-  if (coarse.flux_weight > 0.0) coarse.flux_weight = kFitFluxWeight;
+  const FitProblem coarse = with_fit_flux_weight(problem);
   const BatchCost cost = [&](const std::vector<Eigen::VectorXd>& points) {
     std::vector<double> costs;
-    for (const Eigen::VectorXd& p : points) {
-      const double c = fit_cost(coarse, shape_of(p), bins, target, kModeRays);
-      costs.push_back(std::isfinite(c) ? c : kHopelessCost);
-    }
+    for (const Eigen::VectorXd& p : points)
+      costs.push_back(fit_cost(coarse, shape_of(p), bins, target, kModeRays));
     return costs;
   };
   const GlobalSearchResult found = global_search(GlobalMethod::cma_es, box, {seed, kEvaluations}, cost);

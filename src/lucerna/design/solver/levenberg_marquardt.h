@@ -34,7 +34,8 @@ LevenbergMarquardtStep levenberg_marquardt_step(Point& now, const MoveOf& move_o
   }
   Point trial = at(std::as_const(move));
   if (!(trial.equations.cost < now.equations.cost)) return {false, lambda, kRefused * lambda};
-  // Weaker damping makes a step longer in proportion at most, so the next one begins short enough.
+  // Weaker damping makes a step longer in proportion at most (in the metric's norm), so that the next one is
+  // nearly always short enough at once.
   const double short_enough = lambda * move.cwiseAbs().maxCoeff() / longest;
   const double next = std::max(short_enough, next_lambda(lambda, now.equations, move, trial.equations.cost));
   now = std::move(trial);
