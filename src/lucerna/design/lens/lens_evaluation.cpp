@@ -27,6 +27,11 @@ struct LensSums {
   double weight = 0.0, through = 0.0, direct = 0.0, absorbed = 0.0, lost = 0.0;
 };
 
+/// What the ways with one and with two partial reflections count; 0: they are not followed.
+struct GhostWeights {
+  double once = 0.0, twice = 0.0;
+};
+
 /// Adds the light of rays of one lens to sums.
 class LensCounter {
  public:
@@ -34,20 +39,30 @@ class LensCounter {
               const LensEvaluationOptions& options)
       : curves_(curves), medium_(medium), bins_(bins), options_(options), tracer_(curves, medium) {}
 
-  /// `ghosts`: what the ways with a partial reflection count; 0: they are not followed.
-  void add(const Vec3& origin, const Vec3& direction, double weight, double ghosts, LensSums& sums) {
+  /// `ghosts`: over the weight.
+  void add(const Vec3& origin, const Vec3& direction, double weight, const GhostWeights& ghosts,
+           LensSums& sums) {
     sums.weight += weight;
     tracer_.follow(origin, direction, kNoGhost, path_);
     count(weight, weight * (1.0 - path_.clear), options_.edge_mm, sums);
-    if (ghosts == 0.0 || path_.end == LensEnd::direct) return;
+    if (ghosts.once == 0.0 || path_.end == LensEnd::direct) return;
     const int partial = path_.partial;
     for (int k = 0; k < partial; ++k) {
-      tracer_.follow(origin, direction, k, path_);
-      count(ghosts, ghosts * (1.0 - path_.clear), 0.0, sums);
+      add_ghost(origin, direction, {k}, ghosts.once * weight, sums);
+      if (ghosts.twice == 0.0) continue;
+      const int partial_again = path_.partial;
+      for (int m = k + 1; m < partial_again; ++m)
+        add_ghost(origin, direction, {k, m}, ghosts.twice * weight, sums);
     }
   }
 
  private:
+  void add_ghost(const Vec3& origin, const Vec3& direction, const Ghost& ghost, double weight,
+                 LensSums& sums) {
+    tracer_.follow(origin, direction, ghost, path_);
+    count(weight, weight * (1.0 - path_.clear), 0.0, sums);
+  }
+
   void count(double weight, double absorbed, double edge_mm, LensSums& sums) {
     const double share = path_.share();
     sums.absorbed += 0.5 * (path_.s + path_.p) * absorbed;
@@ -147,6 +162,37 @@ std::size_t groups_of(std::uint64_t rays) {
   return groups;
 }
 
+/// Which blocks of rays are followed through partial reflections, and what they count: whole ones, for
+/// neighbours in a Sobol sequence are spread evenly, of all streams and tasks alike.
+class GhostBlocks {
+ public:
+  GhostBlocks(int every, std::uint64_t blocks_per_task)
+      : once_(static_cast<std::uint64_t>(every)), twice_(once_ * once_) {
+    if (every == 0) return;
+    for (std::uint64_t b = 0; b < blocks_per_task; ++b) {
+      for (std::uint64_t task = 0; task < kDesignTasks; ++task) {
+        if (is_one_in(once_, b, task)) weights_.once += 1.0;
+        if (is_one_in(twice_, b, task)) weights_.twice += 1.0;
+      }
+    }
+    const auto all = static_cast<double>(blocks_per_task * kDesignTasks);
+    weights_ = {all / weights_.once, all / weights_.twice};
+  }
+
+  GhostWeights weights(std::uint64_t block, std::uint64_t task) const {
+    if (once_ == 0 || !is_one_in(once_, block, task)) return {};
+    return {weights_.once, is_one_in(twice_, block, task) ? weights_.twice : 0.0};
+  }
+
+ private:
+  static bool is_one_in(std::uint64_t every, std::uint64_t block, std::uint64_t task) {
+    return (block + task / kDesignStreams) % every == 0;
+  }
+
+  std::uint64_t once_, twice_;
+  GhostWeights weights_;
+};
+
 EvaluationSums lens_total(const std::vector<LensSums>& tasks, std::size_t bins) {
   EvaluationSums sums;
   for (std::vector<double>& flux : sums.flux) flux.assign(bins, 0.0);
@@ -170,10 +216,7 @@ Evaluation evaluate_lens(const LensShape& shape, const MediumView& medium, const
   LUCERNA_CHECK(per_task > 0 && options.rays <= rays.size(), "{} rays of {}", options.rays, rays.size());
   const LensCurves curves(shape);
   const std::size_t groups = groups_of(options.rays), each = kDesignTasks / groups;
-  const std::uint64_t every =
-      options.ghost_every == 0 ? 0 : (per_task >= 16 ? static_cast<std::uint64_t>(options.ghost_every) : 1);
-  const double ghost_weight =
-      every == 0 ? 0.0 : static_cast<double>(per_task) / static_cast<double>((per_task + every - 1) / every);
+  const GhostBlocks ghosts(options.ghost_every, per_task);
   std::vector<std::vector<double>> jacobians(options.derivatives ? groups : 0);
   std::vector<LensSums> sums(kDesignTasks);
   parallel_blocks(groups, 1, [&](std::size_t group, std::size_t) {
@@ -185,12 +228,11 @@ Evaluation evaluate_lens(const LensShape& shape, const MediumView& medium, const
       if (options.derivatives) sums[r].jacobian = jacobians[group].data();
       for (std::uint64_t b = 0; b < per_task; ++b) {
         const DesignRays::Block& block = rays.block(b * kDesignTasks + r);
-        const double ghosts = every > 0 && b % every == 0 ? ghost_weight : 0.0;
+        const GhostWeights of_block = ghosts.weights(b, r);
         for (std::size_t i = 0; i < kBlockRays; ++i) {
           const double weight = block.weight[i];
           const Vec3 along = Direction::from({block.kx[i], block.ky[i], block.kz[i]}).vec();
-          counter->add({block.x_mm[i], block.y_mm[i], block.z_mm[i]}, along, weight, ghosts * weight,
-                       sums[r]);
+          counter->add({block.x_mm[i], block.y_mm[i], block.z_mm[i]}, along, weight, of_block, sums[r]);
         }
       }
     }

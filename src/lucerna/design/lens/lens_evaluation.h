@@ -14,8 +14,8 @@ struct LensEvaluationOptions {
   std::uint64_t rays = 1 << 16;
   /// Also the derivatives.
   bool derivatives = true;
-  /// Follow light that one boundary has reflected, too, for one block of rays in so many; 0: none. Few rays
-  /// are all followed.
+  /// Follow light that one boundary has reflected, too, for one block of rays in so many, and what two have
+  /// for one in the square of it; 0: none.
   int ghost_every = 4;
   /// Ways of more hits than these have no derivatives: light that goes to and fro within is chaotic. It
   /// counts where it falls.
@@ -30,9 +30,9 @@ struct LensEvaluationOptions {
 inline constexpr double kEdgeShare = 0.02;
 
 /// Traces the first `options.rays` rays (in the lens's frame) through the lens into the bins, on the main way
-/// of each (`LensTracer`) with Fresnel's weight, and on the ways with one partial reflection; light of two
-/// and more, some thousandths, is counted as lost. Exact pathwise derivatives: hit point, normal, Snell's
-/// step, the weights and all later hits. Of the result, `reflected` is what leaves through the lens,
+/// of each (`LensTracer`) with Fresnel's weight, and on the ways with one and two partial reflections; light
+/// of more, less than a thousandth, is counted as lost. Exact pathwise derivatives: hit point, normal,
+/// Snell's step, the weights and all later hits. Of the result, `reflected` is what leaves through the lens,
 /// `absorbed` what the medium keeps; `direct` light met no lens. The same bits for any number of threads.
 /// Thread safe.
 Evaluation evaluate_lens(const LensShape& shape, const MediumView& medium, const DesignRays& rays,

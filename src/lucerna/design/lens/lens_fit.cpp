@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <map>
 #include <memory>
@@ -24,34 +25,50 @@ namespace lucerna {
 namespace {
 
 /// Longest way of a corner in one step, over the lens's radius.
-constexpr double kLongestCornerMove = 0.05;
+constexpr double kLongestCornerMove = 0.01;
+/// What changes of slopes and moves of corners count in the length of a step, over the mean of the Hessian's
+/// diagonal: smooth changes may be long while corners do not go zigzag.
+constexpr double kTiltInMetric = 0.02, kMoveInMetric = 2e-4;
 /// Size of the waves that make another start, and of those that perturb the best, over the radius.
 constexpr double kOtherStart = 0.03, kPerturbation = 0.004;
 /// Starts of the coarse stages; how many of them the next one takes on, and how much more squared error than
 /// the best's they may have; and how often the best is perturbed before the fine stages.
-constexpr int kStarts = 14, kTakenOn = 3, kEarlyRestarts = 10;
+constexpr int kStarts = 8, kTakenOn = 3, kEarlyRestarts = 4;
 constexpr double kHopeful = 9.0;
+/// A start that costs no more than so many times the squared noise needs no other beside it.
+constexpr double kEnough = 3.0;
 /// A start is given up where a stage leaves so much more squared error than with the best.
 constexpr double kFarBehind = 100.0;
 /// A stage ends after two steps that gained less than this share each, or so many refused in a row.
 constexpr double kLittleGain = 0.02, kLittleCoarseGain = 0.05;
-constexpr int kMostRefused = 5, kMostSteps = 40, kMostCoarseSteps = 20;
+constexpr int kMostRefused = 8, kMostSteps = 40, kMostCoarseSteps = 20;
 /// What light within each ring weighs in the first stage, and what the rings themselves weigh there.
-constexpr double kCumulativeWeight = 100.0, kRingsWeight = 0.01;
+constexpr double kFirstCumulativeWeight = 100.0, kFirstRingsWeight = 0.01;
+/// What it weighs later: a caustic that is a ring off is no nearer to its place by the rings alone.
+constexpr double kCumulativeWeight = 3000.0;
+/// What lost light weighs in coarse stages after the first, for as much beside it as there; else many starts
+/// end with the right shape of half the light. Later it is kFitFluxWeight: an exact shape is what is wanted
+/// then.
+constexpr double kCoarseFluxWeight = kFitFluxWeight * kCumulativeWeight / kFirstCumulativeWeight;
+/// The last stages have so many times the rings, this many at most: boxes of the error cut a caustic in all
+/// places, and see what is finer than they are.
+constexpr int kFinerRings = 4, kMostFineRings = 2048;
 /// Weight of roughness (`lens_roughness`): a wave of 3 % of the radius with three half periods counts as an
 /// error of 0.16 %.
 constexpr double kRoughnessWeight = 8e-9;
 /// What of the source may be within the lens beyond what the given one holds.
 constexpr double kMaxWithin = 1e-3;
 constexpr std::uint64_t kWithinRays = 4096;
+/// The fit ends where the squared error is no more than so many times that of noise.
+constexpr double kMostOfNoise = 1.21;
 /// A restart goes on to more rays only if this much of the best's squared error is left.
 constexpr double kBetter = 0.97;
 
 struct LensStage {
   int bins;
   std::uint64_t rays;
-  /// Of coarse stages, which many starts go through; and the very first, where cumulative light leads.
-  bool is_coarse = false, is_cumulative = false;
+  /// Of coarse stages, which many starts go through; and the very first, where cumulative light leads alone.
+  bool is_coarse = false, is_first = false;
 };
 
 struct LensPoint {
@@ -79,7 +96,9 @@ class LensStageObjective {
         target_(target.flux),
         flux_reference_(flux_reference),
         given_within_(given_within),
-        is_cumulative_(stage.is_cumulative),
+        is_first_(stage.is_first),
+        flux_weight_(stage.is_coarse && !stage.is_first && bins_.is_rings() ? kCoarseFluxWeight
+                                                                            : kFitFluxWeight),
         roughness_(kRoughnessWeight * lens_roughness(problem.start)) {
     rays.grow(stage.rays);
     options_.rays = stage.rays;
@@ -101,7 +120,7 @@ class LensStageObjective {
     out.equations.cost += lens_limits_cost(problem_.limits, shape, signs_, rows);
     rows.add_to(out.equations);
     if (problem_.target.mode == TargetMode::shape)
-      add_flux_term(out.light, kFitFluxWeight, flux_reference_, out.equations);
+      add_flux_term(out.light, flux_weight_, flux_reference_, out.equations);
     return out;
   }
 
@@ -113,11 +132,14 @@ class LensStageObjective {
  private:
   NormalEquations equations(const Evaluation& light) const {
     NormalEquations out = normal_equations(light, target_, bins_, problem_.target.mode);
-    if (!is_cumulative_) return out;
-    out.cost *= kRingsWeight;
-    out.gradient *= kRingsWeight;
-    out.hessian *= kRingsWeight;
-    add_cumulative_flux(light, target_, problem_.target.mode, kCumulativeWeight, out);
+    if (!bins_.is_rings()) return out;
+    if (is_first_) {
+      out.cost *= kFirstRingsWeight;
+      out.gradient *= kFirstRingsWeight;
+      out.hessian *= kFirstRingsWeight;
+    }
+    add_cumulative_flux(light, target_, problem_.target.mode,
+                        is_first_ ? kFirstCumulativeWeight : kCumulativeWeight, out);
     return out;
   }
 
@@ -127,7 +149,8 @@ class LensStageObjective {
   const TentBins& bins_;
   const Eigen::VectorXd& target_;
   double flux_reference_, given_within_;
-  bool is_cumulative_;
+  bool is_first_;
+  double flux_weight_;
   Eigen::MatrixXd roughness_;
   LensEvaluationOptions options_;
 };
@@ -142,6 +165,7 @@ class LensFit {
         rays_(rays),
         watch_(watch),
         signs_(draft_signs(problem.start)),
+        tilt_(lens_tilt(problem.start)),
         window_(lens_window(problem)),
         result_({problem.start}) {
     rays_.grow(std::uint64_t{1} << 16);
@@ -150,6 +174,7 @@ class LensFit {
     plain.derivatives = false;
     const Evaluation start = evaluate_lens(problem.start, problem.medium, rays_, window_, plain);
     flux_reference_ = start.reflected + start.direct;
+    if (window_.is_rings()) flux_reference_ *= target_share_within(problem, window_.extent());
     stages_ = stages_of(window_, static_cast<int>(problem.start.parameter_count()), options.max_rays);
     const auto coarse =
         std::count_if(stages_.begin(), stages_.end(), [](const auto& s) { return s.is_coarse; });
@@ -160,13 +185,14 @@ class LensFit {
     };
     while (stages_.size() > coarse_ + 2 && same(stages_.back(), stages_[stages_.size() - 2]))
       stages_.pop_back();
+    waiting_ = starts();
   }
 
   LensFitResult run() {
     std::vector<Candidate> begun;
-    const auto first = starts();
-    for (std::size_t k = 0; k < first.size() && !stopped_; ++k) begun.push_back(coarsely(first[k], 0));
-    for (int k = 0; k < kEarlyRestarts && !stopped_; ++k) {
+    const auto ended = [&] { return stopped_ || (!begun.empty() && begun.back().is_enough); };
+    while (!waiting_.empty() && !ended()) begun.push_back(coarsely(next_start(), 0));
+    for (int k = 0; k < kEarlyRestarts && !ended(); ++k) {
       sort_by_cost(begun);
       begun.push_back(coarsely(perturbed(begun.front().shape, k), coarse_ - 1));
     }
@@ -188,6 +214,7 @@ class LensFit {
   struct Candidate {
     double cost;
     LensShape shape;
+    bool is_enough = false;
   };
 
   /// Coarse ones, one of middling size at which restarts are compared, and fine ones.
@@ -195,18 +222,15 @@ class LensFit {
     const auto rays = [&](int log2) { return std::min(max_rays, std::uint64_t{1} << log2); };
     if (!window.is_rings()) return {{24, rays(15), true}, {48, rays(17)}, {48, rays(20)}, {48, rays(22)}};
     const int least = parameters + 6;
+    const int fine = std::clamp(kFinerRings * window.count(), least, std::max(least, kMostFineRings));
     const int rings = std::max(window.count(), least), coarse = std::max(window.count() / 3, least);
-    return {{coarse, rays(14), true, true},
-            {coarse, rays(14), true},
-            {rings, rays(14), true},
-            {rings, rays(16)},
-            {rings, rays(18)},
-            {rings, rays(20)}};
+    return {{coarse, rays(14), true, true},        {coarse, rays(14), true}, {rings, rays(14), true},
+            {std::min(2 * rings, fine), rays(16)}, {fine, rays(18)},         {fine, rays(20)}};
   }
 
   /// The given lens, those of a point source, and the given one perturbed.
-  std::vector<LensShape> starts() const {
-    std::vector<LensShape> out{problem_.start};
+  std::deque<LensShape> starts() const {
+    std::deque<LensShape> out{problem_.start};
     for (LensShape& s : zero_etendue_lenses(problem_.start, problem_.medium, rays_,
                                             target_flux(problem_.target, problem_.world_from_lens, 1.0)))
       out.push_back(std::move(s));
@@ -217,11 +241,17 @@ class LensFit {
     return perturbed_smoothly(problem_.start, kOtherStart * problem_.start.radius_mm(),
                               Rng(options_.seed ^ 0x4C454E53ull, static_cast<std::uint64_t>(k)));
   }
+  /// Of those that have not begun.
+  LensShape next_start() {
+    LensShape shape = std::move(waiting_.front());
+    waiting_.pop_front();
+    return shape;
+  }
 
   /// Takes a shape through the middling stage; keeps it where it is the best there.
   bool take_on(LensShape shape) {
     if (stopped_) return false;
-    const double cost = through(shape, coarse_, coarse_ + 1);
+    const double cost = through(shape, coarse_, coarse_ + 1).cost;
     if (!(cost < middle_cost_)) return false;
     const bool gained = cost < kBetter * middle_cost_;
     middle_cost_ = cost;
@@ -233,21 +263,20 @@ class LensFit {
   /// The fine stages from the best of the middling one; keeps what comes of it where it is the best.
   bool finish() {
     if (stopped_ || !middle_) return false;
-    bool noise = false;
     LensShape shape = *middle_;
-    const double cost = through(shape, coarse_ + 1, stages_.size(), &noise);
-    if (!(cost < fine_cost_)) return false;
-    const bool gained = cost < kBetter * fine_cost_;
-    fine_cost_ = cost;
+    const StageEnd end = through(shape, coarse_ + 1, stages_.size());
+    if (!(end.cost < fine_cost_)) return false;
+    const bool gained = end.cost < kBetter * fine_cost_;
+    fine_cost_ = end.cost;
     result_.lens.outline = std::move(shape);
-    result_.at_noise = noise;
+    result_.at_noise = end.squared_error <= kMostOfNoise * end.squared_noise;
     return gained;
   }
 
   /// Two times of three from the best, a little perturbed; else from another start.
   bool restart(int k) {
     const Candidate found = k % 3 == 2
-                                ? coarsely(other_start(kStarts + k), 0)
+                                ? coarsely(waiting_.empty() ? other_start(kStarts + k) : next_start(), 0)
                                 : coarsely(perturbed(result_.lens.outline, kEarlyRestarts + k), coarse_ - 1);
     if (stopped_ || !(found.cost <= kHopeful * coarse_cost_)) return false;
     coarse_cost_ = std::min(found.cost, coarse_cost_);
@@ -256,15 +285,15 @@ class LensFit {
 
   /// A shape after the coarse stages from `stage` on; given up where it stays far behind the best.
   Candidate coarsely(LensShape shape, std::size_t stage) {
-    double cost = std::numeric_limits<double>::infinity();
-    best_of_stage_.resize(coarse_, cost);
+    StageEnd end;
+    best_of_stage_.resize(coarse_, end.cost);
     for (; stage < coarse_ && !stopped_; ++stage) {
-      cost = through(shape, stage, stage + 1);
-      best_of_stage_[stage] = std::min(cost, best_of_stage_[stage]);
-      if (!(cost <= kFarBehind * best_of_stage_[stage])) break;
+      end = through(shape, stage, stage + 1);
+      best_of_stage_[stage] = std::min(end.cost, best_of_stage_[stage]);
+      if (!(end.cost <= kFarBehind * best_of_stage_[stage])) break;
     }
-    if (stage < coarse_) cost = std::numeric_limits<double>::infinity();
-    return {cost, std::move(shape)};
+    if (stage < coarse_) end = {};
+    return {end.cost, std::move(shape), end.cost <= kEnough * end.squared_noise};
   }
 
   static void sort_by_cost(std::vector<Candidate>& all) {
@@ -278,22 +307,26 @@ class LensFit {
     return perturbed_smoothly(shape, size, Rng(options_.seed ^ 0x4B49434Bull, static_cast<std::uint64_t>(k)));
   }
 
-  /// Takes `shape` through stages; returns the cost at the end of the last.
-  double through(LensShape& shape, std::size_t first, std::size_t last, bool* at_noise = nullptr) {
+  /// How far a stage came.
+  struct StageEnd {
     double cost = std::numeric_limits<double>::infinity();
+    double squared_error = cost, squared_noise = 0.0;
+  };
+
+  /// Takes `shape` through stages; returns the end of the last.
+  StageEnd through(LensShape& shape, std::size_t first, std::size_t last) {
+    StageEnd end;
     for (std::size_t s = first; s < last && !stopped_; ++s) {
       const LensStageObjective& objective = objective_of(s);
       LensPoint now = objective.at(shape);
       count(objective, now, static_cast<int>(s), 0, 0.0, true);
-      if (!std::isfinite(now.equations.cost)) return now.equations.cost;
+      if (!std::isfinite(now.equations.cost)) return {};
       steps(objective, now, static_cast<int>(s));
       shape = now.shape;
-      cost = now.equations.cost;
       const BinError error = objective.error(now);
-      if (at_noise != nullptr)
-        *at_noise = error.relative_rms * error.relative_rms <= 1.21 * error.floor * error.floor;
+      end = {now.equations.cost, error.relative_rms * error.relative_rms, error.floor * error.floor};
     }
-    return cost;
+    return end;
   }
 
   const LensStageObjective& objective_of(std::size_t stage) {
@@ -324,8 +357,8 @@ class LensFit {
     for (int step = 1, small = 0, refused = 0; step <= most && !stopped_; ++step) {
       const double before = now.equations.cost;
       const Eigen::VectorXd diagonal = now.equations.hessian.diagonal();
-      const Eigen::MatrixXd metric =
-          Eigen::VectorXd(diagonal.array() + 1e-2 * diagonal.mean() + 1e-300).asDiagonal();
+      Eigen::MatrixXd metric = (kTiltInMetric * diagonal.mean()) * tilt_;
+      metric.diagonal().array() += kMoveInMetric * (diagonal.array() + 1e-2 * diagonal.mean() + 1e-300);
       const Eigen::VectorXd from = now.shape.parameters();
       const LevenbergMarquardtStep made = levenberg_marquardt_step(
           now, [&](double damping) { return damped_step(now.equations, metric, damping); }, lambda, longest,
@@ -370,6 +403,7 @@ class LensFit {
   DesignRays& rays_;
   const LensFitWatcher& watch_;
   std::vector<double> signs_;
+  Eigen::MatrixXd tilt_;
   TentBins window_;
   std::map<int, BinnedTarget> targets_;
   std::vector<LensStage> stages_;
@@ -377,6 +411,8 @@ class LensFit {
   double flux_reference_ = 1.0, given_within_ = 0.0;
   /// How many of the stages are coarse; the next is the middling one.
   std::size_t coarse_ = 0;
+  /// Starts that have not begun.
+  std::deque<LensShape> waiting_;
   std::vector<double> best_of_stage_;
   double coarse_cost_ = std::numeric_limits<double>::infinity();
   double middle_cost_ = coarse_cost_, fine_cost_ = coarse_cost_;

@@ -95,7 +95,7 @@ bool LensTracer::begins_inside(const Vec3& origin, const Vec3& direction) const 
   return next_hit(origin, direction, false, false, first) && first.inside;
 }
 
-void LensTracer::follow(const Vec3& origin, const Vec3& direction, int ghost, LensPath& path) const {
+void LensTracer::follow(const Vec3& origin, const Vec3& direction, const Ghost& ghost, LensPath& path) const {
   path.hits = path.partial = 0;
   path.s = path.p = path.clear = 1.0;
   path.end = LensEnd::lost;
@@ -113,7 +113,7 @@ void LensTracer::follow(const Vec3& origin, const Vec3& direction, int ghost, Le
     ++path.hits;
     set_boundary(hit);
     const bool total = hit.cos_refracted == 0.0;
-    hit.reflected = total || path.partial == ghost;
+    hit.reflected = total || ghost.reflects_at(path.partial);
     if (!total) ++path.partial;
     if (!hit.reflected) {
       hit.s = 1.0 - hit.s;

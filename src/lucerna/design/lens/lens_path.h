@@ -12,8 +12,15 @@ namespace lucerna {
 
 /// Hits that a path keeps; a ray with more is lost.
 inline constexpr int kMaxLensHits = 24;
+
+/// Of the hits where light may be refracted, counted along the way, those at which it is reflected instead.
+struct Ghost {
+  int first = -1, second = -1;
+
+  bool reflects_at(int hit) const { return hit == first || hit == second; }
+};
 /// No hit of a path reflects but where reflection is total.
-inline constexpr int kNoGhost = -1;
+inline constexpr Ghost kNoGhost{};
 
 /// Where a path meets the surface, kept for its derivative.
 struct LensHit {
@@ -65,8 +72,7 @@ class LensTracer {
  public:
   LensTracer(const LensCurves& curves, const MediumView& medium) : curves_(curves), medium_(medium) {}
 
-  /// `ghost` >= 0: at that one of the hits where light may be refracted it is reflected instead.
-  void follow(const Vec3& origin, const Vec3& direction, int ghost, LensPath& path) const;
+  void follow(const Vec3& origin, const Vec3& direction, const Ghost& ghost, LensPath& path) const;
 
   /// Whether a ray begins within the medium: what it meets first it meets from within.
   bool begins_inside(const Vec3& origin, const Vec3& direction) const;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,11 @@
 namespace lucerna {
 
 namespace {
+
+/// Share of a target's light behind the lens below which none of it is fitted: it is what surfaces reflect
+/// by Fresnel's formulas, most of it. The error has no box there, and light that goes to and fro within a
+/// lens until it leaves behind makes steps short: its derivatives are a hundred times what a step changes.
+constexpr double kLittleBehind = 0.2;
 
 /// A lens alone: what else light could meet is refused before the time is spent.
 void check_alone(const TomlReader& root, const Scene& scene) {
@@ -226,15 +232,28 @@ LensProblem lens_problem(Project project, const std::filesystem::path& path) {
           static_cast<int>(restarts)};
 }
 
+double target_share_within(const LensProblem& problem, double gamma_rad) {
+  const Direction axis = problem.world_from_lens.direction(Direction());
+  double within = 0.0, all = 0.0;
+  for (const DirectedFlux& light : directed_flux(problem.target.distribution)) {
+    all += light.flux;
+    if (angle_between(light.direction, axis) <= gamma_rad) within += light.flux;
+  }
+  return within / all;
+}
+
 TentBins lens_window(const LensProblem& problem) {
   constexpr double kAligned = 1.0 - 1e-12;
   constexpr int kRingsOfBox = 2;
-  /// The window of a narrow beam is wide all the same, where there is light behind.
+  /// The window of a narrow beam is wide all the same, where there is much light behind.
   constexpr double kMostRings = 1024.0;
   const bool rotational = !problem.target.plane && problem.target.distribution.c_deg.size() == 1 &&
                           std::abs(problem.world_from_lens.ez().z) > kAligned;
   TentBins bins = target_bins(problem.target, problem.world_from_lens, rotational);
   if (!rotational) return bins;
+  constexpr double kHemisphere = 0.5 * std::numbers::pi;
+  if (bins.extent() > kHemisphere && target_share_within(problem, kHemisphere) > 1.0 - kLittleBehind)
+    bins = TentBins::rings(bins.axes(), kHemisphere, bins.count());
   const double box = target_rectangle(problem.target).width() / kErrorBoxes;
   const double rings = std::clamp(std::ceil(kRingsOfBox * bins.extent() / box), 48.0, kMostRings);
   return rebinned(bins, 1.0, static_cast<int>(rings));

@@ -55,8 +55,12 @@ bool is_finished_lens(const Project& project);
 /// lens_problem does.
 DesignTarget finished_lens_target(Project& project, const std::filesystem::path& path);
 
+/// Share of the light of a target in directions that is at most so far from the lens's axis.
+double target_share_within(const LensProblem& problem, double gamma_rad);
+
 /// The bins of the last stages: rings half as wide as the boxes of the error where the target turns about the
-/// lens's axis, else 48 x 48.
+/// lens's axis, else 48 x 48. Rings end at a right angle to the axis, as boxes do, where the target has
+/// little light behind.
 TentBins lens_window(const LensProblem& problem);
 
 /// What a design makes of a lens: another outline, or the given one with a free form as its free face.

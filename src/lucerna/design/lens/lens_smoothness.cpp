@@ -53,6 +53,17 @@ Eigen::MatrixXd lens_roughness(const LensShape& shape) {
   return out / (shape.radius_mm() * shape.radius_mm());
 }
 
+Eigen::MatrixXd lens_tilt(const LensShape& shape) {
+  const auto n = static_cast<Eigen::Index>(shape.parameter_count());
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, n);
+  for (const Eigen::MatrixXd& moves : free_moves(shape.form())) {
+    const Eigen::Index pieces = moves.rows() - 1;
+    const Eigen::MatrixXd first = moves.bottomRows(pieces) - moves.topRows(pieces);
+    out += first.transpose() * first;
+  }
+  return out;
+}
+
 LensShape perturbed_smoothly(const LensShape& shape, double size_mm, Rng rng) {
   constexpr double kSmaller = 0.8;
   const auto faces = free_moves(shape.form());

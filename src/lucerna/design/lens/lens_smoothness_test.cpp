@@ -51,6 +51,21 @@ TEST(LensSmoothness, RoughnessIsNeverNegativeAndSeesZigzags) {
   EXPECT_GT(roughness(one, zigzag), 100.0 * roughness(one, smooth));
 }
 
+// Corners within a face move along its normals: each is in two differences, the one on the axis in one.
+TEST(LensSmoothness, TiltIsTheSumOfSquaredDifferencesOfNeighbours) {
+  const LensShape shape = cap(12);
+  const Eigen::MatrixXd tilt = lens_tilt(shape);
+  const Eigen::Index n = tilt.rows();
+  ASSERT_EQ(n, static_cast<Eigen::Index>(shape.parameter_count()));
+  EXPECT_TRUE(tilt.isApprox(tilt.transpose()));
+  for (Eigen::Index i = 1; i < n - 1; ++i) {
+    EXPECT_NEAR(tilt(i, i), 2.0, 1e-9) << i;
+    EXPECT_NEAR(tilt(i, i + 1), -1.0, 1e-9) << i;
+  }
+  EXPECT_NEAR(tilt(n - 1, n - 1), 1.0, 1e-9);
+  EXPECT_TRUE(tilt.topRightCorner(n - 2, n - 2).triangularView<Eigen::Upper>().toDenseMatrix().isZero(1e-12));
+}
+
 TEST(LensSmoothness, FacesOfFewCornersHaveNone) {
   EXPECT_TRUE(lens_roughness(cap(2)).isZero(0.0));
   EXPECT_FALSE(lens_roughness(cap(3)).isZero(0.0));
