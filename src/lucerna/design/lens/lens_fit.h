@@ -43,9 +43,9 @@ using LensFitWatcher = std::function<bool(const FitRecord& step, const ShapedLen
 
 /// Shapes the lens by Levenberg-Marquardt on stages from coarse bins and few rays to fine ones and many
 /// (docs/theory/lens-design.md). The given lens, the zero-étendue ones and smoothly perturbed copies go
-/// through the coarse stages, the best of them on. Then the best is perturbed, until only noise is left or
-/// `max_failed_restarts` of these in a row gained nothing. Decisions depend on counts alone. `rays`: in the
-/// lens's frame; grows.
+/// through the coarse stages until one is at the noise, the best of them on. Then the best is perturbed,
+/// until only noise is left or `max_failed_restarts` of these in a row gained nothing. Decisions depend on
+/// counts alone. `rays`: in the lens's frame; grows.
 LensFitResult fit_lens(const LensProblem& problem, const LensFitOptions& options, DesignRays& rays,
                        const LensFitWatcher& watch);
 
