@@ -142,8 +142,7 @@ void hidden(const LensKind& kind, int count, double seconds, std::uint64_t table
     errors.push_back(again.excess);
     fmt::print(
         "{:3} error {:.3f} +- {:.3f} % (exact lens {:.3f} +- {:.3f} %), by the design {:.3f} +- {:.3f} % "
-        "(start "
-        "{:.2f} %), efficiency {:.4f}, {} evaluations, {:.0f} M rays, {:.1f} s, {}\n",
+        "(start {:.2f} %), efficiency {:.4f}, {} evaluations, {:.0f} M rays, {:.1f} s, {}\n",
         k, 100.0 * again.excess, 100.0 * again.standard_error, 100.0 * own.excess, 100.0 * own.standard_error,
         100.0 * e.excess, 100.0 * e.standard_error, 100.0 * start.excess, found.efficiency.mean,
         found.evaluations, 1e-6 * static_cast<double>(found.rays), took, to_string(found.end));

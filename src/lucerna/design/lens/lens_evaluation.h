@@ -31,7 +31,7 @@ inline constexpr double kEdgeShare = 0.02;
 
 /// Traces the first `options.rays` rays (in the lens's frame) through the lens into the bins, on the main way
 /// of each (`LensTracer`) with Fresnel's weight, and on the ways with one and two partial reflections; light
-/// of more, less than a thousandth, is counted as lost. Exact pathwise derivatives: hit point, normal,
+/// of more, less than a thousandth, is left out. Exact pathwise derivatives: hit point, normal,
 /// Snell's step, the weights and all later hits. Of the result, `reflected` is what leaves through the lens,
 /// `absorbed` what the medium keeps; `direct` light met no lens. The same bits for any number of threads.
 /// Thread safe.

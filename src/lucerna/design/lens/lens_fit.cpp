@@ -26,9 +26,6 @@ namespace {
 
 /// Longest way of a corner in one step, over the lens's radius.
 constexpr double kLongestCornerMove = 0.01;
-/// What changes of slopes and moves of corners count in the length of a step, over the mean of the Hessian's
-/// diagonal: smooth changes may be long while corners do not go zigzag.
-constexpr double kTiltInMetric = 0.02, kMoveInMetric = 2e-4;
 /// Size of the waves that make another start, and of those that perturb the best, over the radius.
 constexpr double kOtherStart = 0.03, kPerturbation = 0.004;
 /// Starts of the coarse stages; how many of them the next one takes on, and how much more squared error than
@@ -42,14 +39,6 @@ constexpr double kFarBehind = 100.0;
 /// A stage ends after two steps that gained less than this share each, or so many refused in a row.
 constexpr double kLittleGain = 0.02, kLittleCoarseGain = 0.05;
 constexpr int kMostRefused = 8, kMostSteps = 40, kMostCoarseSteps = 20;
-/// What light within each ring weighs in the first stage, and what the rings themselves weigh there.
-constexpr double kFirstCumulativeWeight = 100.0, kFirstRingsWeight = 0.01;
-/// What it weighs later: a caustic that is a ring off is no nearer to its place by the rings alone.
-constexpr double kCumulativeWeight = 3000.0;
-/// What lost light weighs in coarse stages after the first, for as much beside it as there; else many starts
-/// end with the right shape of half the light. Later it is kFitFluxWeight: an exact shape is what is wanted
-/// then.
-constexpr double kCoarseFluxWeight = kFitFluxWeight * kCumulativeWeight / kFirstCumulativeWeight;
 /// The last stages have so many times the rings, this many at most: boxes of the error cut a caustic in all
 /// places, and see what is finer than they are.
 constexpr int kFinerRings = 4, kMostFineRings = 2048;
@@ -60,15 +49,28 @@ constexpr double kRoughnessWeight = 8e-9;
 constexpr double kMaxWithin = 1e-3;
 constexpr std::uint64_t kWithinRays = 4096;
 /// The fit ends where the squared error is no more than so many times that of noise.
-constexpr double kMostOfNoise = 1.21;
+constexpr double kNoiseAtEnd = 1.21;
 /// A restart goes on to more rays only if this much of the best's squared error is left.
 constexpr double kBetter = 0.97;
+
+/// What the squared error in bins weighs in a stage, light within each ring (`add_cumulative_flux`), and lost
+/// light.
+struct StageWeights {
+  double bins = 1.0, cumulative = 0.0, flux = kFitFluxWeight;
+};
+/// In the first stage of rings cumulative light leads. It counts later too: a caustic that is a ring off is
+/// no nearer to its place by the rings alone. In coarse stages lost light weighs as much beside it as in the
+/// first, else many starts end with the right shape of less light; in fine ones an exact shape is what is
+/// wanted.
+constexpr StageWeights kFirstWeights{0.01, 100.0}, kCoarseWeights{1.0, 3000.0, 30.0 * kFitFluxWeight},
+    kFineWeights{1.0, 3000.0};
 
 struct LensStage {
   int bins;
   std::uint64_t rays;
-  /// Of coarse stages, which many starts go through; and the very first, where cumulative light leads alone.
-  bool is_coarse = false, is_first = false;
+  StageWeights weights;
+  /// Many starts go through it.
+  bool is_coarse = false;
 };
 
 struct LensPoint {
@@ -96,9 +98,7 @@ class LensStageObjective {
         target_(target.flux),
         flux_reference_(flux_reference),
         given_within_(given_within),
-        is_first_(stage.is_first),
-        flux_weight_(stage.is_coarse && !stage.is_first && bins_.is_rings() ? kCoarseFluxWeight
-                                                                            : kFitFluxWeight),
+        weights_(stage.weights),
         roughness_(kRoughnessWeight * lens_roughness(problem.start)) {
     rays.grow(stage.rays);
     options_.rays = stage.rays;
@@ -120,7 +120,7 @@ class LensStageObjective {
     out.equations.cost += lens_limits_cost(problem_.limits, shape, signs_, rows);
     rows.add_to(out.equations);
     if (problem_.target.mode == TargetMode::shape)
-      add_flux_term(out.light, flux_weight_, flux_reference_, out.equations);
+      add_flux_term(out.light, weights_.flux, flux_reference_, out.equations);
     return out;
   }
 
@@ -132,14 +132,11 @@ class LensStageObjective {
  private:
   NormalEquations equations(const Evaluation& light) const {
     NormalEquations out = normal_equations(light, target_, bins_, problem_.target.mode);
-    if (!bins_.is_rings()) return out;
-    if (is_first_) {
-      out.cost *= kFirstRingsWeight;
-      out.gradient *= kFirstRingsWeight;
-      out.hessian *= kFirstRingsWeight;
-    }
-    add_cumulative_flux(light, target_, problem_.target.mode,
-                        is_first_ ? kFirstCumulativeWeight : kCumulativeWeight, out);
+    out.cost *= weights_.bins;
+    out.gradient *= weights_.bins;
+    out.hessian *= weights_.bins;
+    if (weights_.cumulative > 0.0)
+      add_cumulative_flux(light, target_, problem_.target.mode, weights_.cumulative, out);
     return out;
   }
 
@@ -149,8 +146,7 @@ class LensStageObjective {
   const TentBins& bins_;
   const Eigen::VectorXd& target_;
   double flux_reference_, given_within_;
-  bool is_first_;
-  double flux_weight_;
+  StageWeights weights_;
   Eigen::MatrixXd roughness_;
   LensEvaluationOptions options_;
 };
@@ -214,18 +210,27 @@ class LensFit {
   struct Candidate {
     double cost;
     LensShape shape;
+    /// Needs no other beside it.
     bool is_enough = false;
+  };
+
+  /// How far a stage came.
+  struct StageEnd {
+    double cost = std::numeric_limits<double>::infinity();
+    double squared_error = cost, squared_noise = 0.0;
   };
 
   /// Coarse ones, one of middling size at which restarts are compared, and fine ones.
   static std::vector<LensStage> stages_of(const TentBins& window, int parameters, std::uint64_t max_rays) {
     const auto rays = [&](int log2) { return std::min(max_rays, std::uint64_t{1} << log2); };
-    if (!window.is_rings()) return {{24, rays(15), true}, {48, rays(17)}, {48, rays(20)}, {48, rays(22)}};
+    if (!window.is_rings())
+      return {{24, rays(15), {}, true}, {48, rays(17), {}}, {48, rays(20), {}}, {48, rays(22), {}}};
     const int least = parameters + 6;
-    const int fine = std::clamp(kFinerRings * window.count(), least, std::max(least, kMostFineRings));
     const int rings = std::max(window.count(), least), coarse = std::max(window.count() / 3, least);
-    return {{coarse, rays(14), true, true},        {coarse, rays(14), true}, {rings, rays(14), true},
-            {std::min(2 * rings, fine), rays(16)}, {fine, rays(18)},         {fine, rays(20)}};
+    const int finest = std::min(kFinerRings * rings, std::max(rings, kMostFineRings));
+    return {{coarse, rays(14), kFirstWeights, true}, {coarse, rays(14), kCoarseWeights, true},
+            {rings, rays(14), kCoarseWeights, true}, {std::min(2 * rings, finest), rays(16), kFineWeights},
+            {finest, rays(18), kFineWeights},        {finest, rays(20), kFineWeights}};
   }
 
   /// The given lens, those of a point source, and the given one perturbed.
@@ -269,7 +274,7 @@ class LensFit {
     const bool gained = end.cost < kBetter * fine_cost_;
     fine_cost_ = end.cost;
     result_.lens.outline = std::move(shape);
-    result_.at_noise = end.squared_error <= kMostOfNoise * end.squared_noise;
+    result_.at_noise = end.squared_error <= kNoiseAtEnd * end.squared_noise;
     return gained;
   }
 
@@ -306,12 +311,6 @@ class LensFit {
     const double size = kPerturbation * problem_.start.radius_mm() * (k % 3 == 2 ? 3.0 : 1.0);
     return perturbed_smoothly(shape, size, Rng(options_.seed ^ 0x4B49434Bull, static_cast<std::uint64_t>(k)));
   }
-
-  /// How far a stage came.
-  struct StageEnd {
-    double cost = std::numeric_limits<double>::infinity();
-    double squared_error = cost, squared_noise = 0.0;
-  };
 
   /// Takes `shape` through stages; returns the end of the last.
   StageEnd through(LensShape& shape, std::size_t first, std::size_t last) {
@@ -357,8 +356,9 @@ class LensFit {
     for (int step = 1, small = 0, refused = 0; step <= most && !stopped_; ++step) {
       const double before = now.equations.cost;
       const Eigen::VectorXd diagonal = now.equations.hessian.diagonal();
-      Eigen::MatrixXd metric = (kTiltInMetric * diagonal.mean()) * tilt_;
-      metric.diagonal().array() += kMoveInMetric * (diagonal.array() + 1e-2 * diagonal.mean() + 1e-300);
+      // As of free-form mirrors: smooth changes may be long while corners do not go zigzag.
+      Eigen::MatrixXd metric = (kTiltShare * diagonal.mean()) * tilt_;
+      metric.diagonal() += own_share(diagonal);
       const Eigen::VectorXd from = now.shape.parameters();
       const LevenbergMarquardtStep made = levenberg_marquardt_step(
           now, [&](double damping) { return damped_step(now.equations, metric, damping); }, lambda, longest,

@@ -72,6 +72,7 @@ class LensTracer {
  public:
   LensTracer(const LensCurves& curves, const MediumView& medium) : curves_(curves), medium_(medium) {}
 
+  /// The way of a ray to where it leaves or is lost. `path` is written anew.
   void follow(const Vec3& origin, const Vec3& direction, const Ghost& ghost, LensPath& path) const;
 
   /// Whether a ray begins within the medium: what it meets first it meets from within.

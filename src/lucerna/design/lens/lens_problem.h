@@ -55,7 +55,8 @@ bool is_finished_lens(const Project& project);
 /// lens_problem does.
 DesignTarget finished_lens_target(Project& project, const std::filesystem::path& path);
 
-/// Share of the light of a target in directions that is at most so far from the lens's axis.
+/// Share of the light of a target of directions that is at most so far from the lens's axis. Some
+/// milliseconds.
 double target_share_within(const LensProblem& problem, double gamma_rad);
 
 /// The bins of the last stages: rings half as wide as the boxes of the error where the target turns about the

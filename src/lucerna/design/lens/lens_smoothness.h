@@ -13,8 +13,9 @@ namespace lucerna {
 /// corners that lie before; summed over faces. Faces of fewer than four corners have none.
 Eigen::MatrixXd lens_roughness(const LensShape& shape);
 
-/// How much slopes change from corner to corner, as p^T T p: the sum of the squared differences between
-/// neighbouring corners of how far they move along the normals of their face to begin with.
+/// How much the sides of free faces have turned, as p^T T p of the parameters p: the sum of the squared
+/// differences between neighbouring corners of how far they have moved along the normals of the face to begin
+/// with, in mm^2.
 Eigen::MatrixXd lens_tilt(const LensShape& shape);
 
 /// The lens with each free face moved along its normals by a sum of cosine waves of up to `size_mm` each, the

@@ -13,9 +13,8 @@ namespace lucerna {
 
 namespace {
 
-/// Of a free form's step, what tilts and heights count in `step_metric`, over the mean of the Hessian's
-/// diagonal: small, so that the first damping of a stage suits both families.
-constexpr double kTiltShare = 0.02, kHeightShare = 2e-4;
+/// What heights count in `step_metric` beside kTiltShare.
+constexpr double kHeightShare = 2e-4;
 
 }  // namespace
 

@@ -49,6 +49,9 @@ Eigen::VectorXd damped_step(const NormalEquations& equations, const Eigen::Matri
 /// creases stay small. Of revolution D is the diagonal, as above.
 Eigen::MatrixXd step_metric(const DesignShape& shape, const NormalEquations& equations);
 
+/// What the squared difference of two neighbours counts in that metric, over the mean of the Hessian's
+/// diagonal. Small, so that the first damping of a stage suits free forms and revolution.
+inline constexpr double kTiltShare = 0.02;
 /// What the two parts of that metric count: share(a, b) for each pair of neighbouring coefficients of a free
 /// form, over the mean of the Hessian's diagonal; and each parameter's own square.
 void for_each_tilt(const BsplineShape& spline, const std::function<void(int a, int b, double share)>& share);
