@@ -189,7 +189,7 @@ void print(const char* what, const DesignedMirror& found) {
   const auto& peak = found.light.far_fields.front().metrics.peak;
   if (peak) fmt::print("peak {:.0f} +- {:.0f} cd\n", peak->cd.mean, peak->cd.standard_error);
   for (const LimitCheck& c : found.limits)
-    fmt::print("limit {}: {:.4g} found, {:.4g} allowed, {}\n", c.limit, c.found, c.allowed,
+    fmt::print("limit {}: {:.4g} found, {:.4g} allowed, {}\n", c.limit, c.found.mean, c.allowed,
                c.held ? "held" : "NOT HELD");
 }
 

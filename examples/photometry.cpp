@@ -23,8 +23,8 @@ int main(int argc, char** argv) {
     lucerna::write_photometric_file(argv[2], dimmed, lucerna::PhotometricFormat::ies_2019);
     const auto difference =
         lucerna::compare_distributions(file.distribution, dimmed.distribution);
-    std::printf("flux ratio %.3f, shape moved by %.3f degrees\n", difference.flux_ratio,
-                difference.wasserstein_deg);
+    std::printf("flux ratio %.3f, shape moved by %.3f degrees\n", difference.flux_ratio.mean,
+                difference.wasserstein_deg.mean);
   } catch (const lucerna::Error& e) {
     std::fprintf(stderr, "%s\n", e.what());
     return 1;

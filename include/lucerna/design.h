@@ -114,7 +114,9 @@ struct LimitCheck {
   /// The key of [design.limits], or which keep-out zone or body.
   std::string limit;
   /// In the unit of the limit.
-  double allowed = 0.0, found = 0.0;
+  double allowed = 0.0;
+  /// In the same unit: of light with its standard error, of the form exactly.
+  Estimate found;
   /// True if what was found is allowed.
   bool held = true;
 };
@@ -164,8 +166,8 @@ struct ToleranceSpread {
   std::string figure;
   /// Of the design itself, and the mean over the cases.
   Estimate nominal, mean;
-  /// Over the cases.
-  double standard_deviation = 0.0;
+  /// Over the cases; its error is that of drawing so few of them.
+  Estimate standard_deviation;
   /// The extreme cases.
   Estimate min, max;
 };

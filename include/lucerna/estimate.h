@@ -29,5 +29,8 @@ inline constexpr double kIntervalErrors = 2.131;
 /// appended after a blank unless it is empty.
 std::string estimate_text(const Estimate& estimate, std::string_view unit = {});
 
+/// The same of a share in percent: 0.8341 with an error of 0.0012 is "83.41 +- 0.12 %".
+std::string share_text(const Estimate& share);
+
 }  // namespace lucerna
 #pragma GCC visibility pop

@@ -10,7 +10,7 @@ namespace lucerna {
 std::string_view version();
 
 /// Version of the layout of every JSON result; grows when a key changes its meaning or goes.
-inline constexpr int kJsonSchemaVersion = 4;
+inline constexpr int kJsonSchemaVersion = 5;
 
 }  // namespace lucerna
 #pragma GCC visibility pop

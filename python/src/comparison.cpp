@@ -72,14 +72,14 @@ py::object distributions_record(const DistributionComparison& d, bool with_error
   const auto add = [&](const char* name, const Estimate& e) {
     out[name] = with_errors ? estimate(e) : py::object(py::float_(e.mean));
   };
-  add("relative_rms", d.rms());
-  add("bergen_fit", d.bergen());
-  add("flux_ratio", d.flux());
-  add("peak_ratio", d.peak());
-  add("wasserstein_deg", d.wasserstein());
-  add("overlap", d.overlapping());
+  add("relative_rms", d.relative_rms);
+  add("bergen_fit", d.bergen_fit);
+  add("flux_ratio", d.flux_ratio);
+  add("peak_ratio", d.peak_ratio);
+  add("wasserstein_deg", d.wasserstein_deg);
+  add("overlap", d.overlap);
   out["noise_floor"] = d.noise_floor;
-  out["excess"] = d.excess;
+  add("excess", d.excess);
   return record(out);
 }
 

@@ -82,7 +82,7 @@ py::object limit_record(const LimitCheck& limit) {
   py::dict out;
   out["limit"] = limit.limit;
   out["allowed"] = limit.allowed;
-  out["found"] = limit.found;
+  out["found"] = estimate(limit.found);
   out["held"] = limit.held;
   return record(out);
 }
@@ -140,7 +140,7 @@ py::object spread_record(const ToleranceSpread& s) {
   out["figure"] = s.figure;
   out["nominal"] = estimate(s.nominal);
   out["mean"] = estimate(s.mean);
-  out["standard_deviation"] = s.standard_deviation;
+  out["standard_deviation"] = estimate(s.standard_deviation);
   out["min"] = estimate(s.min);
   out["max"] = estimate(s.max);
   return record(out);

@@ -93,7 +93,7 @@ def test_a_design_goes_on_to_the_same_bits(found, tmp_path):
 def test_limits_target_and_keys_replace_those_of_the_scene():
     found = lu.design(lamp(), target=spot(15), limits=dict(max_height_mm=25), max_rays=16384, time_s=2, restarts=0)
     (limit,) = found.limits
-    assert limit.limit == "max_height_mm" and limit.held and limit.found <= 25.01
+    assert limit.limit == "max_height_mm" and limit.held and limit.found.value <= 25.01
     assert found.scene.tables["design"]["limits"] == {"max_height_mm": 25}
     with pytest.raises(lu.InputError, match="max_height") as caught:
         lu.design(lamp(), limits=dict(max_hight_mm=25))

@@ -24,49 +24,47 @@ void print_comparison(const DesignError& boxes, const DistributionComparison& c,
       std::isnan(boxes.c48.standard_error) ? ""
                                            : fmt::format(" +- {:.2g} %", 100.0 * boxes.c48.standard_error),
       100.0 * boxes.c24.excess, 100.0 * boxes.c12.excess));
-  const auto percent = [](const Estimate& e) {
-    return estimate_text({100.0 * e.mean, 100.0 * e.standard_error}, "%");
-  };
   const std::string noise =
       c.noise_floor > 0.0
-          ? fmt::format("noise floor {:.4g} %, excess {:.4g} %", 100.0 * c.noise_floor, 100.0 * c.excess)
+          ? fmt::format("noise floor {:.4g} %, excess {}", 100.0 * c.noise_floor, share_text(c.excess))
           : std::string("intensities as they are; the files state no noise");
-  session.print_line(fmt::format("  relative RMS        {} ({})", percent(c.rms()), noise));
+  session.print_line(fmt::format("  relative RMS        {} ({})", share_text(c.relative_rms), noise));
   session.print_line(fmt::format("  Bergen fit          {} (100 = equal; by solid angle), {} unweighted",
-                                 estimate_text(c.bergen()), estimate_text(c.bergen_unweighted())));
+                                 estimate_text(c.bergen_fit), estimate_text(c.bergen_fit_unweighted)));
+  session.print_line(fmt::format("  flux, peak          {}, {} times", estimate_text(c.flux_ratio),
+                                 estimate_text(c.peak_ratio)));
+  session.print_line(fmt::format("  Wasserstein-1       {}", estimate_text(c.wasserstein_deg, "deg")));
   session.print_line(
-      fmt::format("  flux, peak          {}, {} times", estimate_text(c.flux()), estimate_text(c.peak())));
-  session.print_line(fmt::format("  Wasserstein-1       {}", estimate_text(c.wasserstein(), "deg")));
-  session.print_line(
-      fmt::format("  overlap             {} of the flux in the right place", percent(c.overlapping())));
+      fmt::format("  overlap             {} of the flux in the right place", share_text(c.overlap)));
   if (c.alignment) {
-    session.print_line(fmt::format(
-        "  best alignment      tilt {:.3g} deg toward C {:.0f}, turn {:.3g} deg; then relative RMS {:.4g} %",
-        c.alignment->tilt_deg, c.alignment->tilt_toward_c_deg, c.alignment->turn_deg,
-        100.0 * c.alignment->relative_rms));
+    const Alignment& a = *c.alignment;
+    session.print_line(
+        fmt::format("  best alignment      tilt {} toward C {:.0f}, turn {}; then relative RMS {}",
+                    estimate_text(a.tilt_deg, "deg"), a.tilt_toward_c_deg.mean,
+                    estimate_text(a.turn_deg, "deg"), share_text(a.relative_rms)));
   }
 }
 
 Json light_json(const LightFileComparison& light) {
   const DistributionComparison& c = light.distributions;
   Json json;
-  json["relative_rms"] = estimate_json(c.rms());
-  json["bergen_fit"] = estimate_json(c.bergen());
-  json["bergen_fit_unweighted"] = estimate_json(c.bergen_unweighted());
-  json["flux_ratio"] = estimate_json(c.flux());
-  json["peak_ratio"] = estimate_json(c.peak());
-  json["wasserstein_deg"] = estimate_json(c.wasserstein());
-  json["overlap"] = estimate_json(c.overlapping());
+  json["relative_rms"] = estimate_json(c.relative_rms);
+  json["bergen_fit"] = estimate_json(c.bergen_fit);
+  json["bergen_fit_unweighted"] = estimate_json(c.bergen_fit_unweighted);
+  json["flux_ratio"] = estimate_json(c.flux_ratio);
+  json["peak_ratio"] = estimate_json(c.peak_ratio);
+  json["wasserstein_deg"] = estimate_json(c.wasserstein_deg);
+  json["overlap"] = estimate_json(c.overlap);
   json["floor"] = c.noise_floor;
-  json["excess"] = c.excess;
+  json["excess"] = estimate_json(c.excess);
   json["error"] = error_json(light.boxes);
   json["outside"] = outside_json(light.boxes);
   json["worst_cell"] = estimate_json(light.boxes.worst_cell);
   if (c.alignment) {
-    json["alignment"] = {{"tilt_deg", c.alignment->tilt_deg},
-                         {"tilt_toward_c_deg", c.alignment->tilt_toward_c_deg},
-                         {"turn_deg", c.alignment->turn_deg},
-                         {"relative_rms", c.alignment->relative_rms}};
+    json["alignment"] = {{"tilt_deg", estimate_json(c.alignment->tilt_deg)},
+                         {"tilt_toward_c_deg", estimate_json(c.alignment->tilt_toward_c_deg)},
+                         {"turn_deg", estimate_json(c.alignment->turn_deg)},
+                         {"relative_rms", estimate_json(c.alignment->relative_rms)}};
   }
   return json;
 }

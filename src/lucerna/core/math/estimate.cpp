@@ -45,4 +45,8 @@ std::string estimate_text(const Estimate& e, std::string_view unit) {
                      tail);
 }
 
+std::string share_text(const Estimate& e) {
+  return estimate_text({100.0 * e.mean, 100.0 * e.standard_error}, "%");
+}
+
 }  // namespace lucerna

@@ -63,18 +63,14 @@ double LightLimits::cost(const DesignShape& shape, const DesignRays& rays, std::
   return cost;
 }
 
-LightLimits::Measured LightLimits::measure(const DesignShape& shape, const DesignRays& rays,
-                                           std::uint64_t n) const {
-  Measured out;
-  const TentBins bins = zone_ ? *zone_ : TentBins::rings(Frame(), std::numbers::pi, 2);
-  const Evaluation e = trace(shape, rays, n, bins, false);
-  out.efficiency = e.reflected + e.direct;
-  if (!zone_) return out;
+Estimate LightLimits::glare_per_flux(const DesignShape& shape, const DesignRays& rays) const {
+  const Evaluation e = trace(shape, rays, rays.size(), zone_.value(), false);
+  Estimate max;
   for (Eigen::Index b = 0; b < e.flux.size(); ++b) {
-    out.glare_per_flux =
-        std::max(out.glare_per_flux, e.flux[b] / zone_->measure()[static_cast<std::size_t>(b)]);
+    const double measure = zone_->measure()[static_cast<std::size_t>(b)];
+    if (e.flux[b] / measure >= max.mean) max = {e.flux[b] / measure, std::sqrt(e.variance[b]) / measure};
   }
-  return out;
+  return max;
 }
 
 void LightLimits::check(const DesignShape& start, const DesignRays& rays) const {

@@ -3,6 +3,7 @@
 
 #include "lucerna/design/problem/design_limits.h"
 #include "lucerna/design/solver/residual_rows.h"
+#include "lucerna/estimate.h"
 
 namespace lucerna {
 
@@ -20,14 +21,9 @@ class LightLimits {
   /// `equations` unless null. Cost: one evaluation for each of the two.
   double cost(const DesignShape& shape, const DesignRays& rays, std::uint64_t n, ResidualRows* rows) const;
 
-  /// What a shape's light is like.
-  struct Measured {
-    /// Largest mean over a cell beyond the glare angle, per unit of the sources' flux; 0 without such a
-    /// limit.
-    double glare_per_flux = 0.0;
-    double efficiency = 0.0;
-  };
-  Measured measure(const DesignShape& shape, const DesignRays& rays, std::uint64_t n) const;
+  /// Largest mean over a cell beyond the glare angle, per unit of the sources' flux, with the error of that
+  /// cell. There is such a limit.
+  Estimate glare_per_flux(const DesignShape& shape, const DesignRays& rays) const;
 
   /// Throws InputError where min_efficiency and the reflectance contradict each other: where the light that
   /// must meet a mirror over this aperture, be it shaped as it may, already loses more. That light: within 45

@@ -169,10 +169,10 @@ std::vector<LimitCheck> check_limits(const Mesh& mirror, const DesignLimits& lim
   const Figures f = figures(mirror);
   std::vector<LimitCheck> out;
   const auto max = [&](const char* name, const std::optional<double>& allowed, double found, double within) {
-    if (allowed) out.push_back({name, *allowed, found, found <= *allowed + within});
+    if (allowed) out.push_back({name, *allowed, {found, 0.0}, found <= *allowed + within});
   };
   const auto min = [&](const char* name, const std::optional<double>& allowed, double found, double within) {
-    if (allowed) out.push_back({name, *allowed, found, found >= *allowed - within});
+    if (allowed) out.push_back({name, *allowed, {found, 0.0}, found >= *allowed - within});
   };
   max("max_diameter_mm", limits.max_diameter_mm, 2.0 * f.widest, 1e-4);
   min("min_opening_mm", limits.min_opening_mm, 2.0 * std::min(f.half_x, f.half_y), 2.0 * chord_mm);
@@ -185,7 +185,9 @@ std::vector<LimitCheck> check_limits(const Mesh& mirror, const DesignLimits& lim
   }
   for (const KeepOut& zone : limits.keep_out) {
     const double distance = distance_to(mirror, zone);
-    out.push_back({zone.name, zone.clearance_mm, distance,
+    out.push_back({zone.name,
+                   zone.clearance_mm,
+                   {distance, 0.0},
                    distance > 0.0 && distance >= zone.clearance_mm - 2.0 * chord_mm});
   }
   return out;
@@ -198,13 +200,13 @@ std::string binding_limits(const std::vector<LimitCheck>& checks) {
     if (key == "max_diameter_mm" || key == "min_opening_mm" || key == "min_hole_diameter_mm") continue;
     const bool zone = key == "body" || key.rfind("keep_out", 0) == 0;
     const double near = zone ? 0.2 : 0.05 * std::abs(c.allowed);
-    if (std::abs(c.found - c.allowed) > near && c.held) continue;
+    if (std::abs(c.found.mean - c.allowed) > near && c.held) continue;
     const char* what = key == "min_efficiency"          ? "efficiency"
                        : key == "glare"                 ? "glare"
                        : key == "max_height_mm" || zone ? "envelope"
                                                         : "tooling";
-    names += fmt::format("{}{} ({}: {:.4g} found, {:.4g} allowed)", names.empty() ? "" : ", ", what, c.limit,
-                         c.found, c.allowed);
+    names += fmt::format("{}{} ({}: {} found, {:.4g} allowed)", names.empty() ? "" : ", ", what, c.limit,
+                         estimate_text(c.found), c.allowed);
   }
   return names.empty() ? names : "what limits this design is set: " + names;
 }

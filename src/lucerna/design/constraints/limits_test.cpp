@@ -103,7 +103,7 @@ TEST(ShapeLimits, TheNearestShapeHoldsThemInItsExportedMesh) {
       CadTolerance tolerance;
       const Mesh mesh = cad_mesh_within(held.reflector(), tolerance);
       for (const LimitCheck& c : check_limits(mesh, limits, tolerance.chord_mm, tolerance.slope_deg)) {
-        EXPECT_TRUE(c.held) << c.limit << ": " << c.found << " of " << c.allowed;
+        EXPECT_TRUE(c.held) << c.limit << ": " << c.found.mean << " of " << c.allowed;
       }
       // A shape that holds them is left as it is.
       EXPECT_EQ(form.nearest(held).parameters(), held.parameters());
@@ -118,7 +118,7 @@ TEST(ShapeLimits, TheMeshTellsWhenALimitIsBroken) {
   for (const DesignLimits& limits : breakable()) {
     const bool held = ShapeLimits(limits, shape).held(shape);
     for (const LimitCheck& c : check_limits(mesh, limits, tolerance.chord_mm, tolerance.slope_deg)) {
-      EXPECT_EQ(c.held, held) << c.limit << ": " << c.found << " of " << c.allowed;
+      EXPECT_EQ(c.held, held) << c.limit << ": " << c.found.mean << " of " << c.allowed;
     }
   }
   DesignLimits sizes;
@@ -128,7 +128,7 @@ TEST(ShapeLimits, TheMeshTellsWhenALimitIsBroken) {
   const auto found = check_limits(mesh, sizes, tolerance.chord_mm, tolerance.slope_deg);
   ASSERT_EQ(found.size(), 3u);
   for (const LimitCheck& c : found) EXPECT_FALSE(c.held) << c.limit;
-  EXPECT_NEAR(found[0].found, 80.0, 1e-6);
+  EXPECT_NEAR(found[0].found.mean, 80.0, 1e-6);
 }
 
 TEST(ShapeLimits, ASphereHasItsRadius) {
@@ -138,7 +138,7 @@ TEST(ShapeLimits, ASphereHasItsRadius) {
   limits.min_radius_mm = 39.0;
   EXPECT_TRUE(ShapeLimits(limits, shape).held(shape));
   const auto mesh = check_limits(cad_mesh(shape.reflector()), limits, 0.01, 2.0);
-  EXPECT_NEAR(mesh.at(0).found, 40.0, 4.0);
+  EXPECT_NEAR(mesh.at(0).found.mean, 40.0, 4.0);
   limits.min_radius_mm = 41.0;
   EXPECT_FALSE(ShapeLimits(limits, shape).held(shape));
 }

@@ -146,11 +146,11 @@ TEST(FreeFace, LimitsAreThoseOfTheWholeLens) {
   const auto checks = check_face_limits(limits, seat, face);
   ASSERT_EQ(checks.size(), 4u);
   EXPECT_TRUE(checks[0].held);
-  EXPECT_NEAR(checks[0].found, 18.0, 1e-9);
+  EXPECT_NEAR(checks[0].found.mean, 18.0, 1e-9);
   EXPECT_FALSE(checks[1].held);
-  EXPECT_NEAR(checks[1].found, 6.6, 0.01);
+  EXPECT_NEAR(checks[1].found.mean, 6.6, 0.01);
   EXPECT_FALSE(checks[2].held);
-  EXPECT_NEAR(checks[2].found, 2.0, 0.01) << "at the rim";
+  EXPECT_NEAR(checks[2].found.mean, 2.0, 0.01) << "at the rim";
   EXPECT_TRUE(checks[3].held);
 
   const ShapeLimits cost = face_limits(limits, seat, face, kFitRings);
@@ -280,7 +280,7 @@ TEST(FreeFaceDesign, ComesNearerToAnOvalBeamWithinItsLimits) {
   EXPECT_EQ(found.lens.face->intervals_x(), 12) << "fixed by the project";
   EXPECT_LT(found.error.c12.excess, 0.5 * found.start_error.c12.excess);
   ASSERT_EQ(found.limits.size(), 2u);
-  for (const LimitCheck& c : found.limits) EXPECT_TRUE(c.held) << c.limit << ' ' << c.found;
+  for (const LimitCheck& c : found.limits) EXPECT_TRUE(c.held) << c.limit << ' ' << c.found.mean;
   EXPECT_NEAR(found.efficiency.mean + found.bodies.mean + found.lost.mean, 1.0, 1e-9);
 }
 

@@ -93,8 +93,8 @@ void add_lens_remarks(LensResult& result) {
   }
   for (const LimitCheck& c : result.limits) {
     if (c.held) continue;
-    result.remarks.push_back(
-        fmt::format("limit {} is not held: {:.4g} found, {:.4g} allowed", c.limit, c.found, c.allowed));
+    result.remarks.push_back(fmt::format("limit {} is not held: {} found, {:.4g} allowed", c.limit,
+                                         estimate_text(c.found), c.allowed));
   }
 }
 

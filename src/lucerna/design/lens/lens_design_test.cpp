@@ -112,7 +112,7 @@ TEST(LensDesign, KeepsItsLimits) {
   const LensProblem problem = problem_of("[design.limits]\nmax_height_mm = 6.65\nmin_thickness_mm = 1.8\n");
   const LensResult found = design_lens(problem, quick());
   ASSERT_EQ(found.limits.size(), 2u);
-  for (const LimitCheck& c : found.limits) EXPECT_TRUE(c.held) << c.limit << ' ' << c.found;
+  for (const LimitCheck& c : found.limits) EXPECT_TRUE(c.held) << c.limit << ' ' << c.found.mean;
 }
 
 // The light of the exact lens as its target: what the evaluation sees there is what the tracer saw.

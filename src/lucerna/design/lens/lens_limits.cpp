@@ -172,11 +172,11 @@ double lens_limits_cost(const LensLimits& limits, const LensShape& shape, const 
 }
 
 LimitCheck at_most(const char* limit, double allowed, double found) {
-  return {limit, allowed, found, found <= allowed * (1.0 + kRounding)};
+  return {limit, allowed, {found, 0.0}, found <= allowed * (1.0 + kRounding)};
 }
 
 LimitCheck at_least(const char* limit, double allowed, double found) {
-  return {limit, allowed, found, found >= allowed * (1.0 - kRounding)};
+  return {limit, allowed, {found, 0.0}, found >= allowed * (1.0 - kRounding)};
 }
 
 std::vector<LimitCheck> check_lens_limits(const LensLimits& limits, const LensShape& shape,

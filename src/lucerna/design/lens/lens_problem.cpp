@@ -110,7 +110,7 @@ void check_free_face(const LensShape& lens, int intervals, const LensLimits& lim
   for (const LimitCheck& check : check_face_limits(limits, seat, held.value_or(face))) {
     if (!check.held)
       broken += fmt::format("{}{} = {} ({:.4g} found)", broken.empty() ? "" : ", ", check.limit,
-                            check.allowed, check.found);
+                            check.allowed, check.found.mean);
   }
   if (!held || !broken.empty())
     throw InputError("no face over this base was found that holds [design.limits]: " + broken,

@@ -26,9 +26,9 @@ constexpr double kStartShare = 0.05;
 /// Of the mesh where few rays are traced: a finer one would cost more than the rays.
 constexpr CadTolerance kCoarseMesh{.chord_mm = 0.01, .slope_deg = 0.5};
 
-/// All limits that are set, against the exported mesh and fresh light.
+/// All limits that are set, against the exported mesh and fresh light, of which `efficiency` leaves.
 std::vector<LimitCheck> checked_limits(const DesignProblem& problem, const DesignShape& shape,
-                                       const DesignRays& rays, std::uint64_t n) {
+                                       const DesignRays& rays, const Estimate& efficiency) {
   std::vector<LimitCheck> out;
   const DesignLimits& limits = problem.limits;
   if (limits.any_on_form()) {
@@ -36,16 +36,15 @@ std::vector<LimitCheck> checked_limits(const DesignProblem& problem, const Desig
     const Mesh mesh = cad_mesh_within(shape.reflector(), tolerance);
     out = check_limits(mesh, limits, tolerance.chord_mm, tolerance.slope_deg);
   }
-  const LightLimits light(limits, problem.reflectance);
-  if (light.empty()) return out;
-  const LightLimits::Measured found = light.measure(shape, rays, n);
   if (limits.glare) {
-    const double max = limits.glare->max_per_flux * rays.flux(), has = found.glare_per_flux * rays.flux();
-    out.push_back({"glare " + limits.glare->text, max, has, has <= max});
+    const Estimate per_flux = LightLimits(limits, problem.reflectance).glare_per_flux(shape, rays);
+    const double max = limits.glare->max_per_flux * rays.flux();
+    const Estimate has{per_flux.mean * rays.flux(), per_flux.standard_error * rays.flux()};
+    out.push_back({"glare " + limits.glare->text, max, has, has.mean <= max});
   }
   if (limits.min_efficiency) {
-    out.push_back({"min_efficiency", *limits.min_efficiency, found.efficiency,
-                   found.efficiency >= *limits.min_efficiency});
+    out.push_back(
+        {"min_efficiency", *limits.min_efficiency, efficiency, efficiency.mean >= *limits.min_efficiency});
   }
   return out;
 }
@@ -85,8 +84,8 @@ void add_remarks(const DesignProblem& problem, DesignResult& result) {
   }
   for (const LimitCheck& c : result.limits) {
     if (c.held) continue;
-    result.remarks.push_back(
-        fmt::format("limit {} is not held: {:.4g} found, {:.4g} allowed", c.limit, c.found, c.allowed));
+    result.remarks.push_back(fmt::format("limit {} is not held: {} found, {:.4g} allowed", c.limit,
+                                         estimate_text(c.found), c.allowed));
   }
 }
 
@@ -153,10 +152,12 @@ void ResultCheck::fill(const FitProblem& fit, std::uint64_t max_rays, double max
     result.shape = problem_.start;
     set_error(max_rays, max_s, result, progress);
   }
-  result.limits = checked_limits(problem_, result.shape, rays_, rays_.size());
+  result.limits = checked_limits(problem_, result.shape, rays_, result.efficiency);
   const double behind = share_behind(result.shape, rays_), given = share_behind(problem_.start, rays_);
   if (behind > given + kMaxBehind) {
-    result.limits.push_back({"source in front of the mirror (share behind it)", given, behind, false});
+    const double error = std::sqrt(behind * (1.0 - behind) / static_cast<double>(rays_.size()));
+    result.limits.push_back(
+        {"source in front of the mirror (share behind it)", given, {behind, error}, false});
   }
   if (!problem_.target.zones_only) {
     const EtendueLimit limit = etendue_limit(rays_, etendue_, problem_.start, fit.bins, fit.target(fit.bins),

@@ -70,8 +70,10 @@ ToleranceSpread spread_of(const std::string& name, const ToleranceSweep& sweep, 
   }
   // Of the same rays: the errors go together, and their mean is that of the mean.
   s.mean = {sum / n, errors / n};
-  s.standard_deviation =
+  // Of n normal values a standard deviation is known to one part in sqrt(2 n - 2).
+  const double deviation =
       n > 1 ? std::sqrt(std::max(0.0, (squares - n * s.mean.mean * s.mean.mean) / (n - 1))) : 0.0;
+  s.standard_deviation = {deviation, n > 1 ? deviation / std::sqrt(2.0 * (n - 1)) : unknown};
   return s;
 }
 

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <optional>
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/parallel/parallel.h"
@@ -176,6 +178,9 @@ std::pair<Vec3, double> minimise(F&& f, const Vec3& start, double size, int eval
   return {simplex[0].second, simplex[0].first};
 }
 
+/// Cells that a rotation is looked for with.
+constexpr std::size_t kAlignedCells = 12000;
+
 /// Only cells that matter: those that hold the reference's or the test's light, at most `limit` of them.
 Common thinned(const Common& common, std::size_t limit) {
   if (common.a.size() <= limit) return common;
@@ -190,32 +195,44 @@ Common thinned(const Common& common, std::size_t limit) {
   return result;
 }
 
-Alignment aligned(const Common& common, const IntensityDistribution& test) {
-  const Common few = thinned(common, 12000);
+/// How a rotation is looked for: a first step, and so many evaluations at most.
+struct Search {
+  double step_deg;
+  int evaluations;
+};
+/// Of distributions as they are given; and near where that ended, of copies of them with other noise.
+constexpr Search kWholeSearch{2.0, 160}, kNearSearch{0.5, 60};
+
+/// The rotation that fits best from `start` on, and what it leaves of `common`: no rotation where none helps.
+struct Turn {
+  Vec3 rotation;
+  double rms = 0.0;
+};
+
+Turn best_turn(const Common& common, const IntensityDistribution& test, const Vec3& start,
+               const Search& search) {
+  const Common few = thinned(common, kAlignedCells);
   const auto f = [&](const Vec3& rotation) { return rotated_rms(few, test, rotation); };
-  // Quarter turns first: the two conventions for C0 differ by one.
+  auto [rotation, rms] = minimise(f, start, radians(search.step_deg), search.evaluations);
+  if (rms > f(start)) rotation = start;
+  const double last = rotated_rms(common, test, rotation), none = rotated_rms(common, test, {});
+  return none <= last ? Turn{{}, none} : Turn{rotation, last};
+}
+
+/// Quarter turns first: the two conventions for C0 differ by one.
+Turn best_turn(const Common& common, const IntensityDistribution& test) {
+  const Common few = thinned(common, kAlignedCells);
   Vec3 start;
-  double best = f(start);
+  double best = rotated_rms(few, test, start);
   for (const double turn : {90.0, 180.0, -90.0}) {
     const Vec3 rotation{0.0, 0.0, radians(turn)};
-    const double rms = f(rotation);
+    const double rms = rotated_rms(few, test, rotation);
     if (rms < 0.98 * best) {
       best = rms;
       start = rotation;
     }
   }
-  auto [rotation, rms] = minimise(f, start, radians(2.0), 160);
-  if (rms > best) rotation = start;
-  const double last = rotated_rms(common, test, rotation), none = rotated_rms(common, test, {});
-  Alignment result;
-  if (none <= last) rotation = {};
-  result.relative_rms = std::min(none, last);
-  const Direction nadir = rotated_by(Direction::from_unit({0.0, 0.0, -1.0}), rotation);
-  const TypeCAngles to = type_c_angles(nadir);
-  result.tilt_deg = degrees(to.gamma_rad);
-  result.tilt_toward_c_deg = result.tilt_deg > 0.0 ? degrees(to.c_rad) : 0.0;
-  result.turn_deg = degrees(rotation.z);
-  return result;
+  return best_turn(common, test, start, kWholeSearch);
 }
 
 void check_comparable(const IntensityDistribution& reference, const IntensityDistribution& test) {
@@ -240,22 +257,24 @@ namespace {
 /// Copies of which the scatter is taken.
 constexpr std::size_t kCopies = 8;
 
-/// All figures but those of noise and alignment.
-DistributionComparison compared(const Common& common, const IntensityDistribution& reference,
-                                const IntensityDistribution& test) {
+/// The figures of one pair of distributions, without errors.
+struct Figures {
+  double relative_rms, bergen_fit, bergen_fit_unweighted, flux_ratio, peak_ratio, wasserstein_deg, overlap;
+};
+
+Figures figures_of(const Common& common, const IntensityDistribution& reference,
+                   const IntensityDistribution& test) {
   const CommonSums weighted = sums_of(common, true), plain = sums_of(common, false);
-  DistributionComparison result;
-  result.relative_rms = weighted.rms();
-  result.bergen_fit = 100.0 * (1.0 - std::sqrt(weighted.difference / weighted.both));
-  result.bergen_fit_unweighted = 100.0 * (1.0 - std::sqrt(plain.difference / plain.both));
-  result.flux_ratio = total_flux(test) / total_flux(reference);
-  result.peak_ratio = peak_intensity(test).cd / peak_intensity(reference).cd;
   const std::vector<double> a = shares(common.a, common.weight_sr), b = shares(common.b, common.weight_sr);
-  result.wasserstein_deg = wasserstein_of(common, a, b);
   double apart = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) apart += std::abs(a[i] - b[i]);
-  result.overlap = 1.0 - 0.5 * apart;
-  return result;
+  return {weighted.rms(),
+          100.0 * (1.0 - std::sqrt(weighted.difference / weighted.both)),
+          100.0 * (1.0 - std::sqrt(plain.difference / plain.both)),
+          total_flux(test) / total_flux(reference),
+          peak_intensity(test).cd / peak_intensity(reference).cd,
+          wasserstein_of(common, a, b),
+          1.0 - 0.5 * apart};
 }
 
 /// The values moved by their errors, evenly distributed with that standard deviation; none below 0.
@@ -269,27 +288,64 @@ IntensityDistribution moved(const IntensityDistribution& d, std::span<const doub
   return out;
 }
 
-ComparisonErrors errors_of(const IntensityDistribution& reference, const IntensityDistribution& test,
-                           const CompareOptions& options) {
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  if (options.reference_error_cd.empty() && options.test_error_cd.empty())
-    return {unknown, unknown, unknown, unknown, unknown, unknown, unknown};
-  std::vector<DistributionComparison> copies(kCopies);
+/// What noise makes of a comparison: copies of it with moved values; none where no errors were given.
+struct Copies {
+  std::vector<Figures> figures;
+  std::vector<Turn> turns;
+};
+
+Copies moved_copies(const IntensityDistribution& reference, const IntensityDistribution& test,
+                    const CompareOptions& options, const std::optional<Turn>& turn) {
+  Copies copies;
+  if (options.reference_error_cd.empty() && options.test_error_cd.empty()) return copies;
+  copies.figures.resize(kCopies);
+  if (turn) copies.turns.resize(kCopies);
   parallel_blocks(kCopies, 1, [&](std::size_t k, std::size_t) {
     const IntensityDistribution a = moved(reference, options.reference_error_cd, 2 * k + 1),
                                 b = moved(test, options.test_error_cd, 2 * k + 2);
-    copies[k] = compared(common_grid(a, b), a, b);
+    const Common common = common_grid(a, b);
+    copies.figures[k] = figures_of(common, a, b);
+    if (turn) copies.turns[k] = best_turn(common, b, turn->rotation, kNearSearch);
   });
-  const auto scatter = [&](double DistributionComparison::*figure) {
-    double mean = 0.0, squares = 0.0;
-    for (const auto& c : copies) mean += c.*figure / kCopies;
-    for (const auto& c : copies) squares += (c.*figure - mean) * (c.*figure - mean);
-    return std::sqrt(squares / (kCopies - 1.0));
-  };
-  using C = DistributionComparison;
-  return {scatter(&C::relative_rms), scatter(&C::bergen_fit), scatter(&C::bergen_fit_unweighted),
-          scatter(&C::flux_ratio),   scatter(&C::peak_ratio), scatter(&C::wasserstein_deg),
-          scatter(&C::overlap)};
+  return copies;
+}
+
+/// Scatter of `figure(copy)`; NaN where there are no copies.
+template <class Copy, class Figure>
+double scatter(const std::vector<Copy>& copies, const Figure& figure) {
+  if (copies.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto n = static_cast<double>(copies.size());
+  double mean = 0.0, squares = 0.0;
+  for (const Copy& c : copies) mean += figure(c) / n;
+  for (const Copy& c : copies) squares += (figure(c) - mean) * (figure(c) - mean);
+  return std::sqrt(squares / (n - 1.0));
+}
+
+/// Where nadir turns to.
+TypeCAngles nadir_after(const Turn& turn) {
+  return type_c_angles(rotated_by(Direction::from_unit({0.0, 0.0, -1.0}), turn.rotation));
+}
+
+Alignment alignment_of(const Turn& found, const std::vector<Turn>& copies) {
+  const TypeCAngles to = nadir_after(found);
+  Alignment result;
+  result.tilt_deg = {degrees(to.gamma_rad),
+                     scatter(copies, [](const Turn& t) { return degrees(nadir_after(t).gamma_rad); })};
+  result.tilt_toward_c_deg = {
+      to.gamma_rad > 0.0 ? degrees(to.c_rad) : 0.0, scatter(copies, [&](const Turn& t) {
+        return degrees(std::remainder(nadir_after(t).c_rad - to.c_rad, 2.0 * std::numbers::pi));
+      })};
+  result.turn_deg = {degrees(found.rotation.z),
+                     scatter(copies, [](const Turn& t) { return degrees(t.rotation.z); })};
+  result.relative_rms = {found.rms, scatter(copies, [](const Turn& t) { return t.rms; })};
+  return result;
+}
+
+/// The noise of a root: sigma / (2 root) of its square's where that is far from 0, sqrt(sigma) at 0.
+Estimate root_of(double square, double square_error) {
+  const double root = std::sqrt(std::max(0.0, square));
+  if (square_error == 0.0) return {root, 0.0};
+  return {root, square_error / std::sqrt(4.0 * root * root + square_error)};
 }
 
 }  // namespace
@@ -299,14 +355,28 @@ DistributionComparison compare_distributions(const IntensityDistribution& refere
                                              const CompareOptions& options) {
   check_comparable(reference, test);
   const Common common = common_grid(reference, test);
-  DistributionComparison result = compared(common, reference, test);
   const double signal = sums_of(common, true).reference;
   const double noise = noise_floor_of(reference, options.reference_error_cd, common) +
                        noise_floor_of(test, options.test_error_cd, common);
+  const Figures f = figures_of(common, reference, test);
+  const std::optional<Turn> turn = options.align ? std::optional(best_turn(common, test)) : std::nullopt;
+  const Copies copies = moved_copies(reference, test, options, turn);
+  const auto with_error = [&](double Figures::*figure) {
+    return Estimate{f.*figure, scatter(copies.figures, [&](const Figures& c) { return c.*figure; })};
+  };
+  DistributionComparison result;
+  result.relative_rms = with_error(&Figures::relative_rms);
+  result.bergen_fit = with_error(&Figures::bergen_fit);
+  result.bergen_fit_unweighted = with_error(&Figures::bergen_fit_unweighted);
+  result.flux_ratio = with_error(&Figures::flux_ratio);
+  result.peak_ratio = with_error(&Figures::peak_ratio);
+  result.wasserstein_deg = with_error(&Figures::wasserstein_deg);
+  result.overlap = with_error(&Figures::overlap);
   result.noise_floor = std::sqrt(noise / signal);
-  result.excess = std::sqrt(std::max(0.0, result.relative_rms * result.relative_rms - noise / signal));
-  result.errors = errors_of(reference, test, options);
-  if (options.align) result.alignment = aligned(common, test);
+  const double square_error =
+      scatter(copies.figures, [](const Figures& c) { return c.relative_rms * c.relative_rms; });
+  result.excess = root_of(f.relative_rms * f.relative_rms - noise / signal, square_error);
+  if (turn) result.alignment = alignment_of(*turn, copies.turns);
   return result;
 }
 

@@ -3,6 +3,9 @@
 
 #include <cmath>
 #include <functional>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/intensity_comparison.h"
@@ -95,24 +98,24 @@ TEST(Wasserstein, UnequalMassesSplit) {
 
 TEST(CompareDistributions, EqualIsEqual) {
   const DistributionComparison same = compare_distributions(spot(), spot());
-  EXPECT_EQ(same.relative_rms, 0.0);
-  EXPECT_EQ(same.bergen_fit, 100.0);
-  EXPECT_EQ(same.flux_ratio, 1.0);
-  EXPECT_EQ(same.wasserstein_deg, 0.0);
-  EXPECT_EQ(same.overlap, 1.0);
-  EXPECT_EQ(same.alignment->tilt_deg, 0.0);
+  EXPECT_EQ(same.relative_rms.mean, 0.0);
+  EXPECT_EQ(same.bergen_fit.mean, 100.0);
+  EXPECT_EQ(same.flux_ratio.mean, 1.0);
+  EXPECT_EQ(same.wasserstein_deg.mean, 0.0);
+  EXPECT_EQ(same.overlap.mean, 1.0);
+  EXPECT_EQ(same.alignment->tilt_deg.mean, 0.0);
 }
 
 TEST(CompareDistributions, ScaleShowsInFluxAndRmsButNotInShape) {
   IntensityDistribution brighter = spot();
   scale(brighter, 1.01);
   const DistributionComparison c = compare_distributions(spot(), brighter);
-  EXPECT_NEAR(c.relative_rms, 0.01, 1e-12);
-  EXPECT_NEAR(c.bergen_fit, 100.0 * (1.0 - 0.01 / 2.01), 1e-9);
-  EXPECT_NEAR(c.flux_ratio, 1.01, 1e-12);
-  EXPECT_NEAR(c.peak_ratio, 1.01, 1e-12);
-  EXPECT_NEAR(c.wasserstein_deg, 0.0, 1e-9);
-  EXPECT_NEAR(c.overlap, 1.0, 1e-12);
+  EXPECT_NEAR(c.relative_rms.mean, 0.01, 1e-12);
+  EXPECT_NEAR(c.bergen_fit.mean, 100.0 * (1.0 - 0.01 / 2.01), 1e-9);
+  EXPECT_NEAR(c.flux_ratio.mean, 1.01, 1e-12);
+  EXPECT_NEAR(c.peak_ratio.mean, 1.01, 1e-12);
+  EXPECT_NEAR(c.wasserstein_deg.mean, 0.0, 1e-9);
+  EXPECT_NEAR(c.overlap.mean, 1.0, 1e-12);
 }
 
 TEST(CompareDistributions, GridsNeedNotAgree) {
@@ -120,48 +123,106 @@ TEST(CompareDistributions, GridsNeedNotAgree) {
       filled_grid([](double, double g) { return 100.0 - 0.5 * g; }, 30.0, 10.0);
   const IntensityDistribution fine = filled_grid([](double, double g) { return 100.0 - 0.5 * g; }, 7.5, 1.5);
   const DistributionComparison c = compare_distributions(coarse, fine);
-  EXPECT_NEAR(c.relative_rms, 0.0, 1e-12);
-  EXPECT_NEAR(c.wasserstein_deg, 0.0, 1e-9);
+  EXPECT_NEAR(c.relative_rms.mean, 0.0, 1e-12);
+  EXPECT_NEAR(c.wasserstein_deg.mean, 0.0, 1e-9);
 }
 
-TEST(CompareDistributions, AlignmentFindsTiltAndTurn) {
-  const auto street = filled_grid(
+IntensityDistribution street_light(double c_step = 5.0, double g_step = 1.0) {
+  return filled_grid(
       [](double c, double g) {
         return g < 90.0 ? 100.0 * std::cos(radians(g)) + 400.0 * std::exp(-std::pow((g - 55.0) / 12.0, 2.0)) *
                                                              std::pow(0.5 + 0.5 * std::sin(c + 0.4), 3.0)
                         : 0.0;
       },
-      5.0, 1.0);
+      c_step, g_step);
+}
+
+TEST(CompareDistributions, AlignmentFindsTiltAndTurn) {
+  const IntensityDistribution street = street_light();
   // B = A tilted by 1.5 degrees; to fit, it must go back.
   const DistributionComparison tilted =
       compare_distributions(street, rotated(street, {radians(1.5), 0.0, 0.0}));
-  EXPECT_GT(tilted.relative_rms, 0.03);
-  EXPECT_NEAR(tilted.alignment->tilt_deg, 1.5, 0.05);
-  EXPECT_NEAR(tilted.alignment->tilt_toward_c_deg, 270.0, 3.0);
-  EXPECT_LT(tilted.alignment->relative_rms, 0.25 * tilted.relative_rms);
+  EXPECT_GT(tilted.relative_rms.mean, 0.03);
+  EXPECT_NEAR(tilted.alignment->tilt_deg.mean, 1.5, 0.05);
+  EXPECT_NEAR(tilted.alignment->tilt_toward_c_deg.mean, 270.0, 3.0);
+  EXPECT_LT(tilted.alignment->relative_rms.mean, 0.25 * tilted.relative_rms.mean);
   const DistributionComparison turned =
       compare_distributions(street, rotated(street, {0.0, 0.0, radians(90.0)}));
-  EXPECT_NEAR(turned.alignment->turn_deg, -90.0, 0.1);
-  EXPECT_LT(turned.alignment->relative_rms, 0.01);
+  EXPECT_NEAR(turned.alignment->turn_deg.mean, -90.0, 0.1);
+  EXPECT_LT(turned.alignment->relative_rms.mean, 0.01);
+}
+
+struct NoisyLight {
+  IntensityDistribution distribution;
+  std::vector<double> error;
+};
+
+/// With normal noise of a share of each value.
+NoisyLight noisy(const IntensityDistribution& truth, double share, std::uint64_t seed) {
+  NoisyLight out{truth, std::vector<double>(truth.cd.size())};
+  for (std::size_t i = 0; i < out.error.size(); ++i) {
+    Rng rng(seed, i);
+    double normal = -6.0;
+    for (int k = 0; k < 12; ++k) normal += rng.uniform();
+    out.error[i] = share * truth.cd[i];
+    out.distribution.cd[i] += out.error[i] * normal;
+  }
+  return out;
 }
 
 TEST(CompareDistributionsStatistical, NoiseFloorIsWhatNoiseGives) {
   const IntensityDistribution truth =
       filled_grid([](double, double g) { return g < 90.0 ? 500.0 * std::cos(radians(g)) : 0.0; }, 15.0, 5.0);
-  IntensityDistribution noisy = truth;
-  std::vector<double> error(truth.cd.size());
-  for (std::size_t i = 0; i < error.size(); ++i) {
-    Rng rng(11, i);
-    double normal = -6.0;
-    for (int k = 0; k < 12; ++k) normal += rng.uniform();
-    error[i] = 0.02 * truth.cd[i];
-    noisy.cd[i] = truth.cd[i] + error[i] * normal;
-  }
+  const NoisyLight test = noisy(truth, 0.02, 11);
   const DistributionComparison c =
-      compare_distributions(truth, noisy, {.test_error_cd = error, .align = false});
+      compare_distributions(truth, test.distribution, {.test_error_cd = test.error, .align = false});
   EXPECT_NEAR(c.noise_floor, 0.02, 1e-6);
-  EXPECT_NEAR(c.relative_rms / c.noise_floor, 1.0, 0.25);  // 5 sigma for about 400 cells
+  EXPECT_NEAR(c.relative_rms.mean / c.noise_floor, 1.0, 0.25);  // 5 sigma for about 400 cells
   EXPECT_FALSE(c.alignment);
+}
+
+// Twenty runs: a scatter is known to 16 %, the mean of the stated errors to 6 %. A factor of 1.8 is 3.6
+// sigma; errors of half or twice the size fail.
+TEST(CompareDistributionsSlow, ErrorsAreTheScatterOfTheFigures) {
+  constexpr int kRuns = 20;
+  const IntensityDistribution truth = street_light(10.0, 3.0),
+                              tilted = rotated(truth, {radians(1.5), 0.0, 0.0});
+  const double excess = compare_distributions(truth, tilted, {.align = false}).excess.mean;
+  using Figure = std::function<Estimate(const DistributionComparison&)>;
+  const std::pair<const char*, Figure> figures[] = {
+      {"flux", [](const DistributionComparison& c) { return c.flux_ratio; }},
+      {"excess", [](const DistributionComparison& c) { return c.excess; }},
+      {"tilt", [](const DistributionComparison& c) { return c.alignment->tilt_deg; }},
+      {"toward", [](const DistributionComparison& c) { return c.alignment->tilt_toward_c_deg; }},
+      {"turn", [](const DistributionComparison& c) { return c.alignment->turn_deg; }}};
+  std::vector<DistributionComparison> runs;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    const NoisyLight test = noisy(tilted, 0.02, 100 + seed);
+    runs.push_back(compare_distributions(truth, test.distribution, {.test_error_cd = test.error}));
+  }
+  for (const auto& [name, figure] : figures) {
+    std::vector<double> values;
+    double stated = 0.0;
+    for (const DistributionComparison& c : runs) {
+      values.push_back(figure(c).mean);
+      stated += figure(c).standard_error / kRuns;
+    }
+    const Estimate mean = mean_estimate(values);
+    const double scatter = mean.standard_error * std::sqrt(1.0 * kRuns);
+    EXPECT_GT(stated, scatter / 1.8) << name << ' ' << stated << ' ' << scatter;
+    EXPECT_LT(stated, scatter * 1.8) << name << ' ' << stated << ' ' << scatter;
+    if (name == std::string_view("excess")) {
+      EXPECT_NEAR(mean.mean, excess, 4.0 * mean.standard_error);
+    }
+  }
+}
+
+// Files that state no errors: figures have none either.
+TEST(CompareDistributions, UnknownErrorsAreNotANumber) {
+  const DistributionComparison c = compare_distributions(street_light(), spot());
+  for (const Estimate& e : {c.relative_rms, c.excess, c.flux_ratio, c.wasserstein_deg, c.alignment->tilt_deg})
+    EXPECT_TRUE(std::isnan(e.standard_error));
+  EXPECT_EQ(c.excess.mean, c.relative_rms.mean);
 }
 
 TEST(CompareDistributions, RefusesWhatCannotBeCompared) {

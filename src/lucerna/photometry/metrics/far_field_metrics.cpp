@@ -28,6 +28,9 @@ constexpr double kNarrowArc_deg = 20.0, kWellFound = 0.25;
 /// Ends of arcs are looked for by `exact` in steps of this share of the arc, and of what the cells resolve;
 /// no further away than this.
 constexpr double kArcStep = 0.05, kResolutionStep = 0.5, kMaxWindow_deg = 20.0;
+/// `exact` looks for ends in the planes of the luminaire's axes and the diagonals: multiples of this. Each
+/// takes about half a second.
+constexpr double kExactPlanes_deg = 45.0;
 /// Beyond this a peak's C is not determined.
 constexpr double kTurned_deg = 90.0;
 /// Narrower than the beam is wide, wide enough for its axis where no peak was found.
@@ -64,7 +67,7 @@ PlaneResult measure_plane(const CountedSphere& sphere, double c_deg, double wide
   Section section(sphere, c_deg, widest_deg, kDark * std::min(maximum.all(), centre.all()));
   PlaneResult r;
   r.plane.c_deg = c_deg;
-  const bool has_ends = c_deg == 0.0 || c_deg == 90.0;
+  const bool has_ends = std::fmod(c_deg, kExactPlanes_deg) == 0.0;
   const auto arc = [&](const Jackknife& full, double share_of_full) {
     return arc_deg(has_ends ? exact : PointIntensity{}, sphere.resolution_deg(), section, maximum.all(), full,
                    share_of_full);

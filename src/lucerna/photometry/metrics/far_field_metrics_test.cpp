@@ -115,7 +115,6 @@ TEST(FarFieldMetrics, ZonesAreTheFluxOfTheirRays) {
   EXPECT_NEAR(m.glare_cd[0].mean, std::cos(radians(45.0)), 2e-3);
 }
 
-// What is not determined is said: where two lobes are alike, on a ring, on the axis, below the threshold.
 // The cells show a lobe at C 30, gamma 2; single directions have its top on the axis, where there is no C.
 TEST(FarFieldMetrics, APeakThatMovesToTheAxisHasNoC) {
   const PointIntensity exact = [](const Direction& d, std::uint64_t, std::uint64_t) {
@@ -128,6 +127,21 @@ TEST(FarFieldMetrics, APeakThatMovesToTheAxisHasNoC) {
   EXPECT_FALSE(m.peak->c_deg);
 }
 
+// The cells show a lobe of 1.3 degrees, single directions one of 1.2: the planes of the axes and the
+// diagonals have the ends of the latter, others those of the cells.
+TEST(FarFieldMetrics, EndsInTheMainPlanesAreOfSingleDirections) {
+  const PointIntensity exact = [](const Direction& d, std::uint64_t, std::uint64_t) {
+    return Estimate{lobe(0.0, 0.0, 1.2)(d), 1.0};
+  };
+  const FarFieldMetrics m =
+      far_field_metrics(sphere(lobe(0.0, 0.0, 1.3), 1e6), std::vector{30.0, 45.0, 135.0}, exact);
+  const auto beam_deg = [](double sigma) { return 2.0 * sigma * std::sqrt(2.0 * std::log(2.0)); };
+  for (const double c : {0.0, 45.0, 90.0, 135.0})
+    EXPECT_NEAR(plane(m, c).beam_of_maximum.value().mean, beam_deg(1.2), 0.02) << c;
+  EXPECT_NEAR(plane(m, 30.0).beam_of_maximum.value().mean, beam_deg(1.3), 0.1);
+}
+
+// What is not determined is said: where two lobes are alike, on a ring, on the axis, below the threshold.
 TEST(FarFieldMetrics, SaysWhatIsNotDetermined) {
   const auto two = [a = lobe(0.0, 30.0, 5.0), b = lobe(180.0, 30.0, 5.0)](const Direction& d) {
     return a(d) + b(d);

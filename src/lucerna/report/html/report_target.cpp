@@ -93,15 +93,15 @@ std::string comparison_table(const FarFieldTable& result, const FarFieldTable& t
   const auto percent = [](const Estimate& e) {
     return figure_text(100.0 * e.mean, 100.0 * e.standard_error) + " %";
   };
-  row("Relative RMS", percent(c.rms()), "weighted by solid angle");
+  row("Relative RMS", percent(c.relative_rms), "weighted by solid angle");
   row("Noise floor", fmt::format("{:.2f} %", 100.0 * c.noise_floor),
       "what the trace's noise alone would give");
-  row("Bergen fit", figure_text(c.bergen_fit, c.errors.bergen_fit), "100 = equal");
-  row("Overlap", percent(c.overlapping()), "of the light in the right place");
-  row("Wasserstein-1", figure_text(c.wasserstein_deg, c.errors.wasserstein_deg) + "°",
+  row("Bergen fit", figure_text(c.bergen_fit.mean, c.bergen_fit.standard_error), "100 = equal");
+  row("Overlap", percent(c.overlap), "of the light in the right place");
+  row("Wasserstein-1", figure_text(c.wasserstein_deg.mean, c.wasserstein_deg.standard_error) + "°",
       "mean angle that light would have to move");
-  row("Peak", figure_text(c.peak_ratio, c.errors.peak_ratio), "result over target");
-  row("Flux", figure_text(c.flux_ratio, c.errors.flux_ratio), "result over target");
+  row("Peak", figure_text(c.peak_ratio.mean, c.peak_ratio.standard_error), "result over target");
+  row("Flux", figure_text(c.flux_ratio.mean, c.flux_ratio.standard_error), "result over target");
   return html_table(table);
 }
 

@@ -49,7 +49,7 @@ Json a_design() {
          {{"peak/cd",
            {{"nominal", kEstimate},
             {"mean", kEstimate},
-            {"standard_deviation", 0.0123},
+            {"standard_deviation", kEstimate},
             {"min", kEstimate},
             {"max", kNone}}}}}}}};
 }
@@ -65,7 +65,7 @@ TEST(ReportVariants, HaveEveryMirrorAndItsFigures) {
         "/advice/1/error/c48/standard_error", "/advice/1/in_rectangle/value", "/tolerances/samples",
         "/tolerances/source_shift_mm", "/tolerances/source_tilt_deg", "/tolerances/slope_error_mrad",
         "/tolerances/reflectance", "/tolerances/spread/peak~1cd/nominal/value",
-        "/tolerances/spread/peak~1cd/max/value", "/tolerances/spread/peak~1cd/standard_deviation"})
+        "/tolerances/spread/peak~1cd/max/value", "/tolerances/spread/peak~1cd/standard_deviation/value"})
     EXPECT_TRUE(seen.contains(key)) << key;
   EXPECT_TRUE(has(html, "a wider mirror"));
   EXPECT_TRUE(has(html, "<strong>helps</strong>") && has(html, "does not help"));

@@ -74,13 +74,13 @@ TEST(Comparison, OfLightDistributionsIsThatOfTheirValues) {
   const FileComparison equal = compare(dir / "a.ldt", dir / "a.ldt");
   ASSERT_TRUE(equal.light);
   EXPECT_FALSE(equal.rays);
-  EXPECT_EQ(equal.light->distributions.relative_rms, 0.0);
+  EXPECT_EQ(equal.light->distributions.relative_rms.mean, 0.0);
   EXPECT_FALSE(fs::exists(dir / "polar.svg")) << "none without a folder";
   const FileComparison found = compare(dir / "a.ldt", dir / "b.ldt", options);
-  EXPECT_EQ(found.light->distributions.relative_rms,
+  EXPECT_EQ(found.light->distributions.relative_rms.mean,
             compare_distributions(read_photometric_file(dir / "a.ldt").distribution,
                                   read_photometric_file(dir / "b.ldt").distribution)
-                .relative_rms);
+                .relative_rms.mean);
   EXPECT_GT(found.light->boxes.c48.excess, 0.05);
   EXPECT_TRUE(fs::exists(dir / "polar.svg"));
 }

@@ -102,7 +102,11 @@ TEST(TraceFolder, SaysWhatIsNoTrace) {
   write_file(dir / "result.json", "{}");
   EXPECT_NE(message().find("expected the result of a trace"), std::string::npos);
   write_file(dir / "result.json", R"({"ledger": {}, "detectors": [], "schema_version": 99})");
-  EXPECT_NE(message().find(fmt::format("found 99, expected {}", kJsonSchemaVersion)), std::string::npos);
+  EXPECT_NE(message().find(fmt::format("found 99, expected 4 to {}", kJsonSchemaVersion)), std::string::npos);
+  write_file(dir / "result.json", R"({"ledger": {}, "detectors": [], "schema_version": "4"})");
+  EXPECT_NE(message().find("found \"4\", expected 4 to"), std::string::npos);
+  write_file(dir / "result.json", R"({"ledger": {}, "detectors": [], "schema_version": 4})");
+  EXPECT_EQ(message().find("schema_version"), std::string::npos) << "of an older trace: " << message();
   write_file(dir / "project.toml", "");
   const auto write_detector = [&](const std::string& name, const std::string& kind) {
     write_file(dir / "result.json",

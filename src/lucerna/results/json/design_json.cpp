@@ -44,7 +44,7 @@ Json tolerances_json(const ToleranceSweep& sweep) {
   for (const ToleranceSpread& s : sweep.spread) {
     out["spread"][s.figure] = {{"nominal", estimate_json(s.nominal)},
                                {"mean", estimate_json(s.mean)},
-                               {"standard_deviation", s.standard_deviation},
+                               {"standard_deviation", estimate_json(s.standard_deviation)},
                                {"min", estimate_json(s.min)},
                                {"max", estimate_json(s.max)}};
   }
@@ -122,14 +122,14 @@ void tolerance_rows(const ToleranceSweep& sweep, std::vector<std::string>& lines
       fmt::format("  tolerances: source +-{:g} mm, +-{:g} deg; slope error to {:g} mrad; reflectance +-{:g}; "
                   "{} combined cases",
                   r.source_shift_mm, r.source_tilt_deg, r.slope_error_mrad, r.reflectance, r.samples));
-  lines.push_back(fmt::format("  {:<16}{:>24}{:>24}{:>24}{:>12}", "", "nominal", "min", "max", "std. dev."));
+  lines.push_back(fmt::format("  {:<16}{:>24}{:>24}{:>24}{:>20}", "", "nominal", "min", "max", "std. dev."));
   const auto text = [](const Estimate& e) {
     return std::isfinite(e.mean) ? estimate_text(e) : std::string("not determined");
   };
   for (const ToleranceSpread& s : sweep.spread) {
     const bool any = std::isfinite(s.min.mean) && std::isfinite(s.max.mean);
-    lines.push_back(fmt::format("  {:<16}{:>24}{:>24}{:>24}{:>12}", s.figure, text(s.nominal), text(s.min),
-                                text(s.max), any ? fmt::format("{:.3g}", s.standard_deviation) : "-"));
+    lines.push_back(fmt::format("  {:<16}{:>24}{:>24}{:>24}{:>20}", s.figure, text(s.nominal), text(s.min),
+                                text(s.max), any ? estimate_text(s.standard_deviation) : "-"));
   }
 }
 
@@ -162,11 +162,9 @@ void error_lines(const DesignFindings& result, bool with_bound, std::vector<std:
 
 void light_line(const DesignFindings& result, bool with_error, std::vector<std::string>& lines) {
   const DesignError& e = result.error;
-  std::string line = fmt::format(
-      "  light: {:.1f} % leaves; {:.1f} % in the target's rectangle, {:.1f} % outside "
-      "({:.1f} % directly)",
-      100.0 * result.efficiency.mean, 100.0 * e.in_rectangle.mean, 100.0 * e.outside_share.mean,
-      100.0 * e.outside_direct.mean);
+  std::string line = fmt::format("  light: {} leaves; {} in the target's rectangle, {} outside ({} directly)",
+                                 share_text(result.efficiency), share_text(e.in_rectangle),
+                                 share_text(e.outside_share), share_text(e.outside_direct));
   if (with_error) {
     line += fmt::format(", where the error is {:.2f} +- {:.2f} %", 100.0 * e.outside.excess,
                         100.0 * e.outside.standard_error);
@@ -270,8 +268,8 @@ Json design_json(const DesignTarget& target, const DesignFindings& result, const
   if (!result.advice.empty()) json["advice"] = advice_json(result.advice);
   json["in_rectangle"] = estimate_json(result.error.in_rectangle);
   json["validation"] = {{"rays", result.error.rays}, {"seconds", form.validation_s}};
-  json["bergen_fit"] = f.comparison ? estimate_json(f.comparison->bergen()) : Json();
-  json["wasserstein_deg"] = f.comparison ? estimate_json(f.comparison->wasserstein()) : Json();
+  json["bergen_fit"] = f.comparison ? estimate_json(f.comparison->bergen_fit) : Json();
+  json["wasserstein_deg"] = f.comparison ? estimate_json(f.comparison->wasserstein_deg) : Json();
   json["target"] = {{"file", target.file},
                     {"mode", target.zones_only                  ? "zones"
                              : target.mode == TargetMode::shape ? "shape"
@@ -297,7 +295,7 @@ Json design_json(const DesignTarget& target, const DesignFindings& result, const
   json["limits"] = Json::array();
   for (const LimitCheck& c : result.limits) {
     json["limits"].push_back(
-        {{"limit", c.limit}, {"allowed", c.allowed}, {"found", c.found}, {"held", c.held}});
+        {{"limit", c.limit}, {"allowed", c.allowed}, {"found", estimate_json(c.found)}, {"held", c.held}});
   }
   if (f.tolerances) json["tolerances"] = tolerances_json(*f.tolerances);
   json["end"] = std::string(to_string(result.end));
@@ -333,19 +331,17 @@ std::vector<std::string> design_summary(const DesignTarget& target, const Design
   advice_lines(result, lines);
   if (f.comparison) {
     lines.push_back(fmt::format("  all directions: Bergen fit {} of 100, Wasserstein {}",
-                                estimate_text(f.comparison->bergen()),
-                                estimate_text(f.comparison->wasserstein(), "deg")));
+                                estimate_text(f.comparison->bergen_fit),
+                                estimate_text(f.comparison->wasserstein_deg, "deg")));
   }
-  lines.push_back(
-      form.is_lens
-          ? fmt::format("  losses: medium {:.1f} %, lost rays {:.2g} %", 100.0 * result.bodies.mean,
-                        100.0 * result.lost.mean)
-          : fmt::format("  losses: mirror {:.1f} %, its back {:.1f} %, bodies {:.1f} %, lost rays {:.2g} %",
-                        100.0 * result.absorbed.mean, 100.0 * result.back.mean, 100.0 * result.bodies.mean,
-                        100.0 * result.lost.mean));
+  lines.push_back(form.is_lens ? fmt::format("  losses: medium {}, lost rays {}", share_text(result.bodies),
+                                             share_text(result.lost))
+                               : fmt::format("  losses: mirror {}, its back {}, bodies {}, lost rays {}",
+                                             share_text(result.absorbed), share_text(result.back),
+                                             share_text(result.bodies), share_text(result.lost)));
   for (const LimitCheck& c : result.limits) {
-    lines.push_back(fmt::format("  limit {}: {:.6g} found, {:.6g} allowed: {}", c.limit, c.found, c.allowed,
-                                c.held ? "held" : "NOT HELD"));
+    lines.push_back(fmt::format("  limit {}: {} found, {:.6g} allowed: {}", c.limit, estimate_text(c.found),
+                                c.allowed, c.held ? "held" : "NOT HELD"));
   }
   if (f.tolerances) tolerance_rows(*f.tolerances, lines);
   for (const std::string& remark : result.remarks) lines.push_back("  " + remark);
