@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "lucerna/core/parallel/parallel.h"
@@ -23,8 +24,9 @@ constexpr double kGlareRadius_deg = 2.5;
 /// The brightest direction is looked for within this share of the distance between those that the cells show.
 constexpr double kPeakSearch = 0.5;
 /// Kernels move the ends of an arc below this by more than noise does. Those of a wider one are looked for by
-/// `exact` down to this share of the peak: below it backward light may come by paths that few points find.
-constexpr double kNarrowArc_deg = 20.0, kWellFound = 0.25;
+/// `exact` where that knows the light about them to this share: elsewhere it may come by paths that few
+/// points find.
+constexpr double kNarrowArc_deg = 20.0, kWellFound = 0.015;
 /// Ends of arcs are looked for by `exact` in steps of this share of the arc, and of what the cells resolve;
 /// no further away than this.
 constexpr double kArcStep = 0.05, kResolutionStep = 0.5, kMaxWindow_deg = 20.0;
@@ -48,15 +50,15 @@ struct PlaneResult {
 
 /// The arc where a share of `full` is reached. Kernels move its ends: there `exact` looks for them.
 std::optional<Estimate> arc_deg(const PointIntensity& exact, double resolution_deg, Section& section,
-                                double peak_cd, const Jackknife& full, double share_of_full) {
+                                const Jackknife& full, double share_of_full) {
   const Estimate threshold = share(full, share_of_full).estimate();
   const std::optional<Estimate> counted = section.arc_deg(threshold);
   const auto near = exact ? section.place(threshold) : std::nullopt;
   if (!near || near->outward_deg > kMaxWindow_deg) return counted;
   const double size_deg = near->arc.to_deg - near->arc.from_deg;
-  if (size_deg > kNarrowArc_deg && threshold.mean < kWellFound * peak_cd) return counted;
   const ArcWindow window{near->outward_deg + resolution_deg,
-                         std::min(kResolutionStep * resolution_deg, kArcStep * size_deg)};
+                         std::min(kResolutionStep * resolution_deg, kArcStep * size_deg),
+                         size_deg > kNarrowArc_deg ? kWellFound : std::numeric_limits<double>::infinity()};
   const auto ends = exact_arc_deg(
       exact, [&](double angle) { return section.direction(angle); }, near->arc, window, threshold);
   return ends && is_determined(*ends) ? ends : counted;
@@ -69,7 +71,7 @@ PlaneResult measure_plane(const CountedSphere& sphere, double c_deg, double wide
   r.plane.c_deg = c_deg;
   const bool has_ends = std::fmod(c_deg, kExactPlanes_deg) == 0.0;
   const auto arc = [&](const Jackknife& full, double share_of_full) {
-    return arc_deg(has_ends ? exact : PointIntensity{}, sphere.resolution_deg(), section, maximum.all(), full,
+    return arc_deg(has_ends ? exact : PointIntensity{}, sphere.resolution_deg(), section, full,
                    share_of_full);
   };
   r.plane.beam_of_maximum = arc(maximum, 0.5);

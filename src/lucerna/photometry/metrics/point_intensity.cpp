@@ -44,10 +44,11 @@ constexpr int kMaxSteps = 6;
 constexpr int kMeanPoints = 6;
 constexpr double kShorter = 0.25;
 constexpr int kMaxShorter = 3;
+constexpr double kSlopeError = 0.5;
 /// A mean this many errors from the threshold is at it.
 constexpr double kSameErrors = 2.0;
 /// Of each direction of a window, and of those where that leaves open on which side of the threshold it is.
-constexpr std::uint64_t kWindowSamples = 256, kDoubtSamples = 2048, kMeanSamples = 512;
+constexpr std::uint64_t kWindowSamples = 256, kDoubtSamples = 2048, kMeanSamples = 256;
 
 Direction moved(const Direction& from, double angle_rad, double distance_rad) {
   const Frame frame = Frame::from_z(from);
@@ -182,8 +183,9 @@ std::optional<Crossing> crossing_near(const PointIntensity& intensity, const Dir
 }
 
 /// The crossing by ever shorter steps: a line through two means leaves out how the section bends. It is found
-/// when the mean of a quarter of the length about it is the threshold, within the noise; what is left of that
-/// is in the error.
+/// when the mean of a quarter of the length about it is the threshold, within the noise. What is left of that
+/// is taken off by the slope over the longer step, which may be twice that at the crossing or half: half of
+/// it is in the error.
 std::optional<Crossing> precise_crossing(const PointIntensity& intensity, const DirectionAt& at,
                                          double angle_deg, double step_deg, double threshold) {
   std::optional<Crossing> found;
@@ -195,7 +197,7 @@ std::optional<Crossing> precise_crossing(const PointIntensity& intensity, const 
     const Estimate cd = mean_about(intensity, at, angle_deg, step_deg);
     const double off = threshold - cd.mean;
     found = Crossing{angle_deg + off / near->cd_per_deg, near->cd_per_deg,
-                     std::hypot(cd.standard_error, kShorter * kShorter * off)};
+                     std::hypot(cd.standard_error, kSlopeError * off)};
     if (std::abs(off) <= kSameErrors * cd.standard_error) return found;
     found->cd_error = std::hypot(cd.standard_error, off);
   }
@@ -298,6 +300,10 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
 std::optional<Estimate> exact_arc_deg(const PointIntensity& intensity, const DirectionAt& at,
                                       const CircleArc& near, const ArcWindow& window,
                                       const Estimate& threshold) {
+  for (const double end_deg : {near.from_deg, near.to_deg}) {
+    const double noise = mean_about(intensity, at, end_deg, window.step_deg).standard_error;
+    if (noise > window.max_noise * threshold.mean) return std::nullopt;
+  }
   const double inward_deg = std::max(window.outward_deg, 0.5 * (near.to_deg - near.from_deg));
   const auto end = [&](double near_deg, double outward_deg) {
     return find_crossing(intensity, at, near_deg, outward_deg, inward_deg, window.step_deg, threshold);

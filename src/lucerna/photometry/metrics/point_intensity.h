@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -40,12 +41,16 @@ using DirectionAt = std::function<Direction(double angle_deg)>;
 /// Where the ends of an arc are looked for: from so far outside of where they seem to be, in such steps.
 struct ArcWindow {
   double outward_deg = 0.0, step_deg = 0.0;
+  /// The noise of a mean about either end may be this share of the threshold. Where it is larger, few of the
+  /// samples carry the light, and their scatter says little of its error.
+  double max_noise = std::numeric_limits<double>::infinity();
 };
 
 /// The size of an arc on which the intensity is `threshold` or more, and falls below it at both ends. The
 /// outermost crossing is looked for inwards to the middle of `near` (kernels widen an arc, or shift it), or
 /// as far again outwards where it is still bright; nothing where it is not there. Where noise leaves open
-/// which of several crossings is the outermost, that is in the error. A ripple narrower than a step may be
+/// which of several crossings is the outermost, that is in the error. Nothing where the noise is above the
+/// window's. A ripple narrower than a step may be
 /// missed. 60 to 150 short estimates.
 std::optional<Estimate> exact_arc_deg(const PointIntensity& intensity, const DirectionAt& at,
                                       const CircleArc& near, const ArcWindow& window,

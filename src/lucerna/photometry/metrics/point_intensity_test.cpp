@@ -103,6 +103,21 @@ TEST(PointIntensity, SaysNothingWhereTheEndsAreNotThere) {
   EXPECT_FALSE(exact_arc_deg(lobe, line, {-1.0, 1.0}, {0.5, 0.1}, {500.0, 0.0}));
 }
 
+// A mean of six directions of 256 samples each: its noise decides.
+TEST(PointIntensity, SaysNothingWhereTheLightIsNotWellKnown) {
+  const PointIntensity lobe = noisy_lobe(toward(0.0, 0.0), 3.0);
+  const auto line = [](double angle) { return toward(angle < 0.0 ? 180.0 : 0.0, std::abs(angle)); };
+  const CircleArc near{-3.5, 3.5};
+  double variance = 0.0;
+  for (int i = 0; i < 6; ++i) {
+    const double error = lobe(line(3.5), 256, 1).standard_error / 6.0;
+    variance += error * error;
+  }
+  const double noise = std::sqrt(variance) / 500.0;
+  EXPECT_TRUE(exact_arc_deg(lobe, line, near, {0.5, 0.1, 1.5 * noise}, {500.0, 0.0}));
+  EXPECT_FALSE(exact_arc_deg(lobe, line, near, {0.5, 0.1, 0.5 * noise}, {500.0, 0.0}));
+}
+
 /// How many of 100 arcs of a Gaussian lobe of `sigma` degrees hold the truth within two of their errors, and
 /// the mean of these. `near` is off by up to 0.15 degrees and `shift_deg`.
 struct Held {
