@@ -23,5 +23,11 @@ TEST(Estimate, TextWithoutAnError) {
   EXPECT_EQ(estimate_text({1000.0, 0.0}, "lm"), "1000 lm");
 }
 
+TEST(Estimate, SharesAreInPercent) {
+  EXPECT_EQ(share_text({0.8341, 0.0012}), "83.41 +- 0.12 %");
+  EXPECT_EQ(share_text({0.0, 0.0}), "0 %");
+  EXPECT_EQ(share_text({1.0, 0.0}), "100 %");
+}
+
 }  // namespace
 }  // namespace lucerna

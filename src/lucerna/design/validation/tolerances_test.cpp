@@ -58,6 +58,9 @@ TEST(Tolerances, TheSweepSeesWhatOpticsSays) {
     EXPECT_GE(s.max.mean, s.mean.mean - 1e-12) << s.figure;
   }
   EXPECT_EQ(sweep.spread[0].figure, "efficiency");
+  const Estimate& deviation = sweep.spread[0].standard_deviation;
+  EXPECT_GT(deviation.mean, 0.0);
+  EXPECT_NEAR(deviation.standard_error, deviation.mean / std::sqrt(6.0), 1e-12) << "of four cases";
   const std::string csv = tolerances_csv(sweep);
   EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), sweep.cases.size() + 1);
 }
