@@ -170,6 +170,8 @@ struct ToleranceSpread {
   Estimate standard_deviation;
   /// The extreme cases.
   Estimate min, max;
+  /// Combined cases whose figure is determined.
+  int cases = 0;
 };
 
 /// Result of a tolerance sweep: the cases and their scatter.

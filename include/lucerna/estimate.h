@@ -25,7 +25,8 @@ struct Estimate {
 inline constexpr double kIntervalErrors = 2.131;
 
 /// "1759 +- 4": the error to one significant digit (two where the first is 1), the value to the same place.
-/// An error that is not known leaves the value to five significant digits, one of zero the same. `unit` is
+/// An error that is not known leaves the value to five significant digits, one of zero (or of rounding, 1e-12
+/// of the value) the same. `unit` is
 /// appended after a blank unless it is empty.
 std::string estimate_text(const Estimate& estimate, std::string_view unit = {});
 

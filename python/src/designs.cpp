@@ -143,6 +143,7 @@ py::object spread_record(const ToleranceSpread& s) {
   out["standard_deviation"] = estimate(s.standard_deviation);
   out["min"] = estimate(s.min);
   out["max"] = estimate(s.max);
+  out["cases"] = s.cases;
   return record(out);
 }
 

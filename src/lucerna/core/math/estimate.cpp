@@ -20,6 +20,9 @@ int last_place(double error) {
   return first < 1.95 ? leading - 1 : leading;
 }
 
+/// Errors below this share of the value are what sums of exact numbers leave.
+constexpr double kRounding = 1e-12;
+
 }  // namespace
 
 Estimate mean_estimate(std::span<const double> values) {
@@ -34,7 +37,8 @@ Estimate mean_estimate(std::span<const double> values) {
 std::string estimate_text(const Estimate& e, std::string_view unit) {
   if (e.mean == 0.0 && std::signbit(e.mean)) return estimate_text({0.0, e.standard_error}, unit);
   const std::string tail = unit.empty() ? std::string() : fmt::format(" {}", unit);
-  if (!(std::isfinite(e.standard_error) && e.standard_error > 0.0 && std::isfinite(e.mean)))
+  if (!(std::isfinite(e.standard_error) && e.standard_error > kRounding * std::abs(e.mean) &&
+        std::isfinite(e.mean)))
     return fmt::format("{:.5g}{}", e.mean, tail);
   const int place = last_place(e.standard_error);
   if (place < -9 || place > 9) return fmt::format("{:.5g} +- {:.1g}{}", e.mean, e.standard_error, tail);

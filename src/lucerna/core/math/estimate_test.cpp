@@ -21,6 +21,8 @@ TEST(Estimate, TextHasAsManyDigitsAsTheErrorAllows) {
 TEST(Estimate, TextWithoutAnError) {
   EXPECT_EQ(estimate_text({1758.93, std::numeric_limits<double>::quiet_NaN()}, "cd"), "1758.9 cd");
   EXPECT_EQ(estimate_text({1000.0, 0.0}, "lm"), "1000 lm");
+  EXPECT_EQ(estimate_text({10.0, 4e-16}, "%"), "10 %") << "rounding is no noise";
+  EXPECT_EQ(estimate_text({0.0, 4e-16}), "0 +- 4e-16");
 }
 
 TEST(Estimate, SharesAreInPercent) {

@@ -64,6 +64,7 @@ ToleranceSpread spread_of(const std::string& name, const ToleranceSweep& sweep, 
     if (x->mean > s.max.mean) s.max = *x;
     ++n;
   }
+  s.cases = n;
   if (n == 0) {
     s.mean = s.min = s.max = {unknown, unknown};
     return s;

@@ -184,6 +184,9 @@ Jackknife measure_axis(const CountedSphere& sphere, const Direction& axis, FarFi
   const RadiusChoice::Choice best = choice.best();
   m.axis_radius_deg = radii_deg[best.index];
   m.axis_cd = best.estimate();
+  // A quadratic of few rays may end below zero.
+  const double below = std::max(0.0, -m.axis_cd.mean);
+  m.axis_cd = {m.axis_cd.mean + below, std::hypot(m.axis_cd.standard_error, below)};
   return best.values;
 }
 

@@ -240,7 +240,7 @@ constexpr std::array kKeys{
     ProjectKey{"design.tolerances", "slope_error_mrad", Type::number, kNotNegative, "", "1", "Slope error of the mirror, added to its own as squares."},
     ProjectKey{"design.tolerances", "reflectance", Type::number, kShare, "", "0.02", "Change of the reflectance, either way."},
     ProjectKey{"design.tolerances", "samples", Type::number, whole(2, 1000), "", "16", "Cases in which everything changes at once."},
-    ProjectKey{"design.tolerances", "rays", Type::number, within(1e4, 1e9), "", "262144", "Rays of each case."},
+    ProjectKey{"design.tolerances", "rays", Type::number, whole(10000, 1000000000), "", "262144", "Rays of each case."},
 };
 // clang-format on
 

@@ -160,7 +160,7 @@ std::string convergence(HtmlPage& page, const std::vector<HistoryLine>& history)
 
 std::string design_facts(const ResultFigures& result) {
   return fact("Seed", result.figure("/seed")) +
-         fact("Target's factor", result.has("/scale") ? result.figure("/scale") : "–");
+         fact("Target's factor", result.has("/target/factor") ? result.figure("/target/factor") : "–");
 }
 
 }  // namespace

@@ -101,10 +101,18 @@ FarFieldTable read_distribution(const fs::path& path, const FileComparisonOption
   return std::move(folder.far_fields.front());
 }
 
+std::string_view intensity_unit(const FarFieldTable& table) {
+  return table.distribution.unit == FluxUnit::lumen ? "cd" : "W/sr";
+}
+
 LightFileComparison compare_light(const fs::path& reference_path, const fs::path& test_path,
                                   const FileComparisonOptions& options) {
   const FarFieldTable reference = read_distribution(reference_path, options);
   const FarFieldTable test = read_distribution(test_path, options);
+  if (reference.distribution.unit != test.distribution.unit) {
+    throw InputError(fmt::format("{}: found {}, expected {} as {} has", test_path.string(),
+                                 intensity_unit(test), intensity_unit(reference), reference_path.string()));
+  }
   LightFileComparison light;
   light.distributions = compare_distributions(
       reference.distribution, test.distribution,
@@ -121,14 +129,25 @@ LightFileComparison compare_light(const fs::path& reference_path, const fs::path
 
 bool is_distribution(const fs::path& path) { return fs::is_directory(path) || is_photometric_file(path); }
 
+/// Why a light distribution cannot be compared with another file: what is wrong with that, where it is none
+/// though it is called one, or that it is something else.
+[[noreturn]] void refuse_pair(const fs::path& light, const fs::path& other,
+                              const FileComparisonOptions& options) {
+  const InputFile opened(other);
+  const std::string ending = lower_ending(other);
+  if (ending == ".ldt" || ending == ".ies")
+    static_cast<void>(read_photometric_file(other, options.photometric));
+  throw InputError(fmt::format("{}: found rays or a model, expected a light distribution as {} is",
+                               other.string(), light.string()));
+}
+
 }  // namespace
 
 FileComparison compare(const fs::path& reference, const fs::path& test, const FileComparisonOptions& options,
                        Progress& progress) {
   const bool light = is_distribution(reference);
   if (light != is_distribution(test)) {
-    throw InputError(fmt::format("{}: a photometric file and a ray file or model cannot be compared",
-                                 (light ? reference : test).string()));
+    refuse_pair(light ? reference : test, light ? test : reference, options);
   }
   FileComparison found;
   if (light) {

@@ -5,9 +5,12 @@
 
 #include <cmath>
 
+#include "lucerna/core/io/file.h"
 #include "lucerna/error.h"
+#include "lucerna/photometric_file.h"
 #include "lucerna/ray_file.h"
 #include "lucerna/source.h"
+#include "tests/support/random_rays.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {
@@ -85,12 +88,37 @@ TEST(Comparison, OfLightDistributionsIsThatOfTheirValues) {
   EXPECT_TRUE(fs::exists(dir / "polar.svg"));
 }
 
+// What is wrong is said of the file that is wrong.
 TEST(Comparison, OfDifferentKindsIsRefused) {
   const test::TempDir dir;
   write_light(dir / "a.ldt", 20.0);
   write_disk(dir / "a.tm25ray", 1.0, 1);
-  EXPECT_THROW(static_cast<void>(compare(dir / "a.ldt", dir / "a.tm25ray")), InputError);
-  EXPECT_THROW(static_cast<void>(compare(dir / "a.tm25ray", dir / "none.tm25ray")), InputError);
+  write_file(dir / "empty.ldt", "");
+  write_file(dir / "rest.ies", std::string(300, 'x'));
+  const auto refused = [&](const char* a, const char* b) {
+    return test::message_of<InputError>([&] { static_cast<void>(compare(dir / a, dir / b)); });
+  };
+  for (const char* other : {"none.ldt", "none.tm25ray", "empty.ldt", "rest.ies"}) {
+    for (const std::string& said : {refused("a.ldt", other), refused(other, "a.ldt")})
+      EXPECT_NE(said.find(other), std::string::npos) << other << ": " << said;
+    EXPECT_EQ(refused("a.ldt", other).find("rays"), std::string::npos) << refused("a.ldt", other);
+  }
+  const std::string rays = refused("a.ldt", "a.tm25ray");
+  EXPECT_NE(rays.find("a.tm25ray: found rays or a model, expected a light distribution as "),
+            std::string::npos)
+      << rays;
+  EXPECT_NE(refused("a.tm25ray", "none.tm25ray").find("none.tm25ray"), std::string::npos);
+}
+
+TEST(Comparison, OfDifferentUnitsIsRefused) {
+  const test::TempDir dir;
+  write_light(dir / "a.ldt", 20.0);
+  PhotometricFile watts = read_photometric_file(dir / "a.ldt");
+  watts.distribution.unit = FluxUnit::watt;
+  write_photometric_file(dir / "w.ies", watts, PhotometricFormat::ies_2019);
+  const std::string said =
+      test::message_of<InputError>([&] { static_cast<void>(compare(dir / "a.ldt", dir / "w.ies")); });
+  EXPECT_NE(said.find("w.ies: found W/sr, expected cd as "), std::string::npos) << said;
 }
 
 }  // namespace

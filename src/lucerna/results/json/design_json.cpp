@@ -46,7 +46,8 @@ Json tolerances_json(const ToleranceSweep& sweep) {
                                {"mean", estimate_json(s.mean)},
                                {"standard_deviation", estimate_json(s.standard_deviation)},
                                {"min", estimate_json(s.min)},
-                               {"max", estimate_json(s.max)}};
+                               {"max", estimate_json(s.max)},
+                               {"cases", s.cases}};
   }
   out["cases"] = Json::array();
   for (std::size_t i = 0; i < sweep.cases.size(); ++i) {
@@ -130,6 +131,8 @@ void tolerance_rows(const ToleranceSweep& sweep, std::vector<std::string>& lines
     const bool any = std::isfinite(s.min.mean) && std::isfinite(s.max.mean);
     lines.push_back(fmt::format("  {:<16}{:>24}{:>24}{:>24}{:>20}", s.figure, text(s.nominal), text(s.min),
                                 text(s.max), any ? estimate_text(s.standard_deviation) : "-"));
+    if (s.cases < r.samples)
+      lines.back() += fmt::format("  (determined in {} of {} cases)", s.cases, r.samples);
   }
 }
 

@@ -59,12 +59,12 @@ const std::string& line_of(const std::vector<std::string>& lines, std::string_vi
 TEST(DesignSummary, KeepsColumnsApartAndNamesWhatIsNotDetermined) {
   const Estimate unknown{std::nan(""), std::nan("")};
   const auto lines = summary_with({{"beam_c0_deg", unknown, unknown, unknown, unknown, unknown},
-                                   {"centre", {233, 11}, {230, 11}, {12.3, 1.6}, {210, 20}, {250, 30}}});
+                                   {"centre", {233, 11}, {230, 11}, {12.3, 1.6}, {210, 20}, {250, 30}, 16}});
   EXPECT_TRUE(test::has(line_of(lines, "  peak at"), " deg  ")) << line_of(lines, "  peak at");
   const std::string& beam = line_of(lines, "  beam_c0_deg");
   EXPECT_FALSE(test::has(beam, "nan")) << beam;
   EXPECT_EQ(test::between(beam + " ", "not ", " ").size(), 3u) << beam;
-  EXPECT_TRUE(beam.ends_with(" -")) << beam;
+  EXPECT_TRUE(beam.ends_with(" -  (determined in 0 of 16 cases)")) << beam;
   EXPECT_TRUE(test::has(line_of(lines, "  centre  "), "233 +- 11")) << line_of(lines, "  centre  ");
   EXPECT_TRUE(line_of(lines, "  centre  ").ends_with("12.3 +- 1.6"));
 }
