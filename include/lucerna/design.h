@@ -166,7 +166,7 @@ struct ToleranceSpread {
   std::string figure;
   /// Of the design itself, and the mean over the cases.
   Estimate nominal, mean;
-  /// Over the cases; its error is that of drawing so few of them.
+  /// Over the cases, not a number where fewer than two count; its error is that of drawing so few of them.
   Estimate standard_deviation;
   /// The extreme cases.
   Estimate min, max;

@@ -132,11 +132,13 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
   search_mirror({problem, options, problem_key(problem, options), time, progress, observer}, fit, result);
   result.shape = ShapeLimits(problem.limits, problem.start).nearest(result.shape);
   check_result(fit, options, time, result_check, result, progress);
-  if (options.pareto && result.end != DesignTermination::interrupted) {
-    result.pareto = pareto_front(problem, result.shape, options, progress);
+  if (options.pareto) {
+    unless_stopped(options, result,
+                   [&] { result.pareto = pareto_front(problem, result.shape, options, progress); });
   }
-  if (options.advise && result.end != DesignTermination::interrupted) {
-    result.advice = advise(problem, result.error, options, progress);
+  if (options.advise) {
+    unless_stopped(options, result,
+                   [&] { result.advice = advise(problem, result.error, options, progress); });
   }
   return result;
 }

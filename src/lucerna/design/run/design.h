@@ -69,6 +69,19 @@ struct DesignResult : DesignFindings {
   double validation_s = 0.0;
 };
 
+/// What is computed after a search. Where it is stopped it is left out, and the result says that it was;
+/// nothing is computed after that. Processes that share the work stop together, by the exception.
+template <class Compute>
+void unless_stopped(const DesignOptions& options, DesignResult& result, const Compute& compute) {
+  if (result.end == DesignTermination::interrupted) return;
+  try {
+    compute();
+  } catch (const Interrupted&) {
+    if (options.peers != nullptr) throw;
+    result.end = DesignTermination::interrupted;
+  }
+}
+
 /// Called after every step with the best so far and the state to resume from.
 using DesignObserver =
     std::function<void(const FitRecord&, const DesignShape& best, const std::string& checkpoint)>;

@@ -59,9 +59,11 @@ DesignRun run_design(const DesignProblem& problem, DesignOptions options, Progre
   const Scene scene = with_shape(problem, run.result.shape).scene;
   follow_up(problem.target, run.result.error.scale, scene, {.seed = options.seed + 1},
             final_goal(options.time_s.value_or(problem.time_s)), options.final_trace, progress, run);
-  if (problem.tolerances && run.result.end != DesignTermination::interrupted) {
-    run.figures.tolerances = timed(run.tolerances_s, [&] {
-      return tolerance_sweep(scene, *problem.tolerances, options.seed + 2, progress, options.peers);
+  if (problem.tolerances) {
+    unless_stopped(options, run.result, [&] {
+      run.figures.tolerances = timed(run.tolerances_s, [&] {
+        return tolerance_sweep(scene, *problem.tolerances, options.seed + 2, progress, options.peers);
+      });
     });
   }
   return run;

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
+#include <string_view>
 
 #include "lucerna/cad.h"
 #include "lucerna/core/io/file.h"
@@ -60,6 +62,47 @@ TEST_F(DesignRuns, GiveTheMirrorItsErrorAndItsLight) {
   ASSERT_TRUE(mirror.tolerances.has_value());
   EXPECT_EQ(mirror.tolerances->cases.front().name, "nominal");
   EXPECT_FALSE(cad_mesh(mirror.reflector).triangles.empty());
+}
+
+/// Asks to stop once a phase has begun.
+class StopIn final : public Progress {
+ public:
+  explicit StopIn(std::string_view phase) : phase_(phase) {}
+  void update(std::string_view phase, std::uint64_t, std::uint64_t) override {
+    if (phase == phase_) begun_ = true;
+  }
+  bool stop_requested() const override { return begun_; }
+
+ private:
+  std::string_view phase_;
+  std::atomic<bool> begun_ = false;
+};
+
+// What follows a search can be stopped without the loss of what was found.
+TEST_F(DesignRuns, StoppedAfterTheSearchTheyHaveTheirResult) {
+  DesignSettings settings;
+  settings.max_rays = std::uint64_t{1} << 14;
+  settings.tolerances = true;
+  StopIn stop("tolerances");
+  const DesignedMirror mirror = design(dir_ / "lamp.toml", settings, stop);
+  EXPECT_EQ(mirror.end, DesignTermination::interrupted);
+  EXPECT_FALSE(mirror.tolerances);
+  EXPECT_LT(mirror.error.c48.excess, 0.5 * mirror.start_error.c48.excess);
+  EXPECT_FALSE(cad_mesh(mirror.reflector).triangles.empty());
+  EXPECT_FALSE(mirror.light.far_fields.empty());
+}
+
+TEST(UnlessStopped, LeavesOutWhatWasStoppedAndWhatFollows) {
+  DesignResult result(DesignShape::bspline(12, Aperture::circle(80), 4, 4));
+  int computed = 0;
+  unless_stopped({}, result, [&] { ++computed; });
+  EXPECT_NE(result.end, DesignTermination::interrupted);
+  unless_stopped({}, result, [] { throw Interrupted(); });
+  EXPECT_EQ(result.end, DesignTermination::interrupted);
+  unless_stopped({}, result, [&] { ++computed; });
+  EXPECT_EQ(computed, 1);
+  DesignResult other(result.shape);
+  EXPECT_THROW(unless_stopped({}, other, [] { throw InputError("other"); }), InputError);
 }
 
 TEST_F(DesignRuns, AreWatchedAndGoOnToTheSameBits) {

@@ -66,15 +66,16 @@ ToleranceSpread spread_of(const std::string& name, const ToleranceSweep& sweep, 
   }
   s.cases = n;
   if (n == 0) {
-    s.mean = s.min = s.max = {unknown, unknown};
+    s.mean = s.min = s.max = s.standard_deviation = {unknown, unknown};
     return s;
   }
   // Of the same rays: the errors go together, and their mean is that of the mean.
   s.mean = {sum / n, errors / n};
+  s.standard_deviation = {unknown, unknown};
+  if (n < 2) return s;
   // Of n normal values a standard deviation is known to one part in sqrt(2 n - 2).
-  const double deviation =
-      n > 1 ? std::sqrt(std::max(0.0, (squares - n * s.mean.mean * s.mean.mean) / (n - 1))) : 0.0;
-  s.standard_deviation = {deviation, n > 1 ? deviation / std::sqrt(2.0 * (n - 1)) : unknown};
+  const double deviation = std::sqrt(std::max(0.0, (squares - n * s.mean.mean * s.mean.mean) / (n - 1)));
+  s.standard_deviation = {deviation, deviation / std::sqrt(2.0 * (n - 1))};
   return s;
 }
 

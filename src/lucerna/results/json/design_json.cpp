@@ -128,7 +128,7 @@ void tolerance_rows(const ToleranceSweep& sweep, std::vector<std::string>& lines
     return std::isfinite(e.mean) ? estimate_text(e) : std::string("not determined");
   };
   for (const ToleranceSpread& s : sweep.spread) {
-    const bool any = std::isfinite(s.min.mean) && std::isfinite(s.max.mean);
+    const bool any = std::isfinite(s.standard_deviation.mean);
     lines.push_back(fmt::format("  {:<16}{:>24}{:>24}{:>24}{:>20}", s.figure, text(s.nominal), text(s.min),
                                 text(s.max), any ? estimate_text(s.standard_deviation) : "-"));
     if (s.cases < r.samples)

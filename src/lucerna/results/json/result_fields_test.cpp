@@ -92,7 +92,7 @@ Json design_file_json(const std::filesystem::path& folder, const std::string& ta
   DesignResult result(problem.start);
   result.pareto.emplace_back();
   result.advice.emplace_back();
-  result.limits.push_back({"max_height_mm", 1.0, 1.0, true});
+  result.limits.push_back({"max_height_mm", 1.0, {1.0, 0.0}, true});
   result.remarks.emplace_back("none");
   ZoneCheck zone;
   zone.bounds.emplace_back();
