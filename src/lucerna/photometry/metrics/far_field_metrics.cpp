@@ -30,8 +30,7 @@ constexpr double kNarrowArc_deg = 20.0, kWellFound = 0.015;
 /// Ends of arcs are looked for by `exact` in steps of this share of the arc, and of what the cells resolve;
 /// no further away than this.
 constexpr double kArcStep = 0.05, kResolutionStep = 0.5, kMaxWindow_deg = 20.0;
-/// `exact` looks for ends in the planes of the luminaire's axes and the diagonals: multiples of this. Each
-/// takes about half a second.
+/// `exact` looks for ends in the planes of the luminaire's axes and the diagonals: multiples of this.
 constexpr double kExactPlanes_deg = 45.0;
 /// Beyond this a peak's C is not determined.
 constexpr double kTurned_deg = 90.0;

@@ -10,9 +10,9 @@
 namespace lucerna {
 
 /// Estimates all of them (FarFieldMetrics). `planes_deg`: the planes below 180 that have beam angles (0 and
-/// 90 are added). Where `exact` is known, the axis comes from it, and the peak of a
-/// lobe of at most 10 degrees to half of it. About 0.3 s for 36 planes, and as much
-/// for `exact`.
+/// 90 are added). Where `exact` is known, peak and axis come from it, and the ends of beam and field angles
+/// in planes that are multiples of 45 degrees, where it knows the light about them well. About 0.3 s for 36
+/// planes, and some seconds for `exact`.
 FarFieldMetrics far_field_metrics(const CountedSphere& sphere, std::span<const double> planes_deg,
                                   const PointIntensity& exact = {});
 

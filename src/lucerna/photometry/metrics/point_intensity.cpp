@@ -300,10 +300,12 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
 std::optional<Estimate> exact_arc_deg(const PointIntensity& intensity, const DirectionAt& at,
                                       const CircleArc& near, const ArcWindow& window,
                                       const Estimate& threshold) {
-  for (const double end_deg : {near.from_deg, near.to_deg}) {
-    const double noise = mean_about(intensity, at, end_deg, window.step_deg).standard_error;
-    if (noise > window.max_noise * threshold.mean) return std::nullopt;
-  }
+  const auto is_noisy = [&](double angle_deg) {
+    return mean_about(intensity, at, angle_deg, window.step_deg).standard_error >
+           window.max_noise * threshold.mean;
+  };
+  if (std::isfinite(window.max_noise) && (is_noisy(near.from_deg) || is_noisy(near.to_deg)))
+    return std::nullopt;
   const double inward_deg = std::max(window.outward_deg, 0.5 * (near.to_deg - near.from_deg));
   const auto end = [&](double near_deg, double outward_deg) {
     return find_crossing(intensity, at, near_deg, outward_deg, inward_deg, window.step_deg, threshold);

@@ -48,10 +48,9 @@ struct ArcWindow {
 
 /// The size of an arc on which the intensity is `threshold` or more, and falls below it at both ends. The
 /// outermost crossing is looked for inwards to the middle of `near` (kernels widen an arc, or shift it), or
-/// as far again outwards where it is still bright; nothing where it is not there. Where noise leaves open
-/// which of several crossings is the outermost, that is in the error. Nothing where the noise is above the
-/// window's. A ripple narrower than a step may be
-/// missed. 60 to 150 short estimates.
+/// as far again outwards where it is still bright; nothing where it is not there, or the noise is above the
+/// window's. Where noise leaves open which of several crossings is the outermost, that is in the error. A
+/// ripple narrower than a step may be missed. 60 to 150 short estimates.
 std::optional<Estimate> exact_arc_deg(const PointIntensity& intensity, const DirectionAt& at,
                                       const CircleArc& near, const ArcWindow& window,
                                       const Estimate& threshold);
