@@ -142,9 +142,9 @@ double rotated_rms(const Common& common, const IntensityDistribution& test, cons
   return std::sqrt(difference / reference);
 }
 
-/// Nelder and Mead's simplex (1965) for three parameters, `start` with edges of `size`.
+/// Nelder and Mead's simplex (1965) for three parameters, `start` with edges of `size`; never worse than it.
 template <class F>
-std::pair<Vec3, double> minimise(F&& f, const Vec3& start, double size, int evaluations) {
+Vec3 minimise(F&& f, const Vec3& start, double size, int evaluations) {
   std::array<std::pair<double, Vec3>, 4> simplex;
   const Vec3 edges[] = {{}, {size, 0, 0}, {0, size, 0}, {0, 0, size}};
   for (std::size_t i = 0; i < 4; ++i) simplex[i] = {f(start + edges[i]), start + edges[i]};
@@ -175,7 +175,7 @@ std::pair<Vec3, double> minimise(F&& f, const Vec3& start, double size, int eval
     }
   }
   sort();
-  return {simplex[0].second, simplex[0].first};
+  return simplex[0].second;
 }
 
 /// Cells that a rotation is looked for with.
@@ -212,15 +212,14 @@ struct Turn {
 Turn best_turn(const Common& common, const IntensityDistribution& test, const Vec3& start,
                const Search& search) {
   const Common few = thinned(common, kAlignedCells);
-  const auto f = [&](const Vec3& rotation) { return rotated_rms(few, test, rotation); };
-  auto [rotation, rms] = minimise(f, start, radians(search.step_deg), search.evaluations);
-  if (rms > f(start)) rotation = start;
+  const Vec3 rotation = minimise([&](const Vec3& r) { return rotated_rms(few, test, r); }, start,
+                                 radians(search.step_deg), search.evaluations);
   const double last = rotated_rms(common, test, rotation), none = rotated_rms(common, test, {});
   return none <= last ? Turn{{}, none} : Turn{rotation, last};
 }
 
-/// Quarter turns first: the two conventions for C0 differ by one.
-Turn best_turn(const Common& common, const IntensityDistribution& test) {
+/// Where a search begins: the two conventions for C0 differ by a quarter turn.
+Vec3 best_quarter_turn(const Common& common, const IntensityDistribution& test) {
   const Common few = thinned(common, kAlignedCells);
   Vec3 start;
   double best = rotated_rms(few, test, start);
@@ -232,7 +231,7 @@ Turn best_turn(const Common& common, const IntensityDistribution& test) {
       start = rotation;
     }
   }
-  return best_turn(common, test, start, kWholeSearch);
+  return start;
 }
 
 void check_comparable(const IntensityDistribution& reference, const IntensityDistribution& test) {
@@ -359,7 +358,8 @@ DistributionComparison compare_distributions(const IntensityDistribution& refere
   const double noise = noise_floor_of(reference, options.reference_error_cd, common) +
                        noise_floor_of(test, options.test_error_cd, common);
   const Figures f = figures_of(common, reference, test);
-  const std::optional<Turn> turn = options.align ? std::optional(best_turn(common, test)) : std::nullopt;
+  std::optional<Turn> turn;
+  if (options.align) turn = best_turn(common, test, best_quarter_turn(common, test), kWholeSearch);
   const Copies copies = moved_copies(reference, test, options, turn);
   const auto with_error = [&](double Figures::*figure) {
     return Estimate{f.*figure, scatter(copies.figures, [&](const Figures& c) { return c.*figure; })};
