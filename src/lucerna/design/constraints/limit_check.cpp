@@ -211,4 +211,14 @@ std::string binding_limits(const std::vector<LimitCheck>& checks) {
   return names.empty() ? names : "what limits this design is set: " + names;
 }
 
+std::vector<std::string> broken_limits(const std::vector<LimitCheck>& checks) {
+  std::vector<std::string> out;
+  for (const LimitCheck& c : checks) {
+    if (c.held) continue;
+    out.push_back(fmt::format("limit {} is not held: {} found, {:.4g} allowed", c.limit,
+                              estimate_text(c.found), c.allowed));
+  }
+  return out;
+}
+
 }  // namespace lucerna

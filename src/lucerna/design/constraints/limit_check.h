@@ -22,4 +22,7 @@ std::vector<LimitCheck> check_limits(const Mesh& mirror, const DesignLimits& lim
 /// given. Empty if none binds.
 std::string binding_limits(const std::vector<LimitCheck>& checks);
 
+/// A sentence for each limit that is not held.
+std::vector<std::string> broken_limits(const std::vector<LimitCheck>& checks);
+
 }  // namespace lucerna

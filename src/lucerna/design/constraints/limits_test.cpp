@@ -289,5 +289,12 @@ TEST(LimitCheck, NamesTheLimitsThatBind) {
   EXPECT_EQ(binding_limits({{"max_height_mm", 15.0, {12.0, 0.0}, true}}), "");
 }
 
+TEST(LimitCheck, NamesTheLimitsThatAreBroken) {
+  EXPECT_EQ(
+      broken_limits(
+          {{"max_height_mm", 15.0, {12.0, 0.0}, true}, {"min_efficiency", 0.85, {0.802, 0.001}, false}}),
+      std::vector<std::string>{"limit min_efficiency is not held: 0.8020 +- 0.0010 found, 0.85 allowed"});
+}
+
 }  // namespace
 }  // namespace lucerna

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "lucerna/design/constraints/limit_check.h"
 #include "lucerna/design/lens/free_face.h"
 #include "lucerna/design/lens/free_face_fit.h"
 #include "lucerna/design/lens/lens_validation.h"
@@ -91,11 +92,7 @@ void add_lens_remarks(LensResult& result) {
         "no error is left that {:.3g} M rays can distinguish from noise: {:.2f} +- {:.2f} %",
         1e-6 * static_cast<double>(result.error.rays), 100.0 * e.excess, 100.0 * e.standard_error));
   }
-  for (const LimitCheck& c : result.limits) {
-    if (c.held) continue;
-    result.remarks.push_back(fmt::format("limit {} is not held: {} found, {:.4g} allowed", c.limit,
-                                         estimate_text(c.found), c.allowed));
-  }
+  for (std::string& broken : broken_limits(result.limits)) result.remarks.push_back(std::move(broken));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "lucerna/cad.h"
 #include "lucerna/design/constraints/light_limits.h"
+#include "lucerna/design/constraints/limit_check.h"
 #include "lucerna/design/constraints/source_side.h"
 #include "lucerna/design/validation/bounds.h"
 #include "lucerna/design/validation/etendue_limit.h"
@@ -82,11 +83,7 @@ void add_remarks(const DesignProblem& problem, DesignResult& result) {
   } else if (const std::string binding = binding_limits(result.limits); !binding.empty()) {
     result.remarks.push_back(binding);
   }
-  for (const LimitCheck& c : result.limits) {
-    if (c.held) continue;
-    result.remarks.push_back(fmt::format("limit {} is not held: {} found, {:.4g} allowed", c.limit,
-                                         estimate_text(c.found), c.allowed));
-  }
+  for (std::string& broken : broken_limits(result.limits)) result.remarks.push_back(std::move(broken));
 }
 
 }  // namespace
