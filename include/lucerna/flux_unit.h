@@ -12,5 +12,8 @@ enum class FluxUnit { lumen, watt };
 /// "lm" or "W".
 constexpr std::string_view symbol(FluxUnit unit) { return unit == FluxUnit::lumen ? "lm" : "W"; }
 
+/// That of an intensity: "cd" or "W/sr".
+constexpr std::string_view intensity_symbol(FluxUnit unit) { return unit == FluxUnit::lumen ? "cd" : "W/sr"; }
+
 }  // namespace lucerna
 #pragma GCC visibility pop

@@ -96,7 +96,7 @@ Json far_field_json(const FarFieldTable& field) {
     }
   }
   return {{"name", field.name},
-          {"unit", d.unit == FluxUnit::lumen ? "cd" : "W/sr"},
+          {"unit", intensity_symbol(d.unit)},
           {"c_deg", c},
           {"gamma_deg", gamma},
           {"intensity", base64_floats(cd)},

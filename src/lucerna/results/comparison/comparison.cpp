@@ -101,17 +101,14 @@ FarFieldTable read_distribution(const fs::path& path, const FileComparisonOption
   return std::move(folder.far_fields.front());
 }
 
-std::string_view intensity_unit(const FarFieldTable& table) {
-  return table.distribution.unit == FluxUnit::lumen ? "cd" : "W/sr";
-}
-
 LightFileComparison compare_light(const fs::path& reference_path, const fs::path& test_path,
                                   const FileComparisonOptions& options) {
   const FarFieldTable reference = read_distribution(reference_path, options);
   const FarFieldTable test = read_distribution(test_path, options);
   if (reference.distribution.unit != test.distribution.unit) {
     throw InputError(fmt::format("{}: found {}, expected {} as {} has", test_path.string(),
-                                 intensity_unit(test), intensity_unit(reference), reference_path.string()));
+                                 intensity_symbol(test.distribution.unit),
+                                 intensity_symbol(reference.distribution.unit), reference_path.string()));
   }
   LightFileComparison light;
   light.distributions = compare_distributions(

@@ -84,7 +84,7 @@ void far_field_rows(const DesignMetrics& f, Table& table) {
   if (!f.target_beam || f.trace.far_fields.empty()) return;
   const BeamMetrics& want = *f.target_beam;
   const FarFieldMetrics& obtained = f.trace.far_fields.front().metrics;
-  const char* unit = f.trace.ledger.unit == FluxUnit::lumen ? "cd" : "W/sr";
+  const std::string_view unit = intensity_symbol(f.trace.ledger.unit);
   const auto amount = [&](double x) { return fmt::format("{:.5g} {}", x, unit); };
   if (obtained.peak) {
     table.row("peak", amount(want.peak.cd), estimate_text(obtained.peak->cd, unit));
@@ -128,9 +128,9 @@ void tolerance_rows(const ToleranceSweep& sweep, std::vector<std::string>& lines
     return std::isfinite(e.mean) ? estimate_text(e) : std::string("not determined");
   };
   for (const ToleranceSpread& s : sweep.spread) {
-    const bool any = std::isfinite(s.standard_deviation.mean);
+    const bool known = std::isfinite(s.standard_deviation.mean);
     lines.push_back(fmt::format("  {:<16}{:>24}{:>24}{:>24}{:>20}", s.figure, text(s.nominal), text(s.min),
-                                text(s.max), any ? estimate_text(s.standard_deviation) : "-"));
+                                text(s.max), known ? estimate_text(s.standard_deviation) : "-"));
     if (s.cases < r.samples)
       lines.back() += fmt::format("  (determined in {} of {} cases)", s.cases, r.samples);
   }

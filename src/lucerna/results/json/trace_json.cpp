@@ -97,7 +97,7 @@ Json zones_json(const FarFieldMetrics& m) {
 Json far_field_json(const FarFieldResult& f) {
   Json json{{"name", f.field.name},
             {"kind", "far-field"},
-            {"unit", f.field.unit == FluxUnit::lumen ? "cd" : "W/sr"},
+            {"unit", intensity_symbol(f.field.unit)},
             {"c_step_deg", f.field.c_step_deg},
             {"gamma_step_deg", f.field.gamma_step_deg},
             {"bins", f.field.tent ? "tent" : "hard"},

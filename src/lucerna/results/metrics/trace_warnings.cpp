@@ -54,7 +54,7 @@ std::string coarse_grid(const FarFieldResult& f) {
   if (!(gap > kMaxShare * peak->cd.mean && gap > kMaxErrors * noise)) return "";
   const std::string finer = finer_steps(f.field, *peak);
   if (finer.empty()) return "";
-  const char* unit = f.field.unit == FluxUnit::lumen ? "cd" : "W/sr";
+  const std::string_view unit = intensity_symbol(f.field.unit);
   return fmt::format(
       "{}: its files are on a grid that is too coarse for the beam: their largest value is {:.5g} {}, the "
       "peak "

@@ -150,7 +150,7 @@ std::string plane_line(const PlaneMetrics& f, std::string_view flux_unit) {
 }
 
 void far_field_lines(const FarFieldResult& f, std::vector<std::string>& lines) {
-  const char* unit = f.field.unit == FluxUnit::lumen ? "cd" : "W/sr";
+  const std::string_view unit = intensity_symbol(f.field.unit);
   const FarFieldMetrics& m = f.metrics;
   if (m.peak) {
     lines.push_back(fmt::format("  {}: peak {}, {}; axis {}", f.field.name, estimate_text(m.peak->cd, unit),
