@@ -18,7 +18,8 @@ int main(int argc, char** argv) {
     std::printf("light in the target %.1f %%, that leaves %.1f %%\n",
                 100 * mirror.error.in_rectangle.mean, 100 * mirror.efficiency.mean);
     for (const lucerna::LimitCheck& limit : mirror.limits)
-      std::printf("%s %.4g, allowed %.4g: %s\n", limit.limit.c_str(), limit.found, limit.allowed,
+      std::printf("%s %s, allowed %.4g: %s\n", limit.limit.c_str(),
+                  lucerna::estimate_text(limit.found).c_str(), limit.allowed,
                   limit.held ? "held" : "not held");
 
     std::ofstream(argv[3]) << lucerna::step_text(mirror.reflector);
