@@ -78,7 +78,7 @@ FitProblem FaceSearch::fit_problem(std::optional<double> flux_reference, bool is
   fit.max_failed_restarts = problem_.max_failed_restarts;
   fit.direct_light = false;
   if (target.mode == TargetMode::shape) {
-    fit.flux_weight = problem_.free_face->light_weight;
+    fit.flux_weight = problem_.light_weight;
     fit.flux_reference = flux_reference ? *flux_reference / within_ : passed_by_start(fit);
   }
   fit.limits = [this](const DesignShape& shape, std::uint64_t, ResidualRows* rows) {

@@ -74,9 +74,9 @@ LensFitResult fitted(const LensProblem& problem, const LensFitOptions& options, 
 }
 
 bool given_is_better(const LensProblem& problem, const DesignError& given, const DesignError& found) {
-  const double light_weight = problem.free_face ? problem.free_face->light_weight : 0.0;
   const double noise = 2.0 * std::hypot(given.c48.standard_error, found.c48.standard_error);
-  return error_with_light(given, light_weight) + noise < error_with_light(found, light_weight);
+  return error_with_light(given, problem.light_weight) + noise <
+         error_with_light(found, problem.light_weight);
 }
 
 std::string entry_text(const Cavity& c) {

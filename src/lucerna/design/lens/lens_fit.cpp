@@ -12,11 +12,11 @@
 
 #include "lucerna/design/constraints/limits.h"
 #include "lucerna/design/evaluation/window.h"
-#include "lucerna/design/fit/approach.h"
 #include "lucerna/design/lens/cumulative_flux.h"
 #include "lucerna/design/lens/lens_evaluation.h"
 #include "lucerna/design/lens/lens_smoothness.h"
 #include "lucerna/design/lens/lens_start.h"
+#include "lucerna/design/lens/lens_tailoring.h"
 #include "lucerna/design/solver/levenberg_marquardt.h"
 #include "lucerna/random.h"
 
@@ -32,6 +32,9 @@ constexpr double kOtherStart = 0.03, kPerturbation = 0.004;
 /// the best's they may have; and how often the best is perturbed before the fine stages.
 constexpr int kStarts = 8, kTakenOn = 3, kEarlyRestarts = 4;
 constexpr double kHopeful = 9.0;
+/// Of the lenses tailored to a point source those that are started from, and the rays that make the point.
+constexpr std::size_t kTailored = 5;
+constexpr std::uint64_t kPointRays = std::uint64_t{1} << 15;
 /// A start that costs no more than so many times the squared noise needs no other beside it.
 constexpr double kEnough = 3.0;
 /// A start is given up where a stage leaves so much more squared error than with the best.
@@ -50,19 +53,23 @@ constexpr double kMaxWithin = 1e-3;
 constexpr std::uint64_t kWithinRays = 4096;
 /// The fit ends where the squared error is no more than so many times that of noise.
 constexpr double kNoiseAtEnd = 1.21;
+/// Light is not round where boxes see so much more error than rings, by so many rays.
+constexpr double kNotRound = 0.02;
+constexpr std::uint64_t kRoundRays = std::uint64_t{1} << 18;
+constexpr int kBoxes = 48;
 /// A restart goes on to more rays only if this much of the best's squared error is left.
 constexpr double kBetter = 0.97;
 
 /// What the squared error in bins weighs in a stage, light within each ring (`add_cumulative_flux`), and lost
 /// light.
 struct StageWeights {
-  double bins = 1.0, cumulative = 0.0, flux = kFitFluxWeight;
+  double bins = 1.0, cumulative = 0.0, light = 1.0;
 };
 /// In the first stage of rings cumulative light leads. It counts later too: a caustic that is a ring off is
 /// no nearer to its place by the rings alone. In coarse stages lost light weighs as much beside it as in the
 /// first, else many starts end with the right shape of less light; in fine ones an exact shape is what is
 /// wanted.
-constexpr StageWeights kFirstWeights{0.01, 100.0}, kCoarseWeights{1.0, 3000.0, 30.0 * kFitFluxWeight},
+constexpr StageWeights kFirstWeights{0.01, 100.0, 2.0}, kCoarseWeights{1.0, 3000.0, 60.0},
     kFineWeights{1.0, 3000.0};
 
 struct LensStage {
@@ -71,6 +78,8 @@ struct LensStage {
   StageWeights weights;
   /// Many starts go through it.
   bool is_coarse = false;
+  /// Its bins are those of a square, though the target's are rings.
+  bool in_boxes = false;
 };
 
 struct LensPoint {
@@ -120,16 +129,36 @@ class LensStageObjective {
     out.equations.cost += lens_limits_cost(problem_.limits, shape, signs_, rows);
     rows.add_to(out.equations);
     if (problem_.target.mode == TargetMode::shape)
-      add_flux_term(out.light, weights_.flux, flux_reference_, out.equations);
+      add_flux_term(out.light, weights_.light * problem_.light_weight, flux_reference_, out.equations);
     return out;
   }
 
-  BinError error(const LensPoint& p) const {
-    return bin_error(p.light, target_, bins_, problem_.target.mode);
+  /// The cost without derivatives, in a fraction of the time.
+  double look(const LensShape& shape) const {
+    if (share_within(shape, rays_, kWithinRays) > given_within_ + kMaxWithin)
+      return std::numeric_limits<double>::infinity();
+    const Evaluation light = light_of(shape);
+    const double off = error(light).relative_rms, missing = 1.0 - light.flux.sum() / flux_reference_;
+    return off * off + kCoarseWeights.light * problem_.light_weight * missing * missing;
+  }
+  /// The squared error, less that of noise.
+  double squared_excess(const LensShape& shape) const {
+    const BinError found = error(light_of(shape));
+    return std::max(0.0, found.relative_rms * found.relative_rms - found.floor * found.floor);
+  }
+
+  BinError error(const Evaluation& light) const {
+    return bin_error(light, target_, bins_, problem_.target.mode);
   }
   std::uint64_t rays() const { return options_.rays; }
 
  private:
+  Evaluation light_of(const LensShape& shape) const {
+    LensEvaluationOptions plain = options_;
+    plain.derivatives = false;
+    return evaluate_lens(shape, problem_.medium, rays_, bins_, plain);
+  }
+
   NormalEquations equations(const Evaluation& light) const {
     NormalEquations out = normal_equations(light, target_, bins_, problem_.target.mode);
     out.cost *= weights_.bins;
@@ -163,6 +192,7 @@ class LensFit {
         signs_(draft_signs(problem.start)),
         tilt_(lens_tilt(problem.start)),
         window_(lens_window(problem)),
+        boxes_(lens_boxes(problem)),
         result_({problem.start}) {
     rays_.grow(std::uint64_t{1} << 16);
     given_within_ = share_within(problem.start, rays_, kWithinRays);
@@ -193,6 +223,7 @@ class LensFit {
       begun.push_back(coarsely(perturbed(begun.front().shape, k), coarse_ - 1));
     }
     sort_by_cost(begun);
+    if (is_not_round(begun.front().shape)) go_on_in_boxes();
     result_.lens.outline = begun.front().shape;
     coarse_cost_ = begun.front().cost;
     for (std::size_t k = 0; k < std::min<std::size_t>(kTakenOn, begun.size()); ++k) {
@@ -224,7 +255,8 @@ class LensFit {
   static std::vector<LensStage> stages_of(const TentBins& window, int parameters, std::uint64_t max_rays) {
     const auto rays = [&](int log2) { return std::min(max_rays, std::uint64_t{1} << log2); };
     if (!window.is_rings())
-      return {{24, rays(15), {}, true}, {48, rays(17), {}}, {48, rays(20), {}}, {48, rays(22), {}}};
+      return {
+          {24, rays(15), {}, true}, {kBoxes, rays(17), {}}, {kBoxes, rays(20), {}}, {kBoxes, rays(22), {}}};
     const int least = parameters + 6;
     const int rings = std::max(window.count(), least), coarse = std::max(window.count() / 3, least);
     const int finest = std::min(kFinerRings * rings, std::max(rings, kMostFineRings));
@@ -234,12 +266,27 @@ class LensFit {
   }
 
   /// The given lens, those of a point source, and the given one perturbed.
-  std::deque<LensShape> starts() const {
+  std::deque<LensShape> starts() {
     std::deque<LensShape> out{problem_.start};
-    for (LensShape& s : zero_etendue_lenses(problem_.start, problem_.medium, rays_,
-                                            target_flux(problem_.target, problem_.world_from_lens, 1.0)))
+    const PointSource source = point_source(rays_, kPointRays);
+    const PrescribedAngle angle(target_flux(problem_.target, problem_.world_from_lens, 1.0));
+    for (LensShape& s : zero_etendue_lenses(problem_.start, problem_.medium, source, angle))
       out.push_back(std::move(s));
+    if (out.size() == 1) {
+      for (LensShape& s : best_tailored(source, angle)) out.push_back(std::move(s));
+    }
     for (int k = 0; static_cast<int>(out.size()) < kStarts; ++k) out.push_back(other_start(k));
+    return out;
+  }
+  /// Of the lenses that are tailored to a point source those that do best with the source as it is.
+  std::vector<LensShape> best_tailored(const PointSource& source, const PrescribedAngle& angle) {
+    const auto all = tailored_lenses(problem_.start, problem_.medium, source, angle, problem_.limits);
+    std::vector<Candidate> looked_at;
+    for (const LensShape& shape : all) looked_at.push_back({objective_of(0).look(shape), shape});
+    sort_by_cost(looked_at);
+    std::vector<LensShape> out;
+    for (std::size_t k = 0; k < std::min<std::size_t>(kTailored, looked_at.size()); ++k)
+      out.push_back(std::move(looked_at[k].shape));
     return out;
   }
   LensShape other_start(int k) const {
@@ -322,7 +369,7 @@ class LensFit {
       if (!std::isfinite(now.equations.cost)) return {};
       steps(objective, now, static_cast<int>(s));
       shape = now.shape;
-      const BinError error = objective.error(now);
+      const BinError error = objective.error(now.light);
       end = {now.equations.cost, error.relative_rms * error.relative_rms, error.floor * error.floor};
     }
     return end;
@@ -330,21 +377,42 @@ class LensFit {
 
   const LensStageObjective& objective_of(std::size_t stage) {
     objectives_.resize(stages_.size());
-    if (objectives_[stage] == nullptr) {
-      objectives_[stage] =
-          std::make_unique<LensStageObjective>(problem_, stages_[stage], binned(stages_[stage].bins), rays_,
-                                               signs_, flux_reference_, given_within_);
-    }
+    if (objectives_[stage] == nullptr)
+      objectives_[stage] = std::make_unique<LensStageObjective>(made(stages_[stage]));
     return *objectives_[stage];
+  }
+  LensStageObjective made(const LensStage& stage) {
+    return {problem_, stage, binned(stage), rays_, signs_, flux_reference_, given_within_};
+  }
+
+  /// Whether light that turns with the target in rings does not in boxes: a source that is not round leaves
+  /// its image in a beam, of which rings see the mean.
+  bool is_not_round(const LensShape& shape) {
+    if (!window_.is_rings() || stopped_) return false;
+    const std::uint64_t rays = std::min(options_.max_rays, kRoundRays);
+    const double in_boxes = made({kBoxes, rays, {}, false, true}).squared_excess(shape);
+    const double in_rings = made({window_.count(), rays, {}}).squared_excess(shape);
+    return in_boxes > in_rings + kNotRound * kNotRound;
+  }
+
+  /// The stages after the coarse ones see the light in boxes from now on.
+  void go_on_in_boxes() {
+    stages_.resize(coarse_);
+    for (const LensStage& stage : stages_of(boxes_, 0, options_.max_rays)) {
+      if (stage.is_coarse) continue;
+      stages_.push_back(stage);
+      stages_.back().in_boxes = true;
+    }
   }
 
   /// Made when it is first asked for: a target in bins takes as long as an evaluation.
-  const BinnedTarget& binned(int count) {
-    const auto found = targets_.find(count);
+  const BinnedTarget& binned(const LensStage& stage) {
+    const std::pair<int, bool> key{stage.bins, stage.in_boxes};
+    const auto found = targets_.find(key);
     if (found != targets_.end()) return found->second;
-    TentBins bins = rebinned(window_, 1.0, count);
+    TentBins bins = rebinned(stage.in_boxes ? boxes_ : window_, 1.0, stage.bins);
     Eigen::VectorXd flux = target_flux(problem_.target, problem_.world_from_lens, rays_.flux())(bins);
-    return targets_.emplace(count, BinnedTarget{std::move(bins), std::move(flux)}).first->second;
+    return targets_.emplace(key, BinnedTarget{std::move(bins), std::move(flux)}).first->second;
   }
 
   void steps(const LensStageObjective& objective, LensPoint& now, int stage) {
@@ -386,7 +454,7 @@ class LensFit {
     r.lambda = lambda;
     r.accepted = accepted;
     if (std::isfinite(now.equations.cost)) {
-      const BinError error = objective.error(now);
+      const BinError error = objective.error(now.light);
       r.error = error.relative_rms;
       r.floor = error.floor;
       r.efficiency = now.light.reflected + now.light.direct;
@@ -404,8 +472,8 @@ class LensFit {
   const LensFitWatcher& watch_;
   std::vector<double> signs_;
   Eigen::MatrixXd tilt_;
-  TentBins window_;
-  std::map<int, BinnedTarget> targets_;
+  TentBins window_, boxes_;
+  std::map<std::pair<int, bool>, BinnedTarget> targets_;
   std::vector<LensStage> stages_;
   std::vector<std::unique_ptr<LensStageObjective>> objectives_;
   double flux_reference_ = 1.0, given_within_ = 0.0;

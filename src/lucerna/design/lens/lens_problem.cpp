@@ -71,15 +71,10 @@ int read_lens_intervals(TomlReader& design) {
 /// What `family` makes of the free face.
 std::optional<FreeFaceProblem> read_free_face(TomlReader& design, int intervals) {
   const std::string family = design.word("family").value_or("revolution");
-  if (family == "revolution") {
-    if (design.has("light_weight"))
-      design.fail("light_weight", "belongs to free forms; this is a lens of revolution");
-    return std::nullopt;
-  }
+  if (family == "revolution") return std::nullopt;
   if (family != "bspline")
     design.fail("family", fmt::format("found \"{}\", expected \"revolution\" or \"bspline\"", family));
   FreeFaceProblem out;
-  out.light_weight = design.number("light_weight", out.light_weight);
   if (intervals > 0) out.intervals = out.max_intervals = intervals;
   return out;
 }
@@ -204,6 +199,7 @@ LensProblem lens_problem(Project project, const std::filesystem::path& path) {
   const auto sides = read_sides(*design);
   const int intervals = read_lens_intervals(*design);
   auto free_face = read_free_face(*design, intervals);
+  const double light_weight = design->number("light_weight", kLightWeight);
   const double time_s = design->number("time_s", 60.0);
   const double restarts = design->number("restarts", 1e6);
   const std::string optimizer = design->word("optimizer").value_or("auto");
@@ -228,7 +224,15 @@ LensProblem lens_problem(Project project, const std::filesystem::path& path) {
   const MediumView medium{solid.refractive_index, solid.absorption_per_mm};
   const Frame placed = solid.world_from_solid;
   add_design_detectors(project, target);
-  return {std::move(project),        std::move(target), limits, start, medium, placed, free_face, time_s,
+  return {std::move(project),
+          std::move(target),
+          limits,
+          start,
+          medium,
+          placed,
+          free_face,
+          light_weight,
+          time_s,
           static_cast<int>(restarts)};
 }
 
@@ -249,14 +253,18 @@ TentBins lens_window(const LensProblem& problem) {
   constexpr double kMostRings = 1024.0;
   const bool rotational = !problem.target.plane && problem.target.distribution.c_deg.size() == 1 &&
                           std::abs(problem.world_from_lens.ez().z) > kAligned;
-  TentBins bins = target_bins(problem.target, problem.world_from_lens, rotational);
-  if (!rotational) return bins;
+  if (!rotational) return lens_boxes(problem);
+  TentBins bins = target_bins(problem.target, problem.world_from_lens, true);
   constexpr double kHemisphere = 0.5 * std::numbers::pi;
   if (bins.extent() > kHemisphere && target_share_within(problem, kHemisphere) > 1.0 - kLittleBehind)
     bins = TentBins::rings(bins.axes(), kHemisphere, bins.count());
   const double box = target_rectangle(problem.target).width() / kErrorBoxes;
   const double rings = std::clamp(std::ceil(kRingsOfBox * bins.extent() / box), 48.0, kMostRings);
   return rebinned(bins, 1.0, static_cast<int>(rings));
+}
+
+TentBins lens_boxes(const LensProblem& problem) {
+  return target_bins(problem.target, problem.world_from_lens, false);
 }
 
 Solid shaped_solid(const LensProblem& problem, const ShapedLens& lens) {

@@ -20,8 +20,6 @@ struct FreeFaceProblem {
   int intervals = 24, max_intervals = 48;
   /// Whether the face opposite to it may become a cavity.
   bool shapes_entry = false;
-  /// What light costs that misses the target's rectangle.
-  double light_weight = 0.1;
 };
 
 /// A lens that is to be designed, checked.
@@ -35,6 +33,8 @@ struct LensProblem {
   Frame world_from_lens;
   /// Without, the free faces stay those of a body of revolution.
   std::optional<FreeFaceProblem> free_face;
+  /// What light costs that misses the target's rectangle, where only the shape counts.
+  double light_weight = kLightWeight;
   double time_s = 60.0;
   int max_failed_restarts = 1'000'000;
 };
@@ -63,6 +63,8 @@ double target_share_within(const LensProblem& problem, double gamma_rad);
 /// lens's axis, else 48 x 48. Rings end at a right angle to the axis, as boxes do, where the target has
 /// little light behind.
 TentBins lens_window(const LensProblem& problem);
+/// The same light in 48 x 48 bins, whatever the target is.
+TentBins lens_boxes(const LensProblem& problem);
 
 /// What a design makes of a lens: another outline, or the given one with a free form as its free face.
 struct ShapedLens {

@@ -9,13 +9,13 @@
 
 #include "lucerna/design/evaluation/point_source.h"
 #include "lucerna/design/lens/lens_path.h"
+#include "lucerna/design/lens/prescribed_angle.h"
 
 namespace lucerna {
 
 namespace {
 
-constexpr int kRings = 360, kMeridianSteps = 2000;
-constexpr std::uint64_t kPointRays = std::uint64_t{1} << 15;
+constexpr int kMeridianSteps = 2000;
 /// Heights of domes that an entry begins with, over the lens's radius; flat ones do not bend light enough
 /// where it is wide, or its source.
 constexpr std::array<double, 4> kDomes{0.0, 0.12, 0.25, 0.4};
@@ -33,12 +33,7 @@ std::vector<MeridianRay> meridian_rays(const LensShape& lens, std::size_t face, 
                                        const PointSource& source) {
   const LensCurves curves(lens);
   const LensTracer tracer(curves, medium);
-  std::vector<double> light(kMeridianSteps + 1, 0.0);
-  for (const DirectedFlux& l : source.light) {
-    const double theta = std::acos(std::clamp(l.direction.z(), -1.0, 1.0));
-    light[static_cast<std::size_t>(
-        std::min<double>(kMeridianSteps, kMeridianSteps * theta / std::numbers::pi))] += l.flux;
-  }
+  const std::vector<double> light = meridian_light(source, kMeridianSteps);
   std::vector<MeridianRay> out;
   LensPath path;
   double flux = 0.0;
@@ -66,29 +61,6 @@ std::vector<MeridianRay> meridian_rays(const LensShape& lens, std::size_t face, 
   }
   return out;
 }
-
-/// The angle within which a share of the prescribed flux is.
-class PrescribedAngle {
- public:
-  explicit PrescribedAngle(const std::function<Eigen::VectorXd(const TentBins&)>& flux)
-      : within_(kRings + 1, 0.0) {
-    const Eigen::VectorXd rings = flux(TentBins::rings(Frame(), std::numbers::pi, kRings));
-    for (std::size_t i = 0; i < kRings; ++i)
-      within_[i + 1] = within_[i] + std::max(0.0, rings[static_cast<Eigen::Index>(i)]);
-  }
-
-  double of(double share) const {
-    const double want = share * within_.back();
-    const auto at = std::upper_bound(within_.begin() + 1, within_.end() - 1, want);
-    const double step = std::max(*at - *(at - 1), 1e-300);
-    const double i =
-        static_cast<double>(at - within_.begin()) - 1.0 + std::clamp((want - *(at - 1)) / step, 0.0, 1.0);
-    return i * std::numbers::pi / kRings;
-  }
-
- private:
-  std::vector<double> within_;
-};
 
 /// Points of the free face, from the axis outwards; empty where there is none.
 std::vector<OutlinePoint> face_points(const std::vector<MeridianRay>& rays, const PrescribedAngle& angle,
@@ -178,8 +150,8 @@ std::optional<EntryAndLast> entry_and_last(const LensForm& form) {
 /// What solutions are sought for.
 struct PointProblem {
   const MediumView& medium;
-  PointSource source;
-  PrescribedAngle angle;
+  const PointSource& source;
+  const PrescribedAngle& angle;
 };
 
 /// The lens with the four solutions in the place of a face.
@@ -215,10 +187,9 @@ LensShape domed(const LensShape& start, const LensFace& entry, double depth_mm) 
 }  // namespace
 
 std::vector<LensShape> zero_etendue_lenses(const LensShape& start, const MediumView& medium,
-                                           const DesignRays& rays,
-                                           const std::function<Eigen::VectorXd(const TentBins&)>& flux) {
+                                           const PointSource& source, const PrescribedAngle& angle) {
   const LensForm& form = start.form();
-  const PointProblem problem{medium, point_source(rays, kPointRays), PrescribedAngle(flux)};
+  const PointProblem problem{medium, source, angle};
   if (form.free_faces().size() == 1) return solutions(start, form.free_faces().front(), problem);
   std::vector<LensShape> out;
   const auto faces = entry_and_last(form);

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
-#include <functional>
 #include <vector>
 
-#include "lucerna/design/evaluation/design_rays.h"
-#include "lucerna/design/evaluation/tent_bins.h"
+#include "lucerna/design/evaluation/point_source.h"
 #include "lucerna/design/lens/lens_shape.h"
+#include "lucerna/design/lens/prescribed_angle.h"
 #include "lucerna/trace/kernels/solid_kernel.h"
 
 namespace lucerna {
@@ -19,10 +17,8 @@ namespace lucerna {
 /// other faces reflect) is the share of the prescribed flux within gamma. Snell's law gives the face's normal
 /// there, and its distance follows from the ordinary differential equation that the face is across it. Four
 /// solutions: held at the axis or at the edge, the rays crossing the axis or not; those without a valid shape
-/// are left out. `flux` in any bins of the lens's frame; the source is the point that the first rays pass
-/// nearest to.
+/// are left out. All in the lens's frame.
 std::vector<LensShape> zero_etendue_lenses(const LensShape& start, const MediumView& medium,
-                                           const DesignRays& rays,
-                                           const std::function<Eigen::VectorXd(const TentBins&)>& flux);
+                                           const PointSource& source, const PrescribedAngle& angle);
 
 }  // namespace lucerna

@@ -220,7 +220,7 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   const double time_s = design.number("time_s", 60.0);
   const std::vector<int> intervals = read_intervals(design);
   const std::optional<int> given_restarts = read_restarts(design);
-  const double light_weight = design.number("light_weight", DesignProblem::kLightWeight);
+  const double light_weight = design.number("light_weight", kLightWeight);
   const PlacedReflector placed = project.scene.reflectors[0];
   const bool revolution = dynamic_cast<const RevolutionSurface*>(placed.reflector.surface.get()) != nullptr;
   const int max_failed_restarts = given_restarts.value_or(kMaxFailedRestarts);

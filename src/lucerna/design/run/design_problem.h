@@ -32,10 +32,8 @@ struct DesignProblem {
   /// The project says how many knots there are to be. A search among candidates keeps to them while they
   /// bring the mirror near the target.
   bool fixed_knots = false;
-  /// What light beside the target's rectangle costs a free form in shape mode: so many times the square of
-  /// the missing share, beside the squared error. At 0.1 a tenth of the light counts as an error of 3.2 %.
+  /// What light beside the target's rectangle costs a free form in shape mode.
   double light_weight = kLightWeight;
-  static constexpr double kLightWeight = 0.1;
   /// What to try around the result; nothing: no [design.tolerances].
   std::optional<ToleranceRanges> tolerances;
 };
