@@ -53,10 +53,13 @@ constexpr double kMaxWithin = 1e-3;
 constexpr std::uint64_t kWithinRays = 4096;
 /// The fit ends where the squared error is no more than so many times that of noise.
 constexpr double kNoiseAtEnd = 1.21;
-/// Light is not round where boxes see so much more error than rings, by so many rays.
-constexpr double kNotRound = 0.02;
+/// Light is not round where boxes see so much more error than rings, by so many rays. Light whose shape is
+/// farther off than this is cut otherwise by boxes, round or not.
+constexpr double kNotRound = 0.02, kShaped = 0.1;
 constexpr std::uint64_t kRoundRays = std::uint64_t{1} << 18;
 constexpr int kBoxes = 48;
+/// Cumulative light is left out of fine stages where it costs so many times the squared error.
+constexpr double kOutOfReach = 30.0;
 /// A restart goes on to more rays only if this much of the best's squared error is left.
 constexpr double kBetter = 0.97;
 
@@ -129,17 +132,22 @@ class LensStageObjective {
     out.equations.cost += lens_limits_cost(problem_.limits, shape, signs_, rows);
     rows.add_to(out.equations);
     if (problem_.target.mode == TargetMode::shape)
-      add_flux_term(out.light, weights_.light * problem_.light_weight, flux_reference_, out.equations);
+      add_flux_term(out.light, light_weight(), flux_reference_, out.equations);
     return out;
   }
 
-  /// The cost without derivatives, in a fraction of the time.
+  /// What light beside the window costs.
+  double light_cost(const Evaluation& light) const {
+    const double missing = 1.0 - light.flux.sum() / flux_reference_;
+    return problem_.target.mode == TargetMode::shape ? light_weight() * missing * missing : 0.0;
+  }
+  /// The cost of the light alone, without derivatives: in a fraction of the time.
   double look(const LensShape& shape) const {
     if (share_within(shape, rays_, kWithinRays) > given_within_ + kMaxWithin)
       return std::numeric_limits<double>::infinity();
     const Evaluation light = light_of(shape);
-    const double off = error(light).relative_rms, missing = 1.0 - light.flux.sum() / flux_reference_;
-    return off * off + kCoarseWeights.light * problem_.light_weight * missing * missing;
+    const double off = error(light).relative_rms;
+    return off * off + light_cost(light);
   }
   /// The squared error, less that of noise.
   double squared_excess(const LensShape& shape) const {
@@ -153,6 +161,8 @@ class LensStageObjective {
   std::uint64_t rays() const { return options_.rays; }
 
  private:
+  double light_weight() const { return weights_.light * problem_.light_weight; }
+
   Evaluation light_of(const LensShape& shape) const {
     LensEvaluationOptions plain = options_;
     plain.derivatives = false;
@@ -223,7 +233,11 @@ class LensFit {
       begun.push_back(coarsely(perturbed(begun.front().shape, k), coarse_ - 1));
     }
     sort_by_cost(begun);
-    if (is_not_round(begun.front().shape)) go_on_in_boxes();
+    if (is_not_round(begun.front().shape)) {
+      go_on_in_boxes();
+    } else if (begun.front().out_of_reach) {
+      for (std::size_t s = coarse_; s < stages_.size(); ++s) stages_[s].weights.cumulative = 0.0;
+    }
     result_.lens.outline = begun.front().shape;
     coarse_cost_ = begun.front().cost;
     for (std::size_t k = 0; k < std::min<std::size_t>(kTakenOn, begun.size()); ++k) {
@@ -243,12 +257,15 @@ class LensFit {
     LensShape shape;
     /// Needs no other beside it.
     bool is_enough = false;
+    /// What it costs is light many rings off, as of a beam that is narrower than the source allows: fine
+    /// stages would weigh that alone.
+    bool out_of_reach = false;
   };
 
   /// How far a stage came.
   struct StageEnd {
     double cost = std::numeric_limits<double>::infinity();
-    double squared_error = cost, squared_noise = 0.0;
+    double squared_error = cost, squared_noise = 0.0, light_cost = 0.0;
   };
 
   /// Coarse ones, one of middling size at which restarts are compared, and fine ones.
@@ -282,7 +299,7 @@ class LensFit {
   std::vector<LensShape> best_tailored(const PointSource& source, const PrescribedAngle& angle) {
     const auto all = tailored_lenses(problem_.start, problem_.medium, source, angle, problem_.limits);
     std::vector<Candidate> looked_at;
-    for (const LensShape& shape : all) looked_at.push_back({objective_of(0).look(shape), shape});
+    for (const LensShape& shape : all) looked_at.push_back({objective_of(coarse_ - 1).look(shape), shape});
     sort_by_cost(looked_at);
     std::vector<LensShape> out;
     for (std::size_t k = 0; k < std::min<std::size_t>(kTailored, looked_at.size()); ++k)
@@ -345,7 +362,9 @@ class LensFit {
       if (!(end.cost <= kFarBehind * best_of_stage_[stage])) break;
     }
     if (stage < coarse_) end = {};
-    return {end.cost, std::move(shape), end.cost <= kEnough * end.squared_noise};
+    const double rings_off = end.cost - end.squared_error - end.light_cost;
+    return {end.cost, std::move(shape), end.cost <= kEnough * end.squared_noise,
+            rings_off > kOutOfReach * end.squared_error};
   }
 
   static void sort_by_cost(std::vector<Candidate>& all) {
@@ -370,7 +389,8 @@ class LensFit {
       steps(objective, now, static_cast<int>(s));
       shape = now.shape;
       const BinError error = objective.error(now.light);
-      end = {now.equations.cost, error.relative_rms * error.relative_rms, error.floor * error.floor};
+      end = {now.equations.cost, error.relative_rms * error.relative_rms, error.floor * error.floor,
+             objective.light_cost(now.light)};
     }
     return end;
   }
@@ -392,7 +412,7 @@ class LensFit {
     const std::uint64_t rays = std::min(options_.max_rays, kRoundRays);
     const double in_boxes = made({kBoxes, rays, {}, false, true}).squared_excess(shape);
     const double in_rings = made({window_.count(), rays, {}}).squared_excess(shape);
-    return in_boxes > in_rings + kNotRound * kNotRound;
+    return in_rings < kShaped * kShaped && in_boxes > in_rings + kNotRound * kNotRound;
   }
 
   /// The stages after the coarse ones see the light in boxes from now on.
