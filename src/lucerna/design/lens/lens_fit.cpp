@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -202,7 +203,6 @@ class LensFit {
         signs_(draft_signs(problem.start)),
         tilt_(lens_tilt(problem.start)),
         window_(lens_window(problem)),
-        boxes_(lens_boxes(problem)),
         result_({problem.start}) {
     rays_.grow(std::uint64_t{1} << 16);
     given_within_ = share_within(problem.start, rays_, kWithinRays);
@@ -408,17 +408,20 @@ class LensFit {
   /// Whether light that turns with the target in rings does not in boxes: a source that is not round leaves
   /// its image in a beam, of which rings see the mean.
   bool is_not_round(const LensShape& shape) {
-    if (!window_.is_rings() || stopped_) return false;
+    // Squares do not see behind the lens.
+    if (!window_.is_rings() || window_.extent() > 0.5 * std::numbers::pi || stopped_) return false;
     const std::uint64_t rays = std::min(options_.max_rays, kRoundRays);
-    const double in_boxes = made({kBoxes, rays, {}, false, true}).squared_excess(shape);
     const double in_rings = made({window_.count(), rays, {}}).squared_excess(shape);
-    return in_rings < kShaped * kShaped && in_boxes > in_rings + kNotRound * kNotRound;
+    if (in_rings > kShaped * kShaped) return false;
+    boxes_ = lens_boxes(problem_);
+    const double in_boxes = made({kBoxes, rays, {}, false, true}).squared_excess(shape);
+    return in_boxes > in_rings + kNotRound * kNotRound;
   }
 
   /// The stages after the coarse ones see the light in boxes from now on.
   void go_on_in_boxes() {
     stages_.resize(coarse_);
-    for (const LensStage& stage : stages_of(boxes_, 0, options_.max_rays)) {
+    for (const LensStage& stage : stages_of(*boxes_, 0, options_.max_rays)) {
       if (stage.is_coarse) continue;
       stages_.push_back(stage);
       stages_.back().in_boxes = true;
@@ -430,7 +433,7 @@ class LensFit {
     const std::pair<int, bool> key{stage.bins, stage.in_boxes};
     const auto found = targets_.find(key);
     if (found != targets_.end()) return found->second;
-    TentBins bins = rebinned(stage.in_boxes ? boxes_ : window_, 1.0, stage.bins);
+    TentBins bins = rebinned(stage.in_boxes ? *boxes_ : window_, 1.0, stage.bins);
     Eigen::VectorXd flux = target_flux(problem_.target, problem_.world_from_lens, rays_.flux())(bins);
     return targets_.emplace(key, BinnedTarget{std::move(bins), std::move(flux)}).first->second;
   }
@@ -492,7 +495,9 @@ class LensFit {
   const LensFitWatcher& watch_;
   std::vector<double> signs_;
   Eigen::MatrixXd tilt_;
-  TentBins window_, boxes_;
+  TentBins window_;
+  /// Made when rings have to be compared with them.
+  std::optional<TentBins> boxes_;
   std::map<std::pair<int, bool>, BinnedTarget> targets_;
   std::vector<LensStage> stages_;
   std::vector<std::unique_ptr<LensStageObjective>> objectives_;

@@ -63,7 +63,8 @@ double target_share_within(const LensProblem& problem, double gamma_rad);
 /// lens's axis, else 48 x 48. Rings end at a right angle to the axis, as boxes do, where the target has
 /// little light behind.
 TentBins lens_window(const LensProblem& problem);
-/// The same light in 48 x 48 bins, whatever the target is.
+/// The same light in 48 x 48 bins, whatever the target is. Throws InputError where half of it or more is
+/// behind the lens.
 TentBins lens_boxes(const LensProblem& problem);
 
 /// What a design makes of a lens: another outline, or the given one with a free form as its free face.
