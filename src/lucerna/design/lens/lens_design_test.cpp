@@ -137,15 +137,6 @@ TEST(LensDesignSlow, ACollimatorKeepsTheLightOfItsDome) {
   for (const LimitCheck& c : found.limits) EXPECT_TRUE(c.held) << c.limit << ' ' << c.found.mean;
 }
 
-// Light behind the lens is no square's: rings see all of it.
-TEST(LensDesign, TakesATargetThatIsMostlyBehind) {
-  IntensityDistribution back = *beam_up(25.0);
-  for (std::size_t g = 0; g < back.cd.size(); ++g) back.cd[g] += back.gamma_deg[g] < 60.0 ? 2.0 : 0.0;
-  const LensResult found =
-      design_lens(problem_of("", memory_of(std::make_shared<IntensityDistribution>(back))), quick());
-  EXPECT_GT(found.evaluations, 8);
-}
-
 TEST(LensDesign, KeepsItsLimits) {
   const LensProblem problem = problem_of("[design.limits]\nmax_height_mm = 6.65\nmin_thickness_mm = 1.8\n");
   const LensResult found = design_lens(problem, quick());

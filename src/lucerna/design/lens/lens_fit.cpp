@@ -65,7 +65,7 @@ constexpr double kOutOfReach = 30.0;
 constexpr double kBetter = 0.97;
 
 /// What the squared error in bins weighs in a stage, light within each ring (`add_cumulative_flux`), and lost
-/// light.
+/// light, this over the problem's `light_weight`.
 struct StageWeights {
   double bins = 1.0, cumulative = 0.0, light = 1.0;
 };
@@ -142,7 +142,7 @@ class LensStageObjective {
     const double missing = 1.0 - light.flux.sum() / flux_reference_;
     return problem_.target.mode == TargetMode::shape ? light_weight() * missing * missing : 0.0;
   }
-  /// The cost of the light alone, without derivatives: in a fraction of the time.
+  /// The squared error and what lost light costs, without derivatives: in a fraction of the time.
   double look(const LensShape& shape) const {
     if (share_within(shape, rays_, kWithinRays) > given_within_ + kMaxWithin)
       return std::numeric_limits<double>::infinity();

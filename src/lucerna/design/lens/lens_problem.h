@@ -63,8 +63,7 @@ double target_share_within(const LensProblem& problem, double gamma_rad);
 /// lens's axis, else 48 x 48. Rings end at a right angle to the axis, as boxes do, where the target has
 /// little light behind.
 TentBins lens_window(const LensProblem& problem);
-/// The same light in 48 x 48 bins, whatever the target is. Throws InputError where half of it or more is
-/// behind the lens.
+/// The same light in 48 x 48 bins, whatever the target is: about its mean direction, as `target_bins` has it.
 TentBins lens_boxes(const LensProblem& problem);
 
 /// What a design makes of a lens: another outline, or the given one with a free form as its free face.

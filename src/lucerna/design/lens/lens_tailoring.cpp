@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "lucerna/core/parallel/parallel.h"
@@ -233,11 +232,10 @@ class TailoringObjective {
   Eigen::MatrixXd roughness_;
 };
 
-/// The shape after the steps, if rays still go their ways.
-std::optional<LensShape> tailored(const LensShape& from, const TailoringObjective& objective,
-                                  const Eigen::MatrixXd& tilt) {
+/// The shape after the steps.
+LensShape tailored(const LensShape& from, const TailoringObjective& objective, const Eigen::MatrixXd& tilt) {
   TailoredPoint now = objective.at(from);
-  if (!std::isfinite(now.equations.cost)) return std::nullopt;
+  if (!std::isfinite(now.equations.cost)) return from;
   double lambda = 1e-3;
   const double longest = kLongestTailoredMove * from.radius_mm();
   for (int step = 0; step < kTailoredSteps && lambda < kMaxLambda; ++step) {
@@ -313,18 +311,14 @@ std::vector<LensShape> tailored_lenses(const LensShape& start, const MediumView&
   const Eigen::MatrixXd tilt = lens_tilt(start);
   const std::vector<LensShape> from = raised_lenses(start, medium, fan);
   const auto aims = aim_combinations(ways.size());
-  std::vector<std::optional<LensShape>> found(from.size() * aims.size());
+  std::vector<LensShape> found(from.size() * aims.size(), start);
   parallel_blocks(found.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const TailoringObjective objective(start, medium, fan, angle, limits, ways, aims[i % aims.size()]);
       found[i] = tailored(from[i / aims.size()], objective, tilt);
     }
   });
-  std::vector<LensShape> out;
-  for (std::optional<LensShape>& shape : found) {
-    if (shape) out.push_back(std::move(*shape));
-  }
-  return out;
+  return found;
 }
 
 }  // namespace lucerna

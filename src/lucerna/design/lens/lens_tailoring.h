@@ -18,9 +18,8 @@ namespace lucerna {
 /// narrow beams of wide sources. All combinations of these for the two ways with the most light are tried,
 /// each from the given lens and from it with the face over the source raised or lowered by several heights.
 /// Levenberg-Marquardt on where some hundred rays of the point go, from the given shape: what the rays say
-/// nothing of stays, and `limits` count. None where no way has a fiftieth of the light. Every shape is valid;
-/// they are in no order. Some tenths of a second.
-/// Depends on the arguments alone.
+/// nothing of stays, and `limits` count. None where no way has a fiftieth of the light. Shapes are
+/// valid where the given one is, and in no order. Half a second. Depends on the arguments alone.
 std::vector<LensShape> tailored_lenses(const LensShape& start, const MediumView& medium,
                                        const PointSource& source, const PrescribedAngle& angle,
                                        const LensLimits& limits);
