@@ -14,6 +14,9 @@ namespace lucerna {
 struct CompareOptions {
   /// Standard errors of the reference's and the test's values (layout of `cd`); empty = known exactly.
   std::span<const double> reference_error_cd{}, test_error_cd{};
+  /// Standard errors of the reference's and the test's flux (in its unit): a trace, whose rays land in one
+  /// direction or another, knows the sum better than independent values would.
+  std::optional<double> reference_flux_error{}, test_flux_error{};
   bool align = true;  ///< also look for the rotation that fits best
 };
 

@@ -28,12 +28,15 @@ std::string other_kind(const std::filesystem::path& path) {
   return "";
 }
 
-/// By its ending, of a file whose content is neither light nor rays.
-bool is_damaged_photometry(const std::filesystem::path& path) {
+/// What is wrong with a file that is called light and has neither light nor rays in it; empty for others.
+std::string photometry_fault(const std::filesystem::path& path) {
   const std::string ending = lower_ending(path);
   std::error_code ignored;
-  return (ending == ".ies" || ending == ".ldt") && std::filesystem::is_regular_file(path, ignored) &&
-         !detect_ray_format(path);
+  if ((ending != ".ies" && ending != ".ldt") || !std::filesystem::is_regular_file(path, ignored)) return "";
+  if (std::filesystem::file_size(path, ignored) == 0)
+    return "empty, the IES or EULUMDAT file expected that its name says";
+  if (detect_ray_format(path)) return "";
+  return "neither rays nor the IES or EULUMDAT file that its name says";
 }
 
 }  // namespace
@@ -43,11 +46,8 @@ bool is_project_file(const std::filesystem::path& path) { return lower_ending(pa
 void require_ray_file(const std::filesystem::path& path) {
   const std::string kind = other_kind(path);
   if (!kind.empty()) throw InputError(fmt::format("{}: rays expected, this is {}", path.string(), kind));
-  if (is_damaged_photometry(path)) {
-    throw InputError(
-        fmt::format("{}: neither rays nor the IES or EULUMDAT file that its name says", path.string()),
-        ErrorCause::damaged);
-  }
+  if (const std::string fault = photometry_fault(path); !fault.empty())
+    throw InputError(fmt::format("{}: {}", path.string(), fault), ErrorCause::damaged);
 }
 
 }  // namespace lucerna::cli

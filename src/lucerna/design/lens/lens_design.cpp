@@ -14,6 +14,7 @@
 #include "lucerna/design/lens/free_face_fit.h"
 #include "lucerna/design/lens/lens_validation.h"
 #include "lucerna/design/validation/error_boxes.h"
+#include "lucerna/design/validation/result_remarks.h"
 
 namespace lucerna {
 
@@ -86,12 +87,8 @@ std::string entry_text(const Cavity& c) {
 }
 
 void add_lens_remarks(LensResult& result) {
-  const BoxErrorEstimate& e = result.error.c48;
-  if (e.excess <= 2.0 * e.standard_error) {
-    result.remarks.push_back(fmt::format(
-        "no error is left that {:.3g} M rays can distinguish from noise: {:.2f} +- {:.2f} %",
-        1e-6 * static_cast<double>(result.error.rays), 100.0 * e.excess, 100.0 * e.standard_error));
-  }
+  if (const auto none = no_step_remark(result)) result.remarks.push_back(*none);
+  if (const auto noise = noise_remark(result.error)) result.remarks.push_back(*noise);
   for (std::string& broken : broken_limits(result.limits)) result.remarks.push_back(std::move(broken));
 }
 

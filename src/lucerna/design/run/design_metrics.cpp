@@ -2,6 +2,7 @@
 #include "lucerna/design/run/design_metrics.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -46,10 +47,13 @@ DesignMetrics design_metrics(const DesignTarget& target, double error_scale, con
   scale(expected, f.target_factor);
   f.target_beam = beam_metrics(expected);
   if (f.trace.far_fields.empty()) return f;
-  const BinnedIntensity& obtained = f.trace.far_fields.front().intensity;
+  const FarFieldResult& far = f.trace.far_fields.front();
+  const BinnedIntensity& obtained = far.intensity;
   expected.unit = obtained.distribution.unit;  // by shape alone, cd and W/sr may be compared
   CompareOptions options;
   options.test_error_cd = obtained.standard_error_cd;
+  if (std::isfinite(far.metrics.flux.standard_error))
+    options.test_flux_error = far.metrics.flux.standard_error;
   options.align = false;
   f.comparison = compare_distributions(expected, obtained.distribution, options);
   return f;

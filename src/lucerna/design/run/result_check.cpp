@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/design/run/result_check.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "lucerna/cad.h"
@@ -13,6 +12,7 @@
 #include "lucerna/design/constraints/source_side.h"
 #include "lucerna/design/validation/bounds.h"
 #include "lucerna/design/validation/etendue_limit.h"
+#include "lucerna/design/validation/result_remarks.h"
 #include "lucerna/design/validation/validation.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
@@ -75,11 +75,10 @@ bool given_is_better(const DesignProblem& problem, const DesignResult& result) {
 
 /// Only what a figure stands behind.
 void add_remarks(const DesignProblem& problem, DesignResult& result) {
-  const BoxErrorEstimate& e = result.error.c48;
-  if (!problem.target.zones_only && e.excess <= 2.0 * e.standard_error) {
-    result.remarks.push_back(fmt::format(
-        "no error is left that {:.3g} M rays can distinguish from noise: {:.2f} +- {:.2f} %",
-        1e-6 * static_cast<double>(result.error.rays), 100.0 * e.excess, 100.0 * e.standard_error));
+  if (const auto none = no_step_remark(result)) result.remarks.push_back(*none);
+  const auto noise = problem.target.zones_only ? std::nullopt : noise_remark(result.error);
+  if (noise) {
+    result.remarks.push_back(*noise);
   } else if (const std::string binding = binding_limits(result.limits); !binding.empty()) {
     result.remarks.push_back(binding);
   }

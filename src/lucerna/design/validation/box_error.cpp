@@ -178,11 +178,10 @@ Estimate worst_cell(const Cells& cells, double scale) {
 
 /// Deviations of a table's values within their stated errors, by replicate: independent and normal, summing
 /// to 0 over the replicates, such that the scatter of the replicates' mean is that of the table.
-std::vector<IntensityDistribution> deviations(const IntensityDistribution& table,
-                                              std::span<const double> standard_error_cd) {
-  std::vector<IntensityDistribution> out(kTableReplicates, table);
-  for (std::size_t i = 0; i < standard_error_cd.size(); ++i) {
-    Rng rng(0x7ab1e, i);
+std::vector<IntensityDistribution> deviations(const KnownDistribution& table, std::uint64_t seed) {
+  std::vector<IntensityDistribution> out(kTableReplicates, table.distribution);
+  for (std::size_t i = 0; i < table.standard_error_cd.size(); ++i) {
+    Rng rng(seed, i);
     std::array<double, kTableReplicates> z{};
     double mean = 0.0;
     for (double& x : z) {
@@ -191,28 +190,40 @@ std::vector<IntensityDistribution> deviations(const IntensityDistribution& table
       mean += x / kTableReplicates;
     }
     // The mean of R replicates has the variance of one over R.
-    const double sigma = standard_error_cd[i] * std::sqrt(static_cast<double>(kTableReplicates));
+    const double sigma = table.standard_error_cd[i] * std::sqrt(static_cast<double>(kTableReplicates));
     for (std::size_t r = 0; r < out.size(); ++r) out[r].cd[i] = sigma * (z[r] - mean);
   }
   return out;
 }
 
-/// A table as replicates whose mean is the table and whose scatter is that of its stated errors.
-std::vector<BoxSums> table_replicates(const ErrorBoxes& boxes, const IntensityDistribution& table,
-                                      std::span<const double> standard_error_cd) {
+/// Adds the scatter of a table's stated errors, times `factor`, to replicates (one for all so far, or all).
+void add_scatter(const ErrorBoxes& boxes, const KnownDistribution& table, double factor, std::uint64_t seed,
+                 std::vector<BoxSums>& sums) {
+  if (table.standard_error_cd.empty()) return;
+  if (sums.size() == 1) sums.resize(kTableReplicates, sums.front());
+  constexpr double kCoarse_rad = 10.0;  // few points a box: noise need not be integrated to many digits
+  const std::vector<IntensityDistribution> all = deviations(table, seed);
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    const auto flux = boxes.flux_of([&](const Direction& d) { return intensity_in(all[r], d); }, kCoarse_rad);
+    for (std::size_t c = 0; c < flux.size(); ++c) sums[r].flux[c] += factor * flux[c];
+  }
+}
+
+/// An exact table as one replicate.
+BoxSums table_sums(const ErrorBoxes& boxes, const IntensityDistribution& table) {
   BoxSums exact;
   exact.flux = boxes.flux_of(table);
   exact.emitted = exact.out_reflected = std::accumulate(exact.flux.begin(), exact.flux.end(), 0.0);
   exact.rays = 1;
-  if (standard_error_cd.empty()) return {exact};
-  std::vector<BoxSums> sums;
-  constexpr double kCoarse_rad = 10.0;  // few points a box: noise need not be integrated to many digits
-  for (const IntensityDistribution& off : deviations(table, standard_error_cd)) {
-    sums.push_back(exact);
-    const auto flux = boxes.flux_of([&](const Direction& d) { return intensity_in(off, d); }, kCoarse_rad);
-    for (std::size_t c = 0; c < flux.size(); ++c) sums.back().flux[c] += flux[c];
-  }
-  return sums;
+  return exact;
+}
+
+void check_table(const KnownDistribution& table, const char* name) {
+  const std::size_t values = table.distribution.cd.size(), errors = table.standard_error_cd.size();
+  if (const std::string fault = grid_fault(table.distribution); !fault.empty())
+    throw InputError(fmt::format("{}: {}", name, fault));
+  if (errors != 0 && errors != values)
+    throw InputError(fmt::format("{}: {} standard errors for {} values", name, errors, values));
 }
 
 void add_cells(const std::vector<double>& cells, std::vector<double>& to) {
@@ -288,24 +299,30 @@ DesignError box_error(const ErrorBoxes& boxes, std::span<const double> target,
   return out;
 }
 
-DesignError box_error(const IntensityDistribution& reference, const IntensityDistribution& test,
-                      TargetMode mode, std::span<const double> standard_error_cd) {
-  if (const std::string fault = grid_fault(test); !fault.empty()) throw InputError("test: " + fault);
-  if (mode == TargetMode::absolute && reference.unit != test.unit) {
+DesignError box_error(const KnownDistribution& reference, const KnownDistribution& test, TargetMode mode) {
+  check_table(reference, "reference");
+  check_table(test, "test");
+  if (mode == TargetMode::absolute && reference.distribution.unit != test.distribution.unit) {
     throw InputError("one distribution is in cd, the other in W/sr");
   }
-  if (!standard_error_cd.empty() && standard_error_cd.size() != test.cd.size()) {
-    throw InputError(
-        fmt::format("{} standard errors for {} values", standard_error_cd.size(), test.cd.size()));
-  }
-  const ErrorBoxes boxes(target_rectangle(reference));
-  std::vector<BoxSums> sums = table_replicates(boxes, test, standard_error_cd);
+  const ErrorBoxes boxes(target_rectangle(reference.distribution));
+  std::vector<BoxSums> sums{table_sums(boxes, test.distribution)};
   if (!(sums.front().emitted > 0.0)) throw InputError("test: has no light");
-  std::vector<double> target = boxes.flux_of(reference);
+  std::vector<double> target = boxes.flux_of(reference.distribution);
   if (mode == TargetMode::absolute) {
     for (double& t : target) t /= sums.front().emitted;
   }
-  return box_error(boxes, target, sums, mode);
+  add_scatter(boxes, test, 1.0, 0x7ab1e, sums);
+  DesignError out = box_error(boxes, target, sums, mode);
+  if (reference.standard_error_cd.empty()) return out;
+  // What the target may be off by, the light is off by from it. It says nothing of where the test's light is.
+  const DesignError of_test = out;
+  const double per_target = mode == TargetMode::shape ? sums.front().emitted / out.scale : 1.0;
+  add_scatter(boxes, reference, -per_target, 0x7ab1f, sums);
+  out = box_error(boxes, target, sums, mode);
+  out.in_rectangle = of_test.in_rectangle;
+  out.outside_share = of_test.outside_share;
+  return out;
 }
 
 }  // namespace lucerna

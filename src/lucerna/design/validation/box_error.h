@@ -49,10 +49,15 @@ std::vector<double> box_target(const ErrorBoxes& boxes, const DesignTarget& targ
 DesignError box_error(const ErrorBoxes& boxes, std::span<const double> target,
                       std::span<const BoxSums> replicates, TargetMode mode);
 
+/// A light distribution and the standard errors of its independent values (layout of `cd`; empty: exact).
+struct KnownDistribution {
+  const IntensityDistribution& distribution;
+  std::span<const double> standard_error_cd{};
+};
+
 /// The error of one light distribution against another as target, in the boxes of `reference`, by shape or
-/// absolute. `standard_error_cd` (layout of `test.cd`; empty = exact): of the test's independent values, for
-/// the floor. Throws InputError as target_rectangle, and where the units differ in absolute mode.
-DesignError box_error(const IntensityDistribution& reference, const IntensityDistribution& test,
-                      TargetMode mode, std::span<const double> standard_error_cd = {});
+/// absolute; the floor is what the errors of both give. Throws InputError as target_rectangle, and where the
+/// units differ in absolute mode.
+DesignError box_error(const KnownDistribution& reference, const KnownDistribution& test, TargetMode mode);
 
 }  // namespace lucerna

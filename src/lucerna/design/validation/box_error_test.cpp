@@ -169,16 +169,38 @@ IntensityDistribution gaussian_beam(double half_width_deg) {
 
 TEST(BoxError, OfTablesIsExactAndTakesTheirStatedErrorsAsTheFloor) {
   const IntensityDistribution a = gaussian_beam(15.0), b = gaussian_beam(15.6);
-  EXPECT_LT(box_error(a, a, TargetMode::shape).c48.value, 1e-12);
-  const DesignError e = box_error(a, b, TargetMode::shape);
+  EXPECT_LT(box_error({a}, {a}, TargetMode::shape).c48.value, 1e-12);
+  const DesignError e = box_error({a}, {b}, TargetMode::shape);
   EXPECT_GT(e.c48.value, 0.01);
   EXPECT_LT(e.c48.value, 0.1);
   std::vector<double> error(b.cd.size());
   for (std::size_t i = 0; i < error.size(); ++i) error[i] = 0.02 * b.cd[i];
-  const DesignError noisy = box_error(a, b, TargetMode::shape, error);
+  const DesignError noisy = box_error({a}, {b, error}, TargetMode::shape);
   EXPECT_NEAR(noisy.c48.value, e.c48.value, 1e-4);
   EXPECT_GT(noisy.c48.floor, 0.001);
   EXPECT_LT(noisy.c48.floor, 0.02);  // boxes take means over table values
+}
+
+// The same noise makes the same error and floor on either side, and says nothing of the test's own light.
+TEST(BoxError, ATargetsStatedErrorsAreNotTakenForAnError) {
+  const IntensityDistribution a = gaussian_beam(15.0), b = gaussian_beam(15.6);
+  IntensityDistribution rough = a;
+  std::vector<double> error(a.cd.size());
+  for (std::size_t i = 0; i < error.size(); ++i) {
+    Rng rng(5, i);
+    error[i] = 0.05 * a.cd[i];
+    rough.cd[i] += std::sqrt(3.0) * (2.0 * rng.uniform() - 1.0) * error[i];
+  }
+  for (const TargetMode mode : {TargetMode::shape, TargetMode::absolute}) {
+    const DesignError exact = box_error({a}, {b}, mode), believed = box_error({rough}, {b}, mode),
+                      known = box_error({rough, error}, {b}, mode),
+                      turned = box_error({b}, {rough, error}, mode);
+    EXPECT_GT(std::abs(believed.c48.excess - exact.c48.excess), 3.0 * known.c48.standard_error);
+    EXPECT_NEAR(known.c48.excess, exact.c48.excess, 3.0 * known.c48.standard_error);
+    EXPECT_NEAR(known.c48.floor, turned.c48.floor, 0.2 * turned.c48.floor);
+    EXPECT_EQ(known.in_rectangle.mean, believed.in_rectangle.mean);
+    EXPECT_TRUE(std::isnan(known.in_rectangle.standard_error));
+  }
 }
 
 TEST(BoxError, RefusesWhatCannotBeCompared) {
@@ -187,13 +209,15 @@ TEST(BoxError, RefusesWhatCannotBeCompared) {
   watts.unit = FluxUnit::watt;
   broken.cd[3] = std::nan("");
   for (double& v : dark.cd) v = 0.0;
-  EXPECT_THROW(box_error(a, watts, TargetMode::absolute), InputError);
-  EXPECT_NO_THROW(box_error(a, watts, TargetMode::shape));
-  EXPECT_THROW(box_error(a, broken, TargetMode::shape), InputError);
-  EXPECT_THROW(box_error(broken, a, TargetMode::shape), InputError);
-  EXPECT_THROW(box_error(a, dark, TargetMode::shape), InputError);
-  EXPECT_THROW(box_error(dark, a, TargetMode::shape), InputError);
-  EXPECT_THROW(box_error(a, a, TargetMode::shape, std::vector<double>(3, 1.0)), InputError);
+  EXPECT_THROW(box_error({a}, {watts}, TargetMode::absolute), InputError);
+  EXPECT_NO_THROW(box_error({a}, {watts}, TargetMode::shape));
+  EXPECT_THROW(box_error({a}, {broken}, TargetMode::shape), InputError);
+  EXPECT_THROW(box_error({broken}, {a}, TargetMode::shape), InputError);
+  EXPECT_THROW(box_error({a}, {dark}, TargetMode::shape), InputError);
+  EXPECT_THROW(box_error({dark}, {a}, TargetMode::shape), InputError);
+  const std::vector<double> three(3, 1.0);
+  EXPECT_THROW(box_error({a, three}, {a}, TargetMode::shape), InputError);
+  EXPECT_THROW(box_error({a}, {a, three}, TargetMode::shape), InputError);
 }
 
 }  // namespace

@@ -276,14 +276,20 @@ Figures figures_of(const Common& common, const IntensityDistribution& reference,
           1.0 - 0.5 * apart};
 }
 
-/// The values moved by their errors, evenly distributed with that standard deviation; none below 0.
+/// Evenly distributed, of mean 0 and standard deviation 1.
+double even(std::uint64_t seed, std::size_t i) {
+  return std::sqrt(3.0) * (2.0 * Rng(seed, i).uniform() - 1.0);
+}
+
+/// The values moved by their errors at random; none below 0. All together then meet a flux that is moved by
+/// its own error, where that is known.
 IntensityDistribution moved(const IntensityDistribution& d, std::span<const double> error,
-                            std::uint64_t seed) {
+                            const std::optional<double>& flux_error, std::uint64_t seed) {
   IntensityDistribution out = d;
-  for (std::size_t i = 0; i < error.size(); ++i) {
-    Rng rng(seed, i);
-    out.cd[i] = std::max(0.0, out.cd[i] + std::sqrt(3.0) * (2.0 * rng.uniform() - 1.0) * error[i]);
-  }
+  for (std::size_t i = 0; i < error.size(); ++i)
+    out.cd[i] = std::max(0.0, out.cd[i] + even(seed, i) * error[i]);
+  if (flux_error && !error.empty())
+    scale(out, (total_flux(d) + even(seed, error.size()) * *flux_error) / total_flux(out));
   return out;
 }
 
@@ -300,8 +306,9 @@ Copies moved_copies(const IntensityDistribution& reference, const IntensityDistr
   copies.figures.resize(kCopies);
   if (turn) copies.turns.resize(kCopies);
   parallel_blocks(kCopies, 1, [&](std::size_t k, std::size_t) {
-    const IntensityDistribution a = moved(reference, options.reference_error_cd, 2 * k + 1),
-                                b = moved(test, options.test_error_cd, 2 * k + 2);
+    const IntensityDistribution a = moved(reference, options.reference_error_cd, options.reference_flux_error,
+                                          2 * k + 1),
+                                b = moved(test, options.test_error_cd, options.test_flux_error, 2 * k + 2);
     const Common common = common_grid(a, b);
     copies.figures[k] = figures_of(common, a, b);
     if (turn) copies.turns[k] = best_turn(common, b, turn->rotation, kNearSearch);

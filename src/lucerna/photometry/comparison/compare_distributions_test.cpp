@@ -217,6 +217,24 @@ TEST(CompareDistributionsSlow, ErrorsAreTheScatterOfTheFigures) {
   }
 }
 
+// A trace knows its flux better than the sum of independent values would be known.
+TEST(CompareDistributions, AFluxThatIsKnownBetterHasThatError) {
+  const IntensityDistribution light = spot();
+  const NoisyLight test = noisy(light, 0.2, 3);
+  CompareOptions options;
+  options.test_error_cd = test.error;
+  options.align = false;
+  const double of_values = compare_distributions(light, test.distribution, options).flux_ratio.standard_error;
+  options.test_flux_error = 0.0;
+  const DistributionComparison known = compare_distributions(light, test.distribution, options);
+  EXPECT_LT(known.flux_ratio.standard_error, 1e-9);
+  EXPECT_GT(known.wasserstein_deg.standard_error, 0.0);
+  options.test_flux_error = 3.0 * of_values * total_flux(light);
+  const double stated = compare_distributions(light, test.distribution, options).flux_ratio.standard_error;
+  EXPECT_GT(stated, 1.5 * of_values);  // of eight copies: known to a quarter
+  EXPECT_LT(stated, 6.0 * of_values);
+}
+
 // Files that state no errors: figures have none either.
 TEST(CompareDistributions, UnknownErrorsAreNotANumber) {
   const DistributionComparison c = compare_distributions(street_light(), spot());

@@ -8,6 +8,7 @@
 #include "lucerna/core/io/error.h"
 #include "lucerna/project/schema/project_files.h"
 #include "lucerna/project/schema/project_tables.h"
+#include "lucerna/project/schema/short_numbers.h"
 #include "lucerna/project/schema/toml_reader.h"
 #include "lucerna/project/schema/toml_text.h"
 #include "lucerna/project/sections/project_memory.h"
@@ -162,7 +163,7 @@ std::vector<PlacedReflector> parse_reflectors(std::string_view text, const fs::p
 std::string project_text(const Project& project) {
   std::ostringstream out;
   out << toml_tables(project) << '\n';
-  return out.str();
+  return short_numbers(out.str());
 }
 
 }  // namespace lucerna

@@ -84,8 +84,10 @@ std::string sections_plot(HtmlPage& page, const FarFieldTable& result, const Far
 }
 
 std::string comparison_table(const FarFieldTable& result, const FarFieldTable& target) {
-  const DistributionComparison c = compare_distributions(
-      target.distribution, result.distribution, {.test_error_cd = result.standard_error, .align = false});
+  const DistributionComparison c = compare_distributions(target.distribution, result.distribution,
+                                                         {.test_error_cd = result.standard_error,
+                                                          .test_flux_error = result.flux_standard_error,
+                                                          .align = false});
   HtmlTable table{"Result against target over all directions", {"Figure", "Value", "Meaning"}, {}};
   const auto row = [&](const char* name, const std::string& value, const char* meaning) {
     table.rows.push_back({name, value, meaning});

@@ -111,10 +111,13 @@ LightFileComparison compare_light(const fs::path& reference_path, const fs::path
                                  intensity_symbol(reference.distribution.unit), reference_path.string()));
   }
   LightFileComparison light;
-  light.distributions = compare_distributions(
-      reference.distribution, test.distribution,
-      {.reference_error_cd = reference.standard_error, .test_error_cd = test.standard_error});
-  light.boxes = box_error(reference.distribution, test.distribution, TargetMode::shape, test.standard_error);
+  light.distributions = compare_distributions(reference.distribution, test.distribution,
+                                              {.reference_error_cd = reference.standard_error,
+                                               .test_error_cd = test.standard_error,
+                                               .reference_flux_error = reference.flux_standard_error,
+                                               .test_flux_error = test.flux_standard_error});
+  light.boxes = box_error({reference.distribution, reference.standard_error},
+                          {test.distribution, test.standard_error}, TargetMode::shape);
   if (!options.pictures.empty()) {
     write_file(options.pictures / "polar.svg",
                polar_svg(test.distribution, {.title = test_path.filename().string(),

@@ -110,6 +110,13 @@ std::string detector_name(const Json& detector, const std::string& file) {
   return name.get<std::string>();
 }
 
+/// Standard error of a detector's flux; nothing where the file has none.
+std::optional<double> flux_error(const Json& detector) {
+  const Json flux = detector.value("flux", Json());
+  const Json error = flux.is_object() ? flux.value("standard_error", Json()) : Json();
+  return error.is_number() ? std::optional(error.get<double>()) : std::nullopt;
+}
+
 /// What a plane's table may begin with.
 struct PlaneHeader {
   std::string_view line;
@@ -202,6 +209,7 @@ TraceFolder read_trace_folder(const std::filesystem::path& folder) {
     if (kind == "far-field") {
       read.far_fields.push_back(far_field_table(read_file(csv, kMaxTableBytes), csv.string()));
       read.far_fields.back().name = name;
+      read.far_fields.back().flux_standard_error = flux_error(detector);
     } else if (kind == "plane" || kind == "luminance") {
       read.planes.push_back(plane_table(read_file(csv, kMaxTableBytes), csv.string()));
       read.planes.back().name = name;

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,8 @@ struct FarFieldTable {
   IntensityDistribution distribution;
   /// Standard error of each value; empty if it is not known.
   std::vector<double> standard_error;
+  /// Of the whole flux; nothing if it is not known.
+  std::optional<double> flux_standard_error{};
 };
 
 /// One plane or luminance image of a trace, as its NAME.csv has it.

@@ -120,5 +120,22 @@ TEST(TraceFolder, SaysWhatIsNoTrace) {
   EXPECT_NE(message().find("found the kind \"eye\""), std::string::npos);
 }
 
+// The flux of a trace is known better than the sum of its values' errors would say.
+TEST(TraceFolder, FluxHasItsOwnError) {
+  const test::TempDir dir;
+  write_file(dir / "project.toml", "");
+  write_file(dir / "far.csv", std::string(kHeader) + "0,0,1,0.1\n0,90,1,0.1\n");
+  const auto read = [&](const std::string& flux) {
+    write_file(dir / "result.json",
+               fmt::format(R"({{"ledger": {{}}, "detectors": [{{"name": "far", "kind": "far-field"{}}}], )"
+                           R"("schema_version": {}}})",
+                           flux, kJsonSchemaVersion));
+    return read_trace_folder(dir.path()).far_fields.front().flux_standard_error;
+  };
+  EXPECT_EQ(read(R"(, "flux": {"value": 5.0, "standard_error": 0.25})"), 0.25);
+  EXPECT_FALSE(read(R"(, "flux": {"value": 5.0, "standard_error": null})"));
+  EXPECT_FALSE(read(""));
+}
+
 }  // namespace
 }  // namespace lucerna

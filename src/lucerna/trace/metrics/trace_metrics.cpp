@@ -103,7 +103,7 @@ std::string peak_place_text(const PeakEstimate& p) {
     return fmt::format("on the axis within {:.2g} deg", std::max(off, p.direction_error_deg));
   if (p.gamma_deg) return fmt::format("gamma {} deg, C not determined", estimate_text(*p.gamma_deg));
   if (p.c_deg) return fmt::format("C {} deg, gamma not determined", estimate_text(*p.c_deg));
-  return "not determined";
+  return "direction not determined";
 }
 
 namespace {

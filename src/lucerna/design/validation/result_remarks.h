@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "lucerna/design.h"
+
+namespace lucerna {
+
+/// That the error is smaller than what its rays can tell from noise; nothing where it is not.
+std::optional<std::string> noise_remark(const DesignError& error);
+
+/// That there was no time for a step, so that nothing was designed; nothing where there was.
+std::optional<std::string> no_step_remark(const DesignFindings& result);
+
+}  // namespace lucerna
