@@ -50,7 +50,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Run {
-  double time_s = 60.0, light_weight = DesignProblem::kLightWeight;
+  double time_s = 60.0, light_weight = kLightWeight;
   std::uint64_t rays = std::uint64_t{1} << 24, target_rays = std::uint64_t{1} << 26, seed = 1;
   std::string family = "bspline", source, mode;
   int targets = 10;

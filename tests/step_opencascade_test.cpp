@@ -19,6 +19,8 @@
 #include "lucerna/cad.h"
 #include "lucerna/core/io/file.h"
 #include "lucerna/optics/shapes/smooth_shape.h"
+#include "lucerna/scene.h"
+#include "tests/support/spline_face.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {
@@ -123,6 +125,32 @@ TEST(StepOpenCascade, ReadsASolidOfTheSameVolume) {
     BRepGProp::VolumeProperties(shape, properties);
     EXPECT_NEAR(properties.Mass() / turned_volume(solid_profile(outline, 30.0, 1e-4)), 1.0, 1e-4);
   }
+}
+
+// With free forms at the top and at the bottom, against the volume of its triangles.
+TEST(StepOpenCascade, ReadsASolidOfTwoFreeFaces) {
+  const test::TempDir folder;
+  Solid solid;
+  solid.outline_mm = {{6, 1}, {6, 0}, {10, 0}, {10, 3}};
+  solid.face =
+      test::spline_face([](double x, double y) { return 8.0 + 0.01 * x * x - 0.012 * y * y; }, 11.0, 6);
+  solid.bottom_face =
+      test::spline_face([](double x, double y) { return 2.0 - 0.02 * x * y + 0.005 * x * x; }, 7.0, 4);
+  write_file(folder / "lens.step",
+             solid_step_text(solid.outline_mm, {*solid.face, solid.bottom_face.get()}, 20.0));
+  STEPControl_Reader reader;
+  ASSERT_EQ(reader.ReadFile((folder / "lens.step").c_str()), IFSelect_RetDone);
+  ASSERT_GT(reader.TransferRoots(), 0);
+  const TopoDS_Shape shape = reader.OneShape();
+  EXPECT_EQ(shape.ShapeType(), TopAbs_SOLID);
+  EXPECT_TRUE(BRepCheck_Analyzer(shape).IsValid());
+  GProp_GProps properties;
+  BRepGProp::VolumeProperties(shape, properties);
+  const auto mesh = surface_mesh(solid, 1e-5);
+  double volume = 0.0;
+  for (const auto& t : mesh->triangles)
+    volume += dot(mesh->vertices_mm[t[0]], cross(mesh->vertices_mm[t[1]], mesh->vertices_mm[t[2]])) / 6.0;
+  EXPECT_NEAR(properties.Mass() / volume, 1.0, 1e-4);
 }
 
 }  // namespace

@@ -55,11 +55,11 @@ inline constexpr CadTolerance kOpticalTolerance{.chord_mm = 0.01, .slope_deg = 0
 /// `check(Solid)` does for the outline, and for one that is smooth all about.
 [[nodiscard]] std::string solid_step_text(std::span<const std::array<double, 2>> outline_mm,
                                           double smooth_below_deg, const std::string& name = "lens");
-/// The same with a face at the top, as `Solid::face`, which is one bicubic B-spline surface, the very one
-/// that is traced. Its rim is within 1e-6 mm of it. Throws InputError as `check(Solid)` does for both, and
-/// for a face that is no B-spline.
+/// The same with faces, as `Solid::face` and `Solid::bottom_face`, each of which is one bicubic B-spline
+/// surface, the very one that is traced. Its rim is within 1e-6 mm of it. Throws InputError as `check(Solid)`
+/// does for both, and for a face that is no B-spline.
 [[nodiscard]] std::string solid_step_text(std::span<const std::array<double, 2>> outline_mm,
-                                          const HeightSurface& face, double smooth_below_deg,
+                                          const BodyFaces& faces, double smooth_below_deg,
                                           const std::string& name = "lens");
 /// Its outline in straight pieces within `chord_mm` of the curve, closed: the first point comes last again.
 /// Errors as above.

@@ -48,6 +48,14 @@ class HeightSurface {
   virtual bool convex_over(const Rectangle& region) const;
 };
 
+/// The height fields that close a body: above, and below where it has one there.
+struct BodyFaces {
+  /// At the top.
+  const HeightSurface& top;
+  /// Null for a body whose bottom is a surface of revolution.
+  const HeightSurface* bottom = nullptr;
+};
+
 /// The same lenslet over every cell of a square or hexagonal grid about the z axis, one of them on the axis.
 struct LensArray {
   /// Distance of neighbouring centres, > 0.

@@ -162,6 +162,11 @@ struct Solid {
   /// same radius R > 0 and the last one is higher. The face covers x^2 + y^2 <= R^2, and the wall begins at
   /// the last corner but one and ends at the face's rim. Null for any other body.
   std::shared_ptr<const HeightSurface> face = nullptr;
+  /// Not null, beside `face`: the bottom of the body about its axis, which looks to -z. Then `outline_mm`
+  /// begins not on the axis but in a wall that runs downward: its first two corners have the same radius
+  /// 0 < R1 < R, and the second is lower. The bottom face covers x^2 + y^2 <= R1^2, and this wall begins at
+  /// its rim. Null for any other body.
+  std::shared_ptr<const HeightSurface> bottom_face = nullptr;
   /// Where it is in the luminaire frame.
   Frame world_from_solid;
   /// 1 to 4. The default is PMMA in the visible.
@@ -179,14 +184,16 @@ struct Solid {
   /// How the surface scatters what it reflects and what it lets through, about the direction of a smooth one.
   Scatter scatter;
   /// Of an outline: the sides that scatter, each with all of its face, from one edge to the next; empty for
-  /// all. Side 0 leads from the first corner to the second; `face` is that from the last corner on.
+  /// all. Side 0 leads from the first corner to the second; `face` is that from the last corner on, and
+  /// `bottom_face` the one after it.
   std::vector<std::size_t> scatter_sides;
 };
 
 /// Throws InputError naming what is out of its range, and for a surface that is open or partly turned, or an
 /// outline as solid_of_revolution refuses it, or whose curve crosses itself. With a face, for an outline that
-/// is not as `face` says, or turns into the wall by no more than `smooth_below_deg`, and a face that is not
-/// finite, is not above the outline at one of 64 x 64 points, or has its rim not above the wall's lower end;
+/// is not as `face` says, or turns into a wall by no more than `smooth_below_deg`, and a face that is not
+/// finite, is not above the outline and the bottom face at one of 64 x 64 points, or has its rim not above
+/// the wall's lower end; for a bottom face alike;
 /// and for a measured table, and scatter_sides of a mesh, of a body without lobes, that are not there or lie
 /// on the axis.
 /// O(triangles log triangles + corners^2).

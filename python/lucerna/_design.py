@@ -55,7 +55,7 @@ def design(scene: _core.Scene, *, target: Any = None, limits: Mapping[str, Any] 
         Gets a Record with phase and, once there are steps, evaluations, rays, relative_rms, floor, efficiency
         and in_rectangle of the best so far; ten times a second at most.
     **keys
-        Other keys of [design]: free_sides, family, intervals, optimizer, restarts, light_weight.
+        Other keys of [design]: free_sides, family, entry, intervals, optimizer, restarts, light_weight.
 
     Returns
     -------

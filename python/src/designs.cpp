@@ -129,6 +129,7 @@ py::object lens_record(const Solid& lens) {
   out["x_axis"] = vector(lens.world_from_solid.ex());
   out["axis"] = vector(lens.world_from_solid.ez());
   out["has_face"] = lens.face != nullptr;
+  out["has_bottom_face"] = lens.bottom_face != nullptr;
   out["outline_mm"] = owned(std::move(outline_mm), grid(lens.outline_mm.size(), 2));
   out["vertices_mm"] = owned(mesh->vertices_mm);
   out["triangles"] = owned(std::move(triangles), grid(mesh->triangles.size(), 3));

@@ -17,8 +17,8 @@ from .tasks import Task
 TROUGH_LENGTH_MM = 400.0
 # Large beside the source, so that its size does not matter.
 COLLECTOR_RADIUS_MM = 50.0
-# The others' sources are small beside the lens: a search for a cavity takes its time from the face.
-FAMILIES_WITH_CAVITY = ("LB-3", "LB-4")
+# The others' sources are small beside the lens, and their bottoms stay flat.
+FAMILIES_WITH_ENTRY = ("LB-3", "LB-4")
 # Of LB-2 only the light counts.
 LIGHT_WEIGHT_OF_COLLECTOR = 100
 # Beside the project and its target, which are there before.
@@ -145,9 +145,11 @@ def _plane_target(task, folder, place, cells=250, widened=1.25):
 
 def _lens_design(task, kind):
     """Of a lens of revolution 16 pieces of both faces move. A free form chooses its knots; where the source is wide beside
-    the lens, or the light wide beside what comes through a flat bottom, it chooses a cavity there, too."""
-    sides = "[0, 2]" if kind == "lens" or task.family in FAMILIES_WITH_CAVITY else "2"
-    shape = 'family = "bspline"\n' if kind == "free-lens" else "intervals = 16\n"
+    the lens, or the light wide beside what comes through a flat bottom, the bottom is a free form too."""
+    has_entry = task.family in FAMILIES_WITH_ENTRY
+    sides = "[0, 2]" if kind == "lens" or has_entry else "2"
+    shape = ("intervals = 16\n" if kind == "lens" else
+             'family = "bspline"\n' + ('entry = "bspline"\n' if has_entry else ""))
     return (f"[design]\nfree_sides = {sides}\n{shape}[design.limits]\n"
             f"max_diameter_mm = {2 * task.room.half_mm - MARGIN_MM}\n"
             f"max_height_mm = {task.room.high_mm - task.room.low_mm - 2 * MARGIN_MM}\nmin_thickness_mm = 0.5\n")
@@ -280,16 +282,22 @@ def _lens_surfaces(body):
 
 
 def _free_lens_surfaces(body):
-    """Bottom, wall and free face of the body that `project` gave; the bottom may have got a cavity."""
+    """Bottom, wall and free face of the body that `project` gave; the bottom may have got a cavity, or a free form."""
     outline = body["outline_mm"]
-    if len(outline) < 3 or len(outline) > 3 and outline[-3][1] != outline[-2][1] or outline[-2][0] != outline[-1][0]:
-        raise ValueError(f"outline_mm: found {outline}, expected a flat bottom, with a cavity or not, and a wall")
-    rim, bottom = outline[-2]
-    cavity = _curve_from_axis(outline[:-2]) if len(outline) > 3 else None
-    face, half = body["face"], body["face"]["half_mm"]
-    # Both are bicubic splines on the same knots, as of mirrors.
-    sheet = height_field(_even_spline(face, 2 * [half]), half, half, intervals=tuple(face["intervals"]),
-                         trim={"kind": "circle", "diameter_mm": 2.0 * rim})
-    shape = 0 if cavity is None else 2
-    return (free_lens_surfaces(sheet, rim, bottom, body["refractive_index"], cavity),
-            len(face["coefficients_mm"]) + shape)
+    entry = body.get("bottom_face")
+    below = outline[1:] if entry else outline
+    if len(below) < 3 or (entry or len(below) > 3) and below[-3][1] != below[-2][1] or below[-2][0] != below[-1][0]:
+        raise ValueError(f"outline_mm: found {outline}, expected a flat bottom, with a hollow or not, and a wall")
+    rim, bottom = below[-2]
+    cavity = _curve_from_axis(below[:-2]) if not entry and len(below) > 3 else None
+    hollow = (_sheet(entry, below[0][0]), below[0][0]) if entry else None
+    free = len(body["face"]["coefficients_mm"]) + len(entry["coefficients_mm"] if entry else [])
+    return (free_lens_surfaces(_sheet(body["face"], rim), rim, bottom, body["refractive_index"], cavity, hollow),
+            free + (0 if cavity is None else 2))
+
+
+def _sheet(face, rim_mm):
+    """A face within a circle. Both are bicubic splines on the same knots, as of mirrors."""
+    half = face["half_mm"]
+    return height_field(_even_spline(face, 2 * [half]), half, half, intervals=tuple(face["intervals"]),
+                        trim={"kind": "circle", "diameter_mm": 2.0 * rim_mm})

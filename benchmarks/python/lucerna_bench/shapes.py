@@ -150,15 +150,20 @@ def lens_surfaces(room, knots, outer_rz_mm):
     return [_interface(name, face, LENS_INDEX) for name, face in faces.items()]
 
 
-def free_lens_surfaces(face, rim_mm, bottom_mm, refractive_index=LENS_INDEX, cavity=None):
+def free_lens_surfaces(face, rim_mm, bottom_mm, refractive_index=LENS_INDEX, cavity=None, entry=None):
     """A closed lens: flat bottom, wall, and a height field trimmed to a circle as its outer face. `cavity`: knots and
-    control points (r, z) of a curve from the axis to the bottom."""
-    from_mm = 0.0 if cavity is None else cavity[1][-1][0]
+    control points (r, z) of a curve from the axis to the bottom. `entry`: instead, a height field trimmed to a circle,
+    and its radius; a wall joins its rim to the bottom."""
+    from_mm = entry[1] if entry else 0.0 if cavity is None else cavity[1][-1][0]
     faces = {"bottom": revolved([0, 0, 1, 1], [(from_mm, bottom_mm), (rim_mm, bottom_mm)], degree=1),
              "wall": wall_below(face, rim_mm, bottom_mm), "outer": face}
     if cavity is not None:
         faces["cavity"] = revolved(*cavity)
-    return [_interface(name, surface, refractive_index) for name, surface in faces.items()]
+    parts = [_interface(name, surface, refractive_index) for name, surface in faces.items()]
+    if entry:
+        inner = {"entry": entry[0], "inner wall": wall_below(entry[0], entry[1], bottom_mm)}
+        parts += [{**_interface(name, surface, refractive_index), "flip": True} for name, surface in inner.items()]
+    return parts
 
 
 def _interface(name, surface, refractive_index):

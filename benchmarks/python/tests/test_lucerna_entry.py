@@ -151,26 +151,34 @@ def test_lens_is_the_one_that_lucerna_traces(scorer, lucerna, tmp_path, bottom, 
     assert off(moved, theirs) > 10.0
 
 
-def free_lens_body(nx=3, ny=4, entry=([0.0, 2.0],)):
-    """A dome of another curvature along x than along y, leaning to one side."""
+def free_lens_body(nx=3, ny=4, entry=([0.0, 2.0],), bottom=""):
+    """A dome of another curvature along x than along y, leaning to one side. `bottom`: the text of a bottom face."""
     half = 8.5
     x, y = ((np.arange(n + 3) - 1.0) * 2.0 * half / n - half for n in (nx, ny))
     c = 6.0 - x**2 / 22.0 - y[:, None] ** 2 / 38.0 + 0.04 * x + 0.03 * y[:, None]
     outline = [*entry, [8.0, 2.0], [8.0, 3.0]]
     return (f'[[body]]\nrole = "solid"\nrefractive_index = 1.5\noutline_mm = {outline}\n[body.face]\nhalf_mm = {half}\n'
-            f"intervals = [{nx}, {ny}]\ncoefficients_mm = {c.ravel().tolist()}\n")
+            f"intervals = [{nx}, {ny}]\ncoefficients_mm = {c.ravel().tolist()}\n{bottom}")
+
+
+def hollow_bottom(n=4, half=4.5):
+    x = (np.arange(n + 3) - 1.0) * 2.0 * half / n - half
+    c = 4.0 - x**2 / 14.0 - x[:, None] ** 2 / 20.0 + 0.05 * x
+    return f"[body.bottom_face]\nhalf_mm = {half}\nintervals = [{n}, {n}]\ncoefficients_mm = {c.ravel().tolist()}\n"
 
 
 CAVITY = [[3.0 * math.sin(a), 2.0 + 2.0 * math.cos(a)] for a in np.linspace(0.0, 0.5 * math.pi, 10)]
 
 
-@pytest.mark.parametrize("entry", [[[0.0, 2.0]], [*CAVITY[:-1], [3.0, 2.0]]], ids=["flat", "cavity"])
-def test_free_lens_is_the_one_that_lucerna_traces(scorer, lucerna, tmp_path, entry):
-    text = free_lens_body(entry=entry)
+@pytest.mark.parametrize("entry, bottom, more, names",
+                         [([[0.0, 2.0]], "", 0, []), ([*CAVITY[:-1], [3.0, 2.0]], "", 2, ["cavity"]),
+                          ([[4.0, 2.5], [4.0, 2.0]], hollow_bottom(), 49, ["entry", "inner wall"])],
+                         ids=["flat", "cavity", "free"])
+def test_free_lens_is_the_one_that_lucerna_traces(scorer, lucerna, tmp_path, entry, bottom, more, names):
+    text = free_lens_body(entry=entry, bottom=bottom)
     surfaces, free = lucerna_entry.surfaces_of(text, "free-lens")
-    has_cavity = len(entry) > 1
-    assert free == 42 + 2 * has_cavity
-    assert [s["name"] for s in surfaces] == ["bottom", "wall", "outer", "cavity"][:3 + has_cavity]
+    assert free == 42 + more
+    assert [s["name"] for s in surfaces] == ["bottom", "wall", "outer", *names]
     glass = {"roles": ["interface"], "interface": {"model": "fresnel", "refractive_index": [1.5, 1.5],
                                                    "absorption_per_mm": 0.0}}
     ours, _, found = boxes_of(scorer, tmp_path / "a", disk_task(glass, plane(100, -1, 250)), surfaces)

@@ -84,6 +84,14 @@ void DesignRays::refract(const MediumView& medium, Pass into) {
   into_ = std::move(into);
 }
 
+void DesignRays::refract_in(const MediumView& medium, DesignShape last) {
+  LUCERNA_CHECK(!into_ && std::holds_alternative<BsplineShape>(last.family()),
+                "a last face that is no free form, or one of rays that have come into the lens ({})",
+                static_cast<bool>(into_));
+  medium_ = medium;
+  last_ = std::move(last);
+}
+
 void DesignRays::fill(std::uint64_t b) {
   Block& block = block_[b];
   std::size_t at = 0;

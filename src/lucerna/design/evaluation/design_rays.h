@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lucerna/design/evaluation/design_ray_block.h"
+#include "lucerna/design/shape/design_shape.h"
 #include "lucerna/progress.h"
 #include "lucerna/rays.h"
 #include "lucerna/trace/engines/ray_numbering.h"
@@ -62,8 +63,13 @@ class DesignRays {
   /// From now on the shape is the last face of a lens: rays that are drawn from here on first go into the
   /// medium by `into`, and the face refracts them. There are none yet.
   void refract(const MediumView& medium, Pass into);
-  /// What the rays come through to the shape; nothing where that is a mirror.
+  /// From now on the shape is the first face of a lens, by which rays come into the medium, and `last` (a
+  /// free form in the same frame) that by which they leave it. May be said again where the last face changes.
+  void refract_in(const MediumView& medium, DesignShape last);
+  /// The medium of the lens that the shape is a face of; nothing where it is a mirror.
   const std::optional<MediumView>& medium() const { return medium_; }
+  /// Null where the shape is the last face itself, or a mirror.
+  const DesignShape* last_face() const { return last_ ? &*last_ : nullptr; }
 
   /// From now on evaluations are shared with other processes, which make all of them too (peers.h); null:
   /// this one makes them alone.
@@ -87,6 +93,7 @@ class DesignRays {
   std::shared_ptr<DeviceEvaluator> device_;
   std::shared_ptr<const BodyShadows> shadows_;
   std::optional<MediumView> medium_;
+  std::optional<DesignShape> last_;
   Pass into_;
   Peers* peers_ = nullptr;
 };

@@ -16,8 +16,8 @@
 #include "lucerna/design/evaluation/body_shadows.h"
 #include "lucerna/design/evaluation/device_evaluator.h"
 #include "lucerna/design/evaluation/evaluation_sums.h"
+#include "lucerna/design/evaluation/face_tracer.h"
 #include "lucerna/design/evaluation/hit_kernels.h"
-#include "lucerna/design/evaluation/refracting_face.h"
 #include "lucerna/design/evaluation/shared_sums.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
@@ -222,105 +222,11 @@ class BlockTracer {
   Path<Shape> path_;
 };
 
-/// Traces blocks of rays through the last face of a lens.
-class FaceTracer {
- public:
-  FaceTracer(const EvaluationView<BsplineView>& view, const MediumView& medium)
-      : view_(view), medium_(medium), face_(hit_mirror(view.shape, view.aperture)) {}
-
-  template <class Sums>
-  void add(const DesignRays::Block& block, Sums& sums) {
-    search(block);
-    for (std::size_t i = 0; i < kBlockRays; ++i) {
-      const double weight = block.weight[i];
-      sums.weight += weight;
-      if (!(weight > 0.0)) continue;
-      if (ends_.what[i] != kHitFront) {
-        sums.ended(PathEnd::lost, weight, 0.0);
-        continue;
-      }
-      const Vec3 o{rays_.x[i], rays_.y[i], rays_.z[i]}, d{rays_.dx[i], rays_.dy[i], rays_.dz[i]};
-      if (refract_at(view_.shape, medium_, o, d, ends_.t[i], hit_)) {
-        count(weight, sums);
-      } else {
-        sums.ended(PathEnd::back, weight, 0.0);
-      }
-    }
-  }
-
- private:
-  void search(const DesignRays::Block& block) {
-    for (std::size_t i = 0; i < kBlockRays; ++i) {
-      rays_.x[i] = block.x_mm[i];
-      rays_.y[i] = block.y_mm[i];
-      rays_.z[i] = block.z_mm[i];
-      rays_.dx[i] = block.kx[i];
-      rays_.dy[i] = block.ky[i];
-      rays_.dz[i] = block.kz[i];
-      rays_.on_mirror[i] = rays_.slope[i] = 0.0;
-    }
-    kernels_.bspline(face_, rays_, kBlockRays, ends_);
-  }
-
-  template <class Sums>
-  void count(double weight, Sums& sums) const {
-    const double flux = weight * hit_.share;
-    sums.ended(PathEnd::reflected, flux, weight - flux);
-    TentDeposit to;
-    view_.bins.deposit(hit_.point, hit_.out, to);
-    for (int k = 0; k < to.n; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      sums.add(to.bin[i], flux * to.weight[i]);
-    }
-    if (view_.derivatives && to.n > 0) differentiate(flux, to, sums);
-  }
-
-  /// Light moves from bin to bin, what passes changes, and so does what the rim lets through.
-  template <class Sums>
-  void differentiate(double flux, const TentDeposit& to, Sums& sums) const {
-    const TentGradient in_u = view_.bins.gradient_u(hit_.point, hit_.out);
-    const auto u = gradient(face_adjoint(hit_, in_u.direction, in_u.origin, 0.0, 0.0));
-    Support v{};
-    if (!view_.bins.is_rings()) {
-      const TentGradient in_v = view_.bins.gradient_v(hit_.point, hit_.out);
-      v = gradient(face_adjoint(hit_, in_v.direction, in_v.origin, 0.0, 0.0));
-    }
-    Support share = gradient(face_adjoint(hit_, {}, {}, hit_.log_by_c, hit_.log_by_way));
-    const RimDistance rim = rim_distance(view_.aperture, hit_.point.x, hit_.point.y);
-    if (rim.inside_mm < view_.rim_mm) {
-      const Support place = gradient(face_adjoint(hit_, {}, rim.gradient, 0.0, 0.0));
-      for (std::size_t k = 0; k < share.size(); ++k) share[k] += place[k] / view_.rim_mm;
-    }
-    const Support none{};
-    for (std::size_t k = 0; k < static_cast<std::size_t>(to.n); ++k) {
-      Support all;
-      for (std::size_t i = 0; i < all.size(); ++i)
-        all[i] = to.du[k] * u[i] + to.dv[k] * v[i] + to.weight[k] * share[i];
-      view_.shape.add(hit_.local, flux, all.data(), 0.0, none.data(), sums.row(to.bin[k]));
-    }
-  }
-
-  using Support = std::array<double, BsplineView::kSupport>;
-  Support gradient(const HitAdjoint& by) const {
-    Support out;
-    view_.shape.gradient(hit_.local, by.alpha, by.beta, by.gamma, out.data());
-    return out;
-  }
-
-  const EvaluationView<BsplineView>& view_;
-  MediumView medium_;
-  HitMirror<BsplineHitTable> face_;
-  const HitKernels& kernels_ = best_hit_kernels();
-  HitRays rays_{};
-  HitEnds ends_;
-  FaceHit hit_;
-};
-
 /// Calls `use` with what traces blocks of `rays`.
 template <class Shape, class Use>
 void with_tracer(const EvaluationView<Shape>& view, const DesignRays& rays, const Use& use) {
   if constexpr (std::is_same_v<Shape, BsplineView>) {
-    if (rays.medium()) return use(*std::make_unique<FaceTracer>(view, *rays.medium()));
+    if (rays.medium()) return use(*std::make_unique<FaceTracer>(view, *rays.medium(), rays.last_face()));
   }
   use(*std::make_unique<BlockTracer<Shape>>(view, rays.shadows()));
 }

@@ -39,6 +39,8 @@ struct FitProblem {
   /// In shape mode, where the scale is free, light beside the window would cost nothing: flux_weight * (1 -
   /// share in the window / flux_reference)^2 is added to the cost. Weight 0 = not.
   double flux_weight = 0.0, flux_reference = 1.0;
+  /// What differences in bins beside the target's rectangle count, of those within it. Free forms only.
+  double outside_weight = 1.0;
   /// What the limits cost at a shape, to be added to the squared error: 0 where all are held. Adds its
   /// residuals to `rows` unless null. Limits on light trace the first `rays` rays. Empty: no limits.
   std::function<double(const DesignShape&, std::uint64_t rays, ResidualRows* rows)> limits;

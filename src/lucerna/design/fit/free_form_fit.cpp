@@ -45,7 +45,9 @@ FreeFormFit::FreeFormFit(const FitProblem& problem, const FreeFormLevel& level, 
       bins_(graded_bins(problem.rectangle, problem.mirror_from_world, level.bins, level.widen,
                         problem.zones.cells ? kZoneBins : kOuterBins)),
       target_(problem.target(bins_)),
-      inside_(lucerna::in_rectangle(bins_, problem.rectangle)) {
+      inside_(lucerna::in_rectangle(bins_, problem.rectangle)),
+      weights_(bin_weights(bins_).array() *
+               (problem.outside_weight + (1.0 - problem.outside_weight) * inside_.array().square())) {
   problem_.rays->grow(level_.rays, progress);
   if (problem_.zones.cells) zones_.emplace(problem_.zones, bins_, level_.rays, level_.zones.weight);
 }
@@ -66,7 +68,7 @@ FreeFormPoint FreeFormFit::at(DesignShape shape, bool derivatives) const {
   Evaluation light = evaluate(shape, problem_.reflectance, *problem_.rays, bins_, options);
   if (!derivatives) light.rows.resize(light.flux.size(), static_cast<Eigen::Index>(shape.parameter_count()));
   if (other_light_.size() > 0) light.flux += other_light_;
-  SparseEquations equations = sparse_equations(light, target_, bins_, problem_.mode);
+  SparseEquations equations = sparse_equations(light, target_, weights_, problem_.mode);
   equations *= error_weight();
   if (zones_) zones_->add_to(light, equations);
   ResidualRows rows;
@@ -131,7 +133,7 @@ bool FreeFormFit::step(FreeFormPoint& now, double& lambda, bool doubtful) const 
 }
 
 BinError FreeFormFit::error(const FreeFormPoint& point) const {
-  return bin_error(point.light, target_, bins_, problem_.mode);
+  return bin_error(point.light, target_, weights_, problem_.mode);
 }
 
 }  // namespace lucerna

@@ -56,6 +56,7 @@ class FreeFormFit {
   /// step that may well be refused (`doubtful`) is tried without derivatives first.
   bool step(FreeFormPoint& now, double& lambda, bool doubtful = false) const;
 
+  const TentBins& bins() const { return bins_; }
   /// Error and noise of a point in these bins.
   BinError error(const FreeFormPoint& point) const;
   /// What the squared error counts.
@@ -73,7 +74,7 @@ class FreeFormFit {
   const FitProblem& problem_;
   FreeFormLevel level_;
   TentBins bins_;
-  Eigen::VectorXd target_, inside_;
+  Eigen::VectorXd target_, inside_, weights_;
   Eigen::VectorXd other_light_;  ///< empty: none
   std::optional<ZoneCost> zones_;
 };

@@ -10,6 +10,7 @@
 #include "lucerna/design/lens/free_face.h"
 #include "lucerna/error.h"
 #include "lucerna/project.h"
+#include "lucerna/source.h"
 
 namespace lucerna {
 namespace {
@@ -136,6 +137,73 @@ position_mm = [0, 0, 1.5]
   EXPECT_TRUE(takes_source_in(with_cavity(given, {}), given, rays));
   // Where all of the source is in the medium to begin with, it may be.
   EXPECT_FALSE(takes_source_in(with_cavity(flat_lens(), {0.5, 0.2}), flat_lens(), rays));
+}
+
+/// Of a point source at the origin of the lens.
+DesignRays point_below() {
+  EmitterOptions options;
+  options.kind = EmitterKind::point;
+  DesignRays rays({{make_emitter(options), Frame(), {}}}, lens_from_design().inverse(), 1);
+  rays.grow(kBlockRays * kDesignTasks);
+  return rays;
+}
+
+TEST(FreeEntry, IsTheBaseWithinAFlange) {
+  const LensShape lens = with_cavity(flat_lens(), {6.0, 3.0}, 40.0);
+  const DesignShape entry = entry_of(lens, {}, 24);
+  EXPECT_NEAR(entry.aperture().half_x_mm(), 0.98 * 12.0, 1e-12);
+  EXPECT_NEAR(-entry.at(0.0, 0.0).z_mm, 4.0, 0.02);
+  EXPECT_NEAR(-entry.at(0.0, 10.0).z_mm, 1.06, 0.02) << "beyond the cavity, a little above the base";
+  const FaceSeat seat = seat_over(lens, entry);
+  EXPECT_EQ(seat.radius_mm(), 12.0);
+  EXPECT_EQ(seat.lowest_mm(), 1.0);
+  EXPECT_EQ(seat.height_mm(3.0, 1.0), -entry.at(3.0, 1.0).z_mm);
+  EXPECT_EQ(seat.height_mm(11.9), 1.0);
+  Solid solid;
+  solid.outline_mm = lens.corners();
+  EXPECT_NO_THROW(check(with_face(solid, seat, face_of(lens, 16))));
+}
+
+// Each limit by itself: broken by what is beyond it, and by nothing else.
+TEST(FreeEntry, StaysBetweenBaseSourceAndLastFace) {
+  const LensShape lens = flat_lens();
+  const DesignShape entry = entry_of(lens, {}, 8), last = face_of(lens, 16);
+  const DesignRays source = point_below();
+  const auto cost = [&](const LensLimits& limits, const DesignShape& with) {
+    return entry_limits(limits, lens, entry, last, source, kFitRings).cost(with, nullptr);
+  };
+  const auto at = [&](double z) { return entry.through([z](double, double) { return -z; }); };
+  LensLimits limits;
+  EXPECT_EQ(cost(limits, at(2.0)), 0.0);
+  EXPECT_GT(cost(limits, at(0.9)), 0.1) << "below the base";
+  EXPECT_GT(cost(limits, at(8.0)), 0.1) << "through the last face, whose rim is at 3";
+  limits.min_thickness_mm = 2.0;
+  EXPECT_GT(cost(limits, at(2.0)), 0.1) << "1.2 mm below the rim";
+  const auto cone = entry.through([](double x, double y) { return -1.2 - 0.1 * std::hypot(x, y); });
+  EXPECT_EQ(cost({}, cone), 0.0);
+  LensLimits draft;
+  draft.min_draft_deg = 86.0;
+  EXPECT_GT(cost(draft, cone), 0.1) << "it leaves the axis by 84 degrees";
+}
+
+// Snell and Fresnel in closed form, at a tilted plane.
+TEST(FreeEntry, RaysComeInByIt) {
+  const DesignShape flat =
+      entry_of(flat_lens(), {}, 4).through([](double x, double) { return -2.0 - 0.5 * x; });
+  const auto into = into_entry(flat, {1.5, 0.1});
+  Ray ray{{0, 0, 0}, Direction::from({0, 0, -1})};
+  const double share = into(ray);
+  const double c = 2.0 / std::sqrt(5.0), t = std::sqrt(1.0 - (1.0 - c * c) / 2.25);
+  const double s = (c - 1.5 * t) / (c + 1.5 * t), p = (1.5 * c - t) / (1.5 * c + t);
+  EXPECT_NEAR(share, 1.0 - 0.5 * (s * s + p * p), 1e-9);
+  EXPECT_NEAR(ray.origin_mm.z, -2.0, 1e-9);
+  // The tangential part over the index: the tangent is along (1, 0, -0.5).
+  const Vec3 tangent = Direction::from({1, 0, -0.5}).vec();
+  EXPECT_NEAR(dot(ray.direction, tangent), dot(Vec3{0, 0, -1}, tangent) / 1.5, 1e-9);
+  Ray aside{{11.9, 0, 0}, Direction::from({0, 0, -1})};
+  EXPECT_EQ(into(aside), 0.0) << "on the flange";
+  Ray up{{0, 0, -4}, Direction::from({0, 0, 1})};
+  EXPECT_EQ(into(up), 0.0) << "from within";
 }
 
 }  // namespace

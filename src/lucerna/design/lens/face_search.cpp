@@ -77,6 +77,7 @@ FitProblem FaceSearch::fit_problem(std::optional<double> flux_reference, bool is
   fit.start_is_chosen = is_chosen;
   fit.max_failed_restarts = problem_.max_failed_restarts;
   fit.direct_light = false;
+  fit.outside_weight = kOutsideWeight;
   if (target.mode == TargetMode::shape) {
     fit.flux_weight = problem_.light_weight;
     fit.flux_reference = flux_reference ? *flux_reference / within_ : passed_by_start(fit);
@@ -89,7 +90,7 @@ FitProblem FaceSearch::fit_problem(std::optional<double> flux_reference, bool is
   fit.other_light = [this](const DesignShape& face, const TentBins& bins,
                            std::uint64_t count) -> Eigen::VectorXd {
     const std::uint64_t fewer = count < kRaysAtEnd ? kFewerRays : kFewerRaysAtEnd;
-    return other_light(problem_, face, bins, count / fewer, seed_) / within_;
+    return other_light(problem_, {problem_.start, face}, bins, count / fewer, seed_) / within_;
   };
   fit.rectangle = target_rectangle(target);
   fit.mirror_from_world = world_from_design().inverse();

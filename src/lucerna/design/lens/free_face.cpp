@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/design/lens/entry_face.h"
 #include "lucerna/design/lens/lens_path.h"
 #include "lucerna/optics/shapes/faced_outline.h"
 
@@ -64,7 +65,15 @@ double FaceSeat::lowest_mm() const {
   return out;
 }
 
-double FaceSeat::height_mm(double r_mm) const { return base_height_mm(base, std::min(r_mm, radius_mm())); }
+double FaceSeat::height_mm(double x_mm, double y_mm) const {
+  const double r = std::hypot(x_mm, y_mm);
+  if (bottom && r <= below_mm.front()[0]) return -bottom->at(x_mm, y_mm).z_mm;
+  return base_height_mm(base, std::min(r, radius_mm()));
+}
+
+FaceSeat seat_of(const ShapedLens& lens) {
+  return lens.entry ? seat_over(lens.outline, *lens.entry) : face_seat(lens.outline);
+}
 
 FaceSeat face_seat(const LensShape& lens) {
   const LensForm& form = lens.form();
@@ -128,9 +137,6 @@ DesignRays::Pass into_lens(const LensShape& lens, const MediumView& medium) {
 
 namespace {
 
-/// Where the project does not say more: of a body that stays closed.
-constexpr double kMinThickness_mm = 0.05;
-
 /// max(0, x) with a bend of about one in place of the corner.
 double softplus(double x) { return std::max(x, 0.0) + std::log1p(std::exp(-std::abs(x))); }
 
@@ -138,8 +144,7 @@ double softplus(double x) { return std::max(x, 0.0) + std::log1p(std::exp(-std::
 HeightBounds height_bounds(const LensLimits& limits, const FaceSeat& seat, double x, double y) {
   const double low = limits.max_height_mm ? -(seat.lowest_mm() + *limits.max_height_mm)
                                           : -std::numeric_limits<double>::infinity();
-  return {x, y, low,
-          -(seat.height_mm(std::hypot(x, y)) + limits.min_thickness_mm.value_or(kMinThickness_mm))};
+  return {x, y, low, -(seat.height_mm(x, y) + limits.min_thickness_mm.value_or(kMinThickness_mm))};
 }
 
 }  // namespace
@@ -187,10 +192,14 @@ FaceExtent face_extent(const FaceSeat& seat, const DesignShape& face) {
     const double r = seat.radius_mm() * i / kCheckRings;
     for (int k = 0; k < 2 * kCheckRings; ++k) {
       const double turn = std::numbers::pi * k / kCheckRings;
-      const SurfacePoint p = face.at(r * std::cos(turn), r * std::sin(turn));
+      const double x = r * std::cos(turn), y = r * std::sin(turn);
+      const SurfacePoint p = face.at(x, y);
       out.highest_mm = std::max(out.highest_mm, -p.z_mm);
-      out.thinnest_mm = std::min(out.thinnest_mm, -p.z_mm - seat.height_mm(r));
+      out.thinnest_mm = std::min(out.thinnest_mm, -p.z_mm - seat.height_mm(x, y));
       out.steepest = std::max(out.steepest, std::hypot(p.dzdx, p.dzdy));
+      if (!seat.bottom || r > seat.below_mm.front()[0]) continue;
+      const SurfacePoint q = seat.bottom->at(x, y);
+      out.steepest = std::max(out.steepest, std::hypot(q.dzdx, q.dzdy));
     }
   }
   return out;
@@ -199,12 +208,13 @@ FaceExtent face_extent(const FaceSeat& seat, const DesignShape& face) {
 }  // namespace
 
 std::size_t ShapedLens::parameter_count() const {
-  return face ? face->parameter_count() : outline.parameter_count();
+  if (!face) return outline.parameter_count();
+  return face->parameter_count() + (entry ? entry->parameter_count() : 0);
 }
 
 double ShapedLens::height_mm() const {
   if (!face) return outline.height_mm();
-  const FaceSeat seat = face_seat(outline);
+  const FaceSeat seat = seat_of(*this);
   return face_extent(seat, *face).highest_mm - seat.lowest_mm();
 }
 
@@ -245,16 +255,24 @@ FaceSpline face_spline(const DesignShape& face) {
   return out;
 }
 
-Solid with_face(const Solid& solid, const FaceSeat& seat, const DesignShape& face) {
-  const FaceSpline spline = face_spline(face);
+namespace {
+
+std::shared_ptr<const HeightSurface> surface_of(const FaceSpline& spline) {
   const auto row = [&](int intervals) {
     return KnotRow{-spline.half_mm, 2.0 * spline.half_mm / intervals, intervals};
   };
-  Solid out = solid;
-  out.outline_mm = seat.below_mm;
-  out.face = std::make_shared<const SmoothSurface<BsplineShape>>(
+  return std::make_shared<const SmoothSurface<BsplineShape>>(
       BsplineShape(std::numeric_limits<double>::infinity(), row(spline.intervals_x), row(spline.intervals_y),
                    spline.coefficients_mm));
+}
+
+}  // namespace
+
+Solid with_face(const Solid& solid, const FaceSeat& seat, const DesignShape& face) {
+  Solid out = solid;
+  out.outline_mm = seat.below_mm;
+  out.face = surface_of(face_spline(face));
+  if (seat.bottom) out.bottom_face = surface_of(face_spline(*seat.bottom));
   return out;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "lucerna/design/constraints/limits.h"
@@ -14,20 +15,26 @@ namespace lucerna {
 // design sees it. A design's frame is the lens's turned about x: light goes down to the face, as it does to a
 // mirror.
 
-/// The lens without its free face: the corners from the axis to the upper end of the wall.
+/// The lens without its free face: the corners from the axis, or from a bottom face's rim, to the upper end
+/// of the wall.
 struct FaceSeat {
   std::vector<OutlinePoint> below_mm;
-  /// In straight pieces, without the wall.
+  /// In straight pieces, without walls.
   std::vector<OutlineSide> base;
+  /// The first face, where that is a free form too, in a design's frame.
+  std::optional<DesignShape> bottom = std::nullopt;
   double radius_mm() const { return below_mm.back()[0]; }
   double lowest_mm() const;
-  /// Of what is below the face, by the distance from the axis.
-  double height_mm(double r_mm) const;
+  /// Of what is below the face, in the lens's frame, at a place of a design's.
+  double height_mm(double x_mm, double y_mm = 0.0) const;
 };
 
 /// The seat of the one free face of a lens, which leads from the upper end of a wall along the axis to the
 /// axis. Throws InputError for any other.
 FaceSeat face_seat(const LensShape& lens);
+
+/// The seat of a lens's last face: of one free face, or over another.
+FaceSeat seat_of(const ShapedLens& lens);
 
 /// The free face of the lens as it is, in a design's frame. Throws InputError where it is not a height over
 /// every place.

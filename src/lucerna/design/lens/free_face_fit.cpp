@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/design/lens/free_face_fit.h"
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/design/lens/cavity_search.h"
 #include "lucerna/design/lens/face_search.h"
+#include "lucerna/design/lens/two_face_fit.h"
 
 namespace lucerna {
 
@@ -18,6 +22,22 @@ constexpr int kBaseIntervals = 16;
 constexpr std::uint64_t kBaseRays = std::uint64_t{1} << 15;
 /// That tell where the source is.
 constexpr std::uint64_t kBaseSourceRays = std::uint64_t{1} << 12;
+
+/// Domes that a free first face begins as: depths over the radius, how far the last face is over the distance
+/// that it has, and how far the rim leaves the axis.
+constexpr std::array<double, 5> kDomeDepths{0.0, 0.1, 0.18, 0.27, 0.4};
+constexpr std::array<double, 2> kDomeDistances{1.0, 1.25};
+constexpr double kDomeDraft_deg = 40.0;
+
+/// Two faces are fitted in coarser bins than one, with derivatives by all rays: what a wide source cannot
+/// show needs none, and few rays a bin make steps short.
+constexpr std::array<FreeFormLevel, 4> kTwoFaceLevels{
+    {{.bins = 28, .rays = 1 << 16, .max_steps = 8, .min_gain = 0.03},
+     {.bins = 36, .rays = 1 << 18, .max_steps = 12, .min_gain = 0.02},
+     {.bins = 48, .rays = 1 << 20, .max_steps = 12, .min_gain = 0.01},
+     {.bins = 60, .rays = 1 << 22, .max_steps = 20, .min_gain = 0.005}}};
+/// Knots of the first face.
+constexpr int kEntryIntervals = 10;
 
 LensProblem with_start(const LensProblem& problem, LensShape start) {
   LensProblem out = problem;
@@ -42,16 +62,9 @@ class BaseChoice {
   void run() {
     static_cast<void>(cost(problem_.start, std::nullopt, 1.0));
     const CavityRange range = cavity_range(problem_.start, problem_.limits);
-    const auto judged = [&](const CavityTrial& trial) -> std::optional<double> {
-      if (ended_) return std::nullopt;
-      try {
-        const double draft_deg = problem_.limits.min_draft_deg.value_or(0.0);
-        return cost(with_cavity(problem_.start, trial.cavity, draft_deg), trial.cavity, trial.distance);
-      } catch (const InputError&) {  // no lens
-        return std::numeric_limits<double>::infinity();
-      }
-    };
-    static_cast<void>(search_cavity(range, judged, options_.cavity_trials));
+    if (problem_.free_face->entry == EntryKind::bspline) return look_at_domes(range);
+    static_cast<void>(search_cavity(
+        range, [&](const CavityTrial& trial) { return judged(trial, 0.0); }, options_.cavity_trials));
   }
 
   double flux_reference() const { return flux_reference_; }
@@ -66,6 +79,29 @@ class BaseChoice {
   bool has_ended() const { return ended_; }
 
  private:
+  /// A spline has no edge, so what becomes one begins as a dome over all of the base, without a steep rim.
+  void look_at_domes(const CavityRange& range) {
+    for (const double distance : kDomeDistances) {
+      for (const double depth : kDomeDepths) {
+        const double depth_mm = depth * range.max_radius_mm;
+        if (depth_mm <= range.max_depth_mm)
+          static_cast<void>(judged({{range.max_radius_mm, depth_mm}, distance}, kDomeDraft_deg));
+      }
+    }
+  }
+
+  /// What a cavity comes to, whose rim leaves the axis by so much at least; nothing where the watcher has
+  /// ended it.
+  std::optional<double> judged(const CavityTrial& trial, double draft_deg) {
+    if (ended_) return std::nullopt;
+    try {
+      const double least_deg = std::max(draft_deg, problem_.limits.min_draft_deg.value_or(0.0));
+      return cost(with_cavity(problem_.start, trial.cavity, least_deg), trial.cavity, trial.distance);
+    } catch (const InputError&) {  // no lens
+      return std::numeric_limits<double>::infinity();
+    }
+  }
+
   double cost(const LensShape& outline, const std::optional<Cavity>& cavity, double distance) {
     if (takes_source_in(outline, problem_.start, source_)) return std::numeric_limits<double>::infinity();
     LensProblem rough = with_start(problem_, outline);
@@ -114,6 +150,25 @@ void run_search(FaceSearch& face, const LensFitWatcher& watch, LensFitResult& re
   result.rays += search.state().total_rays;
 }
 
+/// The entry becomes a free form, and goes on from what it is.
+void fit_two_faces(const LensProblem& problem, const LensFitOptions& options, const BaseChoice& base,
+                   FaceSearch& face, const LensFitWatcher& watch, LensFitResult& result) {
+  std::vector<FreeFormLevel> levels;
+  for (const FreeFormLevel& with : kTwoFaceLevels) {
+    levels.push_back(with);
+    levels.back().rays = std::min(with.rays, options.max_rays);
+    levels.back().smoothing = face.search().level(0).smoothing;
+  }
+  ShapedLens begin = face.best();
+  const bool has_own_knots = problem.free_face->intervals == problem.free_face->max_intervals;
+  if (base.face() && !has_own_knots) begin.face = base.face();
+  begin.entry =
+      entry_of(begin.outline, problem.limits, std::min(kEntryIntervals, problem.free_face->intervals));
+  result.cavity.reset();
+  TwoFaceFit(problem, options.seed, std::move(begin), std::move(levels), face.flux_reference())
+      .run(watch, result);
+}
+
 LensFitResult fit_face_and_entry(const LensProblem& problem, const LensFitOptions& options,
                                  const LensFitWatcher& watch) {
   BaseChoice base(problem, options, watch);
@@ -123,7 +178,9 @@ LensFitResult fit_face_and_entry(const LensProblem& problem, const LensFitOption
   result.cavity = base.cavity();
   result.evaluations = base.evaluations();
   result.rays = base.rays();
-  if (!base.has_ended()) {
+  if (!base.has_ended() && problem.free_face->entry == EntryKind::bspline) {
+    fit_two_faces(problem, options, base, face, watch, result);
+  } else if (!base.has_ended()) {
     run_search(face, watch, result);
   } else {
     result.end = DesignTermination::time;
@@ -136,7 +193,7 @@ LensFitResult fit_face_and_entry(const LensProblem& problem, const LensFitOption
 
 LensFitResult fit_free_face(const LensProblem& problem, const LensFitOptions& options,
                             const LensFitWatcher& watch) {
-  if (problem.free_face->shapes_entry) return fit_face_and_entry(problem, options, watch);
+  if (problem.free_face->entry != EntryKind::given) return fit_face_and_entry(problem, options, watch);
   FaceSearch face(problem, options);
   LensFitResult result(face.best());
   run_search(face, watch, result);

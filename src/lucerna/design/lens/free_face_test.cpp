@@ -245,11 +245,11 @@ LensProblem dome_of_text(const std::string& text) {
 
 TEST(FreeFace, AFreeEntryIsTheFaceFromTheAxis) {
   const std::string text = kDomeText;
-  EXPECT_FALSE(dome().free_face->shapes_entry);
+  EXPECT_EQ(dome().free_face->entry, EntryKind::given);
   // Sides 0 and 1 are one face.
   for (const char* sides : {"free_sides = [0, 3]", "free_sides = [3, 1]", "free_sides = [0, 1, 3, 4]"}) {
     const LensProblem problem = dome_of_text(dome_with(text, "free_sides = 3", sides));
-    EXPECT_TRUE(problem.free_face->shapes_entry) << sides;
+    EXPECT_EQ(problem.free_face->entry, EntryKind::cavity) << sides;
     EXPECT_EQ(problem.start.corners(), dome().start.corners()) << sides;
   }
   EXPECT_NE(dome_refusal(dome_with(text, "free_sides = 3", "free_sides = [0, 2, 3]")).find("2 free faces"),

@@ -127,7 +127,7 @@ LensResult design_lens(const LensProblem& problem, const LensOptions& options, P
   result.start_error = given.error;
   const auto signs = draft_signs(problem.start);
   result.limits = result.lens.face
-                      ? check_face_limits(problem.limits, face_seat(result.lens.outline), *result.lens.face)
+                      ? check_face_limits(problem.limits, seat_of(result.lens), *result.lens.face)
                       : check_lens_limits(problem.limits, result.lens.outline, signs);
   const auto given_limits = check_lens_limits(problem.limits, problem.start, signs);
   const bool given_holds =

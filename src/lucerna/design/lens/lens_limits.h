@@ -21,6 +21,9 @@ struct LensLimits {
   bool any() const { return max_diameter_mm || max_height_mm || min_thickness_mm || min_draft_deg; }
 };
 
+/// Of a body that stays closed, where the project does not say more.
+inline constexpr double kMinThickness_mm = 0.05;
+
 /// Squares of excesses over a small margin (0.02 mm, 0.01 of a sine), from one margin within a limit on,
 /// at points of the curve; 0 where all hold. `signs`: where faces look to at the start (`draft_signs`). Adds
 /// its residuals to `rows`. O(points^2).

@@ -71,11 +71,16 @@ int read_lens_intervals(TomlReader& design) {
 /// What `family` makes of the free face.
 std::optional<FreeFaceProblem> read_free_face(TomlReader& design, int intervals) {
   const std::string family = design.word("family").value_or("revolution");
-  if (family == "revolution") return std::nullopt;
+  const std::string entry = design.word("entry").value_or("cavity");
+  if (family == "revolution") {
+    if (design.has("entry")) design.fail("entry", "belongs to family = \"bspline\"; this is \"revolution\"");
+    return std::nullopt;
+  }
   if (family != "bspline")
     design.fail("family", fmt::format("found \"{}\", expected \"revolution\" or \"bspline\"", family));
   FreeFaceProblem out;
   if (intervals > 0) out.intervals = out.max_intervals = intervals;
+  out.entry = entry == "bspline" ? EntryKind::bspline : EntryKind::cavity;
   return out;
 }
 
@@ -135,11 +140,15 @@ LensShape lens_to_begin_with(const Solid& solid, const std::vector<std::size_t>&
                              const LensLimits& limits, std::optional<FreeFaceProblem>& free_face) {
   if (!free_face) return {solid.outline_mm, solid.smooth_below_deg, sides, intervals};
   const FreeSides sorted = sorted_sides(solid, sides);
-  free_face->shapes_entry = !sorted.entry.empty() && !sorted.others.empty();
-  LensShape shape(solid.outline_mm, solid.smooth_below_deg, free_face->shapes_entry ? sorted.others : sides,
-                  0);
+  const bool shapes_entry = !sorted.entry.empty() && !sorted.others.empty();
+  if (!shapes_entry) {
+    if (free_face->entry == EntryKind::bspline)
+      throw InputError("entry = \"bspline\": found no side from the axis to the base among them");
+    free_face->entry = EntryKind::given;
+  }
+  LensShape shape(solid.outline_mm, solid.smooth_below_deg, shapes_entry ? sorted.others : sides, 0);
   check_free_face(shape, free_face->intervals, limits);
-  if (free_face->shapes_entry) static_cast<void>(cavity_range(shape, limits));
+  if (shapes_entry) static_cast<void>(cavity_range(shape, limits));
   return shape;
 }
 
@@ -269,7 +278,7 @@ TentBins lens_boxes(const LensProblem& problem) {
 
 Solid shaped_solid(const LensProblem& problem, const ShapedLens& lens) {
   Solid solid = problem.project.scene.solids.front();
-  if (lens.face) return with_face(solid, face_seat(lens.outline), *lens.face);
+  if (lens.face) return with_face(solid, seat_of(lens), *lens.face);
   solid.outline_mm = lens.outline.corners();
   return solid;
 }
@@ -284,6 +293,7 @@ Project with_lens(const LensProblem& problem, const ShapedLens& lens) {
   auto* const design = toml_tables(project)["design"].as_table();
   if (lens.face) {
     lens_table(project).insert_or_assign("face", face_table(*lens.face));
+    if (lens.entry) lens_table(project).insert_or_assign("bottom_face", face_table(*lens.entry));
     // A lens with such a face is not one to begin with.
     if (design != nullptr) toml_tables(project).erase("design");
   } else if (design != nullptr) {

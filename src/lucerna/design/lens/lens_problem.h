@@ -14,12 +14,16 @@
 
 namespace lucerna {
 
+/// The first face of a lens whose last one is a free form: as it is given; a cavity, if one is better; or a
+/// free form too.
+enum class EntryKind { given, cavity, bspline };
+
 /// How the free face of a lens becomes a free form.
 struct FreeFaceProblem {
   /// Knot intervals across: to begin with, and at most.
   int intervals = 24, max_intervals = 48;
-  /// Whether the face opposite to it may become a cavity.
-  bool shapes_entry = false;
+  /// What may become of the face opposite to it.
+  EntryKind entry = EntryKind::given;
 };
 
 /// A lens that is to be designed, checked.
@@ -66,10 +70,11 @@ TentBins lens_window(const LensProblem& problem);
 /// The same light in 48 x 48 bins, whatever the target is: about its mean direction, as `target_bins` has it.
 TentBins lens_boxes(const LensProblem& problem);
 
-/// What a design makes of a lens: another outline, or the given one with a free form as its free face.
+/// What a design makes of a lens: another outline, or the given one with free forms as its last face, and as
+/// its first one (in a design's frame, face_of).
 struct ShapedLens {
   LensShape outline;
-  std::optional<DesignShape> face = std::nullopt;
+  std::optional<DesignShape> face = std::nullopt, entry = std::nullopt;
 
   std::size_t parameter_count() const;
   /// Largest minus smallest height of the whole lens.

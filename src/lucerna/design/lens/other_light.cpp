@@ -110,9 +110,9 @@ bool is_closed(const Solid& lens) {
 
 }  // namespace
 
-Eigen::VectorXd other_light(const LensProblem& problem, const DesignShape& face, const TentBins& bins,
+Eigen::VectorXd other_light(const LensProblem& problem, const ShapedLens& shaped, const TentBins& bins,
                             std::uint64_t rays, std::uint64_t seed) {
-  const Project project = with_lens(problem, {problem.start, face});
+  const Project project = with_lens(problem, shaped);
   if (!is_closed(project.scene.solids.front()))
     return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(bins.size()));
   const LensBlocks lens(project.scene, LensSurface::exact, seed ^ 0x4F54484552ull);
@@ -120,7 +120,7 @@ Eigen::VectorXd other_light(const LensProblem& problem, const DesignShape& face,
   const Blur blur(blur_of(problem));
   std::vector<OtherTally> parts;
   for (std::uint64_t part = 0; part < kLightParts; ++part)
-    parts.emplace_back(face, design_from_world, bins, blur, part);
+    parts.emplace_back(shaped.face.value(), design_from_world, bins, blur, part);
   const std::uint64_t each = std::max<std::uint64_t>(1, rays / kBlockRays / kLightParts);
   parallel_blocks(kLightParts, 1, [&](std::size_t part, std::size_t) {
     RayBlock block;

@@ -82,7 +82,7 @@ TEST(OtherLight, WithWhatGoesStraightIsAllLight) {
   }
   within /= static_cast<double>(kOtherRays);
   const Eigen::VectorXd straight = within * evaluate(face, Reflectance(1.0), rays, bins, options).flux;
-  const Eigen::VectorXd other = other_light(problem, face, bins, kOtherRays, 5);
+  const Eigen::VectorXd other = other_light(problem, {problem.start, face}, bins, kOtherRays, 5);
 
   const Project project = with_lens(problem, {problem.start, face});
   const LensBlocks lens(project.scene, LensSurface::exact, 77);
@@ -101,7 +101,7 @@ TEST(OtherLight, OfAFaceThatCutsItsBaseIsNothing) {
   const LensProblem problem = flat_based_lens();
   const DesignShape low = face_of(problem.start, 8).through([](double, double) { return -2.0; });
   const TentBins bins = TentBins::square(Frame(), 0.9, 4);
-  EXPECT_EQ(other_light(problem, low, bins, kBlockRays, 1).sum(), 0.0);
+  EXPECT_EQ(other_light(problem, {problem.start, low}, bins, kBlockRays, 1).sum(), 0.0);
 }
 
 }  // namespace

@@ -36,7 +36,11 @@ double best_scale(const Eigen::VectorXd& flux, const Eigen::VectorXd& target, co
 
 BinError bin_error(const Evaluation& e, const Eigen::VectorXd& target, const TentBins& bins,
                    TargetMode mode) {
-  const Eigen::VectorXd w = bin_weights(bins);
+  return bin_error(e, target, bin_weights(bins), mode);
+}
+
+BinError bin_error(const Evaluation& e, const Eigen::VectorXd& target, const Eigen::VectorXd& w,
+                   TargetMode mode) {
   BinError error;
   error.scale = best_scale(e.flux, target, w, mode);
   const double norm = w.dot(target.cwiseAbs2());

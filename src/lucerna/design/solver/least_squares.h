@@ -21,7 +21,10 @@ struct BinError {
   double scale = 1.0;
 };
 
-/// `target` is flux per bin in the evaluation's unit (shares of the sources' flux).
+/// `target` is flux per bin in the evaluation's unit (shares of the sources' flux). `weights`: what squared
+/// differences of flux count, as bin_weights or a part of that.
+BinError bin_error(const Evaluation& e, const Eigen::VectorXd& target, const Eigen::VectorXd& weights,
+                   TargetMode mode);
 BinError bin_error(const Evaluation& e, const Eigen::VectorXd& target, const TentBins& bins, TargetMode mode);
 
 /// The normal equations of a least-squares step: cost = |r|^2 with gradient 2 g and Gauss-Newton Hessian 2 H.

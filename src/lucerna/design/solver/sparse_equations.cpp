@@ -124,9 +124,8 @@ SparseEquations& SparseEquations::operator*=(double weight) {
   return *this;
 }
 
-SparseEquations sparse_equations(const Evaluation& e, const Eigen::VectorXd& target, const TentBins& bins,
+SparseEquations sparse_equations(const Evaluation& e, const Eigen::VectorXd& target, const Eigen::VectorXd& w,
                                  TargetMode mode) {
-  const Eigen::VectorXd w = bin_weights(bins);
   const double norm = w.dot(target.cwiseAbs2());
   LUCERNA_CHECK(norm > 0.0, "a target without light in its window");
   const double scale = best_scale(e.flux, target, w, mode), unit = scale / std::sqrt(norm);

@@ -35,9 +35,10 @@ struct SparseEquations {
 /// Lower triangle of J^T J.
 SparseSymmetric squared_rows(const SparseJacobian& j);
 
-/// As `normal_equations`, from an evaluation with `rows`. Throws never; the same bits for any thread count.
-SparseEquations sparse_equations(const Evaluation& e, const Eigen::VectorXd& target, const TentBins& bins,
-                                 TargetMode mode);
+/// As `normal_equations`, from an evaluation with `rows`; `weights` as bin_error has them. Throws never; the
+/// same bits for any thread count.
+SparseEquations sparse_equations(const Evaluation& e, const Eigen::VectorXd& target,
+                                 const Eigen::VectorXd& weights, TargetMode mode);
 
 /// How a step of a free form is measured: see `step_metric`.
 SparseSymmetric sparse_step_metric(const DesignShape& shape, const SparseEquations& equations);

@@ -105,7 +105,7 @@ TEST(SparseJacobian, SaysWhatNoiseAddsToItsSquare) {
   const Eigen::VectorXd target =
       Eigen::Map<const Eigen::VectorXd>(s.bins.measure().data(), static_cast<Eigen::Index>(s.bins.size()));
   const auto share = [&](const Evaluation& e) {
-    return sparse_equations(e, target, s.bins, TargetMode::absolute).derivative_noise;
+    return sparse_equations(e, target, bin_weights(s.bins), TargetMode::absolute).derivative_noise;
   };
   EXPECT_GT(share(few), 6.0 * share(many));
   EXPECT_LT(share(few), 1.0);
@@ -118,7 +118,7 @@ TEST(SparseEquations, AreTheDenseOnesAndTakeTheSameStep) {
       Eigen::Map<const Eigen::VectorXd>(s.bins.measure().data(), static_cast<Eigen::Index>(s.bins.size()));
   for (const TargetMode mode : {TargetMode::shape, TargetMode::absolute}) {
     const NormalEquations dense = normal_equations(dense_light, target, s.bins, mode);
-    const SparseEquations sparse = sparse_equations(sparse_light, target, s.bins, mode);
+    const SparseEquations sparse = sparse_equations(sparse_light, target, bin_weights(s.bins), mode);
     EXPECT_NEAR(sparse.cost, dense.cost, 1e-12 * dense.cost);
     EXPECT_LT((sparse.gradient - dense.gradient).norm(), 1e-10 * dense.gradient.norm());
     Eigen::MatrixXd hessian = Eigen::MatrixXd(sparse.hessian).selfadjointView<Eigen::Lower>();

@@ -65,7 +65,8 @@ class SolidStep {
   }
 
   /// The wall from a corner up to the rim of `face`, in two half cylinders, and the face, which is `shape`.
-  void add_face(std::size_t corner, const BsplineShape& shape, const HeightSurface& face) {
+  /// `is_top`: the body is below the face and within the wall, else above and outside.
+  void add_face(std::size_t corner, const BsplineShape& shape, const HeightSurface& face, bool is_top) {
     const SolidRing low = ring(corner);
     const auto [r, z] = corners_[corner];
     const FaceRim rim = face_rim(face, r);
@@ -74,14 +75,13 @@ class SolidStep {
     const int far = straight_edge(low.far, rim.vertex[2], far_low, rim.curve[2].poles.front());
     const int wall = step_.revolution(step_.curve(straight(near_low, {r, 0.0, rim.top_mm})));
     const auto& q = rim.edge;
-    step_.face(wall, true,
-               step_.loop({{low.first_half, true}, {far, true}, {q[1], false}, {q[0], false}, {near, false}}),
-               {});
-    step_.face(
-        wall, true,
-        step_.loop({{low.second_half, true}, {near, true}, {q[3], false}, {q[2], false}, {far, false}}), {});
-    step_.face(step_.surface(step_surface(shape)), true,
-               step_.loop({{q[0], true}, {q[1], true}, {q[2], true}, {q[3], true}}), {});
+    const auto add = [&](int surface, std::vector<StepEdge> loop) {
+      if (!is_top) loop = backward(loop);
+      step_.face(surface, is_top, step_.loop(loop), {});
+    };
+    add(wall, {{low.first_half, true}, {far, true}, {q[1], false}, {q[0], false}, {near, false}});
+    add(wall, {{low.second_half, true}, {near, true}, {q[3], false}, {q[2], false}, {far, false}});
+    add(step_.surface(step_surface(shape)), {{q[0], true}, {q[1], true}, {q[2], true}, {q[3], true}});
   }
 
   std::string text(const std::string& name) { return step_.text(name, true); }
@@ -107,6 +107,13 @@ class SolidStep {
       out.curve[i].poles.back() = out.curve[(i + 1) % 4].poles.front();
       out.edge[i] = step_.edge(out.vertex[i], out.vertex[(i + 1) % 4], step_.curve(out.curve[i]));
     }
+    return out;
+  }
+
+  /// The same loop the other way round.
+  static std::vector<StepEdge> backward(const std::vector<StepEdge>& loop) {
+    std::vector<StepEdge> out(loop.rbegin(), loop.rend());
+    for (auto& [edge, forward] : out) forward = !forward;
     return out;
   }
 
@@ -141,6 +148,14 @@ class SolidStep {
   StepWriter step_;
 };
 
+const BsplineShape& spline_of(const HeightSurface& face) {
+  const auto* const spline = dynamic_cast<const SmoothSurface<BsplineShape>*>(&face);
+  if (spline == nullptr)
+    throw InputError(
+        "CAD: STEP: found a face of a solid that is no B-spline, expected one with coefficients");
+  return spline->shape();
+}
+
 }  // namespace
 
 std::string solid_step_text(std::span<const OutlinePoint> outline_mm, double smooth_below_deg,
@@ -154,17 +169,14 @@ std::string solid_step_text(std::span<const OutlinePoint> outline_mm, double smo
   return step.text(name);
 }
 
-std::string solid_step_text(std::span<const OutlinePoint> outline_mm, const HeightSurface& face,
+std::string solid_step_text(std::span<const OutlinePoint> outline_mm, const BodyFaces& faces,
                             double smooth_below_deg, const std::string& name) {
-  check_faced_outline(outline_mm, face, smooth_below_deg);
-  const auto* const spline = dynamic_cast<const SmoothSurface<BsplineShape>*>(&face);
-  if (spline == nullptr)
-    throw InputError(
-        "CAD: STEP: found a face of a solid that is no B-spline, expected one with coefficients");
+  check_faced_outline(outline_mm, faces, smooth_below_deg);
   const FacedBase base = faced_base(outline_mm, smooth_below_deg);
   SolidStep step(base.corners);
   for (const OutlineRun& run : base.runs) step.add(run);
-  step.add_face(outline_mm.size() - 2, spline->shape(), face);
+  step.add_face(outline_mm.size() - 2, spline_of(faces.top), faces.top, true);
+  if (faces.bottom) step.add_face(1, spline_of(*faces.bottom), *faces.bottom, false);
   return step.text(name);
 }
 

@@ -64,23 +64,36 @@ TEST(SolidExport, StepOfAFreeFaceIsAClosedShell) {
       [](double x, double y) { return 8.0 + 0.01 * x * x - 0.012 * y * y + 0.001 * x * y * y; }, 11.0, 6);
   for (const auto& [outline, faces] : {std::pair(Outline{{0, 0}, {10, 0}, {10, 3}}, 5u),
                                        {Outline{{0, 3}, {2, 2}, {3, 0}, {10, 0}, {10, 3}}, 9u}}) {
-    const std::string text = solid_step_text(outline, *face, 15.0);
+    const std::string text = solid_step_text(outline, {*face}, 15.0);
     expect_closed_shell(text, 2);
     EXPECT_EQ(count_of(text, "ADVANCED_FACE("), faces);
     EXPECT_EQ(count_of(text, "B_SPLINE_SURFACE_WITH_KNOTS("), 1u);
     const auto uses = uses_of_edges(text);
     EXPECT_EQ(uses.size(), count_of(text, "EDGE_CURVE("));
     for (const auto& [edge, both] : uses) EXPECT_EQ(both, (std::array<int, 2>{1, 1})) << edge;
-    EXPECT_EQ(text, solid_step_text(outline, *face, 15.0));
+    EXPECT_EQ(text, solid_step_text(outline, {*face}, 15.0));
   }
+}
+
+// A free form at the bottom too: two walls in halves, the flange between them, two splines.
+TEST(SolidExport, StepOfTwoFreeFacesIsAClosedShell) {
+  const auto top =
+      test::spline_face([](double x, double y) { return 8.0 + 0.01 * x * x - 0.012 * y * y; }, 11.0, 6);
+  const auto bottom = test::spline_face([](double x, double y) { return 2.0 - 0.02 * x * y; }, 7.0, 4);
+  const Outline outline{{6, 1}, {6, 0}, {10, 0}, {10, 3}};
+  const std::string text = solid_step_text(outline, {*top, bottom.get()}, 15.0);
+  expect_closed_shell(text, 2);
+  EXPECT_EQ(count_of(text, "ADVANCED_FACE("), 8u);
+  EXPECT_EQ(count_of(text, "B_SPLINE_SURFACE_WITH_KNOTS("), 2u);
+  for (const auto& [edge, both] : uses_of_edges(text)) EXPECT_EQ(both, (std::array<int, 2>{1, 1})) << edge;
 }
 
 TEST(SolidExport, AFaceIsABspline) {
   const Outline outline{{0, -1}, {10, -1}, {10, 0}};
   const Reflector bowl = conic_reflector(ConicPreset::parabola, 20.0, 0.0, Aperture::circle(20.0));
-  EXPECT_EQ(
-      test::message_of<InputError>([&] { static_cast<void>(solid_step_text(outline, *bowl.surface, 15.0)); }),
-      "CAD: STEP: found a face of a solid that is no B-spline, expected one with coefficients");
+  EXPECT_EQ(test::message_of<InputError>(
+                [&] { static_cast<void>(solid_step_text(outline, {*bowl.surface}, 15.0)); }),
+            "CAD: STEP: found a face of a solid that is no B-spline, expected one with coefficients");
 }
 
 TEST(SolidExport, ProfileIsClosedAndHasTheVolume) {

@@ -57,7 +57,7 @@ class FacedMesh {
   }
 
   /// Triangles from ring to ring, the outside to the right of the way with r to the right and z up. Both have
-  /// as many vertices, or `b` half of them, or one of the two is on the axis.
+  /// as many vertices, or one half of them, or one of the two is on the axis.
   void band(const SpokeRing& a, const SpokeRing& b) {
     const std::uint32_t n = std::max(a.count, b.count);
     const auto vertex = [n](const SpokeRing& r, std::uint32_t s) {
@@ -65,7 +65,7 @@ class FacedMesh {
     };
     for (std::uint32_t s = 0; s < n; ++s) {
       const std::uint32_t a0 = vertex(a, s), a1 = vertex(a, s + 1), b0 = vertex(b, s), b1 = vertex(b, s + 1);
-      if (a.count > 1) mesh.triangles.push_back({a0, a1, b0});
+      if (a.count > 1 && a0 != a1) mesh.triangles.push_back({a0, a1, b0});
       if (b.count > 1 && b0 != b1) mesh.triangles.push_back({a1, b1, b0});
     }
   }
@@ -82,9 +82,8 @@ SpokeRing circle(FacedMesh& mesh, const OutlinePoint& p, int spokes) {
   });
 }
 
-/// The base; the ring of the wall's lower end.
-SpokeRing add_base(FacedMesh& mesh, const std::vector<OutlineSide>& sides, int spokes) {
-  SpokeRing at = circle(mesh, sides.front().from, spokes);
+/// The base from the ring at which it begins; the ring of the wall's lower end.
+SpokeRing add_base(FacedMesh& mesh, SpokeRing at, const std::vector<OutlineSide>& sides, int spokes) {
   OutlinePoint place = sides.front().from;
   for (const OutlineSide& side : sides) {
     if (side.from != place) at = circle(mesh, side.from, spokes);  // a stretch of the axis lies between
@@ -102,23 +101,32 @@ SpokeRing add_base(FacedMesh& mesh, const std::vector<OutlineSide>& sides, int s
   return at;
 }
 
-/// From the wall's lower end to the face's rim, whose ring it returns.
-SpokeRing add_wall(FacedMesh& mesh, SpokeRing at, const OutlinePoint& low, const HeightSurface& face,
-                   int spokes) {
-  const double radius = low[0];
+/// The longest piece of a wall of this lower end below its face's rim, mm.
+double wall_height_mm(const OutlinePoint& low, const HeightSurface& face, int spokes) {
   double longest = 0.0;
   for (int s = 0; s < spokes; ++s) {
     const double angle = 2.0 * std::numbers::pi * s / spokes;
-    longest = std::max(longest, face.at(radius * std::cos(angle), radius * std::sin(angle)).z_mm - low[1]);
+    longest = std::max(longest, face.at(low[0] * std::cos(angle), low[0] * std::sin(angle)).z_mm - low[1]);
   }
-  const int n = pieces_of(longest, radius, spokes);
+  return longest;
+}
+
+/// The ring of a wall at this share of the way from its lower end to its face's rim.
+SpokeRing wall_ring(FacedMesh& mesh, const OutlinePoint& low, const HeightSurface& face, double share,
+                    int spokes) {
+  return mesh.ring(spokes, [&](double c, double s) {
+    Vec3 p = face_point(face, low[0] * c, low[0] * s);
+    if (share < 1.0) p.z = low[1] + share * (p.z - low[1]);
+    return p;
+  });
+}
+
+/// From the wall's lower end to the face's rim, whose ring it returns.
+SpokeRing add_wall(FacedMesh& mesh, SpokeRing at, const OutlinePoint& low, const HeightSurface& face,
+                   int spokes) {
+  const int n = pieces_of(wall_height_mm(low, face, spokes), low[0], spokes);
   for (int k = 1; k <= n; ++k) {
-    const double share = static_cast<double>(k) / n;
-    const SpokeRing next = mesh.ring(spokes, [&](double c, double s) {
-      Vec3 p = face_point(face, radius * c, radius * s);
-      if (k < n) p.z = low[1] + share * (p.z - low[1]);
-      return p;
-    });
+    const SpokeRing next = wall_ring(mesh, low, face, static_cast<double>(k) / n, spokes);
     mesh.band(at, next);
     at = next;
   }
@@ -149,6 +157,33 @@ void add_face(FacedMesh& mesh, SpokeRing at, double radius, const HeightSurface&
   }
 }
 
+/// A bottom face from the axis out; the ring of its rim.
+SpokeRing add_bottom(FacedMesh& mesh, double radius, const HeightSurface& face, int rings,
+                     int spokes_at_rim) {
+  const std::vector<int> spokes = spokes_of_rings(rings, spokes_at_rim);
+  SpokeRing at;
+  for (int k = 0; k <= rings; ++k) {
+    const double r = radius * k / rings;
+    const SpokeRing next = mesh.ring(spokes[static_cast<std::size_t>(k)],
+                                     [&](double c, double s) { return face_point(face, r * c, r * s); });
+    if (k > 0) mesh.band(at, next);
+    at = next;
+  }
+  return at;
+}
+
+/// From a bottom face's rim down to the lower end of the wall about it, whose ring it returns.
+SpokeRing add_inner_wall(FacedMesh& mesh, SpokeRing at, const OutlinePoint& low, const HeightSurface& face) {
+  const int spokes = static_cast<int>(at.count);
+  const int n = pieces_of(wall_height_mm(low, face, spokes), low[0], spokes);
+  for (int k = n - 1; k >= 0; --k) {
+    const SpokeRing next = wall_ring(mesh, low, face, static_cast<double>(k) / n, spokes);
+    mesh.band(at, next);
+    at = next;
+  }
+  return at;
+}
+
 /// How far triangles from number `first` on leave the face, at the middles of their sides, mm.
 double face_deviation_mm(const Mesh& mesh, std::size_t first, const HeightSurface& face) {
   double worst = 0.0;
@@ -167,19 +202,31 @@ double face_deviation_mm(const Mesh& mesh, std::size_t first, const HeightSurfac
 
 }  // namespace
 
-Mesh faced_solid(std::span<const OutlinePoint> corners_mm, const HeightSurface& face, double smooth_below_deg,
+Mesh faced_solid(std::span<const OutlinePoint> corners_mm, const BodyFaces& faces, double smooth_below_deg,
                  double tolerance) {
-  const double tolerance_mm = tolerance * faced_reach_mm(corners_mm, face);
+  const double tolerance_mm = tolerance * faced_reach_mm(corners_mm, faces);
   const std::vector<OutlineSide> sides = faced_base_sides(corners_mm, smooth_below_deg, tolerance_mm);
   const OutlinePoint& low = corners_mm[corners_mm.size() - 2];
   for (int rings = kFirstRings;;) {
     const double arcs = 2.0 * std::numbers::pi * rings / kArcOverRing;
     const int spokes = std::max(spokes_for(tolerance), in_spoke_units(arcs));
     FacedMesh body;
-    const SpokeRing rim = add_wall(body, add_base(body, sides, spokes), low, face, spokes);
+    double off = 0.0;  // of the faces, over the tolerance
+    const auto measure = [&](std::size_t first, const HeightSurface& face) {
+      off = std::max(off, face_deviation_mm(body.mesh, first, face) / tolerance_mm);
+    };
+    SpokeRing at;
+    if (faces.bottom) {
+      at = add_bottom(body, corners_mm[1][0], *faces.bottom, rings, spokes);
+      measure(0, *faces.bottom);
+      at = add_inner_wall(body, at, corners_mm[1], *faces.bottom);
+    } else {
+      at = circle(body, sides.front().from, spokes);
+    }
+    const SpokeRing rim = add_wall(body, add_base(body, at, sides, spokes), low, faces.top, spokes);
     const std::size_t first = body.mesh.triangles.size();
-    add_face(body, rim, low[0], face, rings);
-    const double off = face_deviation_mm(body.mesh, first, face) / tolerance_mm;
+    add_face(body, rim, low[0], faces.top, rings);
+    measure(first, faces.top);
     if (off <= 1.0 || rings == kMaxRings) return std::move(body.mesh);
     // Deviations fall with the square of the rings' distance.
     rings =

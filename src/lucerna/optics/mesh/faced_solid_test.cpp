@@ -68,10 +68,10 @@ TEST(FacedSolid, IsClosedTurnedOutwardAndHasTheVolume) {
   const auto face = test::spline_face(wavy_top, 11.0, 24);
   const double ball = 2.0 / 3.0 * std::numbers::pi * 64.0;
   for (const auto& [outline, cavity] : {std::pair(kFlat, 0.0), {kDome, ball}}) {
-    check_faced_outline(outline, *face, kSmooth);
+    check_faced_outline(outline, {*face}, kSmooth);
     const double expected = expected_volume(*face, 10.0, cavity);
     for (const double tolerance : {1e-3, 1e-4, 1e-5}) {
-      const Mesh solid = faced_solid(outline, *face, kSmooth, tolerance);
+      const Mesh solid = faced_solid(outline, {*face}, kSmooth, tolerance);
       EXPECT_EQ(open_edges(solid), 0u);
       EXPECT_EQ(turned_edges_of(solid), 0u);
       // The dome is a spline through five corners, 1e-3 off the sphere's volume.
@@ -80,9 +80,25 @@ TEST(FacedSolid, IsClosedTurnedOutwardAndHasTheVolume) {
   }
 }
 
+// The bottom, of radius 6, leaves out what is below it and above the flange.
+TEST(FacedSolid, ABottomFaceLeavesItsHollowOut) {
+  const auto top = test::spline_face(wavy_top, 11.0, 24);
+  const auto bottom = test::spline_face(
+      [](double x, double y) { return 3.0 - 0.04 * x * x + 0.02 * y * y + 0.1 * std::sin(x); }, 7.0, 24);
+  const Outline outline{{6, 1}, {6, 0}, {10, 0}, {10, 3}};
+  check_faced_outline(outline, {*top, bottom.get()}, kSmooth);
+  const double expected = expected_volume(*top, 10.0, expected_volume(*bottom, 6.0, 0.0));
+  for (const double tolerance : {1e-3, 1e-4, 1e-5}) {
+    const Mesh solid = faced_solid(outline, {*top, bottom.get()}, kSmooth, tolerance);
+    EXPECT_EQ(open_edges(solid), 0u);
+    EXPECT_EQ(turned_edges_of(solid), 0u);
+    EXPECT_NEAR(volume_of(solid), expected, expected * (10.0 * tolerance + 1e-5));
+  }
+}
+
 TEST(FacedSolid, NoTriangleIsASliver) {
   const auto face = test::spline_face(wavy_top, 11.0, 24);
-  const Mesh solid = faced_solid(kFlat, *face, kSmooth, 1e-4);
+  const Mesh solid = faced_solid(kFlat, {*face}, kSmooth, 1e-4);
   for (const auto& t : solid.triangles) {
     const Vec3 &a = solid.vertices_mm[t[0]], &b = solid.vertices_mm[t[1]], &c = solid.vertices_mm[t[2]];
     if (a.z < 3.0 || b.z < 3.0 || c.z < 3.0 || std::hypot(a.x, a.y) > 8.0) continue;  // inside the face
@@ -94,8 +110,8 @@ TEST(FacedSolid, NoTriangleIsASliver) {
 TEST(FacedSolid, TrianglesAreOnTheSurface) {
   const auto face = test::spline_face(wavy_top, 11.0, 24);
   constexpr double kTolerance = 1e-5;
-  const Mesh solid = faced_solid(kFlat, *face, kSmooth, kTolerance);
-  const double reach = faced_reach_mm(kFlat, *face);
+  const Mesh solid = faced_solid(kFlat, {*face}, kSmooth, kTolerance);
+  const double reach = faced_reach_mm(kFlat, {*face});
   double off = 0.0;
   std::size_t of_face = 0, of_wall = 0, of_base = 0;
   for (const auto& t : solid.triangles) {
@@ -123,7 +139,7 @@ TEST(FacedSolid, TrianglesAreOnTheSurface) {
 TEST(FacedSolid, AnOutlineThatDoesNotFitIsRefused) {
   const auto face = test::spline_face(wavy_top, 11.0, 24);
   const auto expect = [&](const Outline& outline, const std::string& part, const HeightSurface& over) {
-    EXPECT_THAT(test::message_of<InputError>([&] { check_faced_outline(outline, over, kSmooth); }),
+    EXPECT_THAT(test::message_of<InputError>([&] { check_faced_outline(outline, {over}, kSmooth); }),
                 testing::HasSubstr(part));
   };
   expect({{0, 0}, {10, 0}}, "found 2 corners", *face);

@@ -99,6 +99,7 @@ constexpr std::array kKeys{
     ProjectKey{"body", "file", Type::file, kAny, "", "required but for glass and `outline_mm`", "A mesh (.stl .obj)."},
     ProjectKey{"body", "outline_mm", Type::pairs, kAny, "", "none", "Of a solid of revolution, instead of `file`: corners [radius, height] of a closed outline that turns about the z axis."},
     ProjectKey{"body", "face", Type::table, kAny, "", "none", "Of a solid with `outline_mm`: its top, a free form. The outline is then open: from the axis to the upper end of a wall of one radius, which goes on to the face's rim."},
+    ProjectKey{"body", "bottom_face", Type::table, kAny, "", "none", "Of a solid with `face` or `array`: its bottom about the axis, a free form too. The outline then begins in a wall of one radius that runs downward from the face's rim."},
     ProjectKey{"body", "array", Type::table, kAny, "", "none", "Of a solid with such an outline, instead of `face`: lenslets on a grid ([lens arrays](../theory/solids.md#lens-arrays))."},
     ProjectKey{"body", "smooth_below_deg", Type::number, within(0, 180), "", "20", "Of a solid: across triangles that meet at less than this angle the normal changes steadily, and an outline is a curve through corners that turn by less; 0 for facets and straight sides."},
     ProjectKey{"body", "scale", Type::number, kAboveZero, "", "1", "Millimetres of one unit of the mesh."},
@@ -147,6 +148,10 @@ constexpr std::array kKeys{
     ProjectKey{"body.face", "half_mm", Type::number, kAboveZero, "", "required", "The knots span [-half_mm, half_mm] along x and y; at least the wall's radius."},
     ProjectKey{"body.face", "intervals", Type::numbers, whole(1, 1000), "", "required", "Intervals between the knots along x and y."},
     ProjectKey{"body.face", "coefficients_mm", Type::numbers, kAny, "", "required", "Heights of a bicubic B-spline on equal knots: (intervals + 3) in each direction, x first."},
+
+    ProjectKey{"body.bottom_face", "half_mm", Type::number, kAboveZero, "", "required", "The knots span [-half_mm, half_mm] along x and y; at least the inner wall's radius."},
+    ProjectKey{"body.bottom_face", "intervals", Type::numbers, whole(1, 1000), "", "required", "Intervals between the knots along x and y."},
+    ProjectKey{"body.bottom_face", "coefficients_mm", Type::numbers, kAny, "", "required", "Heights of a bicubic B-spline, as those of `body.face`."},
 
     ProjectKey{"detector", "kind", Type::word, kAny, "far-field plane luminance rays", "required", "Intensity by direction; illuminance on a plane; a luminance image; a ray file of what leaves."},
     ProjectKey{"detector", "name", Type::text, kAny, "", "its kind", "Names its files."},
@@ -199,6 +204,7 @@ constexpr std::array kKeys{
 
     ProjectKey{"design", "reflector", Type::number, kAny, "", "0 where there is one", "Number, from 0, of the reflector that is shaped."},
     ProjectKey{"design", "free_sides", Type::number_or_numbers, whole(0, 10000), "", "none", "Of a lens, instead of a reflector: numbers, from 0, of the sides of its `outline_mm` that are shaped, each with all of its face; side 0 leads from the first corner to the second. Beside a bspline, the face from the axis to the base may be free: it becomes a cavity, or stays."},
+    ProjectKey{"design", "entry", Type::word, kAny, "cavity bspline", "\"cavity\"", "Of a lens of family bspline with a free face from the axis to the base: a cavity is chosen for it, or it becomes a free form too."},
     ProjectKey{"design", "optimizer", Type::word, kAny, "auto least-squares tree annealing cma-es direct", "\"auto\"", "How the shape is searched for."},
     ProjectKey{"design", "time_s", Type::number, kAboveZero, "", "60", "Time for the search. Rays per step follow from it."},
     ProjectKey{"design", "family", Type::word, kAny, "revolution bspline", "\"revolution\"", "Of a lens: what its free face becomes. A bspline is a free form; the face leads from the upper end of a wall, parallel to the axis, to the axis."},

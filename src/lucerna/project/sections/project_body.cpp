@@ -113,10 +113,9 @@ CoverGlass read_cover_glass(TomlReader& reader, Project& project) {
   return glass;
 }
 
-/// [body.face]: the top of a solid of this open outline.
-std::shared_ptr<const HeightSurface> read_face(TomlReader face, const std::vector<OutlinePoint>& outline) {
+/// [body.face] or [body.bottom_face]: a face within a wall of this radius.
+std::shared_ptr<const HeightSurface> read_face(TomlReader face, double radius_mm) {
   const double half_mm = face.required_number("half_mm", "half the width of the knots' square");
-  const double radius_mm = outline.empty() ? 0.0 : outline.back()[0];
   if (half_mm < radius_mm)
     face.fail("half_mm",
               fmt::format("found {}, expected at least the wall's radius, {}", half_mm, radius_mm));
@@ -149,14 +148,18 @@ Solid read_solid(TomlReader& reader, Project& project) {
     solid.outline_mm = *outline;
     if (auto face = reader.table("face")) {
       if (reader.has("array")) reader.fail("array", "found `face` too, which says what the top is");
-      solid.face = read_face(std::move(*face), *outline);
+      solid.face = read_face(std::move(*face), outline->empty() ? 0.0 : outline->back()[0]);
     } else if (auto array = reader.table("array")) {
       solid.face = read_array(std::move(*array));
     } else {
       at_key(reader, "outline_mm", [&] { check_outline(*outline); });
     }
+    if (auto bottom = reader.table("bottom_face")) {
+      if (!solid.face) reader.fail("bottom_face", "belongs to `face` or `array`, which are not there");
+      solid.bottom_face = read_face(std::move(*bottom), outline->empty() ? 0.0 : outline->front()[0]);
+    }
   } else {
-    for (const char* key : {"face", "array"}) {
+    for (const char* key : {"face", "array", "bottom_face"}) {
       if (reader.has(key)) reader.fail(key, "belongs to `outline_mm`, which is not there");
     }
     solid.mesh = read_mesh_file(reader, project);

@@ -31,7 +31,8 @@ std::vector<std::string> write_lens_files(const std::filesystem::path& folder, c
   write_file(folder / "lens.stl", stl_bytes(*mesh));
   write_file(folder / "lens.obj", obj_text(*mesh));
   write_file(folder / "lens.step",
-             solid.face ? solid_step_text(solid.outline_mm, *solid.face, solid.smooth_below_deg)
+             solid.face ? solid_step_text(solid.outline_mm, BodyFaces{*solid.face, solid.bottom_face.get()},
+                                          solid.smooth_below_deg)
                         : solid_step_text(solid.outline_mm, solid.smooth_below_deg));
   std::vector<std::string> names{"lens.toml", "lens.step", "lens.stl", "lens.obj", "history.csv"};
   if (!solid.face) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/trace/engines/faced_body.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 
@@ -10,18 +11,28 @@ namespace lucerna {
 
 namespace {
 
-/// Wall and face overlap by so much at the rim, over the radius: no ray slips through between them.
+/// A wall and its face overlap by so much at the rim, over the radius: no ray slips through between them.
 constexpr double kOverlap = 1e-10;
 /// Cells of the face's quadtree, 2^this a side.
 constexpr int kLevels = 7;
 
-/// The sides of base and wall, which goes on as high as any of the face.
-std::vector<OutlineSide> closed_sides(std::span<const OutlinePoint> corners_mm, const HeightSurface& face,
+double highest_mm(const HeightSurface& face, double radius_mm) {
+  return face.range({-radius_mm, radius_mm, -radius_mm, radius_mm}).high_mm;
+}
+
+/// The sides of base and walls, which go on as high as any of their faces: the inner wall first, where there
+/// is a bottom face, and the outer wall last.
+std::vector<OutlineSide> closed_sides(std::span<const OutlinePoint> corners_mm, const BodyFaces& faces,
                                       double smooth_below_deg, double tolerance_mm) {
   std::vector<OutlineSide> out = faced_base_sides(corners_mm, smooth_below_deg, tolerance_mm);
   const OutlinePoint& low = corners_mm[corners_mm.size() - 2];
-  const double radius = low[0], top = face.range({-radius, radius, -radius, radius}).high_mm;
-  out.push_back({low, {radius, top}, {1.0, 0.0}, {1.0, 0.0}, corners_mm.size() - 2});
+  out.push_back(
+      {low, {low[0], highest_mm(faces.top, low[0])}, {1.0, 0.0}, {1.0, 0.0}, corners_mm.size() - 2});
+  if (faces.bottom) {
+    const OutlinePoint& foot = corners_mm[1];
+    out.insert(out.begin(),
+               {{foot[0], highest_mm(*faces.bottom, foot[0])}, foot, {-1.0, 0.0}, {-1.0, 0.0}, 0});
+  }
   return out;
 }
 
@@ -31,55 +42,81 @@ Reflector face_within(std::shared_ptr<const HeightSurface> face, double radius_m
 
 }  // namespace
 
-FacedBody::FacedBody(std::span<const OutlinePoint> corners_mm,
-                     const std::shared_ptr<const HeightSurface>& face, double smooth_below_deg,
-                     double tolerance_mm)
-    : FacedBody(closed_sides(corners_mm, *face, smooth_below_deg, tolerance_mm), face, corners_mm.back()[0],
-                corners_mm.size() - 1) {}
+FacedBody::Face::Face(std::shared_ptr<const HeightSurface> height_field, double radius_mm, double up_side,
+                      std::int32_t wall_part, std::int32_t face_part)
+    : height(std::move(height_field)),
+      tracer(face_within(height, radius_mm), kLevels),
+      up(up_side),
+      wall(wall_part),
+      part(face_part) {}
 
-FacedBody::FacedBody(const std::vector<OutlineSide>& sides, std::shared_ptr<const HeightSurface> face,
-                     double radius_mm, std::size_t last_corner)
-    : face_(std::move(face)),
-      below_(sides),
-      wall_(static_cast<std::int32_t>(sides.size()) - 1),
-      top_(wall_ + 1),
-      face_tracer_(face_within(face_, radius_mm), kLevels) {
+Vec3 FacedBody::Face::normal(const Vec3& point_mm) const {
+  const SurfacePoint at = height->at(point_mm.x, point_mm.y);
+  return up * Vec3{-at.dzdx, -at.dzdy, 1.0};
+}
+
+bool FacedBody::Face::is_below(const Vec3& p) const {
+  return p.z <= height->at(p.x, p.y).z_mm + kOverlap * (p.x * p.x + p.y * p.y);
+}
+
+FacedBody::FacedBody(std::span<const OutlinePoint> corners_mm,
+                     const std::shared_ptr<const HeightSurface>& top,
+                     const std::shared_ptr<const HeightSurface>& bottom, double smooth_below_deg,
+                     double tolerance_mm)
+    : FacedBody(closed_sides(corners_mm, {*top, bottom.get()}, smooth_below_deg, tolerance_mm), corners_mm,
+                top, bottom) {}
+
+FacedBody::FacedBody(const std::vector<OutlineSide>& sides, std::span<const OutlinePoint> corners_mm,
+                     const std::shared_ptr<const HeightSurface>& top,
+                     const std::shared_ptr<const HeightSurface>& bottom)
+    : below_(sides) {
   for (const OutlineSide& s : sides) corners_.push_back(s.corner);
-  corners_.push_back(last_corner);
+  const auto add = [&](const std::shared_ptr<const HeightSurface>& face, double radius_mm, double up,
+                       std::size_t wall, std::size_t corner) {
+    faces_.emplace_back(face, radius_mm, up, static_cast<std::int32_t>(wall),
+                        static_cast<std::int32_t>(corners_.size()));
+    corners_.push_back(corner);
+  };
+  add(top, corners_mm.back()[0], 1.0, sides.size() - 1, corners_mm.size() - 1);
+  if (bottom) add(bottom, corners_mm.front()[0], -1.0, 0, corners_mm.size() + 1);
 }
 
 SurfaceHit FacedBody::first_below(const Ray& ray, double t_min_mm, double t_max_mm) const {
   const RevolvedSurface surface{below_.view()};
   for (;;) {
     const SurfaceHit hit = surface.first(ray, t_min_mm, t_max_mm);
-    if (hit.part != wall_) return hit;
-    const Vec3 p = ray.at(hit.t_mm);
-    if (p.z <= face_->at(p.x, p.y).z_mm + kOverlap * (p.x * p.x + p.y * p.y)) return hit;
+    const auto of_wall = [&](const Face& f) { return f.wall == hit.part; };
+    const auto face = std::find_if(faces_.begin(), faces_.end(), of_wall);
+    if (face == faces_.end() || face->is_below(ray.at(hit.t_mm))) return hit;
     t_min_mm = hit.t_mm + kSolidStart;
   }
 }
 
 SurfaceHit FacedBody::first(const Ray& ray, double t_min_mm, double t_max_mm) const {
-  const SurfaceHit below = first_below(ray, t_min_mm, t_max_mm);
-  const auto face_mm = face_tracer_.first_mm({ray.at(t_min_mm), ray.direction});
-  if (!face_mm) return below;
-  const double t_mm = t_min_mm + *face_mm;
-  if (t_mm >= (below.part < 0 ? t_max_mm : below.t_mm)) return below;
-  return {top_, t_mm, 0.0, 0.0};
+  SurfaceHit hit = first_below(ray, t_min_mm, t_max_mm);
+  for (const Face& face : faces_) {
+    const auto face_mm = face.tracer.first_mm({ray.at(t_min_mm), ray.direction});
+    if (!face_mm) continue;
+    const double t_mm = t_min_mm + *face_mm;
+    if (t_mm < (hit.part < 0 ? t_max_mm : hit.t_mm)) hit = {face.part, t_mm, 0.0, 0.0};
+  }
+  return hit;
 }
 
-Vec3 FacedBody::face_normal(const Vec3& point_mm) const {
-  const SurfacePoint at = face_->at(point_mm.x, point_mm.y);
-  return {-at.dzdx, -at.dzdy, 1.0};
+const FacedBody::Face* FacedBody::face_of(std::int32_t part) const {
+  for (const Face& face : faces_) {
+    if (face.part == part) return &face;
+  }
+  return nullptr;
 }
 
 Vec3 FacedBody::outward(const Vec3& point_mm, const SurfaceHit& hit) const {
-  if (hit.part == top_) return face_normal(point_mm);
+  if (const Face* face = face_of(hit.part)) return face->normal(point_mm);
   return RevolvedSurface{below_.view()}.outward(point_mm, hit);
 }
 
 Vec3 FacedBody::smooth(const Vec3& point_mm, const SurfaceHit& hit) const {
-  if (hit.part == top_) return face_normal(point_mm);
+  if (const Face* face = face_of(hit.part)) return face->normal(point_mm);
   return RevolvedSurface{below_.view()}.smooth(point_mm, hit);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -11,36 +13,51 @@
 
 namespace lucerna {
 
-/// The surface of a body with a height field at its top, in the body's frame: base and wall as cones, the
-/// face exactly. A surface as through_solid takes it. Immutable and thread safe.
+/// The surface of a body with a height field at its top, and at its bottom where it has one there, in the
+/// body's frame: base and walls as cones, the faces exactly. A surface as through_solid takes it. Immutable
+/// and thread safe.
 class FacedBody {
  public:
-  /// As check_faced_outline takes them. Straight pieces leave the base's curve by `tolerance_mm` at most.
-  FacedBody(std::span<const OutlinePoint> corners_mm, const std::shared_ptr<const HeightSurface>& face,
-            double smooth_below_deg, double tolerance_mm);
+  /// As check_faced_outline takes them; `bottom` is null for none. Straight pieces leave the base's curve by
+  /// `tolerance_mm` at most.
+  FacedBody(std::span<const OutlinePoint> corners_mm, const std::shared_ptr<const HeightSurface>& top,
+            const std::shared_ptr<const HeightSurface>& bottom, double smooth_below_deg, double tolerance_mm);
 
   SurfaceHit first(const Ray& ray, double t_min_mm, double t_max_mm) const;
   Vec3 outward(const Vec3& point_mm, const SurfaceHit& hit) const;
   Vec3 smooth(const Vec3& point_mm, const SurfaceHit& hit) const;
 
-  /// Of each part of the surface: the corner at which its side of the outline begins; the last one's is the
-  /// outline's last, for the face.
+  /// Of each part of the surface: the corner of FacedBase at which its side begins, of a face that of its lid
+  /// or floor.
   const std::vector<std::size_t>& corners() const { return corners_; }
 
  private:
-  FacedBody(const std::vector<OutlineSide>& sides, std::shared_ptr<const HeightSurface> face,
-            double radius_mm, std::size_t last_corner);
+  /// A face, the wall that ends at its rim, and which parts of the surface they are.
+  struct Face {
+    Face(std::shared_ptr<const HeightSurface> height, double radius_mm, double up, std::int32_t wall,
+         std::int32_t part);
+    /// Along or against the outward side.
+    Vec3 normal(const Vec3& point_mm) const;
+    bool is_below(const Vec3& point_mm) const;
 
-  /// The first place of the base or of the wall below the face's rim.
+    std::shared_ptr<const HeightSurface> height;
+    MirrorTracer tracer;
+    /// 1 where the outside is above, -1 where it is below.
+    double up;
+    std::int32_t wall, part;
+  };
+
+  FacedBody(const std::vector<OutlineSide>& sides, std::span<const OutlinePoint> corners_mm,
+            const std::shared_ptr<const HeightSurface>& top,
+            const std::shared_ptr<const HeightSurface>& bottom);
+
+  /// The first place of the base, or of a wall below its face's rim.
   SurfaceHit first_below(const Ray& ray, double t_min_mm, double t_max_mm) const;
-  Vec3 face_normal(const Vec3& point_mm) const;
+  const Face* face_of(std::int32_t part) const;
 
-  std::shared_ptr<const HeightSurface> face_;
   RevolvedTree below_;
   std::vector<std::size_t> corners_;
-  /// The parts that are wall and face, which come last.
-  std::int32_t wall_, top_;
-  MirrorTracer face_tracer_;
+  std::vector<Face> faces_;
 };
 
 }  // namespace lucerna

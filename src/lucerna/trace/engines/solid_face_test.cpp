@@ -13,6 +13,7 @@
 #include "lucerna/trace/engines/solid_tracer.h"
 #include "tests/support/random_rays.h"
 #include "tests/support/spline_face.h"
+#include "tests/support/through_solid.h"
 
 namespace lucerna {
 namespace {
@@ -44,17 +45,6 @@ Solid turned_cap() {
   return s;
 }
 
-GlassPassage through(const SolidTracer& tracer, const Ray& ray, std::uint64_t number) {
-  const auto hit = tracer.first_hit(ray, 1e9, false);
-  if (!hit) throw std::runtime_error("a ray misses the lens");
-  return tracer.pass(ray, *hit, {3, number, 0}, 0.0F);
-}
-
-/// Where it is in the plane z.
-Vec3 at_height(const Ray& ray, double z_mm) {
-  return ray.origin_mm + ((z_mm - ray.origin_mm.z) / ray.direction.z()) * ray.direction.vec();
-}
-
 TEST(SolidFace, ASphereAsASplineSendsLightWhereItsOutlineDoes) {
   const SolidTracer spline({capped()}), outline({turned_cap()});
   int compared = 0;
@@ -64,10 +54,10 @@ TEST(SolidFace, ASphereAsASplineSendsLightWhereItsOutlineDoes) {
     const double r = 9.0 * std::sqrt(rng.uniform()), phi = radians(360.0 * rng.uniform());
     const Ray ray{{r * std::cos(phi), r * std::sin(phi), -1.0},
                   Direction::from({0.2 * rng.uniform() - 0.1, 0.2 * rng.uniform() - 0.1, 1.0})};
-    const GlassPassage a = through(spline, ray, i), b = through(outline, ray, i);
+    const GlassPassage a = test::through_solid(spline, ray, i), b = test::through_solid(outline, ray, i);
     // What a boundary reflects is compared by its share elsewhere.
     if (!(a.ray.direction.z() > 0.5 && b.ray.direction.z() > 0.5)) continue;
-    worst = std::max(worst, length(at_height(a.ray, 105.0) - at_height(b.ray, 105.0)));
+    worst = std::max(worst, length(test::at_height(a.ray, 105.0) - test::at_height(b.ray, 105.0)));
     ++compared;
   }
   EXPECT_GT(compared, 1700);
@@ -118,7 +108,8 @@ TEST(SolidFace, IsPlacedWithItsBody) {
   moved.world_from_solid = Frame({0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {7, -3, 2});
   const SolidTracer here({capped()}), there({moved});
   const Ray ray{{3.0, 2.0, -1.0}, Direction::from({0.05, 0.02, 1.0})};
-  const GlassPassage a = through(here, ray, 1), b = through(there, moved.world_from_solid.ray(ray), 1);
+  const GlassPassage a = test::through_solid(here, ray, 1),
+                     b = test::through_solid(there, moved.world_from_solid.ray(ray), 1);
   const Ray expected = moved.world_from_solid.ray(a.ray);
   EXPECT_LT(length(b.ray.origin_mm - expected.origin_mm), 1e-5);
   EXPECT_LT(length(b.ray.direction.vec() - expected.direction.vec()), 1e-6);

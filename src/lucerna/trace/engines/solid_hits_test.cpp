@@ -43,7 +43,8 @@ Solid of_outline(std::vector<std::array<double, 2>> corners) {
   return s;
 }
 
-/// A ball, a collimator with curved sides, a lens with a free-form face, and the collimator as triangles.
+/// A ball, a collimator with curved sides, lenses with one and two free-form faces, and the collimator as
+/// triangles.
 std::vector<NamedSolid> solids_of_all_kinds() {
   std::vector<std::array<double, 2>> ball;
   for (int i = 0; i <= 40; ++i) {
@@ -58,11 +59,17 @@ std::vector<NamedSolid> solids_of_all_kinds() {
         return 5.0 - 0.012 * x * x - 0.02 * y * y + 0.1 * std::sin(0.5 * x + 0.3 * y);
       },
       11.0, 24);
+  Solid hollow = lens;
+  hollow.outline_mm = {{6, 1}, {6, 0}, {10, 0}, {10, 2}};
+  hollow.bottom_face = test::spline_face(
+      [](double x, double y) { return 2.5 - 0.03 * x * x - 0.02 * y * y + 0.1 * std::sin(0.6 * x - y); }, 7.0,
+      24);
   Solid triangles;
   triangles.mesh = surface_mesh(collimator, 1e-3);
   return {{"ball", of_outline(ball)},
           {"collimator", collimator},
           {"lens with a face", lens},
+          {"lens with two faces", hollow},
           {"triangles", triangles}};
 }
 

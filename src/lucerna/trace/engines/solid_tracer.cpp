@@ -69,27 +69,37 @@ std::vector<OutlineSide> sides_of(const Solid& solid, double tolerance) {
                        tolerance * outline_reach_mm(solid.outline_mm));
 }
 
+/// Of a solid that has a face.
+BodyFaces faces_of(const Solid& solid) { return {*solid.face, solid.bottom_face.get()}; }
+
 /// Errors of its shape, with the name of the solid.
-void check_face(const Solid& solid) {
+void check_faces(const Solid& solid) {
   try {
-    check_faced_outline(solid.outline_mm, *solid.face, solid.smooth_below_deg);
+    check_faced_outline(solid.outline_mm, faces_of(solid), solid.smooth_below_deg);
   } catch (const InputError& e) {
     throw InputError(fmt::format("solid '{}': {}", solid.name, e.what()), e.cause());
   }
 }
 
 std::unique_ptr<const FacedBody> faced_body(const Solid& solid) {
-  const double tolerance_mm = kCurveTolerance * faced_reach_mm(solid.outline_mm, *solid.face);
-  return std::make_unique<const FacedBody>(solid.outline_mm, solid.face, solid.smooth_below_deg,
-                                           tolerance_mm);
+  const double tolerance_mm = kCurveTolerance * faced_reach_mm(solid.outline_mm, faces_of(solid));
+  return std::make_unique<const FacedBody>(solid.outline_mm, solid.face, solid.bottom_face,
+                                           solid.smooth_below_deg, tolerance_mm);
 }
 
-/// By corners of the outline of a body, with the face's lid where it has one: does what begins there scatter?
+/// By corners of the outline of a body, with the faces' lid and floor where it has them: does what begins
+/// there scatter?
 std::vector<bool> rough_corners(const Solid& solid) {
   if (solid.face == nullptr)
     return sides_of_faces(solid.outline_mm, solid.smooth_below_deg, solid.scatter_sides);
+  std::vector<std::size_t> sides = solid.scatter_sides;
+  if (solid.bottom_face) {
+    // Between lid and floor the closed outline has a side along the axis, which nobody counts.
+    const std::size_t bottom = solid.outline_mm.size();
+    std::replace(sides.begin(), sides.end(), bottom, bottom + 1);
+  }
   return sides_of_faces(faced_base(solid.outline_mm, solid.smooth_below_deg).corners, solid.smooth_below_deg,
-                        solid.scatter_sides);
+                        sides);
 }
 
 /// The same by parts of its surface, which begin at these corners.
@@ -140,6 +150,9 @@ void check(const Solid& solid) {
   if (solid.face != nullptr && solid.mesh != nullptr)
     throw InputError(
         fmt::format("solid '{}' has a mesh and a face, expected a face with an outline", solid.name));
+  if (solid.bottom_face != nullptr && solid.face == nullptr)
+    throw InputError(
+        fmt::format("solid '{}' has a bottom face alone, expected one at the top too", solid.name));
   need(solid.refractive_index >= 1.0 && solid.refractive_index <= 4.0, "refractive_index",
        solid.refractive_index, "1 to 4");
   need(solid.absorption_per_mm >= 0.0 && std::isfinite(solid.absorption_per_mm), "absorption_per_mm",
@@ -149,7 +162,7 @@ void check(const Solid& solid) {
   if (solid.mesh != nullptr) {
     check_mesh(solid);
   } else if (solid.face != nullptr) {
-    check_face(solid);
+    check_faces(solid);
   } else {
     (void)sides_of(solid, kSurfaceTolerance);
   }
@@ -161,9 +174,9 @@ std::shared_ptr<const Mesh> surface_mesh(const Solid& solid, double tolerance) {
     throw InputError(fmt::format("tolerance of a mesh: found {}, expected 1e-8 to 1", tolerance));
   if (solid.mesh != nullptr) return solid.mesh;
   if (solid.face != nullptr) {
-    check_face(solid);
+    check_faces(solid);
     return std::make_shared<const Mesh>(
-        faced_solid(solid.outline_mm, *solid.face, solid.smooth_below_deg, tolerance));
+        faced_solid(solid.outline_mm, faces_of(solid), solid.smooth_below_deg, tolerance));
   }
   std::vector<OutlinePoint> corners;
   for (const OutlineSide& side : sides_of(solid, tolerance)) {

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lucerna/design/lens/two_face_fit.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "lucerna/design/lens/entry_face.h"
+#include "lucerna/design/lens/face_search.h"
+#include "lucerna/design/lens/other_light.h"
+
+namespace lucerna {
+
+namespace {
+
+/// Steps of a face before the other has its turn, and turns in a row that gain little.
+constexpr int kStepsOfTurn = 3, kLittleTurns = 2;
+/// Of the rays whose light is fitted, those whose other ways are followed.
+constexpr std::uint64_t kFewerOther = 8;
+/// That tell where the source is, and how much of its light enters.
+constexpr std::uint64_t kEndRays = std::uint64_t{1} << 14;
+
+/// Share of the sources' flux that is within the medium.
+double flux_within(const DesignRays& rays) {
+  double within = 0.0;
+  for (std::uint64_t b = 0; b < rays.size() / kBlockRays; ++b) {
+    for (const float w : rays.block(b).weight) within += static_cast<double>(w);
+  }
+  return within / static_cast<double>(rays.size());
+}
+
+Frame world_from_design(const LensProblem& problem) { return problem.world_from_lens * lens_from_design(); }
+
+std::unique_ptr<DesignRays> rays_of(const LensProblem& problem, std::uint64_t seed) {
+  return std::make_unique<DesignRays>(problem.project.scene.sources, world_from_design(problem).inverse(),
+                                      seed);
+}
+
+}  // namespace
+
+TwoFaceFit::TwoFaceFit(const LensProblem& problem, std::uint64_t seed, ShapedLens begin,
+                       std::vector<FreeFormLevel> levels, double flux_reference)
+    : problem_(problem),
+      seed_(seed),
+      lens_(std::move(begin)),
+      levels_(std::move(levels)),
+      flux_reference_(flux_reference) {
+  entry_.is_entry = true;
+  entry_.rays = rays_of(problem_, seed_);
+  entry_.rays->grow(kEndRays);
+  lens_.entry = limits_of(entry_, kFitRings).held_nearby(*lens_.entry).value_or(*lens_.entry);
+}
+
+double TwoFaceFit::prepare(Side& side, std::uint64_t count) {
+  if (side.is_entry) {
+    side.rays->refract_in(problem_.medium, *lens_.face);
+    side.rays->grow(count);
+    return 1.0;
+  }
+  // Drawn anew: by another first face they come in otherwise.
+  side.rays = rays_of(problem_, seed_);
+  side.rays->refract(problem_.medium, into_entry(*lens_.entry, problem_.medium));
+  side.rays->grow(count);
+  return flux_within(*side.rays);
+}
+
+ShapeLimits TwoFaceFit::limits_of(const Side& side, int rings) const {
+  if (side.is_entry)
+    return entry_limits(problem_.limits, lens_.outline, *lens_.entry, *lens_.face, *entry_.rays, rings);
+  return face_limits(problem_.limits, seat_of(lens_), *lens_.face, rings);
+}
+
+FitProblem TwoFaceFit::fit_problem(const Side& side, double within,
+                                   std::shared_ptr<const ShapeLimits> limits) const {
+  const DesignTarget& target = problem_.target;
+  const Frame frame = world_from_design(problem_);
+  FitProblem fit{side.rays.get(), Reflectance(1.0), target_flux(target, frame, side.rays->flux() * within),
+                 target_bins(target, frame, false), target.mode};
+  fit.seed = seed_;
+  fit.direct_light = false;
+  fit.outside_weight = kOutsideWeight;
+  if (target.mode == TargetMode::shape) {
+    fit.flux_weight = problem_.light_weight;
+    fit.flux_reference = flux_reference_ / within;
+  }
+  fit.limits = [limits](const DesignShape& shape, std::uint64_t, ResidualRows* rows) {
+    return limits->cost(shape, rows);
+  };
+  fit.form = std::move(limits);
+  fit.other_light = [this, within](const DesignShape&, const TentBins&, std::uint64_t) -> Eigen::VectorXd {
+    return other_light_ / within;
+  };
+  fit.rectangle = target_rectangle(target);
+  fit.mirror_from_world = frame.inverse();
+  return fit;
+}
+
+FitRecord TwoFaceFit::measured(const FreeFormFit& fit, const FreeFormPoint& point, double within) const {
+  const BinError error = fit.error(point);
+  FitRecord record;
+  record.rays = point.light.rays;
+  record.total_rays = total_rays_;
+  record.evaluations = evaluations_;
+  record.error = error.relative_rms;
+  record.floor = error.floor;
+  record.efficiency = within * point.light.reflected;
+  record.in_rectangle = within * fit.in_rectangle(point);
+  return record;
+}
+
+bool TwoFaceFit::turn(Side& side, int level, const LensFitWatcher& watch, LensFitResult& result) {
+  const FreeFormLevel& l = levels_[static_cast<std::size_t>(level)];
+  const double within = prepare(side, l.rays);
+  const FitProblem problem =
+      fit_problem(side, within, std::make_shared<const ShapeLimits>(limits_of(side, kFitRings)));
+  FreeFormFit fit(problem, l);
+  if (other_light_.size() == 0)
+    other_light_ = other_light(problem_, lens_, fit.bins(), l.rays / kFewerOther, seed_);
+  // The same for both faces, though each looks at it by its own shape.
+  fit.keep_other_light_of(shape(side));
+  FreeFormPoint point = fit.at(shape(side));
+  ++evaluations_;
+  total_rays_ += l.rays;
+  bool was_refused = false;
+  for (int k = 0; k < kStepsOfTurn; ++k) {
+    const bool accepted = fit.step(point, side.lambda, was_refused);
+    was_refused = !accepted;
+    ++evaluations_;
+    total_rays_ += l.rays;
+    shape(side) = point.shape;
+    side.cost = point.equations.cost;
+    FitRecord record = measured(fit, point, within);
+    record.stage = level;
+    record.step = static_cast<int>(result.history.size());
+    record.lambda = side.lambda;
+    record.accepted = accepted;
+    record.candidate = side.is_entry ? 1 : 0;
+    result.history.push_back(record);
+    if (!watch(record, lens_)) return false;
+  }
+  return true;
+}
+
+bool TwoFaceFit::run_level(int level, const LensFitWatcher& watch, LensFitResult& result) {
+  const FreeFormLevel& l = levels_[static_cast<std::size_t>(level)];
+  other_light_.resize(0);
+  double before = std::numeric_limits<double>::infinity();
+  int little = 0;
+  for (int turns = 0; turns < l.max_steps && little < kLittleTurns; ++turns) {
+    if (!turn(last_, level, watch, result) || !turn(entry_, level, watch, result)) return false;
+    little = std::sqrt(entry_.cost) > (1.0 - l.min_gain) * std::sqrt(before) ? little + 1 : 0;
+    before = entry_.cost;
+  }
+  return true;
+}
+
+ShapedLens TwoFaceFit::held() const {
+  ShapedLens out = lens_;
+  out.entry = limits_of(entry_, kCheckRings).held_nearby(*lens_.entry).value_or(*lens_.entry);
+  const ShapeLimits last = face_limits(problem_.limits, seat_of(out), *lens_.face, kCheckRings);
+  out.face = last.held_nearby(*lens_.face).value_or(*lens_.face);
+  return out;
+}
+
+void TwoFaceFit::run(const LensFitWatcher& watch, LensFitResult& result) {
+  bool goes_on = true;
+  for (int level = 0; goes_on && level < static_cast<int>(levels_.size()); ++level)
+    goes_on = run_level(level, watch, result);
+  if (!goes_on) result.end = DesignTermination::time;
+  result.lens = held();
+  result.evaluations += evaluations_;
+  result.rays += total_rays_;
+}
+
+}  // namespace lucerna
