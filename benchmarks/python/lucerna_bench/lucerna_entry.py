@@ -18,7 +18,7 @@ TROUGH_LENGTH_MM = 400.0
 # Large beside the source, so that its size does not matter.
 COLLECTOR_RADIUS_MM = 50.0
 # The others' sources are small beside the lens, and their bottoms stay flat.
-FAMILIES_WITH_ENTRY = ("LB-3", "LB-4")
+ENTRY_OF_FAMILY = {"LB-3": "bspline", "LB-4": "cavity"}
 # Of LB-2 only the light counts.
 LIGHT_WEIGHT_OF_COLLECTOR = 100
 # Beside the project and its target, which are there before.
@@ -145,11 +145,11 @@ def _plane_target(task, folder, place, cells=250, widened=1.25):
 
 def _lens_design(task, kind):
     """Of a lens of revolution 16 pieces of both faces move. A free form chooses its knots; where the source is wide beside
-    the lens, or the light wide beside what comes through a flat bottom, the bottom is a free form too."""
-    has_entry = task.family in FAMILIES_WITH_ENTRY
-    sides = "[0, 2]" if kind == "lens" or has_entry else "2"
-    shape = ("intervals = 16\n" if kind == "lens" else
-             'family = "bspline"\n' + ('entry = "bspline"\n' if has_entry else ""))
+    the lens, the bottom is a free form too; where the light is wide beside what comes through a flat bottom, it chooses
+    a cavity there."""
+    entry = ENTRY_OF_FAMILY.get(task.family)
+    sides = "[0, 2]" if kind == "lens" or entry else "2"
+    shape = "intervals = 16\n" if kind == "lens" else 'family = "bspline"\n' + (f'entry = "{entry}"\n' if entry else "")
     return (f"[design]\nfree_sides = {sides}\n{shape}[design.limits]\n"
             f"max_diameter_mm = {2 * task.room.half_mm - MARGIN_MM}\n"
             f"max_height_mm = {task.room.high_mm - task.room.low_mm - 2 * MARGIN_MM}\nmin_thickness_mm = 0.5\n")

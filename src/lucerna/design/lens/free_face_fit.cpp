@@ -29,13 +29,13 @@ constexpr std::array<double, 5> kDomeDepths{0.0, 0.1, 0.18, 0.27, 0.4};
 constexpr std::array<double, 2> kDomeDistances{1.0, 1.25};
 constexpr double kDomeDraft_deg = 40.0;
 
-/// Two faces are fitted in coarser bins than one, with derivatives by all rays: what a wide source cannot
-/// show needs none, and few rays a bin make steps short.
+/// How finely two faces are fitted, at most: derivatives are by all rays, for few rays a bin make steps
+/// short.
 constexpr std::array<FreeFormLevel, 4> kTwoFaceLevels{
-    {{.bins = 28, .rays = 1 << 16, .max_steps = 8, .min_gain = 0.03},
-     {.bins = 36, .rays = 1 << 18, .max_steps = 12, .min_gain = 0.02},
-     {.bins = 48, .rays = 1 << 20, .max_steps = 12, .min_gain = 0.01},
-     {.bins = 60, .rays = 1 << 22, .max_steps = 20, .min_gain = 0.005}}};
+    {{.bins = 64, .rays = 1 << 16, .max_steps = 8, .min_gain = 0.03},
+     {.bins = 84, .rays = 1 << 18, .max_steps = 12, .min_gain = 0.02},
+     {.bins = 108, .rays = 1 << 20, .max_steps = 12, .min_gain = 0.01},
+     {.bins = 120, .rays = 1 << 22, .max_steps = 20, .min_gain = 0.005}}};
 /// Knots of the first face.
 constexpr int kEntryIntervals = 10;
 

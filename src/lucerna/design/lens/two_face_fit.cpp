@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/design/lens/two_face_fit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -17,6 +18,12 @@ namespace {
 constexpr int kStepsOfTurn = 3, kLittleTurns = 2;
 /// Of the rays whose light is fitted, those whose other ways are followed.
 constexpr std::uint64_t kFewerOther = 8;
+/// Of the derivatives, over the rest, at most; what of them may be measured to be noise, which is not known
+/// better; and bins that a level has at least. Noise goes with the bins,
+/// and where it is large it damps every step. A source that is small beside the lens needs fine bins and has
+/// little noise; what a wide one blurs is seen in coarse ones.
+constexpr double kMaxNoise = 0.6, kMostNoise = 0.75;
+constexpr int kMinBins = 28;
 /// That tell where the source is, and how much of its light enters.
 constexpr std::uint64_t kEndRays = std::uint64_t{1} << 14;
 
@@ -108,8 +115,31 @@ FitRecord TwoFaceFit::measured(const FreeFormFit& fit, const FreeFormPoint& poin
   return record;
 }
 
-bool TwoFaceFit::turn(Side& side, int level, const LensFitWatcher& watch, LensFitResult& result) {
-  const FreeFormLevel& l = levels_[static_cast<std::size_t>(level)];
+FreeFormLevel TwoFaceFit::level_of(int number) const {
+  FreeFormLevel out = levels_[static_cast<std::size_t>(number)];
+  const double bins = std::sqrt(kMaxNoise * static_cast<double>(out.rays) / noise_);
+  out.bins = std::clamp(static_cast<int>(std::min(bins, 1e6)), kMinBins, std::max(kMinBins, out.bins));
+  return out;
+}
+
+void TwoFaceFit::note_noise(const FreeFormLevel& level, const FreeFormPoint& point) {
+  const double share = std::clamp(point.equations.derivative_noise, 1e-9, kMostNoise);
+  noise_ = share / (1.0 - share) * static_cast<double>(level.rays) / (level.bins * level.bins);
+}
+
+void TwoFaceFit::look_at_noise() {
+  FreeFormLevel l = levels_.front();
+  l.bins = kMinBins;
+  const double within = prepare(last_, l.rays);
+  const FitProblem problem =
+      fit_problem(last_, within, std::make_shared<const ShapeLimits>(limits_of(last_, kFitRings)));
+  note_noise(l, FreeFormFit(problem, l).at(*lens_.face));
+  ++evaluations_;
+  total_rays_ += l.rays;
+}
+
+bool TwoFaceFit::turn(Side& side, int number, const FreeFormLevel& l, const LensFitWatcher& watch,
+                      LensFitResult& result) {
   const double within = prepare(side, l.rays);
   const FitProblem problem =
       fit_problem(side, within, std::make_shared<const ShapeLimits>(limits_of(side, kFitRings)));
@@ -119,6 +149,7 @@ bool TwoFaceFit::turn(Side& side, int level, const LensFitWatcher& watch, LensFi
   // The same for both faces, though each looks at it by its own shape.
   fit.keep_other_light_of(shape(side));
   FreeFormPoint point = fit.at(shape(side));
+  note_noise(l, point);
   ++evaluations_;
   total_rays_ += l.rays;
   bool was_refused = false;
@@ -130,7 +161,7 @@ bool TwoFaceFit::turn(Side& side, int level, const LensFitWatcher& watch, LensFi
     shape(side) = point.shape;
     side.cost = point.equations.cost;
     FitRecord record = measured(fit, point, within);
-    record.stage = level;
+    record.stage = number;
     record.step = static_cast<int>(result.history.size());
     record.lambda = side.lambda;
     record.accepted = accepted;
@@ -141,13 +172,13 @@ bool TwoFaceFit::turn(Side& side, int level, const LensFitWatcher& watch, LensFi
   return true;
 }
 
-bool TwoFaceFit::run_level(int level, const LensFitWatcher& watch, LensFitResult& result) {
-  const FreeFormLevel& l = levels_[static_cast<std::size_t>(level)];
+bool TwoFaceFit::run_level(int number, const LensFitWatcher& watch, LensFitResult& result) {
+  const FreeFormLevel l = level_of(number);
   other_light_.resize(0);
   double before = std::numeric_limits<double>::infinity();
   int little = 0;
   for (int turns = 0; turns < l.max_steps && little < kLittleTurns; ++turns) {
-    if (!turn(last_, level, watch, result) || !turn(entry_, level, watch, result)) return false;
+    if (!turn(last_, number, l, watch, result) || !turn(entry_, number, l, watch, result)) return false;
     little = std::sqrt(entry_.cost) > (1.0 - l.min_gain) * std::sqrt(before) ? little + 1 : 0;
     before = entry_.cost;
   }
@@ -163,6 +194,7 @@ ShapedLens TwoFaceFit::held() const {
 }
 
 void TwoFaceFit::run(const LensFitWatcher& watch, LensFitResult& result) {
+  look_at_noise();
   bool goes_on = true;
   for (int level = 0; goes_on && level < static_cast<int>(levels_.size()); ++level)
     goes_on = run_level(level, watch, result);

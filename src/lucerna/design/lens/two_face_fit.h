@@ -17,8 +17,8 @@ namespace lucerna {
 class TwoFaceFit {
  public:
   /// `begin` has both faces. `levels`: how finely they are fitted, one level after the other (their knots do
-  /// not count). `flux_reference`: share of the sources' flux that light in the target's rectangle is
-  /// compared with. `problem` must outlive it.
+  /// not count); in fewer bins where derivatives would be noise in all of them. `flux_reference`: share of
+  /// the sources' flux that light in the target's rectangle is compared with. `problem` must outlive it.
   TwoFaceFit(const LensProblem& problem, std::uint64_t seed, ShapedLens begin,
              std::vector<FreeFormLevel> levels, double flux_reference);
 
@@ -42,10 +42,16 @@ class TwoFaceFit {
   double prepare(Side& side, std::uint64_t count);
   ShapeLimits limits_of(const Side& side, int rings) const;
   FitProblem fit_problem(const Side& side, double within, std::shared_ptr<const ShapeLimits> limits) const;
+  /// The level in as many bins as derivatives are known in.
+  FreeFormLevel level_of(int number) const;
+  /// Looks at the light to begin with, in few bins, for the first level.
+  void look_at_noise();
+  void note_noise(const FreeFormLevel& level, const FreeFormPoint& point);
   /// Steps of one face; false where the watcher ends it.
-  bool turn(Side& side, int level, const LensFitWatcher& watch, LensFitResult& result);
+  bool turn(Side& side, int number, const FreeFormLevel& level, const LensFitWatcher& watch,
+            LensFitResult& result);
   /// Turns of both, until they gain little.
-  bool run_level(int level, const LensFitWatcher& watch, LensFitResult& result);
+  bool run_level(int number, const LensFitWatcher& watch, LensFitResult& result);
   FitRecord measured(const FreeFormFit& fit, const FreeFormPoint& point, double within) const;
   ShapedLens held() const;
 
@@ -57,6 +63,8 @@ class TwoFaceFit {
   Side entry_, last_;
   /// Light of other ways, of the lens that a level began with; empty until then.
   Eigen::VectorXd other_light_;
+  /// Of the derivatives, over the rest, for one ray and one bin across.
+  double noise_ = 0.0;
   int evaluations_ = 0;
   std::uint64_t total_rays_ = 0;
 };
