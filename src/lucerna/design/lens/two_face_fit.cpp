@@ -23,7 +23,7 @@ constexpr std::uint64_t kFewerOther = 8;
 /// and where it is large it damps every step. A source that is small beside the lens needs fine bins and has
 /// little noise; what a wide one blurs is seen in coarse ones.
 constexpr double kMaxNoise = 0.6, kMostNoise = 0.75;
-constexpr int kMinBins = 28;
+constexpr int kFewestBins = 28;
 /// That tell where the source is, and how much of its light enters.
 constexpr std::uint64_t kEndRays = std::uint64_t{1} << 14;
 
@@ -118,7 +118,7 @@ FitRecord TwoFaceFit::measured(const FreeFormFit& fit, const FreeFormPoint& poin
 FreeFormLevel TwoFaceFit::level_of(int number) const {
   FreeFormLevel out = levels_[static_cast<std::size_t>(number)];
   const double bins = std::sqrt(kMaxNoise * static_cast<double>(out.rays) / noise_);
-  out.bins = std::clamp(static_cast<int>(std::min(bins, 1e6)), kMinBins, std::max(kMinBins, out.bins));
+  out.bins = std::clamp(static_cast<int>(std::min(bins, 1e6)), kFewestBins, std::max(kFewestBins, out.bins));
   return out;
 }
 
@@ -129,7 +129,7 @@ void TwoFaceFit::note_noise(const FreeFormLevel& level, const FreeFormPoint& poi
 
 void TwoFaceFit::look_at_noise() {
   FreeFormLevel l = levels_.front();
-  l.bins = kMinBins;
+  l.bins = kFewestBins;
   const double within = prepare(last_, l.rays);
   const FitProblem problem =
       fit_problem(last_, within, std::make_shared<const ShapeLimits>(limits_of(last_, kFitRings)));
