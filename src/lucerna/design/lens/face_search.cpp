@@ -77,7 +77,7 @@ FitProblem FaceSearch::fit_problem(std::optional<double> flux_reference, bool is
   fit.start_is_chosen = is_chosen;
   fit.max_failed_restarts = problem_.max_failed_restarts;
   fit.direct_light = false;
-  fit.outside_weight = kOutsideWeight;
+  fit.outside_weight = problem_.free_face->outside_weight;
   if (target.mode == TargetMode::shape) {
     fit.flux_weight = problem_.light_weight;
     fit.flux_reference = flux_reference ? *flux_reference / within_ : passed_by_start(fit);

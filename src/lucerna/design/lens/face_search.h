@@ -10,12 +10,6 @@
 
 namespace lucerna {
 
-/// What squared differences of light beside the target's rectangle count in the fit of a lens's face, of
-/// those within it. A source that is wide beside the lens blurs edges: with even light up to the rectangle's
-/// edge some of it falls beside it. If that counted as much, the light within would be uneven instead. None
-/// would pile up light there.
-inline constexpr double kOutsideWeight = 0.04;
-
 /// The search of the free-form last face over one base: that of free-form mirrors, with a face that refracts.
 class FaceSearch {
  public:

@@ -11,6 +11,7 @@
 #include "lucerna/core/io/error.h"
 #include "lucerna/design/lens/cavity_search.h"
 #include "lucerna/design/lens/face_search.h"
+#include "lucerna/design/lens/outside_weight.h"
 #include "lucerna/design/lens/two_face_fit.h"
 
 namespace lucerna {
@@ -191,8 +192,10 @@ LensFitResult fit_face_and_entry(const LensProblem& problem, const LensFitOption
 
 }  // namespace
 
-LensFitResult fit_free_face(const LensProblem& problem, const LensFitOptions& options,
+LensFitResult fit_free_face(const LensProblem& given, const LensFitOptions& options,
                             const LensFitWatcher& watch) {
+  LensProblem problem = given;
+  problem.free_face->outside_weight = outside_weight(problem.target);
   if (problem.free_face->entry != EntryKind::given) return fit_face_and_entry(problem, options, watch);
   FaceSearch face(problem, options);
   LensFitResult result(face.best());

@@ -24,6 +24,8 @@ struct FreeFaceProblem {
   int intervals = 24, max_intervals = 48;
   /// What may become of the face opposite to it.
   EntryKind entry = EntryKind::given;
+  /// What light beside the target's rectangle counts; `fit_free_face` sets it (outside_weight.h).
+  double outside_weight = 1.0;
 };
 
 /// A lens that is to be designed, checked.

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "lucerna/design/lens/entry_face.h"
-#include "lucerna/design/lens/face_search.h"
 #include "lucerna/design/lens/other_light.h"
 
 namespace lucerna {
@@ -85,7 +84,7 @@ FitProblem TwoFaceFit::fit_problem(const Side& side, double within,
                  target_bins(target, frame, false), target.mode};
   fit.seed = seed_;
   fit.direct_light = false;
-  fit.outside_weight = kOutsideWeight;
+  fit.outside_weight = problem_.free_face->outside_weight;
   if (target.mode == TargetMode::shape) {
     fit.flux_weight = problem_.light_weight;
     fit.flux_reference = flux_reference_ / within;
