@@ -55,6 +55,15 @@ void DesignRays::grow(std::uint64_t n, Progress& progress) {
   });
 }
 
+double DesignRays::share_left(std::uint64_t count) const {
+  double left = 0.0;
+  const std::uint64_t blocks = count / kBlockRays;
+  for (std::uint64_t b = 0; b < blocks; ++b) {
+    for (const float w : block_[b].weight) left += static_cast<double>(w);
+  }
+  return left / static_cast<double>(blocks * kBlockRays);
+}
+
 RayBlock DesignRays::first(std::uint64_t max) const {
   const std::uint64_t blocks = std::min(max, size()) / kBlockRays;
   RayBlock out;

@@ -71,6 +71,10 @@ class DesignRays {
   /// Null where the shape is the last face itself, or a mirror.
   const DesignShape* last_face() const { return last_ ? &*last_ : nullptr; }
 
+  /// Share of the sources' flux that the first `count` rays (whole blocks) still have where a design sees
+  /// them.
+  double share_left(std::uint64_t count) const;
+
   /// From now on evaluations are shared with other processes, which make all of them too (peers.h); null:
   /// this one makes them alone.
   void share_with(Peers* peers) { peers_ = peers; }

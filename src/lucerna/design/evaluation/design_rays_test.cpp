@@ -20,5 +20,15 @@ TEST(DesignRays, TellProgressOneAtATime) {
   EXPECT_EQ(watch.falls, 0);
 }
 
+// Half of the light of the rays that go to one side, none of the others.
+TEST(DesignRays, SayHowMuchLightIsLeft) {
+  DesignRays rays({{make_emitter({}), Frame(), {}}}, Frame(), 1);
+  rays.refract({1.5, 0.0}, [](Ray& ray) { return ray.direction.x() > 0.0 ? 0.5 : 0.0; });
+  const std::uint64_t count = kBlockRays * kDesignTasks;
+  rays.grow(count);
+  EXPECT_NEAR(rays.share_left(count), 0.25, 1e-3);
+  EXPECT_NEAR(rays.share_left(kBlockRays), 0.25, 0.02);
+}
+
 }  // namespace
 }  // namespace lucerna

@@ -20,16 +20,6 @@ constexpr std::uint64_t kFewerRays = 8, kFewerRaysAtEnd = 2, kRaysAtEnd = std::u
 constexpr StartLight kRoughLight{std::uint64_t{1} << 15, 28, 20, 3};
 constexpr int kRoughBins = 40, kRoughSteps = 3;
 
-/// Share of the source's flux that is within the medium.
-double flux_within(const DesignRays& rays, std::uint64_t count) {
-  double within = 0.0, n = 0.0;
-  for (std::uint64_t b = 0; b < count / kBlockRays; ++b) {
-    for (const float w : rays.block(b).weight) within += static_cast<double>(w);
-    n += static_cast<double>(kBlockRays);
-  }
-  return within / n;
-}
-
 DesignShape given_face(const LensProblem& problem) {
   return face_of(problem.start, problem.free_face->intervals);
 }
@@ -64,7 +54,7 @@ FaceSearch::FaceSearch(LensProblem problem, const LensFitOptions& options,
 double FaceSearch::entered() {
   rays_.refract(problem_.medium, into_lens(problem_.start, problem_.medium));
   rays_.grow(kLightRays);
-  return flux_within(rays_, kLightRays);
+  return rays_.share_left(kLightRays);
 }
 
 FitProblem FaceSearch::fit_problem(std::optional<double> flux_reference, bool is_chosen) {

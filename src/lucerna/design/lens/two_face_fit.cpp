@@ -17,23 +17,15 @@ namespace {
 constexpr int kStepsOfTurn = 3, kLittleTurns = 2;
 /// Of the rays whose light is fitted, those whose other ways are followed.
 constexpr std::uint64_t kFewerOther = 8;
-/// Of the derivatives, over the rest, at most; what of them may be measured to be noise, which is not known
-/// better; and bins that a level has at least. Noise goes with the bins,
-/// and where it is large it damps every step. A source that is small beside the lens needs fine bins and has
-/// little noise; what a wide one blurs is seen in coarse ones.
+/// Least damping: with less, knots that little light tells of fit its noise.
+constexpr double kLeastLambda = 1e-5;
+/// Noise of the derivatives over the rest, at most; the share of noise that is believed, at most; and bins of
+/// a level, at least. Noise goes with the bins, and where it is large it damps every step. A source that is
+/// small beside the lens needs fine bins and has little noise; what a wide one blurs is seen in coarse ones.
 constexpr double kMaxNoise = 0.6, kMostNoise = 0.75;
 constexpr int kFewestBins = 28;
-/// That tell where the source is, and how much of its light enters.
+/// That tell where the source is.
 constexpr std::uint64_t kEndRays = std::uint64_t{1} << 14;
-
-/// Share of the sources' flux that is within the medium.
-double flux_within(const DesignRays& rays) {
-  double within = 0.0;
-  for (std::uint64_t b = 0; b < rays.size() / kBlockRays; ++b) {
-    for (const float w : rays.block(b).weight) within += static_cast<double>(w);
-  }
-  return within / static_cast<double>(rays.size());
-}
 
 Frame world_from_design(const LensProblem& problem) { return problem.world_from_lens * lens_from_design(); }
 
@@ -67,7 +59,7 @@ double TwoFaceFit::prepare(Side& side, std::uint64_t count) {
   side.rays = rays_of(problem_, seed_);
   side.rays->refract(problem_.medium, into_entry(*lens_.entry, problem_.medium));
   side.rays->grow(count);
-  return flux_within(*side.rays);
+  return side.rays->share_left(count);
 }
 
 ShapeLimits TwoFaceFit::limits_of(const Side& side, int rings) const {
@@ -154,6 +146,7 @@ bool TwoFaceFit::turn(Side& side, int number, const FreeFormLevel& l, const Lens
   bool was_refused = false;
   for (int k = 0; k < kStepsOfTurn; ++k) {
     const bool accepted = fit.step(point, side.lambda, was_refused);
+    side.lambda = std::max(side.lambda, kLeastLambda);
     was_refused = !accepted;
     ++evaluations_;
     total_rays_ += l.rays;
