@@ -76,10 +76,10 @@ TEST(SolidBottomFace, NoLightSlipsThroughItsEdges) {
     const double phi = radians(360.0 * rng.uniform()), off = 1e-10 * (rng.uniform() - 0.5);
     const Vec3 rim{6.0 * std::cos(phi), 6.0 * std::sin(phi), bottom_mm(6.0, 0.0) + off};
     const Vec3 from{4.0 * rng.uniform() - 2.0, 4.0 * rng.uniform() - 2.0,
-                    i % 2 == 0 ? 2.5 + rng.uniform() : -1.0 - rng.uniform()};
+                    i % 2 == 0 ? 4.0 + 0.4 * rng.uniform() : -1.0 - rng.uniform()};
     const auto hit = tracer.first_hit({from, Direction::from(rim - from)}, 1e9, false);
     ASSERT_TRUE(hit) << i;
-    EXPECT_NEAR(hit->t_mm, length(rim - from), 1e-6) << i;
+    EXPECT_NEAR(hit->t_mm, length(rim - from), 1e-5) << i;
   }
 }
 
@@ -102,7 +102,7 @@ TEST(SolidBottomFace, WhatDoesNotFitIsRefusedByName) {
   expect(open, "first corner at [6, 1], expected it on the axis");
   Solid low = two_faces();
   low.bottom_face = test::spline_face([](double x, double y) { return bottom_mm(x, y) - 1.5; }, 7.0, 60);
-  expect(low, "bottom_face: found z = -0.42121 at its rim");
+  expect(low, "bottom_face: found z = -0.421216 at its rim");
   Solid thin = two_faces();
   thin.bottom_face = test::spline_face([](double x, double y) { return bottom_mm(x, y) + 4.0; }, 7.0, 60);
   expect(thin, "face: found z = 5 at x = 0, y = 0, expected it above the outline below, z = 6");

@@ -95,8 +95,7 @@ std::vector<bool> rough_corners(const Solid& solid) {
   std::vector<std::size_t> sides = solid.scatter_sides;
   if (solid.bottom_face) {
     // Between lid and floor the closed outline has a side along the axis, which nobody counts.
-    const std::size_t bottom = solid.outline_mm.size();
-    std::replace(sides.begin(), sides.end(), bottom, bottom + 1);
+    for (std::size_t& side : sides) side += side >= solid.outline_mm.size() ? 1 : 0;
   }
   return sides_of_faces(faced_base(solid.outline_mm, solid.smooth_below_deg).corners, solid.smooth_below_deg,
                         sides);
