@@ -29,7 +29,7 @@ struct LensFitOptions {
 struct LensFitResult {
   explicit LensFitResult(ShapedLens found) : lens(std::move(found)) {}
   ShapedLens lens;
-  /// What the entry has become, where that was free; nothing where it is the given one.
+  /// The cavity that the entry has become, if it has; nothing where it is the given one or a free form.
   std::optional<Cavity> cavity;
   std::vector<FitRecord> history;
   DesignTermination end = DesignTermination::converged;
