@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numbers>
 
@@ -172,25 +171,6 @@ constexpr double kFlangeShare = 0.02, kRise_mm = 0.01, kClearance_mm = 0.05;
 /// And begins so high, with room to the limits' margin.
 constexpr double kBeginRise_mm = 0.06;
 
-/// Where a source ends: below all of its rays in a design's frame, and within this distance of the axis.
-struct SourceEnd {
-  double low_mm = std::numeric_limits<double>::infinity(), radius_mm = 0.0;
-};
-
-SourceEnd end_of(const DesignRays& source) {
-  SourceEnd out;
-  for (std::uint64_t b = 0; b < source.size() / kBlockRays; ++b) {
-    const DesignRays::Block& block = source.block(b);
-    for (std::size_t i = 0; i < kBlockRays; ++i) {
-      if (!(block.weight[i] > 0.0F)) continue;
-      out.low_mm = std::min(out.low_mm, static_cast<double>(block.z_mm[i]));
-      out.radius_mm = std::max(
-          out.radius_mm, std::hypot(static_cast<double>(block.x_mm[i]), static_cast<double>(block.y_mm[i])));
-    }
-  }
-  return out;
-}
-
 }  // namespace
 
 DesignShape entry_of(const LensShape& lens, const LensLimits& limits, int intervals) {
@@ -214,41 +194,44 @@ FaceSeat seat_over(const LensShape& lens, const DesignShape& entry) {
   for (std::size_t i = parts.entry_end; i < parts.below.size(); ++i) {
     if (parts.below[i][0] > radius) out.below_mm.push_back(parts.below[i]);
   }
-  out.base = faced_base_sides(out.below_mm, lens.smooth_below_deg(), 1e-4);
+  out.base = faced_base_sides(out.below_mm, lens.smooth_below_deg(), kBaseTolerance_mm);
   out.bottom = entry;
   return out;
 }
 
-ShapeLimits entry_limits(const LensLimits& limits, const LensShape& lens, const DesignShape& entry,
-                         const DesignShape& last, const DesignRays& source, int rings) {
-  const double base = parts_of(lens).base_mm(), radius = entry.aperture().half_x_mm();
-  const double thickness = limits.min_thickness_mm.value_or(kMinThickness_mm);
-  const SourceEnd end = end_of(source);
-  std::vector<HeightBounds> bounds;
-  for (int i = 0; i <= rings; ++i) {
-    const double r = radius * i / rings;
-    const bool is_over_source = r <= end.radius_mm + kClearance_mm;
-    const double high = std::min(-(base + kRise_mm), is_over_source ? end.low_mm - kClearance_mm : 1e9);
-    for (int k = 0; k < (i == 0 ? 1 : 2 * rings); ++k) {
-      const double turn = std::numbers::pi * k / rings;
-      const double x = r * std::cos(turn), y = r * std::sin(turn);
-      bounds.push_back({x, y, last.at(x, y).z_mm + thickness, high});
+SourceEnd source_end(const DesignRays& rays) {
+  SourceEnd out;
+  for (std::uint64_t b = 0; b < rays.size() / kBlockRays; ++b) {
+    const DesignRays::Block& block = rays.block(b);
+    for (std::size_t i = 0; i < kBlockRays; ++i) {
+      if (!(block.weight[i] > 0.0F)) continue;
+      const auto x = static_cast<double>(block.x_mm[i]), y = static_cast<double>(block.y_mm[i]);
+      out.low_mm = std::min(out.low_mm, static_cast<double>(block.z_mm[i]));
+      out.radius_mm = std::max(out.radius_mm, std::hypot(x, y));
     }
   }
-  DesignLimits form;
-  if (limits.min_draft_deg) form.max_slope_deg = 90.0 - *limits.min_draft_deg;
-  return {form, entry, bounds};
+  return out;
+}
+
+ShapeLimits entry_limits(const LensLimits& limits, const LensShape& lens, const DesignShape& entry,
+                         const DesignShape& last, const SourceEnd& source, int rings) {
+  const double over_base = -(parts_of(lens).base_mm() + kRise_mm);
+  const double over_source = std::min(over_base, source.low_mm - kClearance_mm);
+  const double thickness = limits.min_thickness_mm.value_or(kMinThickness_mm);
+  return limits_on_circles(limits, entry, entry.aperture().half_x_mm(), rings, [&](double x, double y) {
+    const bool is_over_source = std::hypot(x, y) <= source.radius_mm + kClearance_mm;
+    return HeightBounds{x, y, last.at(x, y).z_mm + thickness, is_over_source ? over_source : over_base};
+  });
 }
 
 DesignRays::Pass into_entry(const DesignShape& entry, const MediumView& medium) {
   const auto tracer = std::make_shared<const MirrorTracer>(entry.reflector());
-  const auto view = std::make_shared<const DesignShape>(entry);
-  return [tracer, view, media = media_of_first_face(medium)](Ray& ray) {
+  return [tracer, entry, media = media_of_first_face(medium)](Ray& ray) {
     const auto t = tracer->first_mm(ray);
     FaceHit hit;
-    const auto shape = std::get<BsplineShape>(view->family()).view();
     if (!t || !(ray.direction.z() < 0.0) ||
-        !refract_at(shape, media, ray.origin_mm, ray.direction.vec(), *t, hit))
+        !refract_at(std::get<BsplineShape>(entry.family()).view(), media, ray.origin_mm, ray.direction.vec(),
+                    *t, hit))
       return 0.0;
     ray = {hit.point, Direction::from(hit.out)};
     return hit.share;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
+
 #include "lucerna/design/evaluation/design_rays.h"
 #include "lucerna/design/lens/free_face.h"
 #include "lucerna/design/lens/lens_limits.h"
@@ -36,10 +38,17 @@ DesignShape entry_of(const LensShape& lens, const LensLimits& limits, int interv
 /// The seat of the last face over such a first one.
 FaceSeat seat_over(const LensShape& lens, const DesignShape& entry);
 
+/// Where a source ends: its lowest place in a design's frame, and its farthest from the axis.
+struct SourceEnd {
+  double low_mm = std::numeric_limits<double>::infinity(), radius_mm = 0.0;
+};
+/// By where rays of a design begin. O(rays).
+SourceEnd source_end(const DesignRays& rays);
+
 /// The limits on the first face below the last one, on so many circles: between them there is
 /// `min_thickness_mm`, and the first stays above the base's plane and above the source.
 ShapeLimits entry_limits(const LensLimits& limits, const LensShape& lens, const DesignShape& entry,
-                         const DesignShape& last, const DesignRays& source, int rings);
+                         const DesignShape& last, const SourceEnd& source, int rings);
 
 /// Brings rays of a design into the lens by its first face; rays that miss it are lost.
 DesignRays::Pass into_entry(const DesignShape& entry, const MediumView& medium);

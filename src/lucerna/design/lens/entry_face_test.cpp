@@ -168,7 +168,9 @@ TEST(FreeEntry, IsTheBaseWithinAFlange) {
 TEST(FreeEntry, StaysBetweenBaseSourceAndLastFace) {
   const LensShape lens = flat_lens();
   const DesignShape entry = entry_of(lens, {}, 8), last = face_of(lens, 16);
-  const DesignRays source = point_below();
+  const SourceEnd source = source_end(point_below());
+  EXPECT_NEAR(source.low_mm, 0.0, 1e-6);
+  EXPECT_NEAR(source.radius_mm, 0.0, 1e-6);
   const auto cost = [&](const LensLimits& limits, const DesignShape& with) {
     return entry_limits(limits, lens, entry, last, source, kFitRings).cost(with, nullptr);
   };

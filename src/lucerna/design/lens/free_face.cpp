@@ -19,8 +19,6 @@ namespace {
 
 /// Points of a curve that stand for it.
 constexpr int kCurveSamples = 256;
-/// How far straight pieces may leave the curves below a face.
-constexpr double kBaseTolerance_mm = 1e-4;
 /// A wall is parallel to the axis but for so much of its length.
 constexpr double kUpright = 1e-9;
 
@@ -149,18 +147,24 @@ HeightBounds height_bounds(const LensLimits& limits, const FaceSeat& seat, doubl
 
 }  // namespace
 
-ShapeLimits face_limits(const LensLimits& limits, const FaceSeat& seat, const DesignShape& start, int rings) {
+ShapeLimits limits_on_circles(const LensLimits& limits, const DesignShape& face, double radius_mm, int rings,
+                              const std::function<HeightBounds(double x_mm, double y_mm)>& bounds_at) {
   std::vector<HeightBounds> bounds;
   for (int i = 0; i <= rings; ++i) {
-    const double r = seat.radius_mm() * i / rings;
+    const double r = radius_mm * i / rings;
     for (int k = 0; k < (i == 0 ? 1 : 2 * rings); ++k) {
       const double turn = std::numbers::pi * k / rings;
-      bounds.push_back(height_bounds(limits, seat, r * std::cos(turn), r * std::sin(turn)));
+      bounds.push_back(bounds_at(r * std::cos(turn), r * std::sin(turn)));
     }
   }
   DesignLimits form;
   if (limits.min_draft_deg) form.max_slope_deg = 90.0 - *limits.min_draft_deg;
-  return {form, start, bounds};
+  return {form, face, bounds};
+}
+
+ShapeLimits face_limits(const LensLimits& limits, const FaceSeat& seat, const DesignShape& start, int rings) {
+  return limits_on_circles(limits, start, seat.radius_mm(), rings,
+                           [&](double x, double y) { return height_bounds(limits, seat, x, y); });
 }
 
 DesignShape within_limits(const LensLimits& limits, const FaceSeat& seat, const DesignShape& face) {

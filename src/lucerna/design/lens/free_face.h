@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -57,6 +58,14 @@ FaceSpline face_spline(const DesignShape& face);
 /// Circles on which a face is compared with its limits, and twice as many radii: while it is fitted, and as
 /// the result is judged.
 inline constexpr int kFitRings = 48, kCheckRings = 100;
+
+/// How far straight pieces may leave the curves below a face.
+inline constexpr double kBaseTolerance_mm = 1e-4;
+
+/// Limits on a face of this radius: the draft, and heights that `bounds_at` says for a place, on so many
+/// circles.
+ShapeLimits limits_on_circles(const LensLimits& limits, const DesignShape& face, double radius_mm, int rings,
+                              const std::function<HeightBounds(double x_mm, double y_mm)>& bounds_at);
 
 /// The limits on a lens as those on its free face, on so many circles.
 ShapeLimits face_limits(const LensLimits& limits, const FaceSeat& seat, const DesignShape& start, int rings);

@@ -46,6 +46,7 @@ TwoFaceFit::TwoFaceFit(const LensProblem& problem, std::uint64_t seed, ShapedLen
   entry_.is_entry = true;
   entry_.rays = rays_of(problem_, seed_);
   entry_.rays->grow(kEndRays);
+  source_end_ = source_end(*entry_.rays);
   lens_.entry = limits_of(entry_, kFitRings).held_nearby(*lens_.entry).value_or(*lens_.entry);
 }
 
@@ -64,7 +65,7 @@ double TwoFaceFit::prepare(Side& side, std::uint64_t count) {
 
 ShapeLimits TwoFaceFit::limits_of(const Side& side, int rings) const {
   if (side.is_entry)
-    return entry_limits(problem_.limits, lens_.outline, *lens_.entry, *lens_.face, *entry_.rays, rings);
+    return entry_limits(problem_.limits, lens_.outline, *lens_.entry, *lens_.face, source_end_, rings);
   return face_limits(problem_.limits, seat_of(lens_), *lens_.face, rings);
 }
 

@@ -60,6 +60,7 @@ class TwoFaceFit {
   ShapedLens lens_;
   std::vector<FreeFormLevel> levels_;
   double flux_reference_;
+  SourceEnd source_end_;
   Side entry_, last_;
   /// Light of other ways, of the lens that a level began with; empty until then.
   Eigen::VectorXd other_light_;
