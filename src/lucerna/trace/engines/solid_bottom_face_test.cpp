@@ -51,21 +51,9 @@ Solid turned() {
 // Over hollow, inner wall and flange alike.
 TEST(SolidBottomFace, SpheresAsSplinesSendLightWhereTheirOutlineDoes) {
   const SolidTracer spline({two_faces()}), outline({turned()});
-  int compared = 0;
-  double worst = 0.0;
-  for (std::uint64_t i = 0; i < 4000; ++i) {
-    Rng rng(11, i);
-    const double r = 9.0 * std::sqrt(rng.uniform()), phi = radians(360.0 * rng.uniform());
-    const Ray ray{{r * std::cos(phi), r * std::sin(phi), -1.0},
-                  Direction::from({0.2 * rng.uniform() - 0.1, 0.2 * rng.uniform() - 0.1, 1.0})};
-    const GlassPassage a = test::through_solid(spline, ray, i), b = test::through_solid(outline, ray, i);
-    // What a boundary reflects is compared by its share elsewhere.
-    if (!(a.ray.direction.z() > 0.5 && b.ray.direction.z() > 0.5)) continue;
-    worst = std::max(worst, length(test::at_height(a.ray, 105.0) - test::at_height(b.ray, 105.0)));
-    ++compared;
-  }
-  EXPECT_GT(compared, 3000);
-  EXPECT_LT(worst, 2e-3);
+  const test::LightDistance light = test::light_distance(spline, outline, 9.0, 4000);
+  EXPECT_GT(light.compared, 3000);
+  EXPECT_LT(light.worst_mm, 2e-3);
 }
 
 // From above and below, towards the circle where the bottom's rim and the wall about it meet.

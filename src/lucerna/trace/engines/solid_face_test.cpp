@@ -47,21 +47,9 @@ Solid turned_cap() {
 
 TEST(SolidFace, ASphereAsASplineSendsLightWhereItsOutlineDoes) {
   const SolidTracer spline({capped()}), outline({turned_cap()});
-  int compared = 0;
-  double worst = 0.0;
-  for (std::uint64_t i = 0; i < 2000; ++i) {
-    Rng rng(11, i);
-    const double r = 9.0 * std::sqrt(rng.uniform()), phi = radians(360.0 * rng.uniform());
-    const Ray ray{{r * std::cos(phi), r * std::sin(phi), -1.0},
-                  Direction::from({0.2 * rng.uniform() - 0.1, 0.2 * rng.uniform() - 0.1, 1.0})};
-    const GlassPassage a = test::through_solid(spline, ray, i), b = test::through_solid(outline, ray, i);
-    // What a boundary reflects is compared by its share elsewhere.
-    if (!(a.ray.direction.z() > 0.5 && b.ray.direction.z() > 0.5)) continue;
-    worst = std::max(worst, length(test::at_height(a.ray, 105.0) - test::at_height(b.ray, 105.0)));
-    ++compared;
-  }
-  EXPECT_GT(compared, 1700);
-  EXPECT_LT(worst, 1e-3);
+  const test::LightDistance light = test::light_distance(spline, outline, 9.0, 2000);
+  EXPECT_GT(light.compared, 1700);
+  EXPECT_LT(light.worst_mm, 1e-3);
 }
 
 // Against the same body as triangles, which are within 1e-5 of its size.
