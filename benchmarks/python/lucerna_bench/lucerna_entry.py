@@ -18,7 +18,7 @@ TROUGH_LENGTH_MM = 400.0
 # Large beside the source, so that its size does not matter.
 COLLECTOR_RADIUS_MM = 50.0
 # The others' sources are small beside the lens, and their bottoms stay flat.
-ENTRY_OF_FAMILY = {"LB-3": "bspline", "LB-4": "cavity"}
+ENTRY_OF_FAMILY = {"LB-3": "bspline", "LB-4": "bspline"}
 # Of LB-2 only the light counts.
 LIGHT_WEIGHT_OF_COLLECTOR = 100
 # Beside the project and its target, which are there before.
@@ -144,15 +144,23 @@ def _plane_target(task, folder, place, cells=250, widened=1.25):
 
 
 def _lens_design(task, kind):
-    """Of a lens of revolution 16 pieces of both faces move. A free form chooses its knots; where the source is wide beside
-    the lens, the bottom is a free form too; where the light is wide beside what comes through a flat bottom, it chooses
-    a cavity there."""
+    """Of a lens of revolution 16 pieces of both faces move. A free form chooses its knots. The bottom is a free form too
+    where the source is wide beside the lens, or the light beside what comes through a flat bottom."""
     entry = ENTRY_OF_FAMILY.get(task.family)
     sides = "[0, 2]" if kind == "lens" or entry else "2"
     shape = "intervals = 16\n" if kind == "lens" else 'family = "bspline"\n' + (f'entry = "{entry}"\n' if entry else "")
     return (f"[design]\nfree_sides = {sides}\n{shape}[design.limits]\n"
             f"max_diameter_mm = {2 * task.room.half_mm - MARGIN_MM}\n"
-            f"max_height_mm = {task.room.high_mm - task.room.low_mm - 2 * MARGIN_MM}\nmin_thickness_mm = 0.5\n")
+            f"max_height_mm = {task.room.high_mm - task.room.low_mm - 2 * MARGIN_MM}\nmin_thickness_mm = 0.5\n"
+            + ('symmetry = "both"\n' if kind == "free-lens" and _is_even_in_both(task) else ""))
+
+
+def _is_even_in_both(task):
+    """Whether source and target are symmetric about the planes x = 0 and y = 0."""
+    places = task.source["place"], task.target["place"]
+    return (task.source["emitter"] in ("disk", "rectangle") and task.target["kind"] == "plane"
+            and task.target["function"].startswith("uniform")
+            and all(place["origin_mm"][:2] == [0, 0] and place["x_axis"] == [1, 0, 0] for place in places))
 
 
 def design(lucerna, task, folder, time_s, threads=None, seed=1, device="cpu"):

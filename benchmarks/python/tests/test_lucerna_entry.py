@@ -195,6 +195,12 @@ def test_free_lens_is_the_one_that_lucerna_traces(scorer, lucerna, tmp_path, ent
     assert deviation(turned, theirs) > 20.0
 
 
+@pytest.mark.parametrize("name, both", [("LB-4-2x2", True), ("LB-3-rectangle", True), ("LB-5b", False)])
+def test_symmetric_tasks_ask_for_symmetric_lenses(tasks, tmp_path, name, both):
+    lucerna_entry.project(read_task(tasks / f"{name}.json"), tmp_path)
+    assert ('symmetry = "both"' in (tmp_path / "project.toml").read_text()) == both
+
+
 def test_even_light_fills_its_cells():
     rectangle = photometry.lit_cells({"function": "uniform_rectangle", "size_mm": [30, 8]}, [20.0, 10.0], 10)
     assert rectangle.shape == (10, 10) and rectangle.sum() * 4.0 * 2.0 == pytest.approx(240.0)

@@ -88,6 +88,8 @@ TEST(DesignLensCli, RefusesWhatLensesDoNotHave) {
   const auto run = run_lucerna(dir.path(), kQuick);
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.err, HasSubstr("is a limit on mirrors"));
+  write_lens_project(dir, "[design.limits]\nsymmetry = \"threefold\"\n");
+  EXPECT_THAT(run_lucerna(dir.path(), kQuick).err, HasSubstr("c90-c270"));
 }
 
 }  // namespace

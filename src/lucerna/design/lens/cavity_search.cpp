@@ -17,11 +17,11 @@ constexpr double kDistance = 1.12;
 /// Steps from the best are by these factors, smaller ones where none of the larger is better.
 constexpr std::array<double, 2> kSteps{1.35, 1.16};
 
-/// Which of radius, depth and distance a step changes.
+/// What a step multiplies radius, depth and distance by: these powers of its factor.
 struct StepKind {
-  bool radius, depth, distance;
+  double radius, depth, distance;
 };
-constexpr std::array<StepKind, 3> kKinds{{{false, true, false}, {false, false, true}, {true, true, false}}};
+constexpr std::array<StepKind, 3> kKinds{{{0.0, 0.0, 0.5}, {0.0, 1.0, 0.0}, {1.0, 1.0, 0.0}}};
 
 class CavitySearch {
  public:
@@ -42,7 +42,7 @@ class CavitySearch {
   }
 
  private:
-  bool can_look() const { return !ended_ && looked_at_.size() < max_trials_; }
+  bool can_look() const { return !ended_ && trials_ < max_trials_; }
 
   /// Steps may lead back.
   bool was_looked_at(const CavityTrial& trial) const {
@@ -56,12 +56,12 @@ class CavitySearch {
   bool has_stepped(double factor) {
     const CavityTrial from = best_;
     for (const StepKind& kind : kKinds) {
-      if (from.cavity.depth_mm == 0.0 && !kind.distance) continue;
+      if (from.cavity.depth_mm == 0.0 && kind.distance == 0.0) continue;
       for (const double f : {factor, 1.0 / factor}) {
         CavityTrial to = from;
-        if (kind.radius) to.cavity.radius_mm *= f;
-        if (kind.depth) to.cavity.depth_mm *= f;
-        if (kind.distance) to.distance *= f;
+        to.cavity.radius_mm *= std::pow(f, kind.radius);
+        to.cavity.depth_mm *= std::pow(f, kind.depth);
+        to.distance *= std::pow(f, kind.distance);
         look(to);
         if (best_.cost < from.cost) return true;
       }
@@ -76,6 +76,7 @@ class CavitySearch {
     looked_at_.push_back(trial);
     const std::optional<double> cost = cost_(trial);
     ended_ = !cost;
+    if (cost && std::isfinite(*cost)) ++trials_;
     if (!cost || !(*cost < best_.cost)) return;
     best_ = trial;
     best_.cost = *cost;
@@ -86,6 +87,8 @@ class CavitySearch {
   std::size_t max_trials_;
   CavityTrial best_;
   std::vector<CavityTrial> looked_at_;
+  /// Those that were lenses.
+  std::size_t trials_ = 0;
   bool ended_ = false;
 };
 

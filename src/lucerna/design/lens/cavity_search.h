@@ -22,7 +22,7 @@ struct CavityTrial {
 using CavityCost = std::function<std::optional<double>(const CavityTrial&)>;
 
 /// The best that is found: of a grid of radii and depths, the flat base among them, and of steps from the
-/// best of these. Costs are asked for one after the other, `max_trials` at most.
+/// best of these. Costs are asked for one after the other; `max_trials` of them at most are finite.
 CavityTrial search_cavity(const CavityRange& range, const CavityCost& cost, std::size_t max_trials);
 
 }  // namespace lucerna

@@ -45,6 +45,18 @@ TEST(CavitySearch, MakesAsManyTrialsAsItMay) {
   }
 }
 
+TEST(CavitySearch, CountsWhatIsALens) {
+  int finite = 0;
+  static_cast<void>(search_cavity(
+      kRange,
+      [&](const CavityTrial& t) -> std::optional<double> {
+        if (t.cavity.depth_mm > 0.9 * t.cavity.radius_mm) return std::numeric_limits<double>::infinity();
+        return 1.0 / ++finite;
+      },
+      9));
+  EXPECT_EQ(finite, 9);
+}
+
 TEST(CavitySearch, LooksAtNothingTwiceAndAtNothingBeyondTheRange) {
   std::vector<CavityTrial> seen;
   static_cast<void>(search_cavity(kRange, valley({{25.0, 14.0}, 1.2}, seen), kTrials));

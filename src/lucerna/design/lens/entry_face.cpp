@@ -35,6 +35,7 @@ struct LensParts {
   std::vector<OutlinePoint> below, face;
   double base_mm() const { return below[entry_end][1]; }
   double wall_radius_mm() const { return below.back()[0]; }
+  double entry_radius_mm() const { return below[entry_end][0]; }
   /// Of the plane of the base, as far as it goes.
   double base_radius_mm() const {
     const OutlinePoint &end = below[entry_end], &next = below[entry_end + 1];
@@ -179,10 +180,15 @@ DesignShape entry_of(const LensShape& lens, const LensLimits& limits, int interv
   const double flange =
       std::max(kFlangeShare * parts.base_radius_mm(),
                std::min(limits.min_thickness_mm.value_or(0.0), kRingShare * parts.base_radius_mm()));
-  const double radius = parts.base_radius_mm() - flange, base = parts.base_mm();
+  const double radius = std::min(parts.entry_radius_mm(), parts.base_radius_mm() - flange);
   const double focal = 10.0 * radius;  // only has to be of the face's size
-  return DesignShape::bspline(focal, Aperture::circle(2.0 * radius), intervals, intervals)
-      .through([&](double x, double y) { return -std::max(seat.height_mm(x, y), base + kBeginRise_mm); });
+  const double rim = seat.height_mm(radius);
+  // Beyond the rim it goes on as it came there: a spline cannot follow an edge.
+  const auto height = [&](double r) {
+    return r < radius ? seat.height_mm(r) : 2.0 * rim - seat.height_mm(std::max(0.0, 2.0 * radius - r));
+  };
+  return DesignShape::bspline(focal, Aperture::circle(2.0 * radius), intervals, intervals, limits.symmetry)
+      .through([&](double x, double y) { return -(height(std::hypot(x, y)) + kBeginRise_mm); });
 }
 
 FaceSeat seat_over(const LensShape& lens, const DesignShape& entry) {

@@ -32,7 +32,7 @@ CavityRange cavity_range(const LensShape& lens, const LensLimits& limits);
 LensShape with_cavity(const LensShape& lens, const Cavity& cavity, double min_draft_deg = 0.0);
 
 /// The first face of the lens as a free form in a design's frame, as near to what it is as the knots allow:
-/// it covers the base but for a ring beside its edge. Throws InputError as cavity_range does.
+/// it covers what that covers, but for a ring beside the base's edge. Throws InputError as cavity_range does.
 DesignShape entry_of(const LensShape& lens, const LensLimits& limits, int intervals);
 
 /// The seat of the last face over such a first one.

@@ -149,11 +149,15 @@ DesignRays point_below() {
 }
 
 TEST(FreeEntry, IsTheBaseWithinAFlange) {
+  const DesignShape flat = entry_of(flat_lens(), {}, 24);
+  EXPECT_NEAR(flat.aperture().half_x_mm(), 0.98 * 12.0, 1e-12);
+  EXPECT_NEAR(-flat.at(0.0, 10.0).z_mm, 1.06, 1e-9) << "a little above the base";
   const LensShape lens = with_cavity(flat_lens(), {6.0, 3.0}, 40.0);
   const DesignShape entry = entry_of(lens, {}, 24);
-  EXPECT_NEAR(entry.aperture().half_x_mm(), 0.98 * 12.0, 1e-12);
-  EXPECT_NEAR(-entry.at(0.0, 0.0).z_mm, 4.0, 0.02);
-  EXPECT_NEAR(-entry.at(0.0, 10.0).z_mm, 1.06, 0.02) << "beyond the cavity, a little above the base";
+  EXPECT_NEAR(entry.aperture().half_x_mm(), 6.0, 1e-12) << "as wide as the cavity";
+  for (const double r : {0.0, 2.0, 4.0, 5.9})
+    EXPECT_NEAR(-entry.at(0.0, r).z_mm, face_seat(lens).height_mm(r) + 0.06, 0.02) << r;
+  EXPECT_NEAR(-entry.at(6.0, 0.0).z_mm, 1.06, 0.02) << "up to the rim, beyond which it falls on";
   const FaceSeat seat = seat_over(lens, entry);
   EXPECT_EQ(seat.radius_mm(), 12.0);
   EXPECT_EQ(seat.lowest_mm(), 1.0);

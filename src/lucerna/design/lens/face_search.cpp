@@ -21,7 +21,7 @@ constexpr StartLight kRoughLight{std::uint64_t{1} << 15, 28, 20, 3};
 constexpr int kRoughBins = 40, kRoughSteps = 3;
 
 DesignShape given_face(const LensProblem& problem) {
-  return face_of(problem.start, problem.free_face->intervals);
+  return face_of(problem.start, problem.free_face->intervals, problem.limits.symmetry);
 }
 
 /// The given face's knots through the heights of another.

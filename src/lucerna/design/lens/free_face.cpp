@@ -97,7 +97,7 @@ FaceSeat face_seat(const LensShape& lens) {
   return seat;
 }
 
-DesignShape face_of(const LensShape& lens, int intervals) {
+DesignShape face_of(const LensShape& lens, int intervals, ShapeSymmetry symmetry) {
   const FaceSeat seat = face_seat(lens);
   const std::vector<OutlinePoint> points =
       sampled(lens.form(), lens.form().faces[free_face_of(lens.form())].run);
@@ -109,7 +109,7 @@ DesignShape face_of(const LensShape& lens, int intervals) {
   const double radius = seat.radius_mm(), sag = points.back()[1] - points.front()[1];
   // The base only has to be of the face's size.
   const double focal = radius * radius / (4.0 * std::max(std::abs(sag), 0.1 * radius));
-  return DesignShape::bspline(focal, Aperture::circle(2.0 * radius), intervals, intervals)
+  return DesignShape::bspline(focal, Aperture::circle(2.0 * radius), intervals, intervals, symmetry)
       .through([&](double x, double y) { return -height_at(points, std::hypot(x, y)); });
 }
 

@@ -39,7 +39,7 @@ FaceSeat seat_of(const ShapedLens& lens);
 
 /// The free face of the lens as it is, in a design's frame. Throws InputError where it is not a height over
 /// every place.
-DesignShape face_of(const LensShape& lens, int intervals);
+DesignShape face_of(const LensShape& lens, int intervals, ShapeSymmetry symmetry = ShapeSymmetry::none);
 
 Frame lens_from_design();
 

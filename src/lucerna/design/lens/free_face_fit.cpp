@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "lucerna/core/io/error.h"
-#include "lucerna/design/lens/cavity_search.h"
+#include "lucerna/design/lens/base_choice.h"
 #include "lucerna/design/lens/face_search.h"
 #include "lucerna/design/lens/outside_weight.h"
 #include "lucerna/design/lens/two_face_fit.h"
@@ -17,18 +17,6 @@
 namespace lucerna {
 
 namespace {
-
-/// A base is judged by faces of so many knots, and rays.
-constexpr int kBaseIntervals = 16;
-constexpr std::uint64_t kBaseRays = std::uint64_t{1} << 15;
-/// That tell where the source is.
-constexpr std::uint64_t kBaseSourceRays = std::uint64_t{1} << 12;
-
-/// Domes that a free first face begins as: depths over the radius, how far the last face is over the distance
-/// that it has, and how far the rim leaves the axis.
-constexpr std::array<double, 5> kDomeDepths{0.0, 0.1, 0.18, 0.27, 0.4};
-constexpr std::array<double, 2> kDomeDistances{1.0, 1.25};
-constexpr double kDomeDraft_deg = 40.0;
 
 /// How finely two faces are fitted, at most: derivatives are by all rays, for few rays a bin make steps
 /// short.
@@ -39,102 +27,9 @@ constexpr std::array<FreeFormLevel, 4> kTwoFaceLevels{
      {.bins = 120, .rays = 1 << 22, .max_steps = 20, .min_gain = 0.005}}};
 /// Knots of the first face.
 constexpr int kEntryIntervals = 10;
-
-LensProblem with_start(const LensProblem& problem, LensShape start) {
-  LensProblem out = problem;
-  out.start = std::move(start);
-  return out;
-}
-
-/// Bases of a lens, judged by the faces that a few steps make over them.
-class BaseChoice {
- public:
-  BaseChoice(const LensProblem& problem, const LensFitOptions& options, const LensFitWatcher& watch)
-      : problem_(problem),
-        options_(options),
-        watch_(watch),
-        flux_reference_(FaceSearch(problem, options).flux_reference()),
-        source_(problem.project.scene.sources, problem.world_from_lens.inverse(), options.seed),
-        outline_(problem.start) {
-    source_.grow(kBaseSourceRays);
-  }
-
-  /// Looks at the given base and at cavities in its place.
-  void run() {
-    static_cast<void>(cost(problem_.start, std::nullopt, 1.0));
-    const CavityRange range = cavity_range(problem_.start, problem_.limits);
-    if (problem_.free_face->entry == EntryKind::bspline) return look_at_domes(range);
-    static_cast<void>(search_cavity(
-        range, [&](const CavityTrial& trial) { return judged(trial, 0.0); }, options_.cavity_trials));
-  }
-
-  double flux_reference() const { return flux_reference_; }
-  const LensShape& outline() const { return outline_; }
-  /// Nothing where no base has a face to begin with.
-  const std::optional<DesignShape>& face() const { return face_; }
-  /// Nothing where the given base is the best.
-  const std::optional<Cavity>& cavity() const { return cavity_; }
-  int evaluations() const { return evaluations_; }
-  std::uint64_t rays() const { return rays_; }
-  /// The watcher has ended it.
-  bool has_ended() const { return ended_; }
-
- private:
-  /// A spline has no edge, so what becomes one begins as a dome over all of the base, without a steep rim.
-  void look_at_domes(const CavityRange& range) {
-    for (const double distance : kDomeDistances) {
-      for (const double depth : kDomeDepths) {
-        const double depth_mm = depth * range.max_radius_mm;
-        if (depth_mm <= range.max_depth_mm)
-          static_cast<void>(judged({{range.max_radius_mm, depth_mm}, distance}, kDomeDraft_deg));
-      }
-    }
-  }
-
-  /// What a cavity comes to, whose rim leaves the axis by so much at least; nothing where the watcher has
-  /// ended it.
-  std::optional<double> judged(const CavityTrial& trial, double draft_deg) {
-    if (ended_) return std::nullopt;
-    try {
-      const double least_deg = std::max(draft_deg, problem_.limits.min_draft_deg.value_or(0.0));
-      return cost(with_cavity(problem_.start, trial.cavity, least_deg), trial.cavity, trial.distance);
-    } catch (const InputError&) {  // no lens
-      return std::numeric_limits<double>::infinity();
-    }
-  }
-
-  double cost(const LensShape& outline, const std::optional<Cavity>& cavity, double distance) {
-    if (takes_source_in(outline, problem_.start, source_)) return std::numeric_limits<double>::infinity();
-    LensProblem rough = with_start(problem_, outline);
-    rough.free_face->intervals = rough.free_face->max_intervals = kBaseIntervals;
-    FaceSearch search(rough, {options_.seed, kBaseRays}, flux_reference_, std::nullopt);
-    const auto found = search.rough(distance);
-    if (!found) return std::numeric_limits<double>::infinity();
-    evaluations_ += found->record.evaluations;
-    rays_ += found->record.total_rays;
-    if (found->cost < least_) {
-      least_ = found->cost;
-      outline_ = outline;
-      cavity_ = cavity;
-      face_ = found->face;
-    }
-    ended_ = !watch_(found->record, {outline_, face_});
-    return found->cost;
-  }
-
-  const LensProblem& problem_;
-  const LensFitOptions& options_;
-  const LensFitWatcher& watch_;
-  double flux_reference_;
-  DesignRays source_;
-  double least_ = std::numeric_limits<double>::infinity();
-  LensShape outline_;
-  std::optional<DesignShape> face_;
-  std::optional<Cavity> cavity_;
-  int evaluations_ = 0;
-  std::uint64_t rays_ = 0;
-  bool ended_ = false;
-};
+/// Bases that are compared with both faces free, and turns of both faces before the worse half is dropped.
+constexpr std::size_t kTwoFaceStarts = 3;
+constexpr int kTurnsOfLook = 2;
 
 void run_search(FaceSearch& face, const LensFitWatcher& watch, LensFitResult& result) {
   FreeFormSearch& search = face.search();
@@ -151,37 +46,85 @@ void run_search(FaceSearch& face, const LensFitWatcher& watch, LensFitResult& re
   result.rays += search.state().total_rays;
 }
 
-/// The entry becomes a free form, and goes on from what it is.
-void fit_two_faces(const LensProblem& problem, const LensFitOptions& options, const BaseChoice& base,
-                   FaceSearch& face, const LensFitWatcher& watch, LensFitResult& result) {
-  std::vector<FreeFormLevel> levels;
+std::vector<FreeFormLevel> two_face_levels(const LensFitOptions& options, double smoothing) {
+  std::vector<FreeFormLevel> out;
   for (const FreeFormLevel& with : kTwoFaceLevels) {
-    levels.push_back(with);
-    levels.back().rays = std::min(with.rays, options.max_rays);
-    levels.back().smoothing = face.search().level(0).smoothing;
+    out.push_back(with);
+    out.back().rays = std::min(with.rays, options.max_rays);
+    out.back().smoothing = smoothing;
   }
-  ShapedLens begin = face.best();
-  const bool has_own_knots = problem.free_face->intervals == problem.free_face->max_intervals;
-  if (base.face() && !has_own_knots) begin.face = base.face();
-  begin.entry =
-      entry_of(begin.outline, problem.limits, std::min(kEntryIntervals, problem.free_face->intervals));
-  result.cavity.reset();
-  TwoFaceFit(problem, options.seed, std::move(begin), std::move(levels), face.flux_reference())
-      .run(watch, result);
+  return out;
 }
+
+/// The entries of several bases become free forms, and the best of these goes on.
+class TwoFaceStarts {
+ public:
+  TwoFaceStarts(const LensProblem& problem, const LensFitOptions& options, const BaseChoice& choice)
+      : problem_(problem), options_(options), choice_(choice) {}
+
+  void run(const LensFitWatcher& watch, LensFitResult& result) {
+    for (const LensBase& base : choice_.distinct(kTwoFaceStarts)) add(base);
+    while (fits_.size() > 1) {
+      for (Start& start : fits_) {
+        const std::optional<double> cost = start.fit->look(kTurnsOfLook, watch, result);
+        if (!cost) return best_so_far(result);
+        start.cost = *cost;
+      }
+      sort();
+      fits_.resize((fits_.size() + 1) / 2);
+    }
+    fits_.front().fit->run(watch, result);
+  }
+
+ private:
+  struct Start {
+    std::unique_ptr<TwoFaceFit> fit;
+    double cost = std::numeric_limits<double>::infinity();
+  };
+
+  void sort() {
+    std::stable_sort(fits_.begin(), fits_.end(),
+                     [](const Start& a, const Start& b) { return a.cost < b.cost; });
+  }
+
+  void best_so_far(LensFitResult& result) {
+    sort();
+    result.lens = fits_.front().fit->held();
+  }
+
+  void add(const LensBase& base) {
+    FaceSearch face(with_start(problem_, base.outline), options_, choice_.flux_reference(), base.face);
+    ShapedLens begin = face.best();
+    const bool has_own_knots = problem_.free_face->intervals == problem_.free_face->max_intervals;
+    if (base.face && !has_own_knots) begin.face = base.face;
+    begin.entry =
+        entry_of(begin.outline, problem_.limits, std::min(kEntryIntervals, problem_.free_face->intervals));
+    fits_.push_back({std::make_unique<TwoFaceFit>(problem_, options_.seed, std::move(begin),
+                                                  two_face_levels(options_, face.search().level(0).smoothing),
+                                                  choice_.flux_reference())});
+  }
+
+  const LensProblem& problem_;
+  const LensFitOptions& options_;
+  const BaseChoice& choice_;
+  std::vector<Start> fits_;
+};
 
 LensFitResult fit_face_and_entry(const LensProblem& problem, const LensFitOptions& options,
                                  const LensFitWatcher& watch) {
-  BaseChoice base(problem, options, watch);
-  base.run();
-  FaceSearch face(with_start(problem, base.outline()), options, base.flux_reference(), base.face());
+  BaseChoice choice(problem, options, watch);
+  choice.run();
+  const LensBase& base = choice.best();
+  FaceSearch face(with_start(problem, base.outline), options, choice.flux_reference(), base.face);
   LensFitResult result(face.best());
-  result.cavity = base.cavity();
-  result.evaluations = base.evaluations();
-  result.rays = base.rays();
-  if (!base.has_ended() && problem.free_face->entry == EntryKind::bspline) {
-    fit_two_faces(problem, options, base, face, watch, result);
-  } else if (!base.has_ended()) {
+  result.evaluations = choice.evaluations();
+  result.rays = choice.rays();
+  if (!choice.has_ended() && problem.free_face->entry == EntryKind::bspline) {
+    TwoFaceStarts(problem, options, choice).run(watch, result);
+    return result;
+  }
+  result.cavity = base.cavity;
+  if (!choice.has_ended()) {
     run_search(face, watch, result);
   } else {
     result.end = DesignTermination::time;

@@ -6,6 +6,7 @@
 
 #include "lucerna/design.h"
 #include "lucerna/design/lens/lens_shape.h"
+#include "lucerna/design/shape/design_shape.h"
 #include "lucerna/design/solver/residual_rows.h"
 
 namespace lucerna {
@@ -17,6 +18,8 @@ struct LensLimits {
   std::optional<double> min_thickness_mm;
   /// Between a free face and the axis, along which a mould opens.
   std::optional<double> min_draft_deg;
+  /// Of free forms.
+  ShapeSymmetry symmetry = ShapeSymmetry::none;
 
   bool any() const { return max_diameter_mm || max_height_mm || min_thickness_mm || min_draft_deg; }
 };

@@ -12,6 +12,7 @@
 #include "lucerna/design/lens/entry_face.h"
 #include "lucerna/design/lens/free_face.h"
 #include "lucerna/design/problem/design_detectors.h"
+#include "lucerna/design/problem/design_limits.h"
 #include "lucerna/design/problem/target_rectangle.h"
 #include "lucerna/design/validation/error_boxes.h"
 #include "lucerna/project/schema/project_tables.h"
@@ -84,26 +85,27 @@ std::optional<FreeFaceProblem> read_free_face(TomlReader& design, int intervals)
   return out;
 }
 
-LensLimits read_lens_limits(TomlReader reader) {
+LensLimits read_lens_limits(TomlReader reader, bool revolution, const Frame& world_from_lens) {
   LensLimits limits;
   limits.max_diameter_mm = reader.number("max_diameter_mm");
   limits.max_height_mm = reader.number("max_height_mm");
   limits.min_thickness_mm = reader.number("min_thickness_mm");
   limits.min_draft_deg = reader.number("min_draft_deg");
   for (const char* key : {"min_opening_mm", "min_hole_diameter_mm", "max_slope_deg", "min_radius_mm",
-                          "min_efficiency", "symmetry", "body_clearance_mm", "keep_out", "glare"}) {
+                          "min_efficiency", "body_clearance_mm", "keep_out", "glare"}) {
     if (reader.has(key))
       reader.fail(key,
-                  "is a limit on mirrors; a lens has max_diameter_mm, max_height_mm, min_thickness_mm "
-                  "and min_draft_deg");
+                  "is a limit on mirrors; a lens has max_diameter_mm, max_height_mm, min_thickness_mm, "
+                  "min_draft_deg and symmetry");
   }
+  limits.symmetry = read_symmetry(reader, revolution, world_from_lens);
   reader.finish();
   return limits;
 }
 
 /// Refuses limits that no face of the lens holds.
 void check_free_face(const LensShape& lens, int intervals, const LensLimits& limits) {
-  const DesignShape face = face_of(lens, intervals);
+  const DesignShape face = face_of(lens, intervals, limits.symmetry);
   const FaceSeat seat = face_seat(lens);
   const auto held = face_limits(limits, seat, face, kCheckRings).held_nearby(face);
   std::string broken;
@@ -218,7 +220,8 @@ LensProblem lens_problem(Project project, const std::filesystem::path& path) {
     if (design->has(key)) design->fail(key, "belongs to the design of a mirror; this is a lens");
   }
   LensLimits limits;
-  if (auto table = design->table("limits")) limits = read_lens_limits(std::move(*table));
+  if (auto table = design->table("limits"))
+    limits = read_lens_limits(std::move(*table), !free_face, solid.world_from_solid);
   design->finish();
   const LensShape start = [&] {
     try {

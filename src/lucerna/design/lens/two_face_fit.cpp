@@ -24,8 +24,14 @@ constexpr double kLeastLambda = 1e-5;
 /// small beside the lens needs fine bins and has little noise; what a wide one blurs is seen in coarse ones.
 constexpr double kMaxNoise = 0.6, kMostNoise = 0.75;
 constexpr int kFewestBins = 28;
+constexpr std::uint64_t kLookRays = std::uint64_t{1} << 15;
 /// That tell where the source is.
 constexpr std::uint64_t kEndRays = std::uint64_t{1} << 14;
+
+void count(std::uint64_t rays, LensFitResult& result) {
+  ++result.evaluations;
+  result.rays += rays;
+}
 
 Frame world_from_design(const LensProblem& problem) { return problem.world_from_lens * lens_from_design(); }
 
@@ -94,12 +100,10 @@ FitProblem TwoFaceFit::fit_problem(const Side& side, double within,
   return fit;
 }
 
-FitRecord TwoFaceFit::measured(const FreeFormFit& fit, const FreeFormPoint& point, double within) const {
+FitRecord TwoFaceFit::measured(const FreeFormFit& fit, const FreeFormPoint& point, double within) {
   const BinError error = fit.error(point);
   FitRecord record;
   record.rays = point.light.rays;
-  record.total_rays = total_rays_;
-  record.evaluations = evaluations_;
   record.error = error.relative_rms;
   record.floor = error.floor;
   record.efficiency = within * point.light.reflected;
@@ -119,15 +123,14 @@ void TwoFaceFit::note_noise(const FreeFormLevel& level, const FreeFormPoint& poi
   noise_ = share / (1.0 - share) * static_cast<double>(level.rays) / (level.bins * level.bins);
 }
 
-void TwoFaceFit::look_at_noise() {
+void TwoFaceFit::look_at_noise(LensFitResult& result) {
   FreeFormLevel l = levels_.front();
   l.bins = kFewestBins;
   const double within = prepare(last_, l.rays);
   const FitProblem problem =
       fit_problem(last_, within, std::make_shared<const ShapeLimits>(limits_of(last_, kFitRings)));
   note_noise(l, FreeFormFit(problem, l).at(*lens_.face));
-  ++evaluations_;
-  total_rays_ += l.rays;
+  count(l.rays, result);
 }
 
 bool TwoFaceFit::turn(Side& side, int number, const FreeFormLevel& l, const LensFitWatcher& watch,
@@ -142,27 +145,40 @@ bool TwoFaceFit::turn(Side& side, int number, const FreeFormLevel& l, const Lens
   fit.keep_other_light_of(shape(side));
   FreeFormPoint point = fit.at(shape(side));
   note_noise(l, point);
-  ++evaluations_;
-  total_rays_ += l.rays;
+  count(l.rays, result);
   bool was_refused = false;
   for (int k = 0; k < kStepsOfTurn; ++k) {
     const bool accepted = fit.step(point, side.lambda, was_refused);
     side.lambda = std::max(side.lambda, kLeastLambda);
     was_refused = !accepted;
-    ++evaluations_;
-    total_rays_ += l.rays;
+    count(l.rays, result);
     shape(side) = point.shape;
     side.cost = point.equations.cost;
     FitRecord record = measured(fit, point, within);
+    record.evaluations = result.evaluations;
+    record.total_rays = result.rays;
     record.stage = number;
     record.step = static_cast<int>(result.history.size());
     record.lambda = side.lambda;
     record.accepted = accepted;
     record.candidate = side.is_entry ? 1 : 0;
     result.history.push_back(record);
-    if (!watch(record, lens_)) return false;
+    if (watch(record, lens_)) continue;
+    result.end = DesignTermination::time;
+    return false;
   }
   return true;
+}
+
+std::optional<double> TwoFaceFit::look(int turns, const LensFitWatcher& watch, LensFitResult& result) {
+  FreeFormLevel l = levels_.front();
+  l.rays = std::min(l.rays, kLookRays);
+  l.bins = kFewestBins;
+  other_light_.resize(0);
+  for (int k = 0; k < turns; ++k) {
+    if (!turn(last_, 0, l, watch, result) || !turn(entry_, 0, l, watch, result)) return std::nullopt;
+  }
+  return entry_.cost - std::pow(result.history.back().floor, 2);
 }
 
 bool TwoFaceFit::run_level(int number, const LensFitWatcher& watch, LensFitResult& result) {
@@ -187,14 +203,11 @@ ShapedLens TwoFaceFit::held() const {
 }
 
 void TwoFaceFit::run(const LensFitWatcher& watch, LensFitResult& result) {
-  look_at_noise();
-  bool goes_on = true;
-  for (int level = 0; goes_on && level < static_cast<int>(levels_.size()); ++level)
-    goes_on = run_level(level, watch, result);
-  if (!goes_on) result.end = DesignTermination::time;
+  look_at_noise(result);
+  for (int level = 0; level < static_cast<int>(levels_.size()); ++level) {
+    if (!run_level(level, watch, result)) break;
+  }
   result.lens = held();
-  result.evaluations += evaluations_;
-  result.rays += total_rays_;
 }
 
 }  // namespace lucerna

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "lucerna/design/fit/free_form_fit.h"
@@ -22,9 +23,15 @@ class TwoFaceFit {
   TwoFaceFit(const LensProblem& problem, std::uint64_t seed, ShapedLens begin,
              std::vector<FreeFormLevel> levels, double flux_reference);
 
-  /// Runs until the watcher ends it, or the last level does. The result's lens holds its limits, or is as
-  /// near to them as was found.
+  /// So many turns of both faces with few rays. Returns the cost that they come to, less its noise; nothing
+  /// where the watcher ends it.
+  std::optional<double> look(int turns, const LensFitWatcher& watch, LensFitResult& result);
+
+  /// Runs until the watcher ends it, or the last level does; the result's lens is what is held then.
   void run(const LensFitWatcher& watch, LensFitResult& result);
+
+  /// The lens so far, within its limits or as near to them as was found.
+  ShapedLens held() const;
 
  private:
   /// What belongs to one of the faces.
@@ -45,15 +52,14 @@ class TwoFaceFit {
   /// The level in as many bins as derivatives are known in.
   FreeFormLevel level_of(int number) const;
   /// Looks at the light to begin with, in few bins, for the first level.
-  void look_at_noise();
+  void look_at_noise(LensFitResult& result);
   void note_noise(const FreeFormLevel& level, const FreeFormPoint& point);
   /// Steps of one face; false where the watcher ends it.
   bool turn(Side& side, int number, const FreeFormLevel& level, const LensFitWatcher& watch,
             LensFitResult& result);
   /// Turns of both, until they gain little.
   bool run_level(int number, const LensFitWatcher& watch, LensFitResult& result);
-  FitRecord measured(const FreeFormFit& fit, const FreeFormPoint& point, double within) const;
-  ShapedLens held() const;
+  static FitRecord measured(const FreeFormFit& fit, const FreeFormPoint& point, double within);
 
   const LensProblem& problem_;
   std::uint64_t seed_;
@@ -66,8 +72,6 @@ class TwoFaceFit {
   Eigen::VectorXd other_light_;
   /// Of the derivatives, over the rest, for one ray and one bin across.
   double noise_ = 0.0;
-  int evaluations_ = 0;
-  std::uint64_t total_rays_ = 0;
 };
 
 }  // namespace lucerna

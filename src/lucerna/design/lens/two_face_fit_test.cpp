@@ -93,20 +93,24 @@ TEST(TwoFaceFitSlow, IsNearerToAWideLightThanACavity) {
   EXPECT_NEAR(two.efficiency.mean + two.bodies.mean + two.lost.mean, 1.0, 1e-9);
 }
 
+/// A few steps of both faces, from the better of two bases.
+ShapedLens first_steps(const LensProblem& problem) {
+  LensFitOptions options{1, 1 << 13, 1};
+  int steps = 0;
+  return fit_free_face(problem, options,
+                       [&steps](const FitRecord&, const ShapedLens&) { return ++steps < 30; })
+      .lens;
+}
+
 TEST(TwoFaceFit, GivesTheSameBitsOnAnyNumberOfThreads) {
   const auto made = [](int threads) {
     const ThreadLimit limit(threads);
-    LensOptions options = few_lens_rays();
-    options.max_rays = 1 << 13;
-    int steps = 0;
-    LensFitOptions fit{options.seed, options.max_rays};
-    return fit_free_face(wide_problem(), fit,
-                         [&steps](const FitRecord&, const ShapedLens&) { return ++steps < 15; });
+    return first_steps(wide_problem());
   };
-  const LensFitResult a = made(1), b = made(3);
-  ASSERT_TRUE(a.lens.entry && b.lens.entry);
-  EXPECT_EQ(a.lens.entry->parameters(), b.lens.entry->parameters());
-  EXPECT_EQ(a.lens.face->parameters(), b.lens.face->parameters());
+  const ShapedLens a = made(1), b = made(3);
+  ASSERT_TRUE(a.entry && b.entry);
+  EXPECT_EQ(a.entry->parameters(), b.entry->parameters());
+  EXPECT_EQ(a.face->parameters(), b.face->parameters());
 }
 
 TEST(TwoFaceFit, AProjectSaysWhatTheEntryBecomes) {
@@ -126,13 +130,27 @@ TEST(TwoFaceFit, AProjectSaysWhatTheEntryBecomes) {
   EXPECT_NE(refusal(changed_text("entry = \"bspline\"", "entry = \"dome\"")).find("dome"), std::string::npos);
 }
 
+// A quarter of the numbers say all of both faces.
+TEST(TwoFaceFit, HoldsTheSymmetryThatIsAskedFor) {
+  const LensProblem problem = wide_problem(kWideText + "symmetry = \"both\"\n");
+  const ShapedLens lens = first_steps(problem);
+  ASSERT_TRUE(lens.face && lens.entry);
+  for (const DesignShape& face : {*lens.face, *lens.entry}) {
+    const double half = static_cast<double>(face.intervals_x() + 3) / 2.0;
+    EXPECT_EQ(static_cast<double>(face.parameter_count()), std::pow(std::ceil(half), 2));
+    const double r = 0.6 * face.aperture().half_x_mm();
+    for (const double x : {-r, r}) {
+      for (const double y : {-0.7 * r, 0.7 * r})
+        EXPECT_NEAR(face.at(x, y).z_mm, face.at(r, 0.7 * r).z_mm, 1e-12);
+    }
+    EXPECT_GT(std::abs(face.at(r, 0.0).z_mm - face.at(0.0, r).z_mm), 1e-3) << "the rectangle is not a square";
+  }
+}
+
 // What a design writes is what it validated, from both sides of the file.
 TEST(TwoFaceFit, TheProjectHoldsBothFaces) {
   const LensProblem problem = wide_problem();
-  LensOptions options = few_lens_rays();
-  options.max_rays = 1 << 13;
-  options.validation_rays = 1 << 14;
-  const ShapedLens lens = design_lens(problem, options).lens;
+  const ShapedLens lens = first_steps(problem);
   const Solid solid = shaped_solid(problem, lens);
   ASSERT_NE(solid.bottom_face, nullptr);
   const test::TempDir folder;

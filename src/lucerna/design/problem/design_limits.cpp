@@ -10,9 +10,7 @@
 
 namespace lucerna {
 
-namespace {
-
-ShapeSymmetry read_symmetry(TomlReader& reader, bool revolution, const Frame& world_from_mirror) {
+ShapeSymmetry read_symmetry(TomlReader& reader, bool revolution, const Frame& world_from_shape) {
   static const std::map<std::string, ShapeSymmetry, std::less<>> kNames{{"none", ShapeSymmetry::none},
                                                                         {"c0-c180", ShapeSymmetry::mirror_y},
                                                                         {"c90-c270", ShapeSymmetry::mirror_x},
@@ -20,21 +18,23 @@ ShapeSymmetry read_symmetry(TomlReader& reader, bool revolution, const Frame& wo
   const std::string name = reader.word("symmetry").value_or("none");
   if (name == "rotational") {
     if (!revolution) {
-      reader.fail("symmetry", "= \"rotational\" contradicts the reflector's family; expected \"revolution\"");
+      reader.fail("symmetry", "= \"rotational\" contradicts the family; expected \"revolution\"");
     }
     return ShapeSymmetry::none;
   }
   const ShapeSymmetry symmetry = kNames.at(name);
   if (revolution || symmetry == ShapeSymmetry::none) return ShapeSymmetry::none;
-  const bool along_x = std::abs(world_from_mirror.ex().x) > 1.0 - 1e-9;
-  const bool along_y = std::abs(world_from_mirror.ex().y) > 1.0 - 1e-9;
+  const bool along_x = std::abs(world_from_shape.ex().x) > 1.0 - 1e-9;
+  const bool along_y = std::abs(world_from_shape.ex().y) > 1.0 - 1e-9;
   if (!along_x && !along_y) {
-    reader.fail("symmetry", "needs a mirror whose x axis lies in C0-C180 or C90-C270 (turn_deg)");
+    reader.fail("symmetry", "needs an x axis that lies in C0-C180 or C90-C270 (turn_deg)");
   }
   if (along_y && symmetry == ShapeSymmetry::mirror_x) return ShapeSymmetry::mirror_y;
   if (along_y && symmetry == ShapeSymmetry::mirror_y) return ShapeSymmetry::mirror_x;
   return symmetry;
 }
+
+namespace {
 
 Mesh box_mesh(const Vec3& low, const Vec3& high) {
   Mesh mesh;

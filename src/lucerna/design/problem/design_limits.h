@@ -53,6 +53,10 @@ struct DesignLimits {
   }
 };
 
+/// Reads `symmetry` of [design.limits]: of a shape whose frame must have its x axis along that of the
+/// directions, or across it. Throws InputError where it does not, or where a free form is to be rotational.
+ShapeSymmetry read_symmetry(TomlReader& reader, bool revolution, const Frame& world_from_shape);
+
 /// Reads [design.limits]: max_diameter_mm, min_opening_mm, min_hole_diameter_mm, max_height_mm,
 /// max_slope_deg, min_radius_mm, symmetry, min_efficiency; [[design.limits.keep_out]] with kind = "box"
 /// (min_mm, max_mm), "cylinder" (from_mm, to_mm, radius_mm) or "mesh" (file), in the luminaire frame, and

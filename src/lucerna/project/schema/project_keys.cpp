@@ -223,7 +223,7 @@ constexpr std::array kKeys{
     ProjectKey{"design.limits", "max_slope_deg", Type::number, up_to(90, true), "", "none", "Angle between the normal and the axis of the mirror: draft for the tool."},
     ProjectKey{"design.limits", "min_radius_mm", Type::number, kAboveZero, "", "none", "Radius of curvature anywhere, concave or convex: the radius of the tool."},
     ProjectKey{"design.limits", "min_efficiency", Type::number, up_to(1), "", "none", "Share of the sources' flux that leaves the luminaire."},
-    ProjectKey{"design.limits", "symmetry", Type::word, kAny, "none c0-c180 c90-c270 both rotational", "\"none\"", "Planes that the mirror is symmetric about."},
+    ProjectKey{"design.limits", "symmetry", Type::word, kAny, "none c0-c180 c90-c270 both rotational", "\"none\"", "Planes that the mirror, or a lens's free forms, are symmetric about."},
     ProjectKey{"design.limits", "body_clearance_mm", Type::number, kNotNegative, "", "bodies are ignored", "Distance that the mirror keeps from every body."},
     ProjectKey{"design.limits", "keep_out", Type::tables, kAny, "", "none", "Volumes that the mirror keeps out of."},
     ProjectKey{"design.limits", "glare", Type::table, kAny, "", "none", "A maximum of intensity beyond an angle."},
