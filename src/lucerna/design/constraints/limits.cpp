@@ -379,12 +379,4 @@ DesignShape ShapeLimits::nearest(const DesignShape& shape) const {
       ErrorCause::contradiction);
 }
 
-void add_flux_term(const Evaluation& e, double weight, double reference, NormalEquations& equations) {
-  const double missing = 1.0 - e.flux.sum() / reference;
-  const Eigen::VectorXd slope = e.jacobian.colwise().sum().transpose() * (-1.0 / reference);
-  equations.cost += weight * missing * missing;
-  equations.gradient += weight * missing * slope;
-  equations.hessian.selfadjointView<Eigen::Lower>().rankUpdate(slope, weight);
-}
-
 }  // namespace lucerna

@@ -75,7 +75,4 @@ class ShapeLimits {
   std::vector<Limit> limits_;
 };
 
-/// Adds weight * (1 - F / reference)^2, F the light in the bins, with its derivative.
-void add_flux_term(const Evaluation& e, double weight, double reference, NormalEquations& equations);
-
 }  // namespace lucerna

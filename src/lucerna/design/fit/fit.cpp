@@ -7,6 +7,7 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/design/evaluation/point_source.h"
+#include "lucerna/design/fit/missing_light.h"
 #include "lucerna/design/shape/conjugate_solution.h"
 #include "lucerna/design/shape/perturbed.h"
 
@@ -134,7 +135,7 @@ void Fit::take(const FitBranch& branch) {
 }
 
 FitSnapshot Fit::snapshot() const {
-  const double missing = 1.0 - point_->light.flux.sum() / problem_.flux_reference;
+  const double missing = missing_light(point_->light.flux.sum(), problem_.flux_reference);
   const double less = std::max(0.0, problem_.flux_weight - kFluxWeightOfEnds) * missing * missing;
   const double cost = point_->equations.cost;
   return {

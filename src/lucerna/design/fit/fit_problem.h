@@ -36,8 +36,9 @@ struct FitProblem {
   TentBins bins;
   TargetMode mode = TargetMode::shape;
   bool direct_light = true;
-  /// In shape mode, where the scale is free, light beside the window would cost nothing: flux_weight * (1 -
-  /// share in the window / flux_reference)^2 is added to the cost. Weight 0 = not.
+  /// In shape mode, where the scale is free, light beside the window would cost nothing: flux_weight times
+  /// the square of what the share in the window lacks of flux_reference is added to the cost
+  /// (missing_light.h). Weight 0 = not.
   double flux_weight = 0.0, flux_reference = 1.0;
   /// What differences in bins beside the target's rectangle count, of those within it. Free forms only.
   double outside_weight = 1.0;

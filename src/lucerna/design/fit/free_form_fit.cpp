@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lucerna/design/fit/approach.h"
+#include "lucerna/design/fit/missing_light.h"
 #include "lucerna/design/solver/levenberg_marquardt.h"
 #include "lucerna/design/solver/smoothness_penalty.h"
 
@@ -54,8 +55,15 @@ FreeFormFit::FreeFormFit(const FitProblem& problem, const FreeFormLevel& level, 
 
 void FreeFormFit::keep_other_light_of(const DesignShape& shape) {
   if (!problem_.other_light) return;
-  // Beside the rectangle no shape makes it less, and all of it would hide what is left to gain.
-  other_light_ = problem_.other_light(shape, bins_, level_.rays).cwiseProduct(inside_);
+  const Eigen::VectorXd all = problem_.other_light(shape, bins_, level_.rays);
+  // Beside the rectangle no shape makes it less, and all of it would hide what is left to gain: it is no more
+  // there than what is wanted. Of a target that is given but for a factor that is what the start's light
+  // makes of it.
+  const double lit = inside_.dot(target_);
+  const bool has_factor = problem_.mode == TargetMode::shape && problem_.flux_reference > 0.0 && lit > 0.0;
+  const double factor = has_factor ? problem_.flux_reference / lit : 1.0;
+  const Eigen::VectorXd wanted = factor * target_;
+  other_light_ = all.cwiseMin(wanted) + (all - wanted).cwiseMax(0.0).cwiseProduct(inside_);
 }
 
 FreeFormPoint FreeFormFit::at(DesignShape shape, bool derivatives) const {
@@ -77,8 +85,8 @@ FreeFormPoint FreeFormFit::at(DesignShape shape, bool derivatives) const {
       smoothness_penalty(shape, smoothing_for(shape, level_.smoothing), kSmoothnessAtAxis, wanted);
   equations.cost += problem_.limits_cost(shape, level_.rays, wanted);
   rows.add_to(equations);
-  if (problem_.flux_weight > 0.0) {
-    const double missing = 1.0 - inside_.dot(light.flux) / problem_.flux_reference;
+  const double missing = missing_light(inside_.dot(light.flux), problem_.flux_reference);
+  if (problem_.flux_weight > 0.0 && missing > 0.0) {
     Eigen::VectorXd slope = light.rows.transpose() * inside_ * (-1.0 / problem_.flux_reference);
     equations.cost += problem_.flux_weight * missing * missing;
     equations.gradient += problem_.flux_weight * missing * slope;

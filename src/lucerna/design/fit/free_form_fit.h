@@ -40,7 +40,7 @@ struct FreeFormPoint {
 
 /// Levenberg-Marquardt on a free form of many knots in fine bins that see all light, with sparse derivatives.
 /// The cost is the squared relative error, what the limits, the zones and the roughness cost, and flux_weight
-/// * (1 - F / flux_reference)^2, F the light in the target's rectangle.
+/// times the square of what the light in the target's rectangle lacks of flux_reference.
 class FreeFormFit {
  public:
   /// `problem` must outlive it. Grows the problem's rays to the level's.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -59,6 +60,32 @@ TEST(FreeFormFit, LightBesideTheRectangleCountsByItsWeight) {
   EXPECT_GT(within, 0.0);
   EXPECT_GT(all, 1.1 * within) << "light falls beside it";
   EXPECT_NEAR(squared(0.25), 0.75 * within + 0.25 * all, 1e-9 * all);
+}
+
+// Light of other ways is all there is of it within the rectangle. Beside it no shape makes it less, and it
+// takes the place of light that is wanted there, and of no more.
+TEST(FreeFormFit, OtherLightBesideTheRectangleIsNoMoreThanIsWanted) {
+  DesignRays rays = spilling_rays();
+  FitProblem problem = spilling_problem(rays, 1.0);
+  problem.rectangle = {Frame(), false, -0.1, 0.1, -0.05, 0.05};
+  FreeFormLevel level = coarse_level();
+  level.widen = 3.0;
+  FreeFormFit fit(problem, level);
+  const Eigen::VectorXd wanted = problem.target(fit.bins());
+  const Eigen::VectorXd all =
+      2.0 * wanted + Eigen::VectorXd::Constant(wanted.size(), 0.1 * wanted.maxCoeff());
+  const Eigen::VectorXd inside = in_rectangle(fit.bins(), problem.rectangle);
+  const Eigen::VectorXd without = fit.at(bowl(), false).light.flux;
+  problem.other_light = [&](const DesignShape&, const TentBins&, std::uint64_t) { return all; };
+  fit.keep_other_light_of(bowl());
+  const Eigen::VectorXd other = fit.at(bowl(), false).light.flux - without;
+  int within = 0, lit_beside = 0, dark_beside = 0;
+  for (Eigen::Index b = 0; b < other.size(); ++b) {
+    if (inside[b] > 0.0 && inside[b] < 1.0) continue;
+    EXPECT_NEAR(other[b], inside[b] > 0.0 ? all[b] : wanted[b], 1e-12) << b;
+    ++(inside[b] > 0.0 ? within : wanted[b] > 0.0 ? lit_beside : dark_beside);
+  }
+  EXPECT_GT(std::min({within, lit_beside, dark_beside}), 3);
 }
 
 // Cost and gradient have the same weights: along the gradient both agree.

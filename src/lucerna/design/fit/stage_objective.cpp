@@ -5,6 +5,7 @@
 
 #include "lucerna/design/constraints/limits.h"
 #include "lucerna/design/evaluation/window.h"
+#include "lucerna/design/fit/missing_light.h"
 #include "lucerna/design/solver/smoothness_penalty.h"
 
 namespace lucerna {
@@ -45,7 +46,7 @@ NormalEquations StageObjective::equations(const DesignShape& shape, const Evalua
   equations.cost += problem_.limits_cost(shape, stage_.rays, &rows);
   rows.add_to(equations);
   if (problem_.flux_weight > 0.0) {
-    add_flux_term(light, problem_.flux_weight, problem_.flux_reference, equations);
+    add_missing_light(light, problem_.flux_weight, problem_.flux_reference, equations);
   }
   return equations;
 }

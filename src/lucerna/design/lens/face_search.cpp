@@ -91,7 +91,9 @@ double FaceSearch::passed_by_start(const FitProblem& fit) const {
   EvaluationOptions plain;
   plain.rays = kLightRays;
   plain.derivatives = plain.direct_light = false;
-  return evaluate(start_, fit.reflectance, rays_, fit.bins, plain).reflected;
+  const double straight = evaluate(start_, fit.reflectance, rays_, fit.bins, plain).reflected;
+  return straight +
+         other_light(problem_, {problem_.start, start_}, fit.bins, kLightRays, seed_).sum() / within_;
 }
 
 ShapedLens FaceSearch::held() const {

@@ -13,6 +13,7 @@
 
 #include "lucerna/design/constraints/limits.h"
 #include "lucerna/design/evaluation/window.h"
+#include "lucerna/design/fit/missing_light.h"
 #include "lucerna/design/lens/cumulative_flux.h"
 #include "lucerna/design/lens/lens_evaluation.h"
 #include "lucerna/design/lens/lens_smoothness.h"
@@ -133,13 +134,13 @@ class LensStageObjective {
     out.equations.cost += lens_limits_cost(problem_.limits, shape, signs_, rows);
     rows.add_to(out.equations);
     if (problem_.target.mode == TargetMode::shape)
-      add_flux_term(out.light, light_weight(), flux_reference_, out.equations);
+      add_missing_light(out.light, light_weight(), flux_reference_, out.equations);
     return out;
   }
 
   /// What light beside the window costs.
   double light_cost(const Evaluation& light) const {
-    const double missing = 1.0 - light.flux.sum() / flux_reference_;
+    const double missing = missing_light(light.flux.sum(), flux_reference_);
     return problem_.target.mode == TargetMode::shape ? light_weight() * missing * missing : 0.0;
   }
   /// The squared error and what lost light costs, without derivatives: in a fraction of the time.

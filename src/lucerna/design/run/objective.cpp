@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/design/fit/missing_light.h"
 #include "lucerna/design/run/design.h"
 #include "lucerna/design/run/design_problem.h"
 #include "lucerna/design/solver/least_squares.h"
@@ -135,8 +136,9 @@ ObjectiveValue Objective::at(std::span<const double> parameters, bool jacobian) 
   add_bins(light, p.target, p.weights, p.fit.mode, error.scale, out.residuals.data(), j);
   if (p.has_flux()) {
     const double root = std::sqrt(p.fit.flux_weight);
-    out.residuals[bins] = root * (1.0 - light.flux.sum() / p.fit.flux_reference);
-    if (jacobian)
+    const double missing = missing_light(light.flux.sum(), p.fit.flux_reference);
+    out.residuals[bins] = root * missing;
+    if (jacobian && missing > 0.0)
       slopes.row(static_cast<Eigen::Index>(bins)) =
           light.jacobian.colwise().sum() * (-root / p.fit.flux_reference);
   }

@@ -8,6 +8,7 @@
 #include "lucerna/core/parallel/parallel.h"
 #include "lucerna/core/parallel/peers.h"
 #include "lucerna/design/constraints/limits.h"
+#include "lucerna/design/fit/missing_light.h"
 #include "lucerna/design/initial/initial_guesses.h"
 #include "lucerna/design/initial/zone_table.h"
 #include "lucerna/design/shape/perturbed.h"
@@ -183,7 +184,7 @@ class Search {
     }
     NormalEquations out = normal_equations(e, target_, problem_.bins, problem_.mode);
     if (problem_.flux_weight > 0.0) {
-      add_flux_term(e, problem_.flux_weight, problem_.flux_reference, out);
+      add_missing_light(e, problem_.flux_weight, problem_.flux_reference, out);
     }
     return out;
   }
