@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "lucerna/design/constraints/limits.h"
 #include "lucerna/design/evaluation/window.h"
 #include "lucerna/design/fit/missing_light.h"
 #include "lucerna/design/solver/smoothness_penalty.h"

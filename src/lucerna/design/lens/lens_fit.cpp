@@ -11,7 +11,6 @@
 #include <optional>
 #include <utility>
 
-#include "lucerna/design/constraints/limits.h"
 #include "lucerna/design/evaluation/window.h"
 #include "lucerna/design/fit/missing_light.h"
 #include "lucerna/design/lens/cumulative_flux.h"

@@ -7,7 +7,6 @@
 
 #include "lucerna/core/parallel/parallel.h"
 #include "lucerna/core/parallel/peers.h"
-#include "lucerna/design/constraints/limits.h"
 #include "lucerna/design/fit/missing_light.h"
 #include "lucerna/design/initial/initial_guesses.h"
 #include "lucerna/design/initial/zone_table.h"
