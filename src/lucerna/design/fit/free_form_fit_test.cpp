@@ -76,7 +76,9 @@ TEST(FreeFormFit, OtherLightBesideTheRectangleIsNoMoreThanIsWanted) {
       2.0 * wanted + Eigen::VectorXd::Constant(wanted.size(), 0.1 * wanted.maxCoeff());
   const Eigen::VectorXd inside = in_rectangle(fit.bins(), problem.rectangle);
   const Eigen::VectorXd without = fit.at(bowl(), false).light.flux;
-  problem.other_light = [&](const DesignShape&, const TentBins&, std::uint64_t) { return all; };
+  problem.other_light = [&](const DesignShape&, const TentBins&, std::uint64_t) -> Eigen::VectorXd {
+    return 1.0 * all;
+  };
   fit.keep_other_light_of(bowl());
   const Eigen::VectorXd other = fit.at(bowl(), false).light.flux - without;
   int within = 0, lit_beside = 0, dark_beside = 0;
