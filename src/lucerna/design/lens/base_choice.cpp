@@ -59,9 +59,7 @@ void BaseChoice::run() {
 std::vector<LensBase> BaseChoice::distinct(std::size_t count) const {
   std::vector<LensBase> out;
   for (const LensBase& base : bases_) {
-    // The given base stays where none has a face to begin with.
-    const bool counts = base.face || bases_.size() == 1;
-    if (out.size() < count && counts &&
+    if (out.size() < count && (base.face || out.empty()) &&
         std::none_of(out.begin(), out.end(), [&](const LensBase& b) { return are_alike(base, b); }))
       out.push_back(base);
   }

@@ -115,14 +115,14 @@ LensFitResult fit_face_and_entry(const LensProblem& problem, const LensFitOption
   BaseChoice choice(problem, options, watch);
   choice.run();
   const LensBase& base = choice.best();
-  FaceSearch face(with_start(problem, base.outline), options, choice.flux_reference(), base.face);
-  LensFitResult result(face.best());
+  LensFitResult result({base.outline});
   result.evaluations = choice.evaluations();
   result.rays = choice.rays();
   if (!choice.has_ended() && problem.free_face->entry == EntryKind::bspline) {
     TwoFaceStarts(problem, options, choice).run(watch, result);
     return result;
   }
+  FaceSearch face(with_start(problem, base.outline), options, choice.flux_reference(), base.face);
   result.cavity = base.cavity;
   if (!choice.has_ended()) {
     run_search(face, watch, result);
