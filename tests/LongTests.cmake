@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-# Tests of ten seconds and more on two cores, or of forty under the thread sanitizer, label long: whole designs, traces by many
+# Tests of ten seconds and more on two cores, or of forty under a sanitizer, label long: whole designs, traces by many
 # ranks, models of many rays, whose code other tests run in smaller pieces. They take much of a sanitizer's time, and are left
 # out there and by the preset clang (scripts/check.sh asan-long tsan-long clang-long runs them). A name that is no test fails Tree.LongTestsAreThere.
 set(lucerna_long_tests
   Advice.SaysWhatHelps
+  BackwardImageStatistical.ObserversSeeTheLightThatATraceCounts
+  BackwardImageStatistical.PlanesHaveTheLightThatATraceCounts
   BackwardIntensity.FiguresThatAreStoppedAreThoseOfTheCountedRays
   BackwardLight.IsFollowedForWhatWantsIt
   BenchCli.HasAnEntryForEachSceneAndSize
   BodyShadows.ADesignThatKnowsTheBodyIsNearerToTheTargetBehindIt
   CadExport.WhatAMillionTrianglesCannotKeepIsRaisedByLittle
   CompareCli.TwoSetsOfOneSourceDifferByNoiseInEveryFigure
+  CompareStatistical.IndependentRaysOfOneSourceHaveNoExcess
   Comparison.OfRayFilesIsThatOfTheirRays
   Compress.AGivenFluxTakesThePlaceOfWhatFilesState
   Compress.ColoursAreKeptOrDroppedAloud
@@ -30,6 +33,7 @@ set(lucerna_long_tests
   DesignCli.KilledAndResumedItEndsWhereAnUndisturbedRunEnds
   DesignCli.LeavesFilesWhoseTraceHasTheStatedError
   DesignCli.LimitsAreHeldInTheExportedStl
+  DesignLensCli.FilesOfTheLensBeforeAreGone
   DesignLensCli.LeavesWhatAManufacturerAndATraceNeed
   DesignRuns.AreWatchedAndGoOnToTheSameBits
   DesignRuns.GiveTheMirrorItsErrorAndItsLight
@@ -73,6 +77,8 @@ set(lucerna_long_tests
   LensEvaluation.DerivativesAgreeWithCentralDifferences
   MergeCli.SaysWhatDoesNotFit
   MergeCli.ShardsAddToTheBitsOfOneMachine
+  ModelEtendueStatistical.OfADiskIsTheKnownOne
+  ModelEtendueStatistical.OfDiesThatTakeTurnsIsThatOfAll
   ModelsCli.PointsLinesAndPlanesAreCompressedSampledAndTraced
   PlaneTarget.AMirrorIsShapedForARectangleOnTheFloor
   ProgramCli.AModelIsMadeSampledComparedAndTraced

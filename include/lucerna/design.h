@@ -232,7 +232,7 @@ struct DesignSettings {
   /// Seconds after which to have stopped with the best so far, validated and traced; absent: `time_s` of
   /// [design]. Time only stops: every decision depends on counts.
   std::optional<double> time_s;
-  /// Rays of an evaluation at the end, at most, and at least 8192; four times as many validate the result.
+  /// Rays of an evaluation at the end, at most, and at least 8192; up to four times as many validate.
   std::uint64_t max_rays = std::uint64_t{1} << 23;
   /// Where evaluations are traced. `cuda` throws InputError where there is no device.
   TraceDevice device = TraceDevice::automatic;

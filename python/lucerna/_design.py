@@ -41,7 +41,7 @@ def design(scene: _core.Scene, *, target: Any = None, limits: Mapping[str, Any] 
     seed : int
         Of all random numbers: the same design for the same seed, unless the time stops it.
     max_rays : int
-        Rays of the finest evaluations, at least 8192; four times as many validate the result.
+        Rays of the finest evaluations, at least 8192; up to four times as many validate.
     device : str
         'cpu', 'cuda' or 'auto'.
     tolerances : bool

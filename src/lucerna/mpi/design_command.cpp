@@ -82,7 +82,7 @@ DesignProgress progress_so_far(const DesignArguments& a, Session& session, Ranks
   DesignProgress start;
   together(ranks, [&] {
     if (!ranks.is_first()) return;
-    prepare_folder(a.output, session.force || a.resume);
+    session.prepare_folder(a.output, session.force || a.resume);
     require_writable(a.report);
     if (!a.resume) return;
     start = read_design_progress(a.output);

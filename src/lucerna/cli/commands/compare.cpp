@@ -96,7 +96,7 @@ void print_json(const CompareArguments& a, const FileComparison& found, Session&
 void compare_files(const CompareArguments& a, Session& session) {
   session.start();
   const FileComparisonOptions options = options_of(a, session);
-  if (!a.output.empty()) prepare_folder(a.output, session.force);
+  if (!a.output.empty()) session.prepare_folder(a.output, session.force);
   const FileComparison found =
       session.timed("compare", [&] { return compare(a.reference, a.test, options, session.progress()); });
   for (const std::string& warning : found.warnings) session.note(warning);

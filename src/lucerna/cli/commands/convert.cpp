@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "lucerna/cli/commands/commands.h"
 #include "lucerna/cli/parse/arguments.h"
 #include "lucerna/cli/parse/input_kind.h"
@@ -24,11 +26,17 @@ struct ConvertArguments {
 RayConversion conversion_of(const ConvertArguments& a, bool strict) {
   RayConversion conversion;
   conversion.strict = strict;
-  if (!a.rays.empty()) conversion.rays = parse_count(a.rays);
+  if (!a.rays.empty()) {
+    conversion.rays = parse_count(a.rays);
+    if (*conversion.rays == 0) throw UsageError("--rays 0: expected at least one");
+  }
   conversion.seed = parse_count(a.seed);
   if (!a.flux.empty()) {
     conversion.flux = parse_number(a.flux);
-    if (!(*conversion.flux > 0.0)) throw UsageError(fmt::format("--flux {} is not > 0", a.flux));
+    // Ray files state it with single precision.
+    const auto stated = static_cast<float>(*conversion.flux);
+    if (!(stated > 0.0f && std::isfinite(stated)))
+      throw UsageError(fmt::format("--flux {} is not > 0, or more than a ray file can state", a.flux));
   }
   conversion.length_unit = a.length_unit;
   // Turns in the order given, then the move.

@@ -38,7 +38,7 @@ void design_mirror(const DesignArguments& a, Project project, DesignOptions opti
       session.timed("read", [&] { return design_problem(std::move(project), a.project); });
   if (a.tolerances && !problem.tolerances) problem.tolerances = ToleranceRanges{};
   options.accelerator = accelerator;
-  prepare_folder(a.output, session.force || a.resume);
+  session.prepare_folder(a.output, session.force || a.resume);
   require_writable(a.report);
   for (const std::string& warning : problem.project.warnings) session.note(warning);
   for (const auto& input : problem.project.inputs) session.add_input(input);

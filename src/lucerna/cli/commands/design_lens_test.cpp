@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // `lucerna design` of a lens as a user meets it: files, limits, what is refused.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -82,7 +84,7 @@ TEST(DesignLensCli, RefusesWhatLensesDoNotHave) {
   for (const char* option : {" --tolerances", " --pareto", " --advise", " --resume"}) {
     const auto run = run_lucerna(dir.path(), kQuick + std::string(option));
     EXPECT_EQ(run.exit_code, 1) << option;
-    EXPECT_THAT(run.err, HasSubstr("a lens is designed without")) << option;
+    EXPECT_THAT(run.err, HasSubstr("a lens is designed without; see " + std::string(option + 1)));
   }
   write_lens_project(dir, "[design.limits]\nmin_radius_mm = 3\n");
   const auto run = run_lucerna(dir.path(), kQuick);
@@ -90,6 +92,69 @@ TEST(DesignLensCli, RefusesWhatLensesDoNotHave) {
   EXPECT_THAT(run.err, HasSubstr("is a limit on mirrors"));
   write_lens_project(dir, "[design.limits]\nsymmetry = \"threefold\"\n");
   EXPECT_THAT(run_lucerna(dir.path(), kQuick).err, HasSubstr("c90-c270"));
+}
+
+/// A project for even light on a floor that a detector watches.
+std::string floor_text(const std::string& source_axis, const std::string& height_mm,
+                       const std::string& detector) {
+  return "[[source]]\nkind = \"disk\"\naxis = \"" + source_axis + R"("
+[[body]]
+role = "solid"
+refractive_index = 1.49
+outline_mm = [[0, 0.5], [15, 0.5], [15, 3], [11.5, 6.2], [8, 8.2], [4, 9.6], [0, 10]]
+[[detector]]
+kind = "plane"
+name = ")" +
+         detector + R"("
+[target]
+kind = "plane"
+file = "even.csv"
+normal = "-z"
+size_mm = [800, 400]
+position_mm = [0, 0, )" +
+         height_mm + R"(]
+[design]
+free_sides = 2
+family = "bspline"
+intervals = 4
+restarts = 0
+time_s = 1e6
+)";
+}
+
+TEST(DesignLensCli, WhatCannotBeLitIsRefusedAndLeavesNoFolder) {
+  const TempDir dir;
+  write_file(dir / "even.csv", "1,1\n");
+  const auto refused = [&](const std::string& text) {
+    write_file(dir / "p.toml", text);
+    const auto run = run_lucerna(dir.path(), kQuick);
+    EXPECT_EQ(run.exit_code, 1) << run.out;
+    EXPECT_FALSE(std::filesystem::exists(dir / "out"));
+    return run.err;
+  };
+  EXPECT_THAT(refused(floor_text("-z", "1000", "floor")), HasSubstr("no light reaches the lens: of "));
+  EXPECT_THAT(refused(floor_text("+z", "5", "floor")),
+              HasSubstr("target.position_mm: the lens reaches the plane"));
+  for (const char* name : {"lens", "history", "tolerances"}) {
+    EXPECT_THAT(refused(floor_text("+z", "1000", name)),
+                HasSubstr(fmt::format("line 10: detector[0].name: found '{}'", name)));
+  }
+  write_file(dir / "even.csv", "1e308,1e308\n");
+  EXPECT_THAT(refused(floor_text("+z", "1000", "floor")), HasSubstr("even.csv: the sum of the illuminances"));
+}
+
+// A lens of revolution leaves its outline too, a free form has none.
+TEST(DesignLensCli, FilesOfTheLensBeforeAreGone) {
+  const TempDir dir;
+  write_file(dir / "even.csv", "1,1\n");
+  write_file(dir / "p.toml", floor_text("+z", "1000", "floor"));
+  std::filesystem::create_directory(dir / "out");
+  for (const char* name : {"lens.dxf", "lens.csv", "mine.txt"}) write_file(dir.path() / "out" / name, "old");
+  const auto run = run_lucerna(dir.path(), "design p.toml --rays 8192 -o out --force");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(dir / "out/lens.dxf"));
+  EXPECT_FALSE(std::filesystem::exists(dir / "out/lens.csv"));
+  EXPECT_TRUE(std::filesystem::exists(dir / "out/mine.txt"));
 }
 
 }  // namespace

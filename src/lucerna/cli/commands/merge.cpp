@@ -24,7 +24,7 @@ void run_merge(const MergeArguments& a, Session& session) {
   });
   for (const std::string& folder : a.folders)
     session.add_input(std::filesystem::path(folder) / kTraceFileName);
-  prepare_folder(a.output, session.force);
+  session.prepare_folder(a.output, session.force);
   const TraceMetrics figures = session.timed("figures", [&] { return trace_metrics(sum.result); });
   const auto names =
       write_trace_output(a.output, sum.result, sum.origin, figures, trace_warnings(figures), session);

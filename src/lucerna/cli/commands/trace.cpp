@@ -45,6 +45,7 @@ NoiseTrace run_rays(const TraceArguments& a, const Scene& scene, const TraceOpti
   NoiseGoal goal;
   goal.noise = parse_share(a.noise);
   goal.max_seconds = parse_number(a.time);
+  if (!(goal.max_seconds > 0.0)) throw UsageError(fmt::format("--time {} is not > 0", a.time));
   NoiseTrace traced = trace_until(scene, options, goal, std::move(from), session.progress());
   if (traced.end == NoiseEnd::time || traced.end == NoiseEnd::finite_source) {
     note_noise("", traced, goal.noise, session);
@@ -56,7 +57,7 @@ void run_trace(const TraceArguments& a, Session& session, int& exit_code) {
   session.start();
   const TraceOptions options = trace_options(a);
   const Project project = session.timed("read", [&] { return read_project(a.project, session.progress()); });
-  prepare_folder(a.output, session.force || a.resume);
+  session.prepare_folder(a.output, session.force || a.resume);
   require_writable(a.report);
   for (const std::string& warning : project.warnings) session.note(warning);
   for (const auto& input : project.inputs) session.add_input(input);

@@ -95,7 +95,7 @@ TEST(TraceNoiseCli, ATraceThatWasTooNoisyGoesOnToTheSameBits) {
 TEST(TraceNoiseCli, SaysWhenTheTimeOrTheRayFileEndsFirst) {
   const test::TempDir dir;
   write_file(dir / "p.toml", kSpot);
-  const auto late = run_lucerna(dir.path(), "trace p.toml -o late --noise 0.001% --time 0");
+  const auto late = run_lucerna(dir.path(), "trace p.toml -o late --noise 0.001% --time 0.001");
   ASSERT_EQ(late.exit_code, 0) << late.err;
   EXPECT_THAT(late.err, HasSubstr("the time was over first"));
   ASSERT_EQ(run_lucerna(dir.path(), "make-source led -n 20000 -o s.tm25ray").exit_code, 0);

@@ -155,6 +155,20 @@ TEST_F(TraceInputCli, BenchTellsOfEveryScene) {
   EXPECT_NE(json["isa"], "scalar");
 }
 
+TEST_F(TraceInputCli, ATraceOfNoTimeIsRefused) {
+  write_file(dir / "p.toml", std::string(kLamp) + kBowl);
+  const auto run = run_lucerna(dir.path(), "trace p.toml -o out --time 0");
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.err.find("--time 0 is not > 0"), std::string::npos) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(dir / "out")) << "it was made and nothing was written into it";
+}
+
+TEST_F(TraceInputCli, WhatIsNoTextIsNoProject) {
+  write_file(dir / "p.toml", std::string("NFL\0\xff\xfe", 6));
+  const auto run = run_lucerna(dir.path(), "trace p.toml -o out");
+  EXPECT_NE(run.err.find("p.toml: is no text; expected a project"), std::string::npos) << run.err;
+}
+
 // What a project assumes is told once, and stands in result.json too.
 TEST_F(TraceInputCli, WarningsOfTheProjectAreInTheResult) {
   write_file(dir / "p.toml", std::string(kLamp) + kBowl +

@@ -28,7 +28,7 @@ void note_phases(const FollowUp& run, Session& session) {
   session.add_seconds("trace", run.trace_s);
   session.add_seconds("figures", run.figures_s);
   if (run.figures.tolerances) session.add_seconds("tolerances", run.tolerances_s);
-  if (run.trace.end == NoiseEnd::time)
+  if (run.trace.end == NoiseEnd::time && !session.progress().stop_requested())
     note_noise("trace of the result: ", run.trace, run.noise_goal, session);
 }
 
@@ -74,7 +74,11 @@ int write_design_output(const DesignOutput& output, const FinishedDesign& design
   for (const ZoneCheck& zone : result.zones) {
     if (zone.verdict() != ZoneVerdict::met) exit_code = 1;
   }
-  if (result.end == DesignTermination::interrupted) exit_code = 3;
+  if (session.progress().stop_requested()) {
+    exit_code = 3;
+    // Asked to stop after the search: nothing is missing but finer figures of the final trace.
+    if (result.end != DesignTermination::interrupted) note_interrupted_figures(session);
+  }
   return exit_code;
 }
 

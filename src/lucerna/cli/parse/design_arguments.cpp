@@ -13,7 +13,7 @@ void add_design_options(Command& command, DesignArguments& a, Session& session, 
   command.required("-o,--output", a.output, "Folder for the results");
   command.option("--time", a.time, "Seconds after which to have stopped with the best so far");
   command.option("--rays", a.rays,
-                 "Rays of the finest evaluations (default 2^23); four times as many validate");
+                 "Rays of the finest evaluations (default 2^23); up to four times as many validate");
   command.option("--seed", a.seed, "Seed of the random numbers");
   if (device) command.option("--device", a.device, "cpu, cuda or auto");
   command.option("--report", a.report, "Also write the report as one HTML file");

@@ -105,6 +105,11 @@ void TerminalProgress::clear() {
   drawn_ = false;
 }
 
+Session::~Session() {
+  std::error_code of_full_ones;
+  for (const auto& folder : made_folders_) std::filesystem::remove(folder, of_full_ones);
+}
+
 void Session::add_common(Command& command) {
   command.option("--threads", threads, "Worker threads (default: all)", 1, 4096);
   command.flag("--quiet", quiet, "Print no progress and no summary");
@@ -181,15 +186,15 @@ void Session::print_json(const Json& object) {
   fmt::print("{}\n", object.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
-void prepare_folder(const std::filesystem::path& folder, bool force) {
+void Session::prepare_folder(const std::filesystem::path& folder, bool may_hold_files) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  if (std::filesystem::create_directories(folder, error)) made_folders_.push_back(folder);
   if (error || !std::filesystem::is_directory(folder)) {
     throw InputError(fmt::format("{}: cannot make the folder: {}", folder.string(),
                                  error ? error.message() : "a file of that name is in the way"),
                      ErrorCause::unwritable);
   }
-  if (!force && !std::filesystem::is_empty(folder)) {
+  if (!may_hold_files && !std::filesystem::is_empty(folder)) {
     throw InputError(
         fmt::format("{}: the folder is not empty; choose another or give --force", folder.string()));
   }

@@ -49,6 +49,11 @@ class Session {
   int threads = 0;  ///< 0 = all
   bool quiet = false, json = false, strict = false, force = false;
 
+  Session() = default;
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
   /// Adds --threads and --quiet to a command.
   void add_common(Command& command);
   void add_json(Command& command);
@@ -74,6 +79,11 @@ class Session {
 
   /// Notes the words of the command line, for the record.
   void set_command(const std::string& program, int argc, char** argv);
+
+  /// The folder that a command writes to: made if missing; refused (InputError) when it holds files, unless
+  /// `may_hold_files`, and where no file can be written. One that was made and is still empty when the
+  /// session ends is removed.
+  void prepare_folder(const std::filesystem::path& folder, bool may_hold_files);
 
   /// What the run was made of, so far.
   const RunRecord& record() const { return run_; }
@@ -103,11 +113,8 @@ class Session {
   std::unique_ptr<TerminalProgress> progress_;
   RunRecord run_;
   std::set<std::string> notes_;
+  std::vector<std::filesystem::path> made_folders_;
 };
-
-/// The folder that a command writes to: made if missing; refused (InputError) when it holds files, unless
-/// `force`, and where no file can be written.
-void prepare_folder(const std::filesystem::path& folder, bool force);
 
 /// Throws InputError where a file could not be written there, before the work that ends in it; an empty path
 /// is none. What is there stays as it is.

@@ -102,6 +102,12 @@ LensResult design_lens(const LensProblem& problem, const LensOptions& options, P
   const double time_s = options.time_s.value_or(problem.time_s);
   const LensCheck check(problem, options, progress);
   const LensValidation given = check.of_given(std::min(kGivenRays, options.validation_rays), 0.05 * time_s);
+  if (!given.has_light) {
+    throw InputError(
+        fmt::format("no light reaches the lens: of {} rays none meets it; check position_mm and "
+                    "axis of source and body",
+                    given.rays));
+  }
   const double slower = problem.free_face ? 1.0 : kTrianglesTime;
   const double per_ray_s = slower * given.seconds / static_cast<double>(given.rays);
   const double after_s =

@@ -154,6 +154,20 @@ LensShape lens_to_begin_with(const Solid& solid, const std::vector<std::size_t>&
   return shape;
 }
 
+/// Refuses a plane that the lens reaches.
+void check_before_plane(const TomlReader& reader, const DesignTarget& target, const Solid& solid) {
+  if (!target.plane) return;
+  const Frame plane_from_solid = target.plane->world_from_plane.inverse() * solid.world_from_solid;
+  const double tilt = std::hypot(plane_from_solid.ex().z, plane_from_solid.ey().z);
+  for (const auto& [radius, z] : solid.outline_mm) {
+    const double before_mm = plane_from_solid.point({0.0, 0.0, z}).z - radius * tilt;
+    if (before_mm > 0.0) continue;
+    reader.fail("position_mm", fmt::format("the lens reaches the plane; expected it to lie wholly before the "
+                                           "lit side, found it up to {:.4g} mm behind",
+                                           -before_mm));
+  }
+}
+
 /// A face as [body.face] has it.
 toml::table face_table(const DesignShape& face) {
   const FaceSpline spline = face_spline(face);
@@ -199,7 +213,8 @@ DesignTarget finished_lens_target(Project& project, const std::filesystem::path&
 LensProblem lens_problem(Project project, const std::filesystem::path& path) {
   const toml::table& tables = toml_tables(project);
   TomlReader root(tables, path.string(), "");
-  for (const char* known : {"source", "reflector", "detector", "body"}) root.has(known);
+  for (const char* known : {"source", "reflector", "body"}) root.has(known);
+  check_detector_names(root, "lens");
   auto target_reader = root.table("target");
   auto design = root.table("design");
   root.finish();
@@ -231,6 +246,7 @@ LensProblem lens_problem(Project project, const std::filesystem::path& path) {
     }
   }();
   DesignTarget target = target_of_lens(*target_reader, project);
+  check_before_plane(*target_reader, target, solid);
   if (target.zones != nullptr)
     root.fail("target", "found zones, which only free-form mirrors are designed for");
   const MediumView medium{solid.refractive_index, solid.absorption_per_mm};

@@ -74,6 +74,8 @@ LensValidation validate_lens(const Scene& scene, LensSurface surface, const Erro
     if (clear || late || progress.stop_requested()) break;
     next = std::min(2 * done, std::max<std::uint64_t>(done, max_rays / kUnit));
   }
+  out.has_light = std::any_of(replicates.begin(), replicates.end(),
+                              [](const BoxSums& r) { return r.out_reflected + r.bodies + r.lost > 0.0; });
   out.efficiency =
       replicate_share(replicates, [](const BoxSums& r) { return r.out_direct + r.out_reflected; });
   out.absorbed = replicate_share(replicates, [](const BoxSums& r) { return r.bodies; });

@@ -19,6 +19,8 @@ struct LensValidation {
   DesignError error;
   /// Shares of the sources' flux: what leaves, what the medium keeps, rays that were given up.
   Estimate efficiency, absorbed, lost;
+  /// Whether any ray met the lens.
+  bool has_light = false;
   std::uint64_t rays = 0;
   double seconds = 0.0;
 };

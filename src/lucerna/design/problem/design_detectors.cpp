@@ -9,6 +9,18 @@
 
 namespace lucerna {
 
+void check_detector_names(TomlReader& root, std::string_view shape) {
+  for (TomlReader& detector : root.tables("detector")) {
+    const std::string name = detector.text("name").value_or("");
+    const bool is_plane = detector.word("kind").value_or("") == "plane";
+    if (name == shape || name == "history" || name == "tolerances" || (name == kTargetPlane && !is_plane)) {
+      detector.fail("name", fmt::format("found '{}', which a design's own files are named by; expected "
+                                        "another name",
+                                        name));
+    }
+  }
+}
+
 void add_design_detectors(Project& project, const DesignTarget& target) {
   Scene& scene = project.scene;
   if (scene.far_fields.empty()) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/design/evaluation/window.h"
@@ -54,6 +55,14 @@ IlluminanceMap read_map(TomlReader& reader, const std::filesystem::path& file, T
   return map;
 }
 
+/// The same, checked.
+IlluminanceMap read_checked_map(TomlReader& reader, const std::filesystem::path& file, TargetMode mode) {
+  IlluminanceMap map = read_map(reader, file, mode);
+  if (!std::isfinite(std::accumulate(map.value.begin(), map.value.end(), 0.0)))
+    reader.fail("file", fmt::format("{}: the sum of the illuminances is no finite number", file.string()));
+  return map;
+}
+
 /// All of a plane target but its map.
 PlaneTarget read_plane(TomlReader& reader, const Vec3& luminaire_mm) {
   PlaneTarget plane;
@@ -68,7 +77,7 @@ PlaneTarget read_plane(TomlReader& reader, const Vec3& luminaire_mm) {
   plane.size_x_mm = (*size)[0];
   plane.size_y_mm = (*size)[1];
   if (plane.world_from_plane.inverse().point(luminaire_mm).z <= 0.0) {
-    reader.fail("normal", "looks away from the mirror; expected the side that is lit");
+    reader.fail("normal", "looks away from the luminaire; expected the side that is lit");
   }
   return plane;
 }
@@ -107,6 +116,14 @@ void require_file_or_zones(TomlReader& reader, bool plane) {
   if (reader.has("file") || reader.has("zone")) return;
   reader.fail("file", plane ? "is missing: a CSV or PNG file with the target illuminance"
                             : "is missing: an IES or EULUMDAT file with the target distribution");
+}
+
+/// A photometric file's distribution; tells what was mended in it.
+IntensityDistribution read_repaired(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+  PhotometricFile file = read_photometric_file(path);
+  for (const Diagnostic& d : file.repairs)
+    warnings.push_back(fmt::format("{}: {}", path.string(), to_string(d)));
+  return std::move(file.distribution);
 }
 
 /// What zones without a file are begun with.
@@ -148,11 +165,11 @@ DesignTarget read_target(TomlReader reader, FluxUnit unit, double source_flux, c
     target.mode = read_mode(reader);
     target.file = file->string();
     if (given == nullptr) project.inputs.push_back(*file);
-    if (target.plane) target.plane->map = read_map(reader, *file, target.mode);
+    if (target.plane) target.plane->map = read_checked_map(reader, *file, target.mode);
   }
   reader.finish();
   if (file && !target.plane) {
-    target.distribution = given != nullptr ? *given : read_photometric_file(*file).distribution;
+    target.distribution = given != nullptr ? *given : read_repaired(*file, project.warnings);
   }
   if (target.plane) target.distribution = seen_from(*target.plane, luminaire_mm, unit);
   if (target.mode == TargetMode::absolute && target.distribution.unit != unit) {

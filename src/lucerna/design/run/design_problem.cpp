@@ -127,7 +127,10 @@ Optimizer read_optimizer(TomlReader& design) { return optimizer(design.word("opt
 void put_shaped_first(Project& project, const TomlReader& root, TomlReader& design) {
   std::vector<PlacedReflector>& all = project.scene.reflectors;
   const std::optional<double> number = design.number("reflector");
-  if (all.empty()) root.fail("reflector", "found no reflector, expected the one that is to be shaped");
+  if (all.empty())
+    root.fail("reflector",
+              "found no reflector, expected the one that is to be shaped; of a lens, `free_sides` "
+              "in [design] says what is");
   if (!number && all.size() == 1) return;
   const auto count = static_cast<double>(all.size());
   if (!number) {
@@ -208,7 +211,8 @@ DesignProblem design_problem(Project project, const std::filesystem::path& path)
   // The readers below point into it. It stays where it is when the project is moved; a copy has no lines.
   const toml::table& tables = toml_tables(project);
   TomlReader root(tables, path.string(), "");
-  for (const char* known : {"source", "reflector", "detector", "body"}) root.has(known);
+  for (const char* known : {"source", "reflector", "body"}) root.has(known);
+  check_detector_names(root, "reflector");
   auto target_reader = root.table("target");
   auto reader = root.table("design");
   root.finish();

@@ -30,14 +30,15 @@ LensRun run_lens(const LensProblem& problem, LensOptions options, Progress& prog
 }
 
 void check_lens_settings(const DesignSettings& settings) {
-  const auto refuse = [](bool asked, const char* what) {
-    if (asked) throw InputError(fmt::format("{}: a lens is designed without", what), ErrorCause::unsupported);
+  const auto refuse = [](bool asked, const char* what, std::string_view option) {
+    if (asked)
+      throw InputError(fmt::format("{}: a lens is designed without", what), ErrorCause::unsupported, option);
   };
-  refuse(!settings.checkpoint.empty(), "a checkpoint to resume from");
-  refuse(settings.pareto, "the trade between error and light");
-  refuse(settings.advise, "advice on other outlines");
-  refuse(settings.tolerances, "tolerances");
-  refuse(settings.device == TraceDevice::cuda, "a CUDA device");
+  refuse(!settings.checkpoint.empty(), "a checkpoint to resume from", "resume");
+  refuse(settings.pareto, "the trade between error and light", "pareto");
+  refuse(settings.advise, "advice on other outlines", "advise");
+  refuse(settings.tolerances, "tolerances", "tolerances");
+  refuse(settings.device == TraceDevice::cuda, "a CUDA device", "device");
 }
 
 LensOptions lens_options(const DesignSettings& settings) {

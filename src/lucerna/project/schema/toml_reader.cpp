@@ -77,6 +77,8 @@ toml::table parse_toml_text(std::string_view text, const std::string& name) {
   try {
     return toml::parse(text, name);
   } catch (const toml::parse_error& e) {
+    if (text.find('\0') != std::string_view::npos)
+      throw InputError(fmt::format("{}: is no text; expected a project, which is a TOML file", name));
     const auto& begin = e.source().begin;
     throw_input_error(name, fmt::format("line {}, column {}", begin.line, begin.column), "{}",
                       e.description());

@@ -2,6 +2,7 @@
 #include "lucerna/project.h"
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 #include <vector>
 
@@ -111,7 +112,11 @@ void read_tables(Project& project, const fs::path& path, Progress& progress) {
   if (sources.empty()) root.missing("source", "a project needs at least one [[source]]");
   for (const TomlReader& reader : reflectors) project_parts::read_reflector(reader, project);
   for (const TomlReader& reader : bodies) project_parts::read_body(reader, project);
-  for (const TomlReader& reader : detectors) project_parts::read_detector(reader, project.scene);
+  std::set<std::string> names;
+  for (const TomlReader& reader : detectors) {
+    const std::string name = project_parts::read_detector(reader, project.scene);
+    if (!names.insert(name).second) reader.fail("name", fmt::format("two detectors are named '{}'", name));
+  }
   if (detectors.empty()) project.scene.far_fields.emplace_back();
   // Sources last: a wrong key anywhere is told before gigabytes are read.
   for (const TomlReader& reader : sources)

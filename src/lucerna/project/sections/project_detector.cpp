@@ -100,7 +100,7 @@ void read_rays(TomlReader& reader, Scene& scene) {
 
 }  // namespace
 
-void read_detector(TomlReader reader, Scene& scene) {
+std::string read_detector(TomlReader reader, Scene& scene) {
   const std::string kind = reader.required_word("kind");
   if (kind == "far-field") {
     read_far_field(reader, scene);
@@ -112,6 +112,7 @@ void read_detector(TomlReader reader, Scene& scene) {
     read_rays(reader, scene);
   }
   reader.finish();
+  return read_name(reader, kind);
 }
 
 }  // namespace lucerna::project_parts

@@ -72,6 +72,6 @@ void read_body(TomlReader reader, Project& project);
 void read_reflector(TomlReader reader, Project& project);
 
 /// One [[detector]], added to the scene.
-void read_detector(TomlReader reader, Scene& scene);
+std::string read_detector(TomlReader reader, Scene& scene);
 
 }  // namespace lucerna::project_parts

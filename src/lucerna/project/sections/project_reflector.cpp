@@ -209,6 +209,14 @@ std::shared_ptr<const HeightSurface> read_spline(TomlReader& reader, double foca
   const auto n = static_cast<std::size_t>(x.coefficients()) * static_cast<std::size_t>(y.coefficients());
   std::vector<double> c(n, 0.0);
   if (reader.has("coefficients_mm")) c = *reader.numbers("coefficients_mm", n);
+  // What is steeper is no optic, and would be searched for hits without end.
+  const double most = 1e3 * std::max(half_x_mm, half_y_mm);
+  const auto steep = std::find_if(c.begin(), c.end(), [&](double z) { return std::abs(z) > most; });
+  if (steep != c.end()) {
+    reader.fail("coefficients_mm", fmt::format("found {}, expected at most {} mm, a thousand times half the "
+                                               "aperture",
+                                               *steep, most));
+  }
   return std::make_shared<SmoothSurface<BsplineShape>>(BsplineShape(focal_mm, x, y, std::move(c)));
 }
 

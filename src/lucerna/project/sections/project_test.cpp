@@ -435,6 +435,10 @@ TEST(Project, ASolidHasAFreeFace) {
          "body[0].face.half_mm: found 9, expected at least the wall's radius, 10");
   expect(lens + outline + "[body.face]\nhalf_mm = 11\nintervals = [2, 2]\n" + coefficients,
          "body[0].face.coefficients_mm");
+  std::string steep = coefficients;
+  steep.replace(steep.find("5.3"), 3, "-11001");
+  expect(lens + outline + "[body.face]\nhalf_mm = 11\nintervals = [1, 2]\n" + steep,
+         "body[0].face.coefficients_mm: found -11001, expected at most 11000 mm");
   expect(lens + outline + face + "focal_mm = 3\n", "body[0].face.focal_mm: unknown key");
   expect(lens + "outline_mm = [[0, 0], [10, 0], [10, 2], [0, 4]]\n" + face,
          "body[0].face: solid 'solid': outline below a face: found its last side");

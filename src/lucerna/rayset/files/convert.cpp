@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/rayset/files/convert.h"
 
+#include <cmath>
+
 #include "lucerna/core/io/error.h"
 #include "lucerna/ray_file.h"
 #include "lucerna/ray_statistics.h"
@@ -25,6 +27,17 @@ double weight_factor(const std::filesystem::path& in, const RaySubset& subset, c
     chosen += sum_of_weights(part);
   });
   return chosen > 0.0 ? all / chosen : 1.0;
+}
+
+/// Refuses rays that are beyond what a file can hold.
+void check_finite(const RayBlock& block) {
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    const Vec3 at = block.origin_mm(i);
+    if (std::isfinite(at.x) && std::isfinite(at.y) && std::isfinite(at.z)) continue;
+    throw UsageError(
+        fmt::format("a ray would begin at ({}, {}, {}) mm, which no ray file holds", at.x, at.y, at.z),
+        "move");
+  }
 }
 
 }  // namespace
@@ -60,7 +73,10 @@ RayConversionResult convert_ray_file(const std::filesystem::path& in, const std:
       retained = block;
     }
     first += block.size();
-    if (moves) transform(retained, conversion.new_from_old);
+    if (moves) {
+      transform(retained, conversion.new_from_old);
+      check_finite(retained);
+    }
     writer->write(retained);
     result.rays += retained.size();
   });

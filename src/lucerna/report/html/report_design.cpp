@@ -38,27 +38,31 @@ std::vector<std::string_view> words_of(std::string_view line) {
   }
 }
 
-/// "3.38 ± 0.01", both in per cent.
+/// "3.38 ± 0.01", both in per cent: a value and its error.
 std::string percent_with_error(const ResultFigures& result, const std::string& key,
-                               const std::string& error_key, int decimals = 2) {
-  return result.percent(key, decimals) + " ± " + result.percent(error_key, decimals);
+                               const std::string& value = "/value", int decimals = 2) {
+  return result.percent(key + value, decimals) + " ± " + result.percent(key + "/standard_error", decimals);
+}
+
+/// The same of an error in boxes, less its noise.
+std::string box_error_text(const ResultFigures& result, const std::string& key) {
+  return percent_with_error(result, key, "/excess");
 }
 
 /// Against the target: not where zones are all there is.
 std::string error_cards(const ResultFigures& result) {
   if (!result.has("/error/c48")) return {};
   std::string out =
-      card("Error", percent_with_error(result, "/error/c48/excess", "/error/c48/standard_error"), "%",
+      card("Error", box_error_text(result, "/error/c48"), "%",
            fmt::format("l2 in 48 × 48 boxes over the target's rectangle, noise of {} % taken out; {} % in "
                        "24 × 24, {} % in 12 × 12",
-                       result.percent("/error/c48/floor"), result.percent("/error/c24/excess"),
-                       result.percent("/error/c12/excess")));
+                       result.percent("/error/c48/floor"), box_error_text(result, "/error/c24"),
+                       box_error_text(result, "/error/c12")));
   out +=
-      card("It began at", result.percent("/start/error/c48/excess"), "%", "error of what the project gives");
-  out += card("Error outside", result.percent("/outside/error/excess"), "%",
-              "l2 over the rest of the sphere, relative to the target in its rectangle");
-  return out + card("Worst box",
-                    percent_with_error(result, "/worst_cell/value", "/worst_cell/standard_error", 1), "%",
+      card("It began at", box_error_text(result, "/start/error/c48"), "%", "error of what the project gives");
+  out += card("Error outside", box_error_text(result, "/outside/error"), "%",
+              "l2 over what lies beside the target's rectangle, relative to the target in it");
+  return out + card("Worst box", percent_with_error(result, "/worst_cell", "/value", 1), "%",
                     "largest deviation of a 48th box, of the target's peak; noise raises it");
 }
 
@@ -73,11 +77,11 @@ std::string zones_card(const ResultFigures& result) {
 
 std::string summary(const ResultFigures& result) {
   std::string out = "<dl class=\"cards\">\n" + zones_card(result) + error_cards(result);
-  out +=
-      card("In the target's rectangle", result.percent("/in_rectangle/value"), "%",
-           fmt::format("of the sources' flux; {} % leaves the luminaire, {} % goes elsewhere, {} % directly",
-                       result.percent("/efficiency/value"), result.percent("/outside/share/value"),
-                       result.percent("/outside/direct/value")));
+  out += card(
+      "In the target's rectangle", percent_with_error(result, "/in_rectangle"), "%",
+      fmt::format("of the sources' flux; {} % leaves the luminaire, {} % goes elsewhere, {} % directly",
+                  percent_with_error(result, "/efficiency"), percent_with_error(result, "/outside/share"),
+                  percent_with_error(result, "/outside/direct")));
   out += card(
       "Parameters", result.figure("/parameters"), "",
       fmt::format("{} {} mm high", result.has("/lens") ? "lens" : "mirror", result.figure("/height_mm")));

@@ -9,7 +9,6 @@
 
 #include "lucerna/photometric_metrics.h"
 #include "lucerna/report/html/html_assets.h"
-#include "lucerna/report/html/report_zones.h"
 #include "lucerna/results/json/trace_json.h"
 #include "lucerna/results/metrics/figure_text.h"
 #include "lucerna/results/svg/html_escaped.h"
@@ -31,32 +30,45 @@ constexpr std::size_t kMaxCells = 27'000;
 /// Where cone and isolux diagrams are drawn to.
 constexpr double kConeDistance_m = 5.0, kPlaneDistance_m = 3.0;
 
-std::string zone_table(const FarFieldTable& field, const std::string& unit) {
-  const double all = zone(field, 0.0, 180.0).flux.mean;
+/// A row's flux and its share of all.
+std::vector<std::string> zone_row(const ResultFigures& result, const std::string& name,
+                                  const std::string& key, double all) {
+  return {name, result.figure(key), percent_text(result.number(key + "/value"), all)};
+}
+
+std::string zone_table(const ResultFigures& result, const std::string& detector, const std::string& name) {
+  const double all = result.number(detector + "/flux/value");
+  HtmlTable table{
+      "Flux by zone, " + name, {"γ", "Flux, " + result.text("/ledger/unit"), "Share", "0° to here"}, {}};
   double up_to = 0.0;
-  HtmlTable table{"Flux by zone, " + field.name + "; errors take the cells as independent",
-                  {"γ", "Flux, " + unit, "Share", "0° to here"},
-                  {}};
-  for (const Zone& z : ten_degree_zones(field)) {
-    up_to += z.flux.mean;
-    table.rows.push_back({fmt::format("{:g}°–{:g}°", z.from_deg, z.to_deg),
-                          figure_text(z.flux.mean, z.flux.standard_error), percent_text(z.flux.mean, all),
-                          percent_text(up_to, all)});
+  for (std::size_t i = 0; i < result.at(detector + "/zones/zonal").size(); ++i) {
+    const std::string key = fmt::format("{}/zones/zonal/{}", detector, i);
+    up_to += result.number(key + "/value");
+    table.rows.push_back(zone_row(result, fmt::format("{}°–{}°", 10 * i, 10 * (i + 1)), key, all));
+    table.rows.back().push_back(percent_text(up_to, all));
   }
   return html_table(table);
 }
 
-std::string sum_table(const FarFieldTable& field, const std::string& unit, double efficiency) {
-  const double all = zone(field, 0.0, 180.0).flux.mean;
-  HtmlTable table{"Summed zones, " + field.name, {"γ", "Flux, " + unit, "Share"}, {}};
-  for (const Zone& z : summed_zones(field)) {
-    table.rows.push_back({fmt::format("{:g}°–{:g}°", z.from_deg, z.to_deg),
-                          figure_text(z.flux.mean, z.flux.standard_error), percent_text(z.flux.mean, all)});
+/// N1 to N3: shares of the light below in three cones, N4: that light's share of all, N5: what leaves.
+std::string flux_code(const ResultFigures& result, const std::string& detector) {
+  const std::string key = detector + "/zones/cie_flux_code";
+  if (!(result.number(detector + "/zones/flux_0_90/value") > 0.0)) return {};
+  std::string out = "<p>CIE flux code (N1 N2 N3 N4 N5): <b>";
+  for (std::size_t i = 0; i < result.at(key).size(); ++i)
+    out += result.fixed(fmt::format("{}/{}/value", key, i), 0) + " ";
+  const double leaves = result.number(detector + "/flux/value") / result.number("/ledger/emitted");
+  return out + fmt::format("{:.0f}</b></p>\n", 100.0 * leaves);
+}
+
+std::string sum_table(const ResultFigures& result, const std::string& detector, const std::string& name) {
+  const double all = result.number(detector + "/flux/value");
+  HtmlTable table{"Summed zones, " + name, {"γ", "Flux, " + result.text("/ledger/unit"), "Share"}, {}};
+  for (const auto& [from, to] : {std::pair{0, 30}, {0, 40}, {0, 60}, {60, 90}, {0, 90}, {90, 180}}) {
+    table.rows.push_back(zone_row(result, fmt::format("{}°–{}°", from, to),
+                                  fmt::format("{}/zones/flux_{}_{}", detector, from, to), all));
   }
-  const std::string code = cie_flux_code(field, efficiency);
-  const std::string line =
-      code.empty() ? "" : fmt::format("<p>CIE flux code (N1 N2 N3 N4 N5): <b>{}</b></p>\n", code);
-  return html_table(table) + line;
+  return html_table(table) + flux_code(result, detector);
 }
 
 std::string plane_table(const ResultFigures& result, const std::string& detector, const std::string& name) {
@@ -247,8 +259,6 @@ std::string far_field_cards(const ResultFigures& result, const std::string& d) {
 
 void add_far_field_sections(HtmlPage& page, const ResultFigures& result,
                             const std::vector<FarFieldTable>& fields) {
-  const double emitted = result.number("/ledger/emitted");
-  const std::string unit = result.text("/ledger/unit");
   std::size_t number = 0;
   for (std::size_t i = 0; i < result.at("/detectors").size(); ++i) {
     const std::string key = fmt::format("/detectors/{}", i);
@@ -259,8 +269,8 @@ void add_far_field_sections(HtmlPage& page, const ResultFigures& result,
                  intensity_plots(field, add_far_field(page, field), drawn_figures(result.at(key))) +
                      plane_table(result, key, field.name));
     page.section(fmt::format("zones-{}", number), "Zonal flux" + suffix,
-                 "<div class=\"pair\"><div>" + zone_table(field, unit) + "</div>\n<div>" +
-                     sum_table(field, unit, result.number(key + "/flux") / emitted) + "</div></div>\n");
+                 "<div class=\"pair\"><div>" + zone_table(result, key, field.name) + "</div>\n<div>" +
+                     sum_table(result, key, field.name) + "</div></div>\n");
     ++number;
   }
 }

@@ -89,6 +89,8 @@ std::vector<std::string> write_design_files(const std::filesystem::path& folder,
   if (figures.tolerances) {
     write_file(folder / "tolerances.csv", tolerances_csv(*figures.tolerances));
     names.emplace_back("tolerances.csv");
+  } else {
+    std::filesystem::remove(folder / "tolerances.csv");  // that of another mirror
   }
   const Project project = with_shape(problem, result.shape);
   for (std::string& name :

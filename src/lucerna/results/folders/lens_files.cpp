@@ -35,7 +35,10 @@ std::vector<std::string> write_lens_files(const std::filesystem::path& folder, c
                                           solid.smooth_below_deg)
                         : solid_step_text(solid.outline_mm, solid.smooth_below_deg));
   std::vector<std::string> names{"lens.toml", "lens.step", "lens.stl", "lens.obj", "history.csv"};
-  if (!solid.face) {
+  if (solid.face) {
+    // Those of another lens, where the folder had one.
+    for (const char* name : {"lens.dxf", "lens.csv"}) std::filesystem::remove(folder / name);
+  } else {
     const auto profile = solid_profile(solid.outline_mm, solid.smooth_below_deg);
     write_file(folder / "lens.dxf", dxf_profile(profile));
     write_file(folder / "lens.csv", csv_profile(profile));

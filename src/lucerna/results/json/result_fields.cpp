@@ -175,6 +175,7 @@ constexpr std::array kFields{
     ResultField{"tolerances.spread.*.max", "design", "estimate", "", "Its maximum."},
     ResultField{"tolerances.spread.*.cases", "design", "count", "", "Combined cases in which it is determined."},
     ResultField{"tolerances.cases[].**", "design", "group", "", "Each case: what was changed and the figures then."},
+    ResultField{"lens", "design", "flag", "", "True where a lens was shaped; absent for mirrors."},
     ResultField{"end", "design", "text", "", "Why the search ended: converged, time, interrupted."},
     ResultField{"remarks[]", "design", "text", "", "What is known of why the error is not smaller."},
 };

@@ -107,7 +107,11 @@ Json design_file_json(const std::filesystem::path& folder, const std::string& ta
   DesignMetrics figures = design_metrics(problem.target, result.error.scale,
                                          trace(problem.project.scene, options), problem.project.scene);
   figures.tolerances = tolerance_sweep(problem.project.scene, ranges, 1);
-  return design_json(problem.target, result, design_form(result), figures);
+  Json json = design_json(problem.target, result, design_form(result), figures);
+  DesignForm lens = design_form(result);
+  lens.is_lens = true;
+  json.merge_patch({{"lens", design_json(problem.target, result, lens, figures).at("lens")}});
+  return json;
 }
 
 // Both ways: what is written is in the table, and what is in the table is written by one of these.

@@ -10,6 +10,7 @@ namespace lucerna {
 
 std::string figure_text(double value) {
   if (!std::isfinite(value)) return kNoFigure;
+  if (value == 0.0) return "0";
   const double size = std::abs(value);
   if (size != 0.0 && (size < 1e-4 || size >= 1e9)) return fmt::format("{:.4e}", value);
   const int before = size >= 1.0 ? static_cast<int>(std::floor(std::log10(size))) + 1 : 0;

@@ -75,6 +75,12 @@ std::string dark_mirrors(const Ledger& ledger, const Scene& scene) {
                      what, ledger.rays);
 }
 
+/// Errors are those of the replicates.
+std::string too_few_rays(const Ledger& ledger) {
+  if (!std::isnan(ledger.out_direct.standard_error)) return "";
+  return fmt::format("{} rays are too few for any error: the figures stand without", ledger.rays);
+}
+
 }  // namespace
 
 std::vector<std::string> trace_warnings(const TraceMetrics& figures) {
@@ -88,8 +94,9 @@ std::vector<std::string> trace_warnings(const TraceMetrics& figures) {
 std::vector<std::string> trace_warnings(const TraceMetrics& figures, const Scene& scene,
                                         std::vector<std::string> of_project) {
   std::vector<std::string> warnings = std::move(of_project);
-  if (std::string warning = dark_mirrors(figures.ledger, scene); !warning.empty())
-    warnings.push_back(std::move(warning));
+  for (std::string warning : {dark_mirrors(figures.ledger, scene), too_few_rays(figures.ledger)}) {
+    if (!warning.empty()) warnings.push_back(std::move(warning));
+  }
   for (std::string& warning : trace_warnings(figures)) warnings.push_back(std::move(warning));
   return warnings;
 }

@@ -111,6 +111,14 @@ TEST(TraceWarnings, ASourceThatFacesAwayIsNamed) {
                   "axis of source and reflector"));
 }
 
+TEST(TraceWarnings, TooFewRaysForAnyErrorAreTold) {
+  TraceMetrics figures;
+  figures.ledger.rays = 100;
+  figures.ledger.out_direct = {1.0, std::nan("")};
+  EXPECT_THAT(trace_warnings(figures, Scene(), {}),
+              ElementsAre("100 rays are too few for any error: the figures stand without"));
+}
+
 TEST(TraceWarnings, ThoseOfTheProjectComeFirst) {
   TraceMetrics figures;
   figures.far_fields.push_back(beam(81300.0, 66152.0));

@@ -81,11 +81,11 @@ PlaneExtremes extremes(const ImageBins& b) {
   std::size_t min_cell = 0;
   out.max = extreme(b, 1.0, out.max_cell).estimate;
   const LargestFigure min = extreme(b, -1.0, min_cell);
-  out.min = {-min.estimate.mean, min.estimate.standard_error};
+  out.min = {0.0 - min.estimate.mean, min.estimate.standard_error};
   const Jackknife means = b.mean();
   out.mean = means.estimate();
   if (!(means.all() > 0.0)) return out;
-  const Estimate e = ratio(min.values.map([](double v) { return -v; }), means).estimate();
+  const Estimate e = ratio(min.values.map([](double v) { return 0.0 - v; }), means).estimate();
   out.uniformity = Estimate{e.mean, std::fmax(e.standard_error, out.min.standard_error / means.all())};
   return out;
 }

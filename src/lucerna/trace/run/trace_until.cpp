@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -14,7 +15,7 @@ namespace lucerna {
 
 namespace {
 
-/// What is traced between two looks at the clock: a fraction of a second on two cores.
+/// The most that is traced between two looks at the clock: a fraction of a second of mirrors on two cores.
 constexpr std::uint64_t kTimedPiece = std::uint64_t{1} << 22;
 
 /// Reports the rays of a trace in pieces as those of one.
@@ -35,16 +36,18 @@ class PieceProgress final : public Progress {
 /// Adds rays up to `last` to a trace, in pieces; stops early when `stop()`. False if progress stopped it,
 /// which is an error where there is no whole piece.
 template <class Stop>
-bool trace_on_to(std::uint64_t last, std::uint64_t piece_rays, const Scene& scene, TraceOptions options,
+bool trace_on_to(std::uint64_t last, PieceSize& size, const Scene& scene, TraceOptions options,
                  std::optional<TraceResult>& sum, const Stop& stop, Progress& progress) {
+  using Clock = std::chrono::steady_clock;
   std::uint64_t at = sum ? sum->last_ray : options.first_ray;
   // Rays that an accelerator keeps cannot be added to others.
   const bool whole = options.device != TraceDevice::cpu && !scene.ray_detectors.empty();
   while (at < last) {
     options.first_ray = at;
-    options.last_ray = at = whole ? last : std::min(last, at + piece_rays);
+    options.last_ray = at = whole ? last : std::min(last, at + size.rays());
     const std::uint64_t begin = sum ? sum->first_ray : options.first_ray;
     PieceProgress of_all(progress, options.first_ray - begin, last - begin);
+    const auto start = Clock::now();
     try {
       TraceResult piece = trace(scene, options, of_all);
       sum = sum ? merge(*sum, piece) : std::move(piece);
@@ -52,6 +55,7 @@ bool trace_on_to(std::uint64_t last, std::uint64_t piece_rays, const Scene& scen
       if (!sum) throw;
       return false;
     }
+    size.took(std::chrono::duration<double>(Clock::now() - start).count());
     if (stop()) return true;
   }
   return true;
@@ -60,6 +64,14 @@ bool trace_on_to(std::uint64_t last, std::uint64_t piece_rays, const Scene& scen
 bool never() { return false; }
 
 }  // namespace
+
+void PieceSize::took(double seconds) {
+  constexpr double kLong_s = 2.0, kFaster = 1.25;
+  const double rate = static_cast<double>(rays_) / std::max(seconds, 1e-9);
+  // A larger piece that was that much faster was mostly set up.
+  if (seconds < kLong_s || rate > kFaster * rate_) rays_ = std::min(max_, 2 * rays_);
+  rate_ = rate;
+}
 
 std::string_view to_string(NoiseEnd end) {
   switch (end) {
@@ -92,9 +104,10 @@ NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const No
   const std::uint64_t once = default_ray_count(scene);
   NoiseTrace out{{}, std::nan(""), NoiseEnd::no_goal};
   std::optional<TraceResult> sum = std::move(from);
+  PieceSize size(goes_by_noise(scene) ? kTimedPiece : kUntimedPiece);
   if (!goes_by_noise(scene)) {
     out.end = end_without_noise(scene);
-    if (!trace_on_to(once, kUntimedPiece, scene, run, sum, never, progress)) out.end = NoiseEnd::interrupted;
+    if (!trace_on_to(once, size, scene, run, sum, never, progress)) out.end = NoiseEnd::interrupted;
   } else {
     const auto late = [&] {
       return std::chrono::duration<double>(Clock::now() - start).count() >= goal.max_seconds;
@@ -116,7 +129,7 @@ NoiseTrace trace_until(const Scene& scene, const TraceOptions& options, const No
       if (sum && late()) break;
       const std::uint64_t first = sum ? sum->first_ray : run.first_ray;
       const std::uint64_t last = first + std::min({round, goal.max_rays, kMaxRays - first});
-      if (trace_on_to(last, kTimedPiece, scene, run, sum, late, progress)) continue;
+      if (trace_on_to(last, size, scene, run, sum, late, progress)) continue;
       out.end = NoiseEnd::interrupted;
       break;
     }
@@ -148,7 +161,8 @@ NoiseTrace trace_rays_in_pieces(std::uint64_t piece_rays, const Scene& scene, co
   }
   NoiseTrace out{{}, std::nan(""), NoiseEnd::rays};
   std::optional<TraceResult> sum = std::move(from);
-  if (!trace_on_to(last, piece_rays, scene, run, sum, never, progress)) out.end = NoiseEnd::interrupted;
+  PieceSize size(piece_rays);
+  if (!trace_on_to(last, size, scene, run, sum, never, progress)) out.end = NoiseEnd::interrupted;
   if (!sum) throw UsageError(fmt::format("no rays to trace: {}:{}", run.first_ray, last), "rays");
   out.result = std::move(*sum);
   return out;
