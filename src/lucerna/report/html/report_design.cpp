@@ -38,9 +38,12 @@ std::vector<std::string_view> words_of(std::string_view line) {
   }
 }
 
-/// "3.38 ± 0.01", both in per cent: a value and its error.
+/// "3.38 ± 0.11", both in per cent: a value and its error, with two digits of the error.
 std::string percent_with_error(const ResultFigures& result, const std::string& key,
-                               const std::string& value = "/value", int decimals = 2) {
+                               const std::string& value = "/value") {
+  const double error = 100.0 * result.number(key + "/standard_error");
+  if (!(error > 0.0)) return result.percent(key + value);
+  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 6);
   return result.percent(key + value, decimals) + " ± " + result.percent(key + "/standard_error", decimals);
 }
 
@@ -62,7 +65,7 @@ std::string error_cards(const ResultFigures& result) {
       card("It began at", box_error_text(result, "/start/error/c48"), "%", "error of what the project gives");
   out += card("Error outside", box_error_text(result, "/outside/error"), "%",
               "l2 over what lies beside the target's rectangle, relative to the target in it");
-  return out + card("Worst box", percent_with_error(result, "/worst_cell", "/value", 1), "%",
+  return out + card("Worst box", percent_with_error(result, "/worst_cell"), "%",
                     "largest deviation of a 48th box, of the target's peak; noise raises it");
 }
 

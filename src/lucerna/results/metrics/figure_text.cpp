@@ -25,7 +25,10 @@ std::string figure_text(double value) {
 }
 
 std::string figure_text(double value, double standard_error) {
-  if (!std::isfinite(value) || !std::isfinite(standard_error) || !(standard_error > 0.0))
+  // As `estimate_text`: rounding is no error.
+  constexpr double kRounding = 1e-12;
+  if (!std::isfinite(value) || !std::isfinite(standard_error) ||
+      !(standard_error > kRounding * std::abs(value)))
     return figure_text(value);
   const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(standard_error))), 0, 9);
   return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, standard_error, decimals);

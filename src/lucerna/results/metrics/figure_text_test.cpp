@@ -19,6 +19,8 @@ TEST(FigureText, FiguresHaveTheDigitsThatTheirErrorSupports) {
   EXPECT_EQ(figure_text(0.0123456), "0.012346");
   EXPECT_EQ(figure_text(0.0), "0");
   EXPECT_EQ(figure_text(1e-7), "1.0000e-07");
+  EXPECT_EQ(figure_text(500.0, 1e-11), "500") << "rounding is no error";
+  EXPECT_EQ(figure_text(-0.0), "0");
 }
 
 }  // namespace
