@@ -49,19 +49,6 @@ TEST(TraceRays, InPiecesHasTheBitsOfOneTrace) {
   EXPECT_EQ(never.done_, never.total_);
 }
 
-// Light off mirrors: 20 M rays a second. Through a solid: 0.3 M. Setting up for 3 s: larger pieces pay.
-TEST(TraceRays, PiecesGrowUntilTheyTakeSeconds) {
-  const auto last_of = [](double rays_per_s, double set_up_s) {
-    PieceSize size(kUntimedPiece);
-    for (int i = 0; i < 12; ++i) size.took(set_up_s + static_cast<double>(size.rays()) / rays_per_s);
-    return size.rays();
-  };
-  EXPECT_EQ(last_of(20e6, 0.0), kUntimedPiece);
-  EXPECT_EQ(last_of(0.3e6, 0.0), 4 * kPiece);
-  EXPECT_GT(last_of(0.3e6, 3.0), 4 * kPiece);
-  EXPECT_EQ(PieceSize(1000).rays(), 1000u);
-}
-
 TEST(TraceRays, ThatAreStoppedReturnWhatWasWholeAndGoOn) {
   TraceOptions options;
   options.last_ray = 2 * kPiece + 1;

@@ -8,6 +8,7 @@
 #include "lucerna/trace.h"
 #include "lucerna/trace/result/node_noise.h"
 #include "lucerna/trace/run/noise_rounds.h"
+#include "lucerna/trace/run/piece_size.h"
 #include "lucerna/trace/run/trace_pieces.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
@@ -64,14 +65,6 @@ bool trace_on_to(std::uint64_t last, PieceSize& size, const Scene& scene, TraceO
 bool never() { return false; }
 
 }  // namespace
-
-void PieceSize::took(double seconds) {
-  constexpr double kLong_s = 2.0, kFaster = 1.25;
-  const double rate = static_cast<double>(rays_) / std::max(seconds, 1e-9);
-  // A larger piece that was that much faster was mostly set up.
-  if (seconds < kLong_s || rate > kFaster * rate_) rays_ = std::min(max_, 2 * rays_);
-  rate_ = rate;
-}
 
 std::string_view to_string(NoiseEnd end) {
   switch (end) {

@@ -67,7 +67,7 @@ TEST(TraceUntil, SameBitsForAnyThreadsAndAfterAStop) {
 TEST(TraceUntil, TimeOnlyStops) {
   const NoiseTrace stopped = trace_until(spot(), coarse(), {.noise = 1e-9, .max_seconds = 0.0});
   EXPECT_EQ(stopped.end, NoiseEnd::time);
-  EXPECT_GE(stopped.result.last_ray, 1u << 18);
+  EXPECT_GE(stopped.result.last_ray, 1u << 20);
   EXPECT_GT(stopped.noise, 1e-9);
 }
 
