@@ -215,7 +215,7 @@ def surfaces_of(text, kind):
         trim["hole_diameter_mm"] = r["hole_diameter_mm"]
     # Both are bicubic splines on the same knots, so going through the Greville points is exact.
     sheet = height_field(height, half, half, intervals=(nx, ny), trim=trim)
-    return [mirror(sheet, vertex_mm)], (nx + 3) * (ny + 3)
+    return [mirror(sheet, vertex_mm)], free_coefficients(r)
 
 
 def spline_heights(reflector):
@@ -226,10 +226,23 @@ def spline_heights(reflector):
     return lambda x, y: (x * x + y * y) / (4.0 * reflector["focal_mm"]) + offset(x, y)
 
 
+def _coefficients(table):
+    nx, ny = table["intervals"]
+    return np.reshape(table["coefficients_mm"], (ny + 3, nx + 3))
+
+
+def free_coefficients(table):
+    """How many of a free form's coefficients are free: those that a symmetry ties together are one."""
+    c = _coefficients(table)
+    counts = [(n + 1) // 2 if np.allclose(c, np.flip(c, axis), rtol=0.0, atol=1e-12) else n
+              for axis, n in enumerate(c.shape)]
+    return counts[0] * counts[1]
+
+
 def _even_spline(table, halves):
     """The bicubic B-spline of a table's `intervals` and `coefficients_mm` over |x| and |y| up to `halves`."""
     nx, ny = table["intervals"]
-    c = np.reshape(table["coefficients_mm"], (ny + 3, nx + 3))
+    c = _coefficients(table)
 
     def height(x, y):
         bx, by = (_cubic_pieces(at, -half, half, n) for at, half, n in zip((x, y), halves, (nx, ny)))
@@ -299,7 +312,7 @@ def _free_lens_surfaces(body):
     rim, bottom = below[-2]
     cavity = _curve_from_axis(below[:-2]) if not entry and len(below) > 3 else None
     hollow = (_sheet(entry, below[0][0]), below[0][0]) if entry else None
-    free = len(body["face"]["coefficients_mm"]) + len(entry["coefficients_mm"] if entry else [])
+    free = free_coefficients(body["face"]) + (free_coefficients(entry) if entry else 0)
     return (free_lens_surfaces(_sheet(body["face"], rim), rim, bottom, body["refractive_index"], cavity, hollow),
             free + (0 if cavity is None else 2))
 

@@ -52,6 +52,15 @@ def test_free_form_is_the_very_surface():
     assert np.abs(heights_at(part["bspline"], y, x) - expected).max() > 0.1
 
 
+def test_coefficients_that_a_symmetry_ties_count_once():
+    c = np.random.default_rng(5).normal(size=(6, 7))
+    across, along = c + c[:, ::-1], c + c[::-1]
+    both = across + across[::-1]
+    for table, count in ((c, 42), (across, 24), (along, 21), (both, 12)):
+        found = lucerna_entry.free_coefficients({"intervals": [4, 3], "coefficients_mm": table.ravel().tolist()})
+        assert found == count
+
+
 def test_lucerna_itself_says_the_same_heights():
     lucerna = pytest.importorskip("lucerna")
     _, text = free_form(6, 9, aperture='"circle"', diameter_mm=100.0)
@@ -172,7 +181,7 @@ CAVITY = [[3.0 * math.sin(a), 2.0 + 2.0 * math.cos(a)] for a in np.linspace(0.0,
 
 @pytest.mark.parametrize("entry, bottom, more, names",
                          [([[0.0, 2.0]], "", 0, []), ([*CAVITY[:-1], [3.0, 2.0]], "", 2, ["cavity"]),
-                          ([[4.0, 2.5], [4.0, 2.0]], hollow_bottom(), 49, ["entry", "inner wall"])],
+                          ([[4.0, 2.5], [4.0, 2.0]], hollow_bottom(), 28, ["entry", "inner wall"])],
                          ids=["flat", "cavity", "free"])
 def test_free_lens_is_the_one_that_lucerna_traces(scorer, lucerna, tmp_path, entry, bottom, more, names):
     text = free_lens_body(entry=entry, bottom=bottom)
