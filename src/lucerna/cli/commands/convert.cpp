@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "lucerna/cli/commands/commands.h"
 #include "lucerna/cli/parse/arguments.h"
 #include "lucerna/cli/parse/input_kind.h"
@@ -31,13 +29,7 @@ RayConversion conversion_of(const ConvertArguments& a, bool strict) {
     if (*conversion.rays == 0) throw UsageError("--rays 0: expected at least one");
   }
   conversion.seed = parse_count(a.seed);
-  if (!a.flux.empty()) {
-    conversion.flux = parse_number(a.flux);
-    // Ray files state it with single precision.
-    const auto stated = static_cast<float>(*conversion.flux);
-    if (!(stated > 0.0f && std::isfinite(stated)))
-      throw UsageError(fmt::format("--flux {} is not > 0, or more than a ray file can state", a.flux));
-  }
+  if (!a.flux.empty()) conversion.flux = parse_flux(a.flux, "--flux");
   conversion.length_unit = a.length_unit;
   // Turns in the order given, then the move.
   for (const std::string& rotation : a.rotations)

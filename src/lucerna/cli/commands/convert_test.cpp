@@ -97,7 +97,7 @@ TEST_F(ConvertCli, RefusesWithTheOptionOrThePlace) {
   refuse(1, "missing out.tm25ray", "missing");
   refuse(1, "s.tm25ray out.tm25ray --rays 101", "101");
   refuse(2, "s.tm25ray out.tm25ray --rays 0", "--rays 0: expected at least one");
-  refuse(2, "s.tm25ray out.tm25ray --flux 1e308", "more than a ray file can state");
+  refuse(2, "s.tm25ray out.tm25ray --flux 1e308", "not what a ray file can state");
   refuse(2, "s.tm25ray out.tm25ray --move 0,1e300,0", "inf, 0) mm, which no ray file holds; see --move");
   EXPECT_FALSE(std::filesystem::exists(dir / "out.tm25ray"));
 }

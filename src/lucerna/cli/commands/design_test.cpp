@@ -160,6 +160,11 @@ radius_mm = 3
   const Json result = Json::parse(slurp(dir / "out" / "result.json"));
   for (const Json& limit : result["limits"]) {
     EXPECT_TRUE(limit["held"].get<bool>()) << limit;
+    const auto in_file = std::ranges::find(checks, limit["limit"].get<std::string>(), &LimitCheck::limit);
+    if (in_file == checks.end()) continue;  // of the light
+    // Single precision of the file matters to angles between neighbouring triangles.
+    EXPECT_NEAR(limit["found"]["value"].get<double>(), in_file->found.mean, 0.01 * in_file->found.mean)
+        << limit;
   }
 }
 

@@ -28,9 +28,9 @@ EmitterOptions emitter_options(const MakeSourceArguments& a) {
     options.size_mm = {size[0], size[1]};
   }
   if (!a.flux_lm.empty() && !a.flux_w.empty()) throw UsageError("--flux-lm and --flux-w exclude each other");
-  if (!a.flux_lm.empty()) options.flux = parse_number(a.flux_lm);
+  if (!a.flux_lm.empty()) options.flux = parse_flux(a.flux_lm, "--flux-lm");
   if (!a.flux_w.empty()) {
-    options.flux = parse_number(a.flux_w);
+    options.flux = parse_flux(a.flux_w, "--flux-w");
     options.flux_unit = FluxUnit::watt;
   }
   if (a.surface.empty() && !a.surface_size.empty()) throw UsageError("--surface-mm needs --surface");
@@ -46,6 +46,7 @@ void make_source(const MakeSourceArguments& a, Session& session) {
   session.start();
   const auto source = make_emitter(emitter_options(a));
   const std::uint64_t n = parse_count(a.count);
+  if (n == 0) throw UsageError("0 rays: expected at least one");
   const std::string format = ray_format_for(a.output, a.to);
   const Sequence sequence(sequence_kind(a.sequence), parse_count(a.seed));
   RaySetHeader header;

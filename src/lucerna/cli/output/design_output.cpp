@@ -29,7 +29,8 @@ void note_phases(const FollowUp& run, Session& session) {
   session.add_seconds("figures", run.figures_s);
   if (run.figures.tolerances) session.add_seconds("tolerances", run.tolerances_s);
   if (run.trace.end == NoiseEnd::time && !session.progress().stop_requested())
-    note_noise("trace of the result: ", run.trace, run.noise_goal, session);
+    note_noise("trace of the result, for a tenth of the time and 10 s at most: ", run.trace, run.noise_goal,
+               session);
 }
 
 void DesignWatch::operator()(const FitRecord& record, const DesignShape& best,

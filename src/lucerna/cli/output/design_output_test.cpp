@@ -49,7 +49,7 @@ TEST(DesignOutput, PhasesAndNoiseThatIsLeftAreNoted) {
   testing::internal::CaptureStderr();
   note_phases(run, session);
   EXPECT_THAT(testing::internal::GetCapturedStderr(),
-              testing::HasSubstr("trace of the result: noise 2 % of the peak, 1 % requested"));
+              testing::HasSubstr("10 s at most: noise 2 % of the peak, 1 % requested"));
 }
 
 }  // namespace

@@ -37,6 +37,14 @@ double parse_number(std::string_view word) {
   return *value;
 }
 
+double parse_flux(std::string_view word, std::string_view option) {
+  const double flux = parse_number(word);
+  const auto stated = static_cast<float>(flux);
+  if (!(stated > 0.0f && std::isfinite(stated)))
+    throw UsageError(fmt::format("{} {} is not > 0, or not what a ray file can state", option, word));
+  return flux;
+}
+
 double parse_share(std::string_view word) {
   const bool percent = word.ends_with('%');
   std::string_view number = percent ? word.substr(0, word.size() - 1) : word;

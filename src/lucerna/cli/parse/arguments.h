@@ -15,6 +15,9 @@ namespace lucerna::cli {
 /// A finite number, whole word.
 double parse_number(std::string_view word);
 
+/// A flux above 0 that a ray file can state, in single precision; `option` is whose it is.
+double parse_flux(std::string_view word, std::string_view option);
+
 /// A share above 0 and at most 1: "1%", "0.5 %" or "0.01".
 double parse_share(std::string_view word);
 

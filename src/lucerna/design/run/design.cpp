@@ -133,11 +133,11 @@ DesignResult design(const DesignProblem& problem, const DesignOptions& options, 
   result.shape = ShapeLimits(problem.limits, problem.start).nearest(result.shape);
   check_result(fit, options, time, result_check, result, progress);
   if (options.pareto) {
-    unless_stopped(options, result,
+    unless_stopped(options, result, "the trade between error and light",
                    [&] { result.pareto = pareto_front(problem, result.shape, options, progress); });
   }
   if (options.advise) {
-    unless_stopped(options, result,
+    unless_stopped(options, result, "what other mirrors would bring",
                    [&] { result.advice = advise(problem, result.error, options, progress); });
   }
   return result;

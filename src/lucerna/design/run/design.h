@@ -69,17 +69,19 @@ struct DesignResult : DesignFindings {
   double validation_s = 0.0;
 };
 
-/// What is computed after a search. Where it is stopped it is left out, and the result says that it was;
-/// nothing is computed after that. Processes that share the work stop together, by the exception.
+/// What is computed after a search. Where it is stopped it is left out, and a remark of the result says so,
+/// by the name of `what`; nothing is computed after that. Processes that share the work stop together, by the
+/// exception.
 template <class Compute>
-void unless_stopped(const DesignOptions& options, DesignResult& result, const Compute& compute) {
-  if (result.end == DesignTermination::interrupted) return;
+void unless_stopped(const DesignOptions& options, DesignResult& result, const char* what,
+                    const Compute& compute) {
   try {
-    compute();
+    if (result.end != DesignTermination::interrupted) return compute();
   } catch (const Interrupted&) {
     if (options.peers != nullptr) throw;
     result.end = DesignTermination::interrupted;
   }
+  result.remarks.push_back(std::string("left out, for the design was stopped before: ") + what);
 }
 
 /// Called after every step with the best so far and the state to resume from.

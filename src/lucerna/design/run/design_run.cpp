@@ -60,7 +60,7 @@ DesignRun run_design(const DesignProblem& problem, DesignOptions options, Progre
   follow_up(problem.target, run.result.error.scale, scene, {.seed = options.seed + 1},
             final_goal(options.time_s.value_or(problem.time_s)), options.final_trace, progress, run);
   if (problem.tolerances) {
-    unless_stopped(options, run.result, [&] {
+    unless_stopped(options, run.result, "tolerances", [&] {
       run.figures.tolerances = timed(run.tolerances_s, [&] {
         return tolerance_sweep(scene, *problem.tolerances, options.seed + 2, progress, options.peers);
       });

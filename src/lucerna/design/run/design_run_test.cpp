@@ -95,14 +95,16 @@ TEST_F(DesignRuns, StoppedAfterTheSearchTheyHaveTheirResult) {
 TEST(UnlessStopped, LeavesOutWhatWasStoppedAndWhatFollows) {
   DesignResult result(DesignShape::bspline(12, Aperture::circle(80), 4, 4));
   int computed = 0;
-  unless_stopped({}, result, [&] { ++computed; });
+  unless_stopped({}, result, "one", [&] { ++computed; });
   EXPECT_NE(result.end, DesignTermination::interrupted);
-  unless_stopped({}, result, [] { throw Interrupted(); });
+  unless_stopped({}, result, "two", [] { throw Interrupted(); });
   EXPECT_EQ(result.end, DesignTermination::interrupted);
-  unless_stopped({}, result, [&] { ++computed; });
+  unless_stopped({}, result, "three", [&] { ++computed; });
   EXPECT_EQ(computed, 1);
+  EXPECT_EQ(result.remarks, (std::vector<std::string>{"left out, for the design was stopped before: two",
+                                                      "left out, for the design was stopped before: three"}));
   DesignResult other(result.shape);
-  EXPECT_THROW(unless_stopped({}, other, [] { throw InputError("other"); }), InputError);
+  EXPECT_THROW(unless_stopped({}, other, "four", [] { throw InputError("other"); }), InputError);
 }
 
 TEST_F(DesignRuns, AreWatchedAndGoOnToTheSameBits) {

@@ -12,6 +12,7 @@
 #include "lucerna/design/constraints/source_side.h"
 #include "lucerna/design/validation/bounds.h"
 #include "lucerna/design/validation/etendue_limit.h"
+#include "lucerna/design/validation/mesh_tolerance.h"
 #include "lucerna/design/validation/result_remarks.h"
 #include "lucerna/design/validation/validation.h"
 #include "lucerna/trace/tally/flux_quanta.h"
@@ -27,15 +28,15 @@ constexpr double kStartShare = 0.05;
 /// Of the mesh where few rays are traced: a finer one would cost more than the rays.
 constexpr CadTolerance kCoarseMesh{.chord_mm = 0.01, .slope_deg = 0.5};
 
-/// All limits that are set, against the exported mesh and fresh light, of which `efficiency` leaves.
+/// All limits that are set, against the mesh that is exported within `stl`, and fresh light, of which
+/// `efficiency` leaves.
 std::vector<LimitCheck> checked_limits(const DesignProblem& problem, const DesignShape& shape,
-                                       const DesignRays& rays, const Estimate& efficiency) {
+                                       CadTolerance stl, const DesignRays& rays, const Estimate& efficiency) {
   std::vector<LimitCheck> out;
   const DesignLimits& limits = problem.limits;
   if (limits.any_on_form()) {
-    CadTolerance tolerance;  // becomes what the mesh keeps
-    const Mesh mesh = cad_mesh_within(shape.reflector(), tolerance);
-    out = check_limits(mesh, limits, tolerance.chord_mm, tolerance.slope_deg);
+    const Mesh mesh = cad_mesh_within(shape.reflector(), stl);  // `stl` becomes what the mesh keeps
+    out = check_limits(mesh, limits, stl.chord_mm, stl.slope_deg);
   }
   if (limits.glare) {
     const Estimate per_flux = LightLimits(limits, problem.reflectance).glare_per_flux(shape, rays);
@@ -148,7 +149,8 @@ void ResultCheck::fill(const FitProblem& fit, std::uint64_t max_rays, double max
     result.shape = problem_.start;
     set_error(max_rays, max_s, result, progress);
   }
-  result.limits = checked_limits(problem_, result.shape, rays_, result.efficiency);
+  const CadTolerance stl = mesh_tolerance(boxes_, target_, problem_.world_from_mirror.origin_mm());
+  result.limits = checked_limits(problem_, result.shape, stl, rays_, result.efficiency);
   const double behind = share_behind(result.shape, rays_), given = share_behind(problem_.start, rays_);
   if (behind > given + kMaxBehind) {
     const double error = std::sqrt(behind * (1.0 - behind) / static_cast<double>(rays_.size()));
@@ -161,6 +163,9 @@ void ResultCheck::fill(const FitProblem& fit, std::uint64_t max_rays, double max
     result.remarks.insert(result.remarks.begin(), limit.statements.begin(), limit.statements.end());
   }
   add_remarks(problem_, result);
+  if (result.shape.is_revolution()) {
+    if (auto remark = rings_remark(problem_.target, result.error)) result.remarks.push_back(*remark);
+  }
   if (keep_given)
     result.remarks.push_back("the given mirror is the result: nothing that was found is better");
 }

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "lucerna/design/validation/box_error.h"
+#include "lucerna/photometric_metrics.h"
+
 namespace lucerna {
 
 std::optional<std::string> noise_remark(const DesignError& error) {
@@ -15,6 +18,21 @@ std::optional<std::string> noise_remark(const DesignError& error) {
 std::optional<std::string> no_step_remark(const DesignFindings& result) {
   if (result.evaluations > 0 || result.end == DesignTermination::converged) return std::nullopt;
   return "nothing was designed: the search ended before its first step, and the result is what it began with";
+}
+
+std::optional<std::string> rings_remark(const DesignTarget& target, const DesignError& error) {
+  if (target.plane || target.zones_only) return std::nullopt;
+  IntensityDistribution rings = target.distribution;
+  const std::vector<double> means = ring_means(rings);
+  for (std::size_t c = 0; c < rings.c_deg.size(); ++c) {
+    for (std::size_t g = 0; g < means.size(); ++g) rings.at(c, g) = means[g];
+  }
+  const double off = box_error({target.distribution}, {rings}, TargetMode::shape).c48.excess;
+  if (!(off > 0.5 * error.c48.excess)) return std::nullopt;
+  return fmt::format(
+      "the target's own mean over its C planes is {:.1f} % off the target, and a mirror of revolution makes "
+      "all planes alike; a free form need not",
+      100.0 * off);
 }
 
 }  // namespace lucerna
