@@ -154,7 +154,7 @@ constexpr std::array kKeys{
     ProjectKey{"body.bottom_face", "coefficients_mm", Type::numbers, kAny, "", "required", "Heights of a bicubic B-spline, as those of `body.face`."},
 
     ProjectKey{"detector", "kind", Type::word, kAny, "far-field plane luminance rays", "required", "Intensity by direction; illuminance on a plane; a luminance image; a ray file of what leaves."},
-    ProjectKey{"detector", "name", Type::text, kAny, "", "its kind", "Names its files."},
+    ProjectKey{"detector", "name", Type::text, kAny, "", "its kind", "Names its files; in a design not `lens`, `reflector`, `history` or `tolerances`."},
     ProjectKey{"detector", "c_step_deg", Type::number, kAboveZero, "", "5", "Far field: step of C. It divides 360."},
     ProjectKey{"detector", "gamma_step_deg", Type::number, kAboveZero, "", "1", "Far field: step of gamma. It divides 180."},
     ProjectKey{"detector", "bins", Type::word, kAny, "hard tent", "\"hard\"", "Far field: a ray counts for the nearest node, or for its four neighbours in proportion to nearness."},
