@@ -46,7 +46,6 @@ void make_source(const MakeSourceArguments& a, Session& session) {
   session.start();
   const auto source = make_emitter(emitter_options(a));
   const std::uint64_t n = parse_count(a.count);
-  if (n == 0) throw UsageError("0 rays: expected at least one");
   const std::string format = ray_format_for(a.output, a.to);
   const Sequence sequence(sequence_kind(a.sequence), parse_count(a.seed));
   RaySetHeader header;

@@ -90,7 +90,6 @@ TEST(MakeSourceCli, RefusesWhatContradictsAndWritesNothing) {
   };
   refuse("disk -n 10 --flux-lm 1e300", "--flux-lm 1e300 is not > 0, or not what a ray file can");
   refuse("disk -n 10 --flux-w 1e-300", "--flux-w 1e-300");
-  refuse("disk -n 0", "0 rays: expected at least one");
   refuse("disk -n 10 --flux-lm 3 --flux-w 3", "--flux-lm and --flux-w exclude each other");
   refuse("disk -n 10 --surface-mm 3", "--surface-mm needs --surface");
   refuse("rectangle -n 10 --size-mm 3", "3");

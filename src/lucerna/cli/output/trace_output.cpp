@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "lucerna/core/io/file.h"
@@ -23,6 +24,7 @@ std::vector<std::string> write_trace_output(const std::string& folder, const Tra
 }
 
 void note_noise(const std::string& of, const NoiseTrace& traced, double goal, Session& session) {
+  if (std::isnan(traced.noise)) return;  // so few rays are warned of
   const std::string_view why = to_string(traced.end);
   if (traced.noise > goal) {
     session.note(fmt::format("{}noise {:.2g} % of the peak, {:.2g} % requested: {}", of, 100.0 * traced.noise,
