@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -159,13 +160,14 @@ void check_before_plane(const TomlReader& reader, const DesignTarget& target, co
   if (!target.plane) return;
   const Frame plane_from_solid = target.plane->world_from_plane.inverse() * solid.world_from_solid;
   const double tilt = std::hypot(plane_from_solid.ex().z, plane_from_solid.ey().z);
-  for (const auto& [radius, z] : solid.outline_mm) {
-    const double before_mm = plane_from_solid.point({0.0, 0.0, z}).z - radius * tilt;
-    if (before_mm > 0.0) continue;
-    reader.fail("position_mm", fmt::format("the lens reaches the plane; expected it to lie wholly before the "
-                                           "lit side, found it up to {:.4g} mm behind",
-                                           -before_mm));
-  }
+  double behind_mm = -std::numeric_limits<double>::infinity();
+  for (const auto& [radius, z] : solid.outline_mm)
+    behind_mm = std::max(behind_mm, radius * tilt - plane_from_solid.point({0.0, 0.0, z}).z);
+  if (behind_mm < 0.0) return;
+  reader.fail("position_mm",
+              fmt::format("the lens reaches the plane; expected it to lie wholly before the lit "
+                          "side, found it up to {:.4g} mm behind",
+                          behind_mm));
 }
 
 /// A face as [body.face] has it.

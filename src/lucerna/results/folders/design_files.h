@@ -29,7 +29,8 @@ std::vector<std::string> write_reflector_files(const std::filesystem::path& fold
                                                const Reflector& reflector, CadTolerance stl);
 
 /// Writes all that `design` leaves in a folder: the above, `tolerances.csv` where there
-/// was a sweep, and what `trace` leaves, `result.json` last. `traced` is the trace that `figures` are of.
+/// was a sweep (that of another mirror is removed), and what `trace` leaves, `result.json` last. `traced` is
+/// the trace that `figures` are of.
 std::vector<std::string> write_design_files(const std::filesystem::path& folder, const DesignProblem& problem,
                                             const DesignResult& result, const DesignMetrics& figures,
                                             const TraceResult& traced, std::string_view history,

@@ -17,8 +17,8 @@ void write_lens_progress(const std::filesystem::path& folder, const LensProblem&
                          const ShapedLens& best, std::string_view history);
 
 /// Writes all that a design of a lens leaves in a folder: the above; `lens.step .stl .obj`, and `.dxf
-/// .csv` of one of revolution, in its own frame, mm; and what `trace` leaves, `result.json` last. `traced` is
-/// the trace that `figures` are of. Returns the names.
+/// .csv` of one of revolution (those of another lens are removed), in its own frame, mm; and what `trace`
+/// leaves, `result.json` last. `traced` is the trace that `figures` are of. Returns the names.
 std::vector<std::string> write_lens_files(const std::filesystem::path& folder, const LensProblem& problem,
                                           const LensResult& result, const DesignMetrics& figures,
                                           const TraceResult& traced, std::string_view history,
