@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/design/problem/design_detectors.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 
