@@ -67,7 +67,7 @@ struct DesignBound {
 
 /// Whether a bound is kept: decided only where the noise leaves no doubt.
 enum class ZoneVerdict { met, missed, undetermined };
-/// "met", "missed" or "undetermined".
+/// "met", "missed" or "not determined".
 std::string_view to_string(ZoneVerdict verdict);
 
 /// One bound of a zone against the light that was found.
@@ -88,6 +88,10 @@ struct ZoneBoundCheck {
   double missing = 0.0;
   /// Whether the bound is kept.
   ZoneVerdict verdict = ZoneVerdict::met;
+  /// Of upper bounds in cd or lx: the most light of any cell that met neither mirror nor body.
+  std::optional<Estimate> direct;
+  /// True where that light alone breaks the bound: no mirror with this rim keeps it.
+  bool broken_by_direct = false;
 };
 
 /// A zone's light, by its measuring cells, in cd or lx.

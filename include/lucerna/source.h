@@ -97,10 +97,10 @@ struct EmitterOptions {
   std::optional<double> radius_mm;
   /// Cylinder, filament; > 0. Absent: 6, filament 8.
   std::optional<double> length_mm;
-  /// Rectangle; > 0.
-  std::array<double, 2> size_mm{1.0, 1.0};
-  /// Filament: share of the flux in the image, [0, 1).
-  double ghost_share = 0.05;
+  /// Rectangle; > 0. Absent: 1 x 1.
+  std::optional<std::array<double, 2>> size_mm;
+  /// Filament: share of the flux in the image, [0, 1). Absent: 0.05.
+  std::optional<double> ghost_share;
   /// Total flux in `flux_unit`; > 0.
   double flux = 1000.0;
   /// lm or W.
@@ -110,9 +110,9 @@ struct EmitterOptions {
   std::optional<BoundingSurface> surface;
 };
 
-/// The emitter. Throws InputError for sizes or fluxes out of range, or a surface that the emitter does not
-/// fit in. A ray takes five numbers of the sequence: 0, 1 direction; 2, 3 position; 4 which part. Cost: about
-/// 0.1 us a ray.
+/// The emitter. Throws InputError for sizes or fluxes out of range, a size that its kind does not have, or a
+/// surface that the emitter does not fit in. A ray takes five numbers of the sequence: 0, 1 direction; 2, 3
+/// position; 4 which part. Cost: about 0.1 us a ray.
 [[nodiscard]] std::unique_ptr<RaySource> make_emitter(const EmitterOptions& options);
 
 /// The surface that `options` asks for or its kind has by default.

@@ -72,6 +72,8 @@ py::object zone_record(const ZoneCheck& zone) {
     bound["found"] = estimate(b.found);
     bound["place"] = b.place;
     bound["verdict"] = std::string(to_string(b.verdict));
+    if (b.direct) bound["direct"] = estimate(*b.direct);
+    bound["broken_by_direct"] = b.broken_by_direct;
     bounds.append(record(bound));
   }
   out["bounds"] = bounds;

@@ -112,7 +112,7 @@ InputError
 
 constexpr const char* kMakeSourceDoc =
     R"(make_source(kind, rays, *, seed=1, sequence='random', flux_lm=None, flux_w=None, radius_mm=None,
-    length_mm=None, size_mm=[1.0, 1.0], ghost_share=0.05, surface=None, surface_mm=[])
+    length_mm=None, size_mm=None, ghost_share=None, surface=None, surface_mm=[])
 --
 
 Rays of an exactly known source.
@@ -131,11 +131,11 @@ sequence : str
 flux_lm, flux_w : float, optional
     Total flux, lm or W; 1000 lm where neither is given.
 radius_mm, length_mm : float, optional
-    Sizes of a disk, cylinder, sphere or filament, mm.
-size_mm : sequence of 2 floats
-    Sides of a rectangle, mm.
-ghost_share : float
-    Share of a filament's flux in its image in the bulb.
+    Sizes of a disk, cylinder, sphere or filament, mm; the radius of a synthetic set's sphere.
+size_mm : sequence of 2 floats, optional
+    Sides of a rectangle, mm; 1 and 1 where they are not given.
+ghost_share : float, optional
+    Share of a filament's flux in its image in the bulb; 0.05 where it is not given.
 surface : str, optional
     Where rays start: 'none', 'plane', 'sphere', 'cylinder' or 'box'.
 surface_mm : sequence of float
@@ -460,8 +460,9 @@ Warnings save_rays(const Rays& rays, const std::filesystem::path& path,
 
 Rays make_source(const std::string& kind, double rays, Seed seed, const std::string& sequence,
                  std::optional<double> flux_lm, std::optional<double> flux_w, std::optional<double> radius_mm,
-                 std::optional<double> length_mm, const std::array<double, 2>& size_mm, double ghost_share,
-                 const std::optional<std::string>& surface, const std::vector<double>& surface_mm) {
+                 std::optional<double> length_mm, const std::optional<std::array<double, 2>>& size_mm,
+                 std::optional<double> ghost_share, const std::optional<std::string>& surface,
+                 const std::vector<double>& surface_mm) {
   EmitterOptions options;
   options.kind = emitter_kind(kind);
   options.radius_mm = radius_mm;
@@ -555,7 +556,7 @@ void add_rays(py::module_& m) {
         "text_columns"_a = Warnings{}, "callback"_a = py::none(), kReadRaysDoc);
   m.def("make_source", &make_source, "kind"_a, "rays"_a, py::kw_only(), "seed"_a = 1, "sequence"_a = "random",
         "flux_lm"_a = py::none(), "flux_w"_a = py::none(), "radius_mm"_a = py::none(),
-        "length_mm"_a = py::none(), "size_mm"_a = std::array<double, 2>{1.0, 1.0}, "ghost_share"_a = 0.05,
+        "length_mm"_a = py::none(), "size_mm"_a = py::none(), "ghost_share"_a = py::none(),
         "surface"_a = py::none(), "surface_mm"_a = std::vector<double>{}, kMakeSourceDoc);
 }
 

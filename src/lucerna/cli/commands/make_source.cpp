@@ -25,7 +25,7 @@ EmitterOptions emitter_options(const MakeSourceArguments& a) {
   if (!a.ghost_share.empty()) options.ghost_share = parse_number(a.ghost_share);
   if (!a.size.empty()) {
     const auto size = parse_numbers(a.size, 2);
-    options.size_mm = {size[0], size[1]};
+    options.size_mm = {{size[0], size[1]}};
   }
   if (!a.flux_lm.empty() && !a.flux_w.empty()) throw UsageError("--flux-lm and --flux-w exclude each other");
   if (!a.flux_lm.empty()) options.flux = parse_flux(a.flux_lm, "--flux-lm");

@@ -16,8 +16,9 @@ namespace lucerna {
 struct BoxSums {
   /// Flux that leaves the luminaire, and the part of it that met no mirror.
   std::vector<double> flux, direct;
-  /// Flux that leaves by measuring cell of the target's zones (zone_cells.h); empty without zones.
-  std::vector<double> zones;
+  /// Flux that leaves by measuring cell of the target's zones (zone_cells.h), and the part of it that met
+  /// nothing; empty without zones.
+  std::vector<double> zones, zones_direct;
   /// All ends of the emitted flux: emitted = out_direct + out_reflected + absorbed + back + bodies + lost.
   double emitted = 0.0, out_direct = 0.0, out_reflected = 0.0;
   double absorbed = 0.0, back = 0.0, bodies = 0.0, lost = 0.0;

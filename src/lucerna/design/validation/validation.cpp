@@ -293,7 +293,9 @@ class BatchTracer {
     sums.flux[cell] += flux_[i];
     if (zones_ != nullptr) zones_->add(from, along, flux_[i], sums.zones);
     (reflected ? sums.out_reflected : sums.out_direct) += flux_[i];
-    if (!reflected) sums.direct[cell] += flux_[i];
+    if (reflected) return;
+    sums.direct[cell] += flux_[i];
+    if (zones_ != nullptr) zones_->add(from, along, flux_[i], sums.zones_direct);
   }
 
   bool off_mirror(std::size_t i, BoxSums& sums) {
@@ -351,13 +353,13 @@ class BatchTracer {
 
 /// The sums of a replicate as bytes, and back.
 void append_sums(const BoxSums& s, std::string& bytes) {
-  for (const auto* values : {&s.flux, &s.direct, &s.zones}) append(bytes, *values);
+  for (const auto* values : {&s.flux, &s.direct, &s.zones, &s.zones_direct}) append(bytes, *values);
   for (const double x : {s.emitted, s.out_direct, s.out_reflected, s.absorbed, s.back, s.bodies, s.lost})
     append_double(bytes, x);
   append(bytes, s.rays);
 }
 void take_sums(BoxSums& s, std::string_view& bytes) {
-  for (auto* values : {&s.flux, &s.direct, &s.zones}) take(bytes, *values);
+  for (auto* values : {&s.flux, &s.direct, &s.zones, &s.zones_direct}) take(bytes, *values);
   for (double* x : {&s.emitted, &s.out_direct, &s.out_reflected, &s.absorbed, &s.back, &s.bodies, &s.lost})
     *x = take_double(bytes);
   s.rays = take(bytes);
@@ -446,7 +448,9 @@ Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const
   for (BoxSums& r : replicates) {
     r.flux.assign(boxes.size(), 0.0);
     r.direct.assign(boxes.size(), 0.0);
-    r.zones.assign(options.zones != nullptr ? options.zones->size() : 0, 0.0);
+    if (options.zones == nullptr) continue;
+    r.zones.assign(options.zones->size(), 0.0);
+    r.zones_direct.assign(options.zones->size(), 0.0);
   }
   const Clock::time_point traced = Clock::now();
   out.mesh_s = of_first(options.peers, seconds_since(start));

@@ -11,15 +11,16 @@ namespace lucerna {
 
 namespace {
 
-/// Cells by replicates: intensity or illuminance.
+/// Cells by replicates: intensity or illuminance, of the sums that a member of BoxSums holds.
 class ZoneLight {
  public:
-  ZoneLight(const ZoneCells& cells, std::span<const BoxSums> replicates, double source_flux)
+  ZoneLight(const ZoneCells& cells, std::span<const BoxSums> replicates, double source_flux,
+            const std::vector<double> BoxSums::*sums)
       : cells_(cells), value_(cells.size(), std::vector<double>(replicates.size())) {
     for (std::size_t c = 0; c < cells.size(); ++c) {
       const double per = cells.unit() * source_flux / cells.cells()[c].measure;
       for (std::size_t r = 0; r < replicates.size(); ++r) {
-        value_[c][r] = per * replicates[r].zones[c] / replicates[r].emitted;
+        value_[c][r] = per * (replicates[r].*sums)[c] / replicates[r].emitted;
       }
       mean_.push_back(mean_estimate(value_[c]));
     }
@@ -67,6 +68,15 @@ std::vector<double> reference_of(const ZoneLight& light, std::size_t zone, const
 ZoneVerdict worse(ZoneVerdict a, ZoneVerdict b) {
   if (a == ZoneVerdict::missed || b == ZoneVerdict::missed) return ZoneVerdict::missed;
   return a == ZoneVerdict::undetermined ? a : b;
+}
+
+/// What the direct light alone makes of an upper bound in cd or lx.
+void check_direct(const ZoneLight& direct, std::size_t zone, const ZoneBound& bound, ZoneBoundCheck& out) {
+  if (bound.is_min || bound.reference != ZoneReference::absolute) return;
+  const Estimate& most = direct.mean(direct.brightest(zone));
+  out.direct = most;
+  out.broken_by_direct =
+      most.mean > bound.value && most.mean - bound.value >= kZoneErrors * most.standard_error;
 }
 
 ZoneBoundCheck check_bound(const ZoneCells& cells, const ZoneLight& light, std::size_t zone,
@@ -118,7 +128,8 @@ ZoneVerdict ZoneCheck::verdict() const {
 
 std::vector<ZoneCheck> check_zones(const ZoneCells& cells, std::span<const BoxSums> replicates,
                                    double source_flux) {
-  const ZoneLight light(cells, replicates, source_flux);
+  const ZoneLight light(cells, replicates, source_flux, &BoxSums::zones);
+  const ZoneLight direct(cells, replicates, source_flux, &BoxSums::zones_direct);
   std::vector<ZoneCheck> out;
   for (std::size_t z = 0; z < cells.zones().size(); ++z) {
     const TargetZone& zone = cells.zones()[z];
@@ -126,7 +137,10 @@ std::vector<ZoneCheck> check_zones(const ZoneCells& cells, std::span<const BoxSu
     check.min = light.mean(light.darkest(z));
     check.max = light.mean(light.brightest(z));
     check.mean = mean_estimate(light.over(z));
-    for (const ZoneBound& bound : zone.bounds) check.bounds.push_back(check_bound(cells, light, z, bound));
+    for (const ZoneBound& bound : zone.bounds) {
+      check.bounds.push_back(check_bound(cells, light, z, bound));
+      check_direct(direct, z, bound, check.bounds.back());
+    }
     out.push_back(std::move(check));
   }
   return out;

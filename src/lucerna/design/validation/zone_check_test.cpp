@@ -31,6 +31,7 @@ std::vector<BoxSums> light(const ZoneCells& cells, const std::vector<double>& lx
       // +-d alternately has the standard error d / sqrt(15).
       const double off = (r % 2 == 0 ? 1.0 : -1.0) * relative * std::sqrt(15.0);
       out[r].zones.push_back(lx[c] * (1.0 + off) * cells.cells()[c].measure * 1e-6 / kFlux);
+      out[r].zones_direct.push_back(0.0);
     }
   }
   return out;
@@ -88,6 +89,26 @@ TEST(ZoneCheck, TheHeadlineNamesWhatIsMissed) {
   EXPECT_FALSE(any_undetermined(zones));
 }
 
+TEST(ZoneCheck, DirectLightAloneMayBreakAnUpperBound) {
+  const ZoneCells cells = lane({{"max_lx", false, 10.0}, {"min_lx", true, 1.0}});
+  const auto bounds = [&](double direct_share, double relative) {
+    std::vector<BoxSums> sums = light(cells, {12, 20, 8, 16}, relative);
+    for (BoxSums& r : sums) {
+      r.zones_direct = r.zones;
+      for (double& flux : r.zones_direct) flux *= direct_share;
+    }
+    return check_zones(cells, sums, kFlux).front().bounds;
+  };
+  const auto most = bounds(0.6, 0.01);
+  ASSERT_TRUE(most[0].direct);
+  EXPECT_NEAR(most[0].direct->mean, 12.0, 1e-9);
+  EXPECT_NEAR(most[0].direct->standard_error, 0.12, 1e-9);
+  EXPECT_TRUE(most[0].broken_by_direct);
+  EXPECT_FALSE(most[1].direct) << "a lower bound has no use of it";
+  EXPECT_FALSE(bounds(0.45, 0.01)[0].broken_by_direct) << "the mirror's light is the rest";
+  EXPECT_FALSE(bounds(0.51, 0.01)[0].broken_by_direct) << "10.2 +- 0.1 is not clear";
+}
+
 TEST(ZoneCheck, AnUnlitReferenceIsNotMet) {
   EXPECT_NE(check({"min_uo", true, 0.5, ZoneReference::mean, 0}, {0, 0, 0, 0}, 0.001).verdict(),
             ZoneVerdict::met);
@@ -119,6 +140,7 @@ TEST(ZoneCheckStatistical, ValidationSeesTheLightOfALambertianDisk) {
   const Validation v = validate(scene, boxes, boxes.flux_of(target), TargetMode::shape, o);
   ASSERT_EQ(v.zones.size(), 2u);
   EXPECT_EQ(v.zones[0].verdict(), ZoneVerdict::met);
+  for (const BoxSums& r : v.replicates) EXPECT_EQ(r.zones, r.zones_direct) << "there is no mirror";
   for (std::size_t c = 0; c < cells.size(); ++c) {
     double truth = 0.0, sum = 0.0, square = 0.0;
     for (int i = 0; i < 400; ++i) {

@@ -302,12 +302,21 @@ void TomlReader::finish() const {
   for (const auto& [key, node] : *table_) {
     const std::string_view word = key.str();
     if (known_.contains(word)) continue;
-    const auto meant = std::ranges::find_if(known_, [&](const auto& k) { return is_meant(word, k); });
-    const std::string nearest = meant != known_.end() ? *meant : nearest_word(word, known_);
-    fail(word,
-         nearest.empty() ? "unknown key" : fmt::format("unknown key; the nearest known one is '{}'", nearest),
-         ErrorCause::unknown_key);
+    fail(word, why_unknown(word), ErrorCause::unknown_key);
   }
+}
+
+std::string TomlReader::why_unknown(std::string_view word) const {
+  if (find_key(keys_, table_path_, word) != nullptr) {
+    const std::string table = table_path_.empty() ? "this file" : fmt::format("[{}]", table_path_);
+    return fmt::format("has a meaning only with other keys of {} than are here", table);
+  }
+  const auto meant = std::ranges::find_if(known_, [&](const auto& k) { return is_meant(word, k); });
+  const auto elsewhere = std::ranges::find(keys_, word, &ProjectKey::key);
+  if (meant == known_.end() && elsewhere != keys_.end() && !elsewhere->table.empty())
+    return fmt::format("unknown key here; [{}] has one of this name", elsewhere->table);
+  const std::string nearest = meant != known_.end() ? *meant : nearest_word(word, known_);
+  return nearest.empty() ? "unknown key" : fmt::format("unknown key; the nearest known one is '{}'", nearest);
 }
 
 }  // namespace lucerna

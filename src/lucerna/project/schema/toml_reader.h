@@ -81,6 +81,8 @@ class TomlReader {
   double to_number(const toml::node& node, std::string_view key) const;
   const toml::array& to_array(const toml::node& node, std::string_view key, std::string_view expected) const;
   std::string full_key(std::string_view key) const;
+  /// Why `finish` refuses a key.
+  std::string why_unknown(std::string_view key) const;
 
   const toml::table* table_;
   std::span<const ProjectKey> keys_;

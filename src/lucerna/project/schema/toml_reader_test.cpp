@@ -93,6 +93,16 @@ TEST(TomlReader, AnUnknownKeyNamesTheNearestKnownOne) {
   EXPECT_TRUE(has(text, "line 2: focal_mn: unknown key; the nearest known one is 'focal_mm'")) << text;
 }
 
+TEST(TomlReader, AKeyInTheWrongPlaceIsNotCalledMisspelt) {
+  const auto read = [](TomlReader& r) { r.number("focal_mm"); };
+  EXPECT_TRUE(has(reader_message("focal_mm = 1\nname = 'a'\n", read),
+                  "line 2: name: has a meaning only with other keys"))
+      << reader_message("name = 'a'\n", read);
+  EXPECT_TRUE(
+      has(reader_message("k = 1\n", read), "line 1: k: unknown key here; [part] has one of this name"))
+      << reader_message("k = 1\n", read);
+}
+
 // A wrong unit is two letters or more away from the right one, and another key may be nearer.
 TEST(TomlReader, AKeyWithAnotherUnitIsNamed) {
   for (const char* key : {"focal_in", "focal_inch", "focal"}) {

@@ -43,8 +43,8 @@ std::shared_ptr<const RaySource> read_emitter(TomlReader& reader, const std::opt
   options.kind = emitter_kind(reader.required_word("kind"));
   options.radius_mm = reader.number("radius_mm");
   options.length_mm = reader.number("length_mm");
-  if (const auto size = reader.numbers("size_mm", 2)) options.size_mm = {(*size)[0], (*size)[1]};
-  options.ghost_share = reader.number("ghost_share", options.ghost_share);
+  if (const auto size = reader.numbers("size_mm", 2)) options.size_mm = {{(*size)[0], (*size)[1]}};
+  options.ghost_share = reader.number("ghost_share");
   options.surface = read_surface(reader);
   if (flux) {
     options.flux = flux->flux;

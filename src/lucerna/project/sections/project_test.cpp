@@ -332,7 +332,7 @@ TEST(Project, MetalsAndGlassesHaveTheirMaterials) {
   expect(glass + "material = 'pmma'\nrefractive_index = 1.5\n", "body[0].refractive_index: found `material`");
   expect(glass + "material = 'pmma'\nwavelength_nm = 400\n", "expected 420 to 1620 nm");
   expect(glass + "wavelength_nm = 600\n", "belongs to `material`");
-  expect(glass + "metal = 'silver'\n", "body[0].metal: unknown key");
+  expect(glass + "metal = 'silver'\n", "body[0].metal: has a meaning only with other keys");
 }
 
 // A made-up catalogue; the dispersion of its glass is that of bk7.

@@ -32,6 +32,7 @@ constexpr std::size_t kZoom = 6;
 struct Side {
   RayBlock rays;
   std::unique_ptr<SourceModel> model;
+  FluxUnit unit = FluxUnit::lumen;
 };
 
 Side read_side(const fs::path& path, std::uint64_t stream, const FileComparisonOptions& options,
@@ -39,11 +40,14 @@ Side read_side(const fs::path& path, std::uint64_t stream, const FileComparisonO
   Side side;
   if (!is_source_model(path)) {
     std::vector<std::string> found;
-    side.rays = std::move(read_ray_set(path, {}, progress, &found).rays);
+    RaySet set = read_ray_set(path, {}, progress, &found);
+    side.unit = set.header.flux_unit;
+    side.rays = std::move(set.rays);
     add_named_warnings(path, found, warnings);
     return side;
   }
   side.model = load_source_model(path);
+  side.unit = side.model->flux_unit();
   const Sequence sequence(SequenceKind::random, options.seed + stream);
   side.rays = draw_rays(*side.model, sequence, static_cast<std::size_t>(options.rays));
   return side;
@@ -156,6 +160,10 @@ FileComparison compare(const fs::path& reference, const fs::path& test, const Fi
   }
   const Side a = read_side(reference, 0, options, found.warnings, progress);
   const Side b = read_side(test, 1, options, found.warnings, progress);
+  if (a.unit != b.unit) {
+    found.warnings.push_back(fmt::format("{} is in {}, {} in {}; each is compared by shares of its own flux",
+                                         reference.string(), symbol(a.unit), test.string(), symbol(b.unit)));
+  }
   found.rays = compare_sides(a, b, options);
   return found;
 }

@@ -18,8 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write_disk(const fs::path& file, double radius_mm, std::uint64_t seed) {
+void write_disk(const fs::path& file, double radius_mm, std::uint64_t seed, FluxUnit unit = FluxUnit::lumen) {
   RaySet set;
+  set.header.flux_unit = unit;
   set.header.set_flux(100.0);
   set.rays.resize(20'000);
   EmitterOptions options;
@@ -68,6 +69,18 @@ TEST(Comparison, OfRayFilesIsThatOfTheirRays) {
   EXPECT_GT(wider.rays->focus_plane[0].l1, 3.0 * wider.rays->focus_plane[0].floor);
 }
 
+TEST(Comparison, OfLumensAndWattsIsBySharesAndSaysSo) {
+  const test::TempDir dir;
+  write_disk(dir / "lm.tm25ray", 1.0, 1);
+  write_disk(dir / "w.tm25ray", 1.0, 1, FluxUnit::watt);
+  const FileComparison found = compare(dir / "lm.tm25ray", dir / "w.tm25ray");
+  EXPECT_EQ(found.rays->views.far.error, 0.0);
+  ASSERT_EQ(found.warnings.size(), 1u);
+  EXPECT_NE(found.warnings[0].find("w.tm25ray in W; each is compared by shares"), std::string::npos)
+      << found.warnings[0];
+  EXPECT_TRUE(compare(dir / "lm.tm25ray", dir / "lm.tm25ray").warnings.empty());
+}
+
 TEST(Comparison, OfLightDistributionsIsThatOfTheirValues) {
   const test::TempDir dir;
   write_light(dir / "a.ldt", 20.0);
@@ -108,6 +121,10 @@ TEST(Comparison, OfDifferentKindsIsRefused) {
             std::string::npos)
       << rays;
   EXPECT_NE(refused("a.tm25ray", "none.tm25ray").find("none.tm25ray"), std::string::npos);
+  fs::create_directory(dir / "folder");
+  const std::string folder = refused("a.ldt", "folder");
+  EXPECT_NE(folder.find("folder: found no result.json, expected the folder of a trace"), std::string::npos)
+      << folder;
 }
 
 TEST(Comparison, OfDifferentUnitsIsRefused) {

@@ -197,11 +197,16 @@ PlaneTable plane_table(std::string_view csv, const std::string& file) {
 }
 
 TraceFolder read_trace_folder(const std::filesystem::path& folder) {
+  const std::filesystem::path result_json = folder / "result.json";
+  if (!std::filesystem::exists(result_json)) {
+    throw InputError(
+        fmt::format("{}: found no result.json, expected the folder of a trace or design", folder.string()));
+  }
   TraceFolder read;
   read.path = folder;
-  read.result = read_result(folder / "result.json");
+  read.result = read_result(result_json);
   read.project = read_file(folder / "project.toml", kMaxTextBytes);
-  const std::string result_file = (folder / "result.json").string();
+  const std::string result_file = result_json.string();
   for (const Json& detector : read.result["detectors"]) {
     const std::string name = detector_name(detector, result_file);
     const Json kind = detector.value("kind", Json());

@@ -96,6 +96,7 @@ Json design_file_json(const std::filesystem::path& folder, const std::string& ta
   result.remarks.emplace_back("none");
   ZoneCheck zone;
   zone.bounds.emplace_back();
+  zone.bounds.back().direct = Estimate{};
   result.zones = result.start_zones = {zone};
   zone.on_plane = true;
   result.zones.push_back(zone);

@@ -14,13 +14,18 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json bound_json(const ZoneBoundCheck& b) {
-  return {{"bound", b.key},
-          {"allowed", b.allowed},
-          {"found", estimate_json(b.found)},
-          {"reference", b.reference},
-          {"place", b.place},
-          {"missing", b.missing},
-          {"verdict", std::string(to_string(b.verdict))}};
+  Json out{{"bound", b.key},
+           {"allowed", b.allowed},
+           {"found", estimate_json(b.found)},
+           {"reference", b.reference},
+           {"place", b.place},
+           {"missing", b.missing},
+           {"verdict", std::string(to_string(b.verdict))}};
+  if (b.direct) {
+    out["direct"] = estimate_json(*b.direct);
+    out["broken_by_direct"] = b.broken_by_direct;
+  }
+  return out;
 }
 
 const char* unit_text(bool on_plane, FluxUnit unit) {
@@ -60,6 +65,11 @@ std::vector<std::string> zones_summary(const std::vector<ZoneCheck>& zones, Flux
       lines.push_back(fmt::format("{}  {:<16}{} at {}: {}", head, fmt::format("{} {:.4g}", b.key, b.allowed),
                                   estimate_text(b.found), b.place, to_string(b.verdict)));
       head.assign(head.size(), ' ');
+      if (b.broken_by_direct)
+        lines.push_back(
+            fmt::format("    {} of {}: {} leave without meeting the mirror, {:.4g} are allowed; "
+                        "no mirror with this rim keeps that",
+                        b.key, z.name, estimate_text(*b.direct, u), b.allowed));
     }
   }
   const ZoneCheck& z = zones.front();

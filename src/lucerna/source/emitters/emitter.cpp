@@ -133,18 +133,36 @@ double positive(double value, std::string_view name) {
   return value;
 }
 
+/// A size that changes nothing is a mistake.
+void check_sizes(const EmitterOptions& o) {
+  const bool coil = o.kind == EmitterKind::filament, cylinder = o.kind == EmitterKind::cylinder;
+  const bool round =
+      coil || cylinder || o.kind == EmitterKind::disk || o.kind == EmitterKind::sphere || is_seed_set(o.kind);
+  const auto check = [&](bool given, bool used, std::string_view name) {
+    if (given && !used)
+      throw InputError(fmt::format("found {}, which a {} does not have", name, to_string(o.kind)));
+  };
+  check(o.radius_mm.has_value(), round, "radius_mm");
+  check(o.length_mm.has_value(), coil || cylinder, "length_mm");
+  check(o.size_mm.has_value(), o.kind == EmitterKind::rectangle, "size_mm");
+  check(o.ghost_share.has_value(), coil, "ghost_share");
+}
+
 EmitterShape shape_of(const EmitterOptions& o) {
+  check_sizes(o);
   const bool coil = o.kind == EmitterKind::filament;
-  if (!(o.ghost_share >= 0.0 && o.ghost_share < 1.0)) {
-    throw InputError(fmt::format("ghost_share is {}, expected 0 <= ghost_share < 1", o.ghost_share));
+  const double ghost_share = o.ghost_share.value_or(0.05);
+  if (!(ghost_share >= 0.0 && ghost_share < 1.0)) {
+    throw InputError(fmt::format("ghost_share is {}, expected 0 <= ghost_share < 1", ghost_share));
   }
+  const std::array<double, 2> size = o.size_mm.value_or(std::array{1.0, 1.0});
   const double radius = o.radius_mm.value_or(coil ? 0.6 : is_seed_set(o.kind) ? 10.0 : 1.0);
   return {o.kind,
           positive(radius, "radius_mm"),
           positive(o.length_mm.value_or(coil ? 8.0 : 6.0), "length_mm"),
-          positive(o.size_mm[0], "size_mm[0]"),
-          positive(o.size_mm[1], "size_mm[1]"),
-          o.ghost_share};
+          positive(size[0], "size_mm[0]"),
+          positive(size[1], "size_mm[1]"),
+          ghost_share};
 }
 
 class Emitter final : public RaySource, public LuminanceSource {

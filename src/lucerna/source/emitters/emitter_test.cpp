@@ -78,7 +78,7 @@ TEST(EmitterStatistical, DiskIsUniformAndLambertianAndAnIsotropicOneIsRejected) 
 }
 
 TEST(EmitterStatistical, RectangleIsUniformAndLambertian) {
-  const RayBlock rays = draw({.kind = EmitterKind::rectangle, .size_mm = {4.0, 1.0}});
+  const RayBlock rays = draw({.kind = EmitterKind::rectangle, .size_mm = {{4.0, 1.0}}});
   const Coordinate x = [](const Ray& r) { return r.origin_mm.x / 4.0 + 0.5; };
   const Coordinate y = [](const Ray& r) { return r.origin_mm.y + 0.5; };
   expect_uniform(rays, x, y);
@@ -271,6 +271,12 @@ TEST(Emitter, BadSizesAreNamed) {
             std::string::npos);
   EXPECT_NE(message({.kind = EmitterKind::cylinder, .surface = BoundingSurface::sphere(2.0)}).find("outside"),
             std::string::npos);
+  EXPECT_EQ(message({.kind = EmitterKind::disk, .length_mm = 3.0}),
+            "found length_mm, which a disk does not have");
+  EXPECT_NE(message({.kind = EmitterKind::led, .radius_mm = 1.0}), "");
+  EXPECT_NE(message({.kind = EmitterKind::sphere, .size_mm = {{1.0, 1.0}}}), "");
+  EXPECT_NE(message({.kind = EmitterKind::cylinder, .ghost_share = 0.1}), "");
+  for (const EmitterKind kind : kAllKinds) EXPECT_EQ(message({.kind = kind}), "");
   EXPECT_THROW(emitter_kind("torch"), UsageError);
   for (const EmitterKind kind : kAllKinds) EXPECT_EQ(emitter_kind(to_string(kind)), kind);
 }
