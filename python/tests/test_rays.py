@@ -146,3 +146,10 @@ def test_sources_are_reproducible():
     for bad in (1.5, -1, np.nan, 1e30):
         with pytest.raises(lu.InputError, match="rays"):
             lu.make_source("led", bad)
+
+
+def test_a_size_that_a_kind_does_not_have_is_refused():
+    with pytest.raises(lu.InputError, match="found length_mm, which a disk does not have"):
+        lu.make_source("disk", 10, length_mm=3)
+    wide = lu.make_source("rectangle", 1000, size_mm=[4, 1], seed=1).position_mm
+    assert 1.9 < abs(wide[:, 0]).max() <= 2 and abs(wide[:, 1]).max() <= 0.5
