@@ -255,7 +255,8 @@ struct DesignSettings {
 struct DesignFindings {
   /// Why it ended.
   DesignTermination end = DesignTermination::converged;
-  /// Against the target, by fresh rays through the exported mesh; and of the given mirror.
+  /// Against the target, by fresh rays through the exported mesh; and of what the search
+  /// began with: the given mirror, or where limits exclude it one within them.
   DesignError error, start_error;
   /// The target's zones in the light of the result and of the start, by the same rays.
   std::vector<ZoneCheck> zones, start_zones;

@@ -25,8 +25,8 @@ struct CompareOptions {
 struct Alignment {
   Estimate tilt_deg;           ///< by how much the axis tilts
   Estimate tilt_toward_c_deg;  ///< C plane that nadir tilts toward
-  Estimate turn_deg;           ///< about the vertical, counter-clockwise in C
-  Estimate relative_rms;       ///< after it
+  Estimate turn_deg;      ///< about the vertical, counter-clockwise in C; 0 +- 104 where all turns fit alike
+  Estimate relative_rms;  ///< after it
 };
 
 /// How far a test distribution is from a reference. Sums run over the union of both grids (both are bilinear

@@ -82,17 +82,6 @@ std::optional<double> farthest_from_axis_deg(const std::vector<CirclePoint>& cir
 std::optional<double> beam_angle_deg(const IntensityDistribution& distribution, double c_deg, double fraction,
                                      BeamReference reference);
 
-/// Mean intensity over the cone of half angle `half_angle_deg` about a direction, by solid angle: the centre
-/// beam intensity that does not hang on one noisy bin. 0.001 <= half angle <= 90. Midpoint rule on 32 rings
-/// of 64 points, equal solid angles.
-double cone_mean_cd(const IntensityDistribution& distribution, const Direction& axis, double half_angle_deg);
-
-/// Standard error of `cone_mean_cd` from independent standard errors of the grid values (same layout as
-/// `cd`).
-double cone_mean_error_cd(const IntensityDistribution& distribution,
-                          std::span<const double> standard_error_cd, const Direction& axis,
-                          double half_angle_deg);
-
 /// The figures that follow a light trace. Angles in degrees; those without a value did not reach their
 /// threshold.
 struct BeamMetrics {
@@ -100,9 +89,7 @@ struct BeamMetrics {
   /// The largest intensity.
   PeakIntensity peak;
   double axis_gamma_deg = 0.0;  ///< the axis of "centre", 0 or 180
-  double centre_cd = 0.0;       ///< mean over the cone of `centre_cone_deg` half angle about the axis
-  /// Half angle of that cone.
-  double centre_cone_deg = 0.0;
+  double centre_cd = 0.0;       ///< on the axis
   /// Per pair of planes: C of the pair (< 180), and the four angles.
   struct Plane {
     /// C of the pair, < 180.
@@ -114,11 +101,8 @@ struct BeamMetrics {
   std::vector<Plane> planes;
 };
 
-/// All of them, for the pairs C0-C180, C90-C270 and every further grid plane below 180. `centre_cone_deg` is
-/// the half angle for the centre intensity; the default is small against any beam and holds many bins of a 1
-/// degree grid.
-[[nodiscard]] BeamMetrics beam_metrics(const IntensityDistribution& distribution,
-                                       double centre_cone_deg = 1.0);
+/// All of them, for the pairs C0-C180, C90-C270 and every further grid plane below 180.
+[[nodiscard]] BeamMetrics beam_metrics(const IntensityDistribution& distribution);
 
 /// The figures of a data sheet, with the definition of each. Fluxes in lm (or W), angles in degrees.
 struct PhotometricMetrics {

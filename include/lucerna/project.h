@@ -89,8 +89,8 @@ struct Project {
 [[nodiscard]] std::string project_text(const Project& project);
 
 /// A copy of the project that is all in files: writes what is in memory to `folder`, which is there, as .nfl,
-/// .tm25ray and .ldt (a radiometric target as .ies), and names these files. Throws InputError where a file
-/// cannot be written.
+/// .tm25ray and .ldt (a radiometric target as .ies), and names these files. What is there stays: another file
+/// of a name is passed over ("model-1-2.nfl"). Throws InputError where a file cannot be written.
 [[nodiscard]] Project save_memory(const Project& project, const std::filesystem::path& folder);
 
 /// A commented project file with every kind of table: what `lucerna init` writes. It reads as it is; what it

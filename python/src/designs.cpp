@@ -68,8 +68,10 @@ py::object zone_record(const ZoneCheck& zone) {
   for (const ZoneBoundCheck& b : zone.bounds) {
     py::dict bound;
     bound["key"] = b.key;
-    bound["allowed"] = b.allowed * b.reference;
+    bound["allowed"] = b.allowed;
     bound["found"] = estimate(b.found);
+    bound["reference"] = b.reference;
+    bound["missing"] = b.missing;
     bound["place"] = b.place;
     bound["verdict"] = std::string(to_string(b.verdict));
     if (b.direct) bound["direct"] = estimate(*b.direct);
@@ -235,7 +237,7 @@ const Finding kFindings[] = {
     {"error", [](const DesignedMirror& d) { return design_error(d.error); },
      "Error against the target, by fresh rays through the exported mesh, as a Record."},
     {"start_error", [](const DesignedMirror& d) { return design_error(d.start_error); },
-     "The same of the mirror that was given."},
+     "The same of what the search began with: the given mirror, or where limits exclude it one within them."},
     {"relative_rms",
      [](const DesignedMirror& d) {
        return estimate(Estimate{d.error.c48.excess, d.error.c48.standard_error});

@@ -241,6 +241,9 @@ Intensity make_intensity(const py::object& c_deg, const py::object& gamma_deg, c
   if (const std::string fault = grid_fault(d); !fault.empty()) throw InputError(fault);
   Intensity out{file};
   if (!standard_error.is_none()) out.standard_error = values(standard_error, "standard_error");
+  for (const double e : out.standard_error) {
+    if (e < 0.0) throw InputError("standard_error: found " + std::to_string(e) + ", expected none below 0");
+  }
   if (!luminaire.is_none()) file->luminaire = luminaire_of(mapping(luminaire, "luminaire"));
   return out;
 }

@@ -292,6 +292,10 @@ Rays from_arrays(const py::object& position_mm, const py::object& direction, con
     if (nm.size() != b.size())
       throw InputError("wavelength_nm: found " + std::to_string(nm.size()) + " numbers, expected " +
                        std::to_string(b.size()));
+    for (const float x : nm) {
+      if (!(x > 0.0f && std::isfinite(x)))
+        throw InputError("wavelength_nm: found " + std::to_string(x) + ", expected numbers above 0");
+    }
     set->header.columns.push_back({ColumnKind::wavelength_nm, standard_label(ColumnKind::wavelength_nm)});
     b.extra.push_back(std::move(nm));
   }

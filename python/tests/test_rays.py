@@ -148,6 +148,12 @@ def test_sources_are_reproducible():
             lu.make_source("led", bad)
 
 
+def test_wavelengths_are_above_zero():
+    for bad in (-5, 0, np.nan, np.inf):
+        with pytest.raises(lu.InputError, match="wavelength_nm"):
+            lu.RaySet.from_arrays([[0, 0, 0]], [[0, 0, 1]], wavelength_nm=[bad])
+
+
 def test_a_size_that_a_kind_does_not_have_is_refused():
     with pytest.raises(lu.InputError, match="found length_mm, which a disk does not have"):
         lu.make_source("disk", 10, length_mm=3)

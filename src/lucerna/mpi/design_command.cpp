@@ -83,7 +83,7 @@ DesignProgress progress_so_far(const DesignArguments& a, Session& session, Ranks
   together(ranks, [&] {
     if (!ranks.is_first()) return;
     session.prepare_folder(a.output, session.force || a.resume);
-    require_writable(a.report);
+    require_report(a.report);
     if (!a.resume) return;
     start = read_design_progress(a.output);
     if (start.checkpoint.empty()) session.note(fmt::format("{}: no checkpoint yet, starting anew", a.output));

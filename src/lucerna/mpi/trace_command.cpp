@@ -58,7 +58,7 @@ DistributedOptions distributed_options(const MpiTraceArguments& a, Session& sess
 /// The first rank makes the folder; parts that are not gone on with would be mixed with the new ones.
 void prepare(const MpiTraceArguments& a, const fs::path& parts, Session& session) {
   session.prepare_folder(a.output, session.force || a.resume);
-  require_writable(a.report);
+  require_report(a.report);
   if (!a.resume) fs::remove_all(parts);
 }
 

@@ -38,10 +38,12 @@ void print_comparison(const DesignError& boxes, const DistributionComparison& c,
       fmt::format("  overlap             {} of the flux in the right place", share_text(c.overlap)));
   if (c.alignment) {
     const Alignment& a = *c.alignment;
-    session.print_line(
-        fmt::format("  best alignment      tilt {} toward C {:.0f}, turn {}; then relative RMS {}",
-                    estimate_text(a.tilt_deg, "deg"), a.tilt_toward_c_deg.mean,
-                    estimate_text(a.turn_deg, "deg"), share_text(a.relative_rms)));
+    // Its error is that of any turn where all fit alike.
+    const std::string turn =
+        a.turn_deg.standard_error > 90.0 ? "not determined" : estimate_text(a.turn_deg, "deg");
+    session.print_line(fmt::format(
+        "  best alignment      tilt {} toward C {:.0f}, turn {}; then relative RMS {}",
+        estimate_text(a.tilt_deg, "deg"), a.tilt_toward_c_deg.mean, turn, share_text(a.relative_rms)));
   }
 }
 

@@ -39,7 +39,7 @@ void design_mirror(const DesignArguments& a, Project project, DesignOptions opti
   if (a.tolerances && !problem.tolerances) problem.tolerances = ToleranceRanges{};
   options.accelerator = accelerator;
   session.prepare_folder(a.output, session.force || a.resume);
-  require_writable(a.report);
+  require_report(a.report);
   for (const std::string& warning : problem.project.warnings) session.note(warning);
   for (const auto& input : problem.project.inputs) session.add_input(input);
   DesignProgress start;

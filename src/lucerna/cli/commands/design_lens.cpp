@@ -41,7 +41,7 @@ void design_lens_command(Project project, const std::string& name, const DesignS
   check_lens_settings(settings);
   const LensProblem problem = lens_problem(std::move(project), name);
   session.prepare_folder(folder.string(), session.force);
-  require_writable(report);
+  require_report(report);
   for (const std::string& warning : problem.project.warnings) session.note(warning);
   for (const auto& input : problem.project.inputs) session.add_input(input);
   LensWatch watch(folder, problem, session);

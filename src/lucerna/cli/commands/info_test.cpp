@@ -99,7 +99,7 @@ TEST_F(InfoFilesCli, RefusesWhatItCannotRead) {
   write_file(dir / "cut.LDT", "A company\n1\n1\n");
   const auto cut = run_lucerna(dir.path(), "info cut.LDT");
   EXPECT_EQ(cut.exit_code, 1);
-  EXPECT_TRUE(has(cut.err, "cut.LDT: neither rays nor the IES or EULUMDAT file")) << cut.err;
+  EXPECT_TRUE(has(cut.err, "cut.LDT: line 3: 3 lines, a EULUMDAT file has more than 26")) << cut.err;
   EXPECT_EQ(run_lucerna(dir.path(), "info s.tm25ray --format floppy").exit_code, 2);
   EXPECT_EQ(run_lucerna(dir.path(), "info s.tm25ray --format speos").exit_code, 1) << "it is no SPEOS file";
 }

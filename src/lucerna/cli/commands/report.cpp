@@ -19,6 +19,7 @@ struct ReportArguments {
 
 void report(const ReportArguments& a, Session& session) {
   session.start();
+  require_report(a.output);
   if (!a.rays.empty() && !is_source_model(a.input)) {
     throw UsageError(fmt::format("--rays goes with a model, and {} is none", a.input));
   }

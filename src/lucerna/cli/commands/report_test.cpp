@@ -53,6 +53,10 @@ TEST(ReportCli, OtherFilesAreBadInput) {
   const auto run = run_lucerna(dir.path(), "report x.nfl -o r.html");
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_NE(run.err.find("x.nfl: is neither a source model"), std::string::npos) << run.err;
+  const auto itself = run_lucerna(dir.path(), "report x.nfl -o x.nfl");
+  EXPECT_EQ(itself.exit_code, 2);
+  EXPECT_NE(itself.err.find("expected the ending .html"), std::string::npos) << itself.err;
+  EXPECT_EQ(slurp(dir / "x.nfl"), "junk");
 }
 
 TEST(ReportCli, RaysGoWithAModelOnly) {

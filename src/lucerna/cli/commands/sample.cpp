@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <system_error>
+
 #include "lucerna/cli/commands/commands.h"
 #include "lucerna/cli/parse/arguments.h"
 #include "lucerna/core/io/error.h"
@@ -19,6 +22,9 @@ void run_sample(const SampleArguments& a, Session& session) {
   session.start();
   const std::uint64_t n = parse_count(a.count);
   const std::string format = ray_format_for(a.output, a.to);
+  std::error_code missing;
+  if (std::filesystem::equivalent(a.model, a.output, missing))
+    throw UsageError(fmt::format("{}: found the model itself, expected another file for its rays", a.output));
   SampleOptions options{.sequence = sequence_kind(a.sequence), .format = format};
   options.seed = parse_count(a.seed);
   options.origin = std::filesystem::path(a.model).filename().string();

@@ -87,6 +87,9 @@ TEST_F(SampleCli, RefusesInOneLineAndWritesNothing) {
   refuse("s.tm25ray -n 10 -o x.tm25ray", 1, "s.tm25ray: byte 0: not a Lucerna model file");
   refuse("cut.nfl -n 10 -o x.tm25ray", 1, "cut.nfl: byte 16: the file should have");
   refuse("m.nfl -n 10 -o none/x.tm25ray", 1, "none/x.tm25ray: cannot write");
+  const std::string model = test::slurp(dir / "m.nfl");
+  refuse("m.nfl -n 10 -o ./m.nfl --to tm25", 2, "./m.nfl: found the model itself");
+  EXPECT_EQ(test::slurp(dir / "m.nfl"), model);
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ void run_trace(const TraceArguments& a, Session& session, int& exit_code) {
   const TraceOptions options = trace_options(a);
   const Project project = session.timed("read", [&] { return read_project(a.project, session.progress()); });
   session.prepare_folder(a.output, session.force || a.resume);
-  require_writable(a.report);
+  require_report(a.report);
   for (const std::string& warning : project.warnings) session.note(warning);
   for (const auto& input : project.inputs) session.add_input(input);
   const TraceOrigin origin = session.timed("hash", [&] { return trace_origin(project); });

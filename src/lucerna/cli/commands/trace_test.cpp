@@ -51,6 +51,22 @@ TEST_F(TraceInputCli, MirrorsThatCannotBe) {
                 "line 10: reflector[0].reflectence: unknown key; the nearest known one is 'reflectance'");
 }
 
+TEST_F(TraceInputCli, AReportDoesNotTakeTheProjectsPlace) {
+  const std::string project = std::string(kLamp) + kBowl;
+  write_file(dir / "p.toml", project);
+  const auto run = run_lucerna(dir.path(), "trace p.toml -o out --rays 2000 --report p.toml");
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.err.find("p.toml: a report is an HTML file, expected the ending .html"), std::string::npos)
+      << run.err;
+  EXPECT_EQ(test::slurp(dir / "p.toml"), project);
+  EXPECT_FALSE(std::filesystem::exists(dir / "out"));
+}
+
+TEST_F(TraceInputCli, ViewsWithoutASide) {
+  refuse(std::string(kLamp) + kBowl + "[[detector]]\nkind = 'luminance'\nfrom = [0, 0, -1]\nup = '-z'\n",
+         "detector[0].up: is along the line of sight");
+}
+
 TEST_F(TraceInputCli, FilesThatAreNoMirrors) {
   write_file(dir / "nan.csv", "1,2,3,4\n1,2,3,4\n1,nan,3,4\n1,2,3,4\n");
   write_file(dir / "sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

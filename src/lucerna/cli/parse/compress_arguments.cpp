@@ -51,7 +51,7 @@ CompressOptions compress_options(const CompressArguments& a) {
 
 void check_compress(const CompressArguments& a) {
   require_writable(a.output);
-  require_writable(a.report);
+  require_report(a.report);
   for (const std::string& input : a.inputs) require_ray_file(input);
 }
 

@@ -36,6 +36,7 @@ std::string photometry_fault(const std::filesystem::path& path) {
   if (std::filesystem::file_size(path, ignored) == 0)
     return "empty, the IES or EULUMDAT file expected that its name says";
   if (detect_ray_format(path)) return "";
+  static_cast<void>(read_photometric_file(path));  // throws where it can say what is wrong
   return "neither rays nor the IES or EULUMDAT file that its name says";
 }
 

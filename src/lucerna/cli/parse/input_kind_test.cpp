@@ -37,7 +37,7 @@ TEST_F(InputKind, SaysWhatIsNoRayFileAndWhoTakesIt) {
   EXPECT_THAT(refusal("p.TOML", "[[source]]\n"), HasSubstr("a project file; lucerna trace"));
   EXPECT_THAT(refusal("a.ies", "IESNA:LM-63-2019\n"), HasSubstr("a light distribution"));
   EXPECT_THAT(refusal(dir_ / ""), HasSubstr("a folder; lucerna check"));
-  EXPECT_THAT(refusal("b.LDT", "\x01\x02\x03"), HasSubstr("neither rays nor the IES or EULUMDAT file"));
+  EXPECT_THAT(refusal("b.LDT", "\x01\x02\x03"), HasSubstr("neither an IES LM-63 nor a EULUMDAT file"));
   EXPECT_THAT(refusal("c.ldt", ""), HasSubstr("c.ldt: empty, the IES or EULUMDAT file expected that"));
 }
 

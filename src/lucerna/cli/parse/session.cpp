@@ -206,4 +206,11 @@ void require_writable(const std::filesystem::path& file) {
   const OutputFile probe(file);  // not committed: leaves nothing behind
 }
 
+void require_report(const std::filesystem::path& file) {
+  const std::string ending = lower_ending(file);
+  if (!file.empty() && ending != ".html" && ending != ".htm")
+    throw UsageError(fmt::format("{}: a report is an HTML file, expected the ending .html", file.string()));
+  require_writable(file);
+}
+
 }  // namespace lucerna::cli

@@ -120,4 +120,8 @@ class Session {
 /// is none. What is there stays as it is.
 void require_writable(const std::filesystem::path& file);
 
+/// The same of a report. Throws UsageError where its name has another ending than a page's: the file that is
+/// there may be a project or a result.
+void require_report(const std::filesystem::path& file);
+
 }  // namespace lucerna::cli

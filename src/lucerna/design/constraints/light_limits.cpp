@@ -63,16 +63,6 @@ double LightLimits::cost(const DesignShape& shape, const DesignRays& rays, std::
   return cost;
 }
 
-Estimate LightLimits::glare_per_flux(const DesignShape& shape, const DesignRays& rays) const {
-  const Evaluation e = trace(shape, rays, rays.size(), zone_.value(), false);
-  Estimate max;
-  for (Eigen::Index b = 0; b < e.flux.size(); ++b) {
-    const double measure = zone_->measure()[static_cast<std::size_t>(b)];
-    if (e.flux[b] / measure >= max.mean) max = {e.flux[b] / measure, std::sqrt(e.variance[b]) / measure};
-  }
-  return max;
-}
-
 void LightLimits::check(const DesignShape& start, const DesignRays& rays) const {
   if (!min_efficiency_) return;
   const Aperture& a = start.aperture();

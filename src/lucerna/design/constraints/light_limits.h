@@ -3,7 +3,6 @@
 
 #include "lucerna/design/problem/design_limits.h"
 #include "lucerna/design/solver/residual_rows.h"
-#include "lucerna/estimate.h"
 
 namespace lucerna {
 
@@ -20,10 +19,6 @@ class LightLimits {
   /// on the shape at all is a matter of bounces and of the mirror's back). Adds gradient and Hessian to
   /// `equations` unless null. Cost: one evaluation for each of the two.
   double cost(const DesignShape& shape, const DesignRays& rays, std::uint64_t n, ResidualRows* rows) const;
-
-  /// Largest mean over a cell beyond the glare angle, per unit of the sources' flux, with the error of that
-  /// cell. There is such a limit.
-  Estimate glare_per_flux(const DesignShape& shape, const DesignRays& rays) const;
 
   /// Throws InputError where min_efficiency and the reflectance contradict each other: where the light that
   /// must meet a mirror over this aperture, be it shaped as it may, already loses more. That light: within 45

@@ -237,28 +237,6 @@ TEST(LightLimits, GlareDerivativesAgreeWithCentralDifferences) {
   EXPECT_LT((difference - 2.0 * e.gradient).norm(), 0.05 * difference.norm());
 }
 
-// The brightest cell of 30 sets of rays: its scatter is known to 13 %, the mean of what they state to a few
-// per cent. The largest of some cells scatters less than one of them, never twice as much. An error of half
-// or thrice the size fails.
-TEST(LightLimitsStatistical, GlareScattersAsItStates) {
-  DesignLimits limits;
-  limits.glare = GlareLimit{8.0, 0.05, ""};
-  const LightLimits light(limits, Reflectance(0.9));
-  DesignShape shape = wild_shapes()[1];
-  shape = shape.with(3.0 * shape.parameters());
-  std::vector<double> values;
-  double stated = 0.0;
-  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-    const Estimate glare = light.glare_per_flux(shape, rays_at(12, seed));
-    values.push_back(glare.mean);
-    stated += glare.standard_error / 30.0;
-  }
-  const double scatter = mean_estimate(values).standard_error * std::sqrt(30.0);
-  EXPECT_GT(mean_estimate(values).mean, 0.0);
-  EXPECT_GT(stated, scatter / 1.6);
-  EXPECT_LT(stated, 3.0 * scatter);
-}
-
 TEST(LightLimits, EfficiencyBeyondTheReflectanceIsRefused) {
   DesignRays light = rays_at(12);
   const DesignShape shape = DesignShape::bspline(12, Aperture::circle(80), 4, 4);

@@ -93,7 +93,10 @@ double BaseChoice::cost(LensBase base, double distance) {
   const auto after = std::upper_bound(bases_.begin(), bases_.end(), base.cost,
                                       [](double cost, const LensBase& b) { return cost < b.cost; });
   bases_.insert(after, std::move(base));
-  ended_ = !watch_(found->record, {best().outline, best().face});
+  FitRecord record = found->record;
+  record.evaluations = evaluations_;
+  record.total_rays = rays_;
+  ended_ = !watch_(record, {best().outline, best().face});
   return found->cost;
 }
 

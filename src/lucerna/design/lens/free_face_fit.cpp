@@ -34,8 +34,11 @@ constexpr int kTurnsOfLook = 2;
 void run_search(FaceSearch& face, const LensFitWatcher& watch, LensFitResult& result) {
   FreeFormSearch& search = face.search();
   while (!search.done()) {
-    const std::optional<FitRecord> record = search.step();
+    std::optional<FitRecord> record = search.step();
     if (!record) continue;
+    // After those of the choice of a base.
+    record->evaluations += result.evaluations;
+    record->total_rays += result.rays;
     result.history.push_back(*record);
     if (watch(*record, face.best())) continue;
     result.end = DesignTermination::time;

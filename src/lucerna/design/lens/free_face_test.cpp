@@ -304,10 +304,18 @@ TEST(FreeFaceDesign, StopsWhileItComparesCavities) {
   options.max_rays = 1 << 13;
   options.validation_rays = 1 << 14;
   StopsAfterSteps progress(2);
-  const LensResult found = design_lens(problem, options, progress,
-                                       [&](const FitRecord&, const ShapedLens&) { progress.stepped(); });
+  std::vector<FitRecord> told;
+  const LensResult found =
+      design_lens(problem, options, progress, [&](const FitRecord& record, const ShapedLens&) {
+        told.push_back(record);
+        progress.stepped();
+      });
   EXPECT_EQ(found.end, DesignTermination::interrupted);
   EXPECT_TRUE(found.history.empty()) << "no step of the search";
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_EQ(told[0].evaluations, 4);
+  EXPECT_EQ(told[1].evaluations, 8) << "of all so far";
+  EXPECT_EQ(told[1].total_rays, 2 * told[0].total_rays);
   EXPECT_EQ(found.evaluations, 8) << "two bases, four evaluations each";
   EXPECT_NO_THROW(check(shaped_solid(problem, found.lens)));
 }

@@ -270,6 +270,9 @@ TEST(LensProblem, SaysWhatItDoesNotTake) {
     return std::string();
   };
   EXPECT_NE(refused("[design.limits]\nmax_slope_deg = 3\n").find("max_slope_deg"), std::string::npos);
+  EXPECT_NE(refused("[design.limits]\nmax_height_mm = 5\nmin_thickness_mm = 6\n")
+                .find("min_thickness_mm: = 6 contradicts max_height_mm = 5"),
+            std::string::npos);
   EXPECT_NE(refused("light_weight = -1\n").find("light_weight"), std::string::npos);
   EXPECT_EQ(refused("light_weight = 0.5\n"), "");
   EXPECT_NE(refused("family = \"trough\"\n").find("family"), std::string::npos);

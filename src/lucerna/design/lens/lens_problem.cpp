@@ -99,6 +99,12 @@ LensLimits read_lens_limits(TomlReader reader, bool revolution, const Frame& wor
                   "is a limit on mirrors; a lens has max_diameter_mm, max_height_mm, min_thickness_mm, "
                   "min_draft_deg and symmetry");
   }
+  if (limits.min_thickness_mm && limits.max_height_mm && *limits.min_thickness_mm > *limits.max_height_mm) {
+    reader.fail(
+        "min_thickness_mm",
+        fmt::format("= {} contradicts max_height_mm = {}", *limits.min_thickness_mm, *limits.max_height_mm),
+        ErrorCause::contradiction);
+  }
   limits.symmetry = read_symmetry(reader, revolution, world_from_lens);
   reader.finish();
   return limits;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "lucerna/design/evaluation/window.h"
@@ -22,6 +23,27 @@ void check_detector_names(TomlReader& root, std::string_view shape) {
     }
   }
 }
+
+namespace {
+
+/// A detector of the target's name is what the result is compared with.
+void check_same_plane(const PlaneTarget& target, const PlaneGrid& found) {
+  const Frame &a = target.world_from_plane, &b = found.world_from_plane;
+  const double size_mm = std::hypot(target.size_x_mm, target.size_y_mm);
+  const bool same = length(a.origin_mm() - b.origin_mm()) < 1e-6 * size_mm &&
+                    length(a.ex() - b.ex()) + length(a.ey() - b.ey()) < 1e-6 &&
+                    std::abs(target.size_x_mm - found.size_x_mm) < 1e-6 * size_mm &&
+                    std::abs(target.size_y_mm - found.size_y_mm) < 1e-6 * size_mm;
+  if (!same) {
+    throw InputError(
+        fmt::format("detector '{}': found another plane than that of [target]; expected its position_mm, "
+                    "normal, turn_deg and size_mm, or another name",
+                    kTargetPlane),
+        ErrorCause::contradiction);
+  }
+}
+
+}  // namespace
 
 void add_design_detectors(Project& project, const DesignTarget& target) {
   Scene& scene = project.scene;
@@ -44,8 +66,12 @@ void add_design_detectors(Project& project, const DesignTarget& target) {
                                  {"gamma_step_deg", far.gamma_step_deg}});
   }
   const auto is_target = [](const PlaneDetector& p) { return p.name == kTargetPlane; };
-  if (!target.plane || std::any_of(scene.planes.begin(), scene.planes.end(), is_target)) return;
+  if (!target.plane) return;
   const PlaneTarget& plane = *target.plane;
+  if (const auto given = std::ranges::find_if(scene.planes, is_target); given != scene.planes.end()) {
+    check_same_plane(plane, given->grid);
+    return;
+  }
   const auto point = [](const Vec3& p) { return toml::array{p.x, p.y, p.z}; };
   const int cells = WindowOptions().count;
   const auto n = static_cast<std::size_t>(cells);

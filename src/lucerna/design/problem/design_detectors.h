@@ -17,7 +17,8 @@ inline constexpr const char* kTargetPlane = "target";
 void check_detector_names(TomlReader& root, std::string_view shape);
 
 /// Adds what every design watches, also when its project is read again, where the project does not have it: a
-/// far field, and the plane of a plane target. In the scene and in the project's tables.
+/// far field, and the plane of a plane target. In the scene and in the project's tables. Throws InputError
+/// where the project's own plane of that name is another one.
 void add_design_detectors(Project& project, const DesignTarget& target);
 
 }  // namespace lucerna

@@ -37,6 +37,23 @@ TEST(DesignDetectors, AFarFieldAndTheTargetsPlaneAreThereOnce) {
   EXPECT_EQ(again.scene.planes.front().name, kTargetPlane);
 }
 
+TEST(DesignDetectors, APlaneOfTheTargetsNameIsTheTargets) {
+  const auto add = [](const std::string& size) {
+    Project project = parse_project(
+        std::string(kLampAlone) + "[[detector]]\nname = \"target\"\nkind = \"plane\"\n" + size, "p.toml");
+    DesignTarget target;
+    target.plane.emplace();
+    target.plane->size_x_mm = 800;
+    target.plane->size_y_mm = 600;
+    add_design_detectors(project, target);
+    return project.scene.planes.size();
+  };
+  EXPECT_EQ(add("size_mm = [800, 600]\n"), 1u);
+  EXPECT_THROW(add("size_mm = [800, 500]\n"), InputError);
+  EXPECT_THROW(add("size_mm = [800, 600]\nposition_mm = [0, 0, -1]\n"), InputError);
+  EXPECT_THROW(add("size_mm = [800, 600]\nturn_deg = 90\n"), InputError);
+}
+
 TEST(DesignDetectors, WhatTheProjectHasIsKept) {
   Project project = parse_project(
       std::string(kLampAlone) + "[[detector]]\nname = \"mine\"\nkind = \"far-field\"\nc_step_deg = 5.0\n",

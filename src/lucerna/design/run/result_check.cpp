@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "lucerna/cad.h"
-#include "lucerna/design/constraints/light_limits.h"
 #include "lucerna/design/constraints/limit_check.h"
 #include "lucerna/design/constraints/source_side.h"
 #include "lucerna/design/validation/bounds.h"
@@ -29,9 +28,10 @@ constexpr double kStartShare = 0.05;
 constexpr CadTolerance kCoarseMesh{.chord_mm = 0.01, .slope_deg = 0.5};
 
 /// All limits that are set, against the mesh that is exported within `stl`, and fresh light, of which
-/// `efficiency` leaves.
+/// `efficiency` leaves, and whose brightest cell of glare is `glare_per_flux`.
 std::vector<LimitCheck> checked_limits(const DesignProblem& problem, const DesignShape& shape,
-                                       CadTolerance stl, const DesignRays& rays, const Estimate& efficiency) {
+                                       CadTolerance stl, double source_flux, const Estimate& efficiency,
+                                       const Estimate& glare_per_flux) {
   std::vector<LimitCheck> out;
   const DesignLimits& limits = problem.limits;
   if (limits.any_on_form()) {
@@ -39,9 +39,8 @@ std::vector<LimitCheck> checked_limits(const DesignProblem& problem, const Desig
     out = check_limits(mesh, limits, stl.chord_mm, stl.slope_deg);
   }
   if (limits.glare) {
-    const Estimate per_flux = LightLimits(limits, problem.reflectance).glare_per_flux(shape, rays);
-    const double max = limits.glare->max_per_flux * rays.flux();
-    const Estimate has{per_flux.mean * rays.flux(), per_flux.standard_error * rays.flux()};
+    const double max = limits.glare->max_per_flux * source_flux;
+    const Estimate has{glare_per_flux.mean * source_flux, glare_per_flux.standard_error * source_flux};
     out.push_back({"glare " + limits.glare->text, max, has, has.mean <= max});
   }
   if (limits.min_efficiency) {
@@ -95,6 +94,7 @@ ResultCheck::ResultCheck(const DesignProblem& problem, const DesignOptions& opti
       etendue_(rays_),
       boxes_(target_rectangle(problem.target)),
       target_(box_target(boxes_, problem.target, rays_.flux())) {
+  if (problem.limits.glare) glare_.emplace(problem.world_from_mirror, problem.limits.glare->beyond_deg);
   const std::uint64_t rays = std::min(options.validation_rays, kStartCheckRays);
   const double max_s = kStartShare * options.time_s.value_or(problem.time_s);
   start_ = validated(problem.start, rays / 8, rays, max_s, progress);
@@ -116,6 +116,7 @@ Validation ResultCheck::validated(const DesignShape& shape, std::uint64_t min_ra
   o.max_rays = max_rays;
   o.max_s = max_s;
   o.zones = problem_.target.zones.get();
+  if (glare_) o.glare = &*glare_;
   o.peers = options_.peers;
   if (options_.validation_rays < kStartCheckRays) o.tolerance = kCoarseMesh;
   return validate(scene, boxes_, target_, problem_.target.mode, o, progress);
@@ -131,6 +132,7 @@ void ResultCheck::set_error(std::uint64_t max_rays, double max_s, DesignResult& 
   result.error = v.error;
   result.zones = v.zones;
   result.efficiency = v.efficiency;
+  if (glare_) glare_per_flux_ = glare_->brightest(v.replicates);
   result.absorbed = v.absorbed;
   result.back = v.back;
   result.bodies = v.bodies;
@@ -150,7 +152,8 @@ void ResultCheck::fill(const FitProblem& fit, std::uint64_t max_rays, double max
     set_error(max_rays, max_s, result, progress);
   }
   const CadTolerance stl = mesh_tolerance(boxes_, target_, problem_.world_from_mirror.origin_mm());
-  result.limits = checked_limits(problem_, result.shape, stl, rays_, result.efficiency);
+  result.limits =
+      checked_limits(problem_, result.shape, stl, rays_.flux(), result.efficiency, glare_per_flux_);
   const double behind = share_behind(result.shape, rays_), given = share_behind(problem_.start, rays_);
   if (behind > given + kMaxBehind) {
     const double error = std::sqrt(behind * (1.0 - behind) / static_cast<double>(rays_.size()));
@@ -167,7 +170,8 @@ void ResultCheck::fill(const FitProblem& fit, std::uint64_t max_rays, double max
     if (auto remark = rings_remark(problem_.target, result.error)) result.remarks.push_back(*remark);
   }
   if (keep_given)
-    result.remarks.push_back("the given mirror is the result: nothing that was found is better");
+    result.remarks.push_back(
+        "the mirror that the search began with is the result: nothing that was found is better");
 }
 
 }  // namespace lucerna

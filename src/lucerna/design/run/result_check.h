@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "lucerna/design/run/design.h"
@@ -22,8 +23,8 @@ class ResultCheck {
 
   /// Fills in what is said of `result.shape`: its error and the start's, where the light goes (by validate():
   /// fresh rays through the exported mesh), the limits as found, the bound, and the remarks. At most
-  /// `max_rays` rays; `max_s` stops them earlier. Where the given mirror is the better, it becomes the
-  /// result. `fit` gives the target's bins for the bound of the étendue.
+  /// `max_rays` rays; `max_s` stops them earlier. Where what the search began with is the better, it becomes
+  /// the result. `fit` gives the target's bins for the bound of the étendue.
   void fill(const FitProblem& fit, std::uint64_t max_rays, double max_s, DesignResult& result,
             Progress& progress);
 
@@ -41,6 +42,9 @@ class ResultCheck {
   ErrorBoxes boxes_;
   std::vector<double> target_;
   Validation start_;
+  /// Where glare is limited: where it is looked for, and the brightest cell in the result's light.
+  std::optional<GlareCells> glare_;
+  Estimate glare_per_flux_;
 };
 
 }  // namespace lucerna

@@ -239,6 +239,7 @@ BoxSums& BoxSums::operator+=(const BoxSums& other) {
   add_cells(other.direct, direct);
   add_cells(other.zones, zones);
   add_cells(other.zones_direct, zones_direct);
+  add_cells(other.glare, glare);
   emitted += other.emitted;
   out_direct += other.out_direct;
   out_reflected += other.out_reflected;

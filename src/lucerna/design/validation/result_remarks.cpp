@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "lucerna/design/validation/box_error.h"
 #include "lucerna/photometric_metrics.h"
 
@@ -17,6 +19,11 @@ std::optional<std::string> noise_remark(const DesignError& error) {
 
 std::optional<std::string> no_step_remark(const DesignFindings& result) {
   if (result.evaluations > 0 || result.end == DesignTermination::converged) return std::nullopt;
+  const BoxErrorEstimate &found = result.error.c48, &began = result.start_error.c48;
+  const double noise = std::hypot(found.standard_error, began.standard_error);
+  if (std::abs(found.excess - began.excess) > 4.0 * noise)
+    return "the search ended before its first step: the result is the best of the shapes that it could begin "
+           "with";
   return "nothing was designed: the search ended before its first step, and the result is what it began with";
 }
 

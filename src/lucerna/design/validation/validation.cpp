@@ -162,12 +162,13 @@ bool is_rough(const Scene& scene) {
 class BatchTracer {
  public:
   BatchTracer(const Scene& scene, const RayNumbering& numbering, const Meshes& meshes,
-              const ErrorBoxes& boxes, const ZoneCells* zones)
+              const ErrorBoxes& boxes, const ValidationOptions& options)
       : scene_(scene),
         numbering_(numbering),
         meshes_(meshes),
         boxes_(boxes),
-        zones_(zones),
+        zones_(options.zones),
+        glare_(options.glare),
         world_from_local_(meshes.local_from_world().inverse()),
         keyed_(is_rough(scene)),
         key_(keyed_ ? kMeshBatch : 0),
@@ -292,6 +293,7 @@ class BatchTracer {
     const std::size_t cell = boxes_.cell(from, along);
     sums.flux[cell] += flux_[i];
     if (zones_ != nullptr) zones_->add(from, along, flux_[i], sums.zones);
+    if (glare_ != nullptr) glare_->add(along, flux_[i], sums.glare);
     (reflected ? sums.out_reflected : sums.out_direct) += flux_[i];
     if (reflected) return;
     sums.direct[cell] += flux_[i];
@@ -338,6 +340,7 @@ class BatchTracer {
   const Meshes& meshes_;
   const ErrorBoxes& boxes_;
   const ZoneCells* zones_;
+  const GlareCells* glare_;
   Frame world_from_local_;
   RayBlock block_;
   std::size_t count_ = 0;
@@ -353,13 +356,13 @@ class BatchTracer {
 
 /// The sums of a replicate as bytes, and back.
 void append_sums(const BoxSums& s, std::string& bytes) {
-  for (const auto* values : {&s.flux, &s.direct, &s.zones, &s.zones_direct}) append(bytes, *values);
+  for (const auto* values : {&s.flux, &s.direct, &s.zones, &s.zones_direct, &s.glare}) append(bytes, *values);
   for (const double x : {s.emitted, s.out_direct, s.out_reflected, s.absorbed, s.back, s.bodies, s.lost})
     append_double(bytes, x);
   append(bytes, s.rays);
 }
 void take_sums(BoxSums& s, std::string_view& bytes) {
-  for (auto* values : {&s.flux, &s.direct, &s.zones, &s.zones_direct}) take(bytes, *values);
+  for (auto* values : {&s.flux, &s.direct, &s.zones, &s.zones_direct, &s.glare}) take(bytes, *values);
   for (double* x : {&s.emitted, &s.out_direct, &s.out_reflected, &s.absorbed, &s.back, &s.bodies, &s.lost})
     *x = take_double(bytes);
   s.rays = take(bytes);
@@ -367,13 +370,14 @@ void take_sums(BoxSums& s, std::string_view& bytes) {
 
 /// Blocks [first, last) of every replicate; block j of replicate r is number 16 j + r.
 void trace_round(const Scene& scene, const RayNumbering& numbering, const Meshes& meshes,
-                 const ErrorBoxes& boxes, const ZoneCells* zones, std::uint64_t first, std::uint64_t last,
-                 std::vector<BoxSums>& replicates, std::uint64_t expected, Progress& progress, Peers* peers) {
-  CountedProgress counted(progress, "validate", first * kReplicates * kBlockRays, expected);
+                 const ErrorBoxes& boxes, const ValidationOptions& options, std::uint64_t first,
+                 std::uint64_t last, std::vector<BoxSums>& replicates, Progress& progress) {
+  CountedProgress counted(progress, "validate", first * kReplicates * kBlockRays, options.min_rays);
+  Peers* const peers = options.peers;
   const ItemRange own = own_items(peers, kReplicates);
   parallel_blocks(own.size(), 1, [&](std::size_t i, std::size_t) {
     const std::size_t r = own.first + i;
-    const auto tracer = std::make_unique<BatchTracer>(scene, numbering, meshes, boxes, zones);
+    const auto tracer = std::make_unique<BatchTracer>(scene, numbering, meshes, boxes, options);
     BoxSums& sums = replicates[r];
     std::uint64_t reported = first;
     for (std::uint64_t j = first; j < last; ++j) {
@@ -448,6 +452,7 @@ Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const
   for (BoxSums& r : replicates) {
     r.flux.assign(boxes.size(), 0.0);
     r.direct.assign(boxes.size(), 0.0);
+    r.glare.assign(options.glare != nullptr ? options.glare->size() : 0, 0.0);
     if (options.zones == nullptr) continue;
     r.zones.assign(options.zones->size(), 0.0);
     r.zones_direct.assign(options.zones->size(), 0.0);
@@ -456,8 +461,7 @@ Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const
   out.mesh_s = of_first(options.peers, seconds_since(start));
   std::uint64_t next = std::min(kFirstRound, options.max_rays) / kRoundUnit;
   for (std::uint64_t blocks = 0; next > blocks;) {
-    trace_round(scene, numbering, meshes, boxes, options.zones, blocks, next, replicates, options.min_rays,
-                progress, options.peers);
+    trace_round(scene, numbering, meshes, boxes, options, blocks, next, replicates, progress);
     blocks = next;
     out.rays = blocks * kRoundUnit;
     out.error = box_error(boxes, target, replicates, mode);

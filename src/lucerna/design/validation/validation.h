@@ -9,6 +9,7 @@
 
 #include "lucerna/cad.h"
 #include "lucerna/core/parallel/peers.h"
+#include "lucerna/design/validation/glare_cells.h"
 #include "lucerna/design/validation/zone_check.h"
 #include "lucerna/progress.h"
 #include "lucerna/scene.h"
@@ -34,6 +35,8 @@ struct ValidationOptions {
   /// Zones whose light is counted too; then rays are also doubled until every zone's verdict is clear. Null:
   /// none. Must outlive the call.
   const ZoneCells* zones = nullptr;
+  /// Cells whose light is counted too (BoxSums::glare); null: none. Must outlive the call.
+  const GlareCells* glare = nullptr;
   /// Processes that validate the same mirror and share its rays (peers.h), by replicates; null: this one
   /// alone.
   Peers* peers = nullptr;

@@ -332,6 +332,25 @@ TypeCAngles nadir_after(const Turn& turn) {
   return type_c_angles(rotated_by(Direction::from_unit({0.0, 0.0, -1.0}), turn.rotation));
 }
 
+/// Directions about the vertical that a turn is compared with.
+constexpr int kOtherTurns = 24;
+/// Standard deviation of a turn that may be any, degrees.
+const double kAnyTurn_deg = 360.0 / std::sqrt(12.0);
+
+/// Whether other turns about the vertical fit as well, but for the noise of a squared difference.
+bool fits_any_turn(const Common& common, const IntensityDistribution& test, const Turn& found,
+                   double square_error) {
+  const Common few = thinned(common, kAlignedCells);
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  for (int k = 0; k < kOtherTurns; ++k) {
+    const Vec3 other = found.rotation + Vec3{0.0, 0.0, 2.0 * std::numbers::pi * k / kOtherTurns};
+    const double rms = rotated_rms(few, test, other);
+    least = std::min(least, rms);
+    most = std::max(most, rms);
+  }
+  return most * most - least * least <= std::max(3.0 * square_error, 1e-4 * most * most);
+}
+
 Alignment alignment_of(const Turn& found, const std::vector<Turn>& copies) {
   const TypeCAngles to = nadir_after(found);
   Alignment result;
@@ -383,7 +402,11 @@ DistributionComparison compare_distributions(const IntensityDistribution& refere
   const double square_error =
       scatter(copies.figures, [](const Figures& c) { return c.relative_rms * c.relative_rms; });
   result.excess = root_of(f.relative_rms * f.relative_rms - noise / signal, square_error);
-  if (turn) result.alignment = alignment_of(*turn, copies.turns);
+  if (turn) {
+    result.alignment = alignment_of(*turn, copies.turns);
+    if (fits_any_turn(common, test, *turn, std::isfinite(square_error) ? square_error : 0.0))
+      result.alignment->turn_deg = {0.0, kAnyTurn_deg};
+  }
   return result;
 }
 

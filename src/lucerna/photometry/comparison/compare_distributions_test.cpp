@@ -152,6 +152,23 @@ TEST(CompareDistributions, AlignmentFindsTiltAndTurn) {
   EXPECT_LT(turned.alignment->relative_rms.mean, 0.01);
 }
 
+// A turned spot of revolution is the same spot: what is found best is chance.
+TEST(CompareDistributions, ATurnThatAnyOtherIsAsGoodAsIsNone) {
+  const IntensityDistribution round =
+      filled_grid([](double, double g) { return 1000.0 * std::exp(-g * g / 200.0); }, 5.0, 1.0);
+  IntensityDistribution wider =
+      filled_grid([](double, double g) { return 1000.0 * std::exp(-g * g / 300.0); }, 5.0, 1.0);
+  const DistributionComparison exact = compare_distributions(round, wider);
+  EXPECT_GT(exact.alignment->turn_deg.standard_error, 100.0);
+  Rng rng(7, 0);
+  const std::vector<double> error(wider.cd.size(), 5.0);
+  for (double& cd : wider.cd) cd = std::max(0.0, cd + 10.0 * std::sqrt(3.0) * (rng.uniform() - 0.5));
+  const DistributionComparison noisy = compare_distributions(round, wider, {.test_error_cd = error});
+  EXPECT_GT(noisy.alignment->turn_deg.standard_error, 100.0);
+  const DistributionComparison street = compare_distributions(street_light(), street_light(2.5, 1.0));
+  EXPECT_FALSE(street.alignment->turn_deg.standard_error > 10.0);
+}
+
 struct NoisyLight {
   IntensityDistribution distribution;
   std::vector<double> error;

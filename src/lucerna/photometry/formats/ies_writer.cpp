@@ -124,11 +124,7 @@ std::vector<std::pair<std::size_t, double>> printed_planes(const IntensityDistri
 
 void check_writable(const IntensityDistribution& d) {
   if (const std::string fault = grid_fault(d); !fault.empty()) throw InputError("IES: " + fault);
-  const double first = d.gamma_deg.front(), last = d.gamma_deg.back();
-  if ((first != 0.0 && first != 90.0) || (last != 90.0 && last != 180.0)) {
-    throw InputError(
-        fmt::format("IES: vertical angles {} to {} found, 0 or 90 to 90 or 180 expected", first, last));
-  }
+  check_vertical_angles(d, "IES");
 }
 
 }  // namespace

@@ -138,6 +138,7 @@ std::string ldt_text(const PhotometricFile& file, const PhotometricWriteOptions&
   const IntensityDistribution& d = file.distribution;
   const LuminaireData& l = file.luminaire;
   if (const std::string fault = grid_fault(d); !fault.empty()) throw InputError("EULUMDAT: " + fault);
+  check_vertical_angles(d, "EULUMDAT");
   if (d.unit != FluxUnit::lumen) throw InputError("EULUMDAT has no radiometric unit: write IES instead");
   const double flux = total_flux(d);
   const std::optional<double> lamp_flux = lamp_flux_lm(l);

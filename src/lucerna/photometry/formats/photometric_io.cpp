@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::uint64_t kMaxBytes = std::uint64_t{64} << 20;
 constexpr std::size_t kHeadBytes = std::size_t{64} << 10;
+/// A text of fewer lines is no light distribution, whatever it is called.
+constexpr int kFewestLines = 3;
 
 bool looks_like_ies(const std::vector<std::string_view>& lines) {
   const auto starts = [](std::string_view line, std::string_view with) {
@@ -115,6 +117,20 @@ std::optional<PhotometricFormat> detect_photometric_format(std::string_view head
   return std::nullopt;
 }
 
+namespace {
+
+/// Of a text whose counts are wrong, so that it does not look like what it is called: its reader says where.
+std::optional<PhotometricFormat> named_format(const std::filesystem::path& path, std::string_view bytes) {
+  const std::string ending = lower_ending(path);
+  const auto lines = std::ranges::count(bytes, '\n');
+  if (lines < kFewestLines || bytes.find('\0') != std::string_view::npos) return std::nullopt;
+  if (ending == ".ldt") return PhotometricFormat::ldt;
+  if (ending == ".ies") return PhotometricFormat::ies_2019;
+  return std::nullopt;
+}
+
+}  // namespace
+
 bool is_photometric_file(const std::filesystem::path& path) {
   try {
     const InputFile file(path);
@@ -129,7 +145,8 @@ bool is_photometric_file(const std::filesystem::path& path) {
 PhotometricFile read_photometric_file(const std::filesystem::path& path,
                                       const PhotometricReadOptions& options) {
   const std::string bytes = read_file(path, kMaxBytes);
-  const auto format = detect_photometric_format(bytes);
+  auto format = detect_photometric_format(bytes);
+  if (!format) format = named_format(path, bytes);
   if (!format)
     throw InputError(fmt::format("{}: neither an IES LM-63 nor a EULUMDAT file", path.string()),
                      ErrorCause::damaged);

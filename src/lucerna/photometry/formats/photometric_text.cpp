@@ -40,4 +40,11 @@ std::string one_line(std::string_view text) {
   return line.substr(from, line.find_last_not_of(' ') - from + 1);
 }
 
+void check_vertical_angles(const IntensityDistribution& d, std::string_view format) {
+  const double first = d.gamma_deg.front(), last = d.gamma_deg.back();
+  if ((first == 0.0 || first == 90.0) && (last == 90.0 || last == 180.0)) return;
+  throw InputError(
+      fmt::format("{}: vertical angles {} to {} found, 0 or 90 to 90 or 180 expected", format, first, last));
+}
+
 }  // namespace lucerna

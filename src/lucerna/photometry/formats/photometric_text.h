@@ -25,6 +25,10 @@ std::string number_text(double value, int decimals);
 /// `text` on one line: control characters become blanks, blanks at the ends go.
 std::string one_line(std::string_view text);
 
+/// Throws InputError for gamma angles that do not begin at 0 or 90 and end at 90 or 180: readers take what
+/// lies between for light or for dark as they please. `format` is for the message.
+void check_vertical_angles(const IntensityDistribution& distribution, std::string_view format);
+
 /// Collects what a reader repairs, and refuses instead when strict.
 class RepairLog {
  public:

@@ -10,8 +10,6 @@ namespace lucerna {
 
 namespace {
 
-constexpr int kConeRings = 32, kConePoints = 64;
-
 std::vector<CirclePoint> great_circle(const IntensityDistribution& d, double c_deg) {
   std::vector<CirclePoint> circle;
   const auto add = [&](double angle, double cd) {
@@ -36,28 +34,6 @@ std::vector<CirclePoint> great_circle(const IntensityDistribution& d, double c_d
 
 double reference_cd(const IntensityDistribution& d, BeamReference reference) {
   return reference == BeamReference::maximum ? peak_intensity(d).cd : intensity_at(d, 0.0, axis_gamma_deg(d));
-}
-
-/// Directions of equal solid angle that fill the cone.
-template <class F>
-void for_cone(const Direction& axis, double half_angle_deg, F&& visit) {
-  if (!(half_angle_deg >= 1e-3 && half_angle_deg <= 90.0)) {
-    throw InputError(fmt::format("cone of half angle {} deg, 0.001 to 90 expected", half_angle_deg));
-  }
-  const Vec3& w = axis.vec();
-  const Vec3 helper = std::abs(w.x) < 0.7 ? Vec3{1.0, 0.0, 0.0} : Vec3{0.0, 1.0, 0.0};
-  const Direction u = Direction::from(cross(w, helper));
-  const Vec3 v = cross(w, u.vec());
-  const double s = std::sin(0.5 * radians(half_angle_deg));
-  const double depth = 2.0 * s * s;  // 1 - cos(half angle)
-  for (int ring = 0; ring < kConeRings; ++ring) {
-    const double t = depth * (ring + 0.5) / kConeRings;
-    const double across = std::sqrt(t * (2.0 - t));
-    for (int point = 0; point < kConePoints; ++point) {
-      const double phi = 2.0 * std::numbers::pi * (point + 0.5) / kConePoints;
-      visit(Direction::from(across * std::cos(phi) * u.vec() + across * std::sin(phi) * v + (1.0 - t) * w));
-    }
-  }
 }
 
 }  // namespace
@@ -134,51 +110,12 @@ std::optional<double> beam_angle_deg(const IntensityDistribution& d, double c_de
   return smallest_arc_deg(great_circle(d, c_deg), fraction * full);
 }
 
-double cone_mean_cd(const IntensityDistribution& d, const Direction& axis, double half_angle_deg) {
-  double sum = 0.0;
-  for_cone(axis, half_angle_deg, [&](const Direction& to) { sum += intensity_in(d, to); });
-  return sum / (kConeRings * kConePoints);
-}
-
-double cone_mean_error_cd(const IntensityDistribution& d, std::span<const double> standard_error_cd,
-                          const Direction& axis, double half_angle_deg) {
-  LUCERNA_CHECK(standard_error_cd.size() == d.cd.size(), "{} errors for {} values", standard_error_cd.size(),
-                d.cd.size());
-  // The weight of each grid value in the mean: from the nearest grid cell of every point of the cone, a
-  // partition of the cone that has the same total as the bilinear weights.
-  std::vector<double> weight(d.cd.size(), 0.0);
-  const auto nearest = [](const std::vector<double>& angles, double x) {
-    const auto above = std::lower_bound(angles.begin(), angles.end(), x);
-    if (above == angles.begin()) return std::size_t{0};
-    if (above == angles.end() || x - *(above - 1) < *above - x)
-      return static_cast<std::size_t>(above - angles.begin()) - 1;
-    return static_cast<std::size_t>(above - angles.begin());
-  };
-  for_cone(axis, half_angle_deg, [&](const Direction& to) {
-    const TypeCAngles a = type_c_angles(to);
-    double c = degrees(a.c_rad);
-    if (c > 0.5 * (d.c_deg.back() + 360.0)) c = 0.0;
-    const std::size_t g = nearest(d.gamma_deg, degrees(a.gamma_rad));
-    // At a pole all planes hold the same value, with one error.
-    const bool pole = d.gamma_deg[g] == 0.0 || d.gamma_deg[g] == 180.0;
-    weight[(pole ? 0 : nearest(d.c_deg, c)) * d.gamma_deg.size() + g] += 1.0 / (kConeRings * kConePoints);
-  });
-  double variance = 0.0;
-  for (std::size_t i = 0; i < weight.size(); ++i) {
-    const double e = weight[i] * standard_error_cd[i];
-    variance += e * e;
-  }
-  return std::sqrt(variance);
-}
-
-BeamMetrics beam_metrics(const IntensityDistribution& d, double centre_cone_deg) {
+BeamMetrics beam_metrics(const IntensityDistribution& d) {
   BeamMetrics figures;
   figures.flux = total_flux(d);
   figures.peak = peak_intensity(d);
   figures.axis_gamma_deg = axis_gamma_deg(d);
-  figures.centre_cone_deg = centre_cone_deg;
-  const Direction axis = Direction::from_unit({0.0, 0.0, figures.axis_gamma_deg == 0.0 ? -1.0 : 1.0});
-  figures.centre_cd = cone_mean_cd(d, axis, centre_cone_deg);
+  figures.centre_cd = reference_cd(d, BeamReference::centre);
   std::vector<double> planes{0.0, 90.0};
   for (const double c : d.c_deg) {
     if (c < 180.0) planes.push_back(c);
@@ -186,7 +123,7 @@ BeamMetrics beam_metrics(const IntensityDistribution& d, double centre_cone_deg)
   std::sort(planes.begin(), planes.end());
   planes.erase(std::unique(planes.begin(), planes.end()), planes.end());
   const double maximum = reference_cd(d, BeamReference::maximum);
-  const double centre = reference_cd(d, BeamReference::centre);
+  const double centre = figures.centre_cd;
   for (const double c : planes) {
     const std::vector<CirclePoint> circle = great_circle(d, c);
     const auto angle = [&](double full, double fraction) -> std::optional<double> {

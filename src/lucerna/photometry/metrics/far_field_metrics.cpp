@@ -212,6 +212,8 @@ FarFieldMetrics far_field_metrics(const CountedSphere& sphere, std::span<const d
   const Jackknife centre =
       exact ? exact_axis(exact, axis, sphere.replicates(), m) : measure_axis(sphere, axis, m);
   if (peak && exact) refine_peak(exact, {axis, m.axis_cd}, *peak);
+  // A quadratic of few rays may end below zero at its top too.
+  if (peak && !(peak->cd.mean > 0.0)) peak.reset();
   m.peak = peak;
   std::vector<double> planes{0.0, 90.0};
   for (const double c : planes_deg) {

@@ -65,7 +65,8 @@ void read_luminance(TomlReader& reader, Scene& scene) {
   d.name = read_name(reader, "luminance");
   d.grid.size_x_mm = d.grid.size_y_mm = 200.0;
   const Vec3 position = reader.vector("position_mm").value_or(Vec3{});
-  const Vec3 up = reader.axis("up").value_or(Direction()).vec();
+  const auto given_up = reader.axis("up");
+  const Vec3 up = given_up.value_or(Direction()).vec();
   const auto from_mm = reader.vector("from_mm");
   const auto from = reader.axis("from");
   if (from && from_mm) reader.fail("from_mm", "a view is from a direction (from) or from a point (from_mm)");
@@ -85,6 +86,8 @@ void read_luminance(TomlReader& reader, Scene& scene) {
     towards = *from;
     d.half_angle_deg = half_angle.value_or(d.half_angle_deg);
   }
+  if (given_up && length(cross(up, towards.vec())) < 1e-9)
+    reader.fail("up", "is along the line of sight, expected a direction across it");
   d.grid.world_from_plane = facing_frame(towards, up, position);
   read_cells(reader, d.grid);
   at_key(reader, "kind", [&] { return check(d), 0; });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/project/sections/project_memory.h"
 
+#include "lucerna/core/io/file.h"
 #include "lucerna/photometric_file.h"
 #include "lucerna/project/schema/project_files.h"
 #include "lucerna/project/schema/project_tables.h"
@@ -25,6 +26,32 @@ fs::path place_of(const std::string& name, const fs::path& folder, const char* e
   return (fs::absolute(folder) / fs::path(name).filename()).replace_extension(ending).lexically_normal();
 }
 
+/// Writes to `file`, or where another is there already to the first of "name-2", "name-3", ... that is free
+/// or holds the same bytes. Returns its name.
+template <class Write>
+fs::path write_beside(const fs::path& file, const Write& write) {
+  const auto numbered = [&](const std::string& what) {
+    return file.parent_path() / (file.stem().string() + "-" + what + file.extension().string());
+  };
+  if (!fs::exists(file)) {
+    write(file);
+    return file;
+  }
+  const fs::path written = numbered("new");
+  write(written);
+  const std::string bytes = sha256_of_file(written);
+  for (int n = 1;; ++n) {
+    const fs::path place = n == 1 ? file : numbered(std::to_string(n));
+    if (!fs::exists(place)) {
+      fs::rename(written, place);
+      return place;
+    }
+    if (sha256_of_file(place) != bytes) continue;
+    fs::remove(written);
+    return place;
+  }
+}
+
 }  // namespace
 
 ProjectMemory absolute_names(const ProjectMemory& memory, const fs::path& path) {
@@ -42,21 +69,20 @@ Project save_memory(const Project& project, const fs::path& folder) {
     saved.inputs.push_back(file);
   };
   for (const auto& [name, model] : project.memory.models) {
-    const fs::path file = place_of(name, folder, ".nfl");
-    save_source_model(file, *model);
-    add(name, file);
+    add(name, write_beside(place_of(name, folder, ".nfl"),
+                           [&](const fs::path& file) { save_source_model(file, *model); }));
   }
   for (const auto& [name, rays] : project.memory.rays) {
-    const fs::path file = place_of(name, folder, ".tm25ray");
-    write_ray_set(file, *rays, "tm25");
-    add(name, file);
+    add(name, write_beside(place_of(name, folder, ".tm25ray"),
+                           [&](const fs::path& file) { write_ray_set(file, *rays, "tm25"); }));
   }
   for (const auto& [name, target] : project.memory.targets) {
     const bool lumen = target->unit == FluxUnit::lumen;
-    const fs::path file = place_of(name, folder, lumen ? ".ldt" : ".ies");
-    write_photometric_file(file, {*target, {}}, lumen ? PhotometricFormat::ldt : PhotometricFormat::ies_2019,
-                           {.digits = 17});
-    add(name, file);
+    const auto write = [&](const fs::path& file) {
+      write_photometric_file(file, {*target, {}},
+                             lumen ? PhotometricFormat::ldt : PhotometricFormat::ies_2019, {.digits = 17});
+    };
+    add(name, write_beside(place_of(name, folder, lumen ? ".ldt" : ".ies"), write));
   }
   for_each_file(toml_tables(saved), [&](std::string& name) {
     const auto found = new_names.find(name);

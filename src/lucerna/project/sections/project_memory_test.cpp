@@ -43,6 +43,24 @@ TEST(ProjectMemory, ObjectsStandForFilesAndCanBeSaved) {
   EXPECT_THROW(parse_project(kTwo, dir / "lamp.toml"), InputError) << "no such files";
 }
 
+// Python names them all alike: a second scene in a folder must not change the first.
+TEST(ProjectMemory, FilesOfOtherProjectsStay) {
+  const test::TempDir dir;
+  const auto saved = [&](double flux_lm) {
+    const auto rays = led_rays(flux_lm);
+    ProjectMemory memory;
+    memory.models["a.nfl"] = compress(*rays);
+    memory.rays["b"] = rays;
+    return save_memory(parse_project(kTwo, dir / "lamp.toml", memory), dir.path());
+  };
+  const Project one = saved(100.0), other = saved(999.0), again = saved(999.0);
+  EXPECT_NE(one.inputs, other.inputs);
+  EXPECT_EQ(other.inputs, again.inputs) << "what is there already is not written again";
+  EXPECT_EQ(total_flux(parse_project(project_text(one), dir / "1.toml").scene.sources), 107.0);
+  EXPECT_EQ(total_flux(parse_project(project_text(other), dir / "2.toml").scene.sources), 1006.0);
+  EXPECT_FALSE(std::filesystem::exists(dir / "a-new.nfl"));
+}
+
 TEST(ProjectMemory, RaysWithoutAFluxGetTheProjects) {
   ProjectMemory memory;
   memory.rays["b"] = led_rays(std::nullopt);

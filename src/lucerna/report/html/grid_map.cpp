@@ -53,18 +53,22 @@ std::string grid_svg(const GridMap& map) {
   return canvas.str();
 }
 
+std::size_t add_grid(HtmlPage& page, const GridMap& map) {
+  const auto [low, high] = range_of(map);
+  return page.append("grids", {{"nx", map.nx},
+                               {"ny", map.ny},
+                               {"x", map.x_label},
+                               {"y", map.y_label},
+                               {"unit", map.unit},
+                               {"diverging", map.diverging},
+                               {"range", {low, high}},
+                               {"value", base64_floats(map.value)},
+                               {"standard_error", base64_floats(map.standard_error)}});
+}
+
 std::string grid_figure(HtmlPage& page, const GridMap& map, const std::string& file,
                         const std::string& caption) {
-  const auto [low, high] = range_of(map);
-  const std::size_t index = page.append("grids", {{"nx", map.nx},
-                                                  {"ny", map.ny},
-                                                  {"x", map.x_label},
-                                                  {"y", map.y_label},
-                                                  {"unit", map.unit},
-                                                  {"diverging", map.diverging},
-                                                  {"range", {low, high}},
-                                                  {"value", base64_floats(map.value)},
-                                                  {"standard_error", base64_floats(map.standard_error)}});
+  const std::size_t index = add_grid(page, map);
   const std::string controls =
       map.diverging
           ? ""

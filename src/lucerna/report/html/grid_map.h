@@ -32,7 +32,11 @@ struct GridMap {
 /// scale in. Throws std::logic_error if the sizes do not agree. Thread safe.
 std::string grid_svg(const GridMap& map);
 
-/// The map as a figure (html_page.h: plot_figure) whose values go to the page's list "grids" as float32.
+/// Puts the map's values on the page's list "grids" as float32, unless they are there, and returns their
+/// place.
+std::size_t add_grid(HtmlPage& page, const GridMap& map);
+
+/// The map as a figure (html_page.h: plot_figure) of what add_grid puts on the page.
 std::string grid_figure(HtmlPage& page, const GridMap& map, const std::string& file,
                         const std::string& caption);
 

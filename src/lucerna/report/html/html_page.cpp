@@ -54,11 +54,6 @@ std::size_t HtmlPage::append(const std::string& id, nlohmann::ordered_json entry
   return index;
 }
 
-std::size_t HtmlPage::count(const std::string& id) const {
-  const auto found = std::ranges::find(lists_, id, &std::pair<std::string, nlohmann::ordered_json>::first);
-  return found == lists_.end() ? 0 : found->second.size();
-}
-
 void HtmlPage::script(std::string_view text) {
   const auto same = [&](std::string_view other) { return other.data() == text.data(); };
   if (std::ranges::none_of(scripts_, same)) scripts_.push_back(text);

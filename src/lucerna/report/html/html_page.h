@@ -26,9 +26,6 @@ class HtmlPage {
   /// Appends to a list that the scripts find under `id`, unless it is there; returns the entry's index.
   std::size_t append(const std::string& id, nlohmann::ordered_json entry);
 
-  /// Entries of a list so far.
-  std::size_t count(const std::string& id) const;
-
   /// A further script (html_assets.h), after those that every page has; each once, in the order of the calls.
   void script(std::string_view text);
 

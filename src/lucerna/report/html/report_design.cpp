@@ -61,8 +61,8 @@ std::string error_cards(const ResultFigures& result) {
                        "24 × 24, {} % in 12 × 12",
                        result.percent("/error/c48/floor"), box_error_text(result, "/error/c24"),
                        box_error_text(result, "/error/c12")));
-  out +=
-      card("It began at", box_error_text(result, "/start/error/c48"), "%", "error of what the project gives");
+  out += card("It began at", box_error_text(result, "/start/error/c48"), "%",
+              "error of what the search began with");
   out += card("Error outside", box_error_text(result, "/outside/error"), "%",
               "l2 over what lies beside the target's rectangle, relative to the target in it");
   return out + card("Worst box", percent_with_error(result, "/worst_cell"), "%",
@@ -214,7 +214,7 @@ std::string design_report_html(const TraceFolder& folder, const std::vector<Hist
     page.section("target", "Target and result",
                  "<p>The target is its zones: see the table above. There is no light to compare with.</p>\n");
   } else if (options.target != nullptr) {
-    add_target_section(page, *options.target, *options.scene, folder);
+    add_target_section(page, *options.target, folder);
   } else {
     page.section("target", "Target and result",
                  fmt::format("<p>There is no comparison: {}.</p>\n", html_escaped(options.no_problem)));

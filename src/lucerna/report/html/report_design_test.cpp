@@ -53,6 +53,11 @@ constexpr const char* kHistory =
     "2,0,1,65536,131072,0.9,0.01,1,1,0.9\n3,0,2,65536,196608,0.95,0.01,1,0,0.9\n"
     "4,0,3,65536,262144,0.2,0.01,1,1,0.9\n5,1,1,65536,327680,0.1,0.02,1,1,0.89\n";
 
+/// The detector that a design adds for a target of this plane.
+constexpr const char* kWatch =
+    "[[detector]]\nkind = 'plane'\nname = 'target'\nposition_mm = [0, 0, -1000]\nnormal = '+z'\n"
+    "size_mm = [300, 300]\ncells = [30, 30]\n";
+
 /// A folder as `lucerna design` leaves it: the mirror that was there, called the result.
 void make_design(const test::TempDir& dir, const std::string& target) {
   write_file(dir / "p.toml", kMirror + target);
@@ -147,9 +152,10 @@ TEST(ReportDesign, ShowsTheTargetTheConvergenceAndTheLosses) {
 TEST(ReportDesign, PlaneTargetsAreComparedOnTheirRectangle) {
   const test::TempDir dir;
   write_file(dir / "wanted.csv", "1,2,1\n2,4,2\n1,2,1\n");
-  make_design(dir,
-              "[target]\nkind = 'plane'\nfile = 'wanted.csv'\nposition_mm = [0, 0, -1000]\nnormal = '+z'\n"
-              "size_mm = [300, 300]\n");
+  const std::string target =
+      "[target]\nkind = 'plane'\nfile = 'wanted.csv'\nposition_mm = [0, 0, -1000]\nnormal = '+z'\n"
+      "size_mm = [300, 300]\n";
+  make_design(dir, target + kWatch);
   const std::string html = report_of(dir);
   EXPECT_EQ(test::html_fault(html), "");
   const Json grids = test::embedded(html, "grids");
@@ -157,6 +163,12 @@ TEST(ReportDesign, PlaneTargetsAreComparedOnTheirRectangle) {
   const auto wanted = test::unpacked<float>(grids[0]["value"]),
              found = test::unpacked<float>(grids[1]["value"]),
              difference = test::unpacked<float>(grids[2]["value"]);
+  const std::string plane = html.substr(html.rfind("Illuminance: target"));
+  EXPECT_TRUE(has(plane.substr(0, plane.find("</section>")), "data-grid=\"1\"")) << "the result's once more";
+  const std::vector<double> traced = read_trace_folder(dir.path()).planes[1].value;
+  ASSERT_EQ(found.size(), traced.size());
+  for (std::size_t i = 0; i < found.size(); ++i)
+    EXPECT_NEAR(found[i], traced[i], 1e-6 * traced[i]) << "one trace, one result";
   for (std::size_t i = 0; i < wanted.size(); ++i)
     EXPECT_NEAR(difference[i], found[i] - wanted[i],
                 1e-3f * (std::abs(found[i]) + std::abs(wanted[i])) + 1e-3f);
@@ -166,7 +178,7 @@ TEST(ReportDesign, PlaneTargetsAreComparedOnTheirRectangle) {
 TEST(ReportDesign, FinishedFreeFormLensesAreComparedAndShown) {
   const test::TempDir dir;
   write_file(dir / "wanted.csv", "1,2,1\n2,4,2\n1,2,1\n");
-  make_design(dir, "");
+  make_design(dir, kWatch);
   std::string flat = "[0";
   for (int i = 1; i < 49; ++i) flat += ", 0";
   write_file(dir / "project.toml",
@@ -176,7 +188,8 @@ TEST(ReportDesign, FinishedFreeFormLensesAreComparedAndShown) {
                  flat +
                  "]\n[[detector]]\nkind = 'far-field'\n"
                  "[target]\nkind = 'plane'\nfile = 'wanted.csv'\nposition_mm = [0, 0, -1000]\n"
-                 "normal = '+z'\nsize_mm = [300, 300]\n");
+                 "normal = '+z'\nsize_mm = [300, 300]\n" +
+                 kWatch);
   const std::string html = report_of(dir);
   EXPECT_EQ(test::html_fault(html), "");
   EXPECT_FALSE(has(html, "There is no comparison"));

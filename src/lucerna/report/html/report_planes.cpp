@@ -112,10 +112,11 @@ void add_plane_sections(HtmlPage& page, const ResultFigures& result, const std::
     }
     if (kind != "plane" && kind != "luminance") continue;
     const PlaneTable& plane = planes.at(number);
+    const GridMap map = plane_map(plane);
     std::string body = plane_facts(result, key) + "<div class=\"plots\">\n" +
-                       grid_figure(page, plane_map(plane), plane.name + "-map",
+                       grid_figure(page, map, plane.name + "-map",
                                    (plane.luminance ? "Luminance of " : "Illuminance of ") + plane.name);
-    if (!plane.luminance) body += isolux_figure(plane, page.count("grids") - 1);
+    if (!plane.luminance) body += isolux_figure(plane, add_grid(page, map));
     page.section(fmt::format("plane-{}", number++),
                  (plane.luminance ? "Luminance image: " : "Illuminance: ") + plane.name, body + "</div>\n");
   }

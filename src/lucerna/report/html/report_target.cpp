@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "lucerna/design/problem/design_detectors.h"
 #include "lucerna/intensity_comparison.h"
 #include "lucerna/photometric_metrics.h"
 #include "lucerna/report/html/grid_map.h"
@@ -15,40 +17,34 @@
 #include "lucerna/results/metrics/figure_text.h"
 #include "lucerna/results/svg/svg_curves.h"
 #include "lucerna/results/svg/svg_polar.h"
-#include "lucerna/trace.h"
 
 namespace lucerna {
 
 namespace {
 
-constexpr std::uint64_t kPlaneRays = std::uint64_t{1} << 20;
-constexpr std::size_t kMaxPlaneCells = 128;
+using Pointer = nlohmann::ordered_json::json_pointer;
 
-/// The factor that fits `wanted` to `found` best: least squares, with weights.
-double best_scale(const std::vector<double>& wanted, const std::vector<double>& found,
-                  const std::vector<double>& weight) {
-  double cross = 0.0, square = 0.0;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    cross += weight[i] * wanted[i] * found[i];
-    square += weight[i] * wanted[i] * wanted[i];
-  }
-  return square > 0.0 ? cross / square : 1.0;
+/// What the design scaled the target by, 1 in absolute mode.
+double target_factor(const TraceFolder& folder) {
+  return folder.result.value(Pointer("/target/factor"), 1.0);
 }
 
-/// The target on the result's grid, in its unit.
-FarFieldTable target_on(const FarFieldTable& result, const DesignTarget& target) {
+/// The target as the result was compared with it, in the result's unit.
+IntensityDistribution scaled_target(const DesignTarget& target, const TraceFolder& folder) {
+  IntensityDistribution out = target.distribution;
+  scale(out, target_factor(folder));
+  out.unit = folder.far_fields.front().distribution.unit;
+  return out;
+}
+
+/// That on the result's grid.
+FarFieldTable on_grid_of(const FarFieldTable& result, const IntensityDistribution& target) {
   FarFieldTable out{"target", result.distribution, {}};
   IntensityDistribution& d = out.distribution;
-  std::vector<double> weight(d.cd.size());
   for (std::size_t c = 0; c < d.c_deg.size(); ++c) {
-    for (std::size_t g = 0; g < d.gamma_deg.size(); ++g) {
-      d.at(c, g) = intensity_at(target.distribution, d.c_deg[c], d.gamma_deg[g]);
-      weight[c * d.gamma_deg.size() + g] = std::sin(radians(d.gamma_deg[g]));
-    }
+    for (std::size_t g = 0; g < d.gamma_deg.size(); ++g)
+      d.at(c, g) = intensity_at(target, d.c_deg[c], d.gamma_deg[g]);
   }
-  if (target.mode == TargetMode::absolute) return out;
-  const double scale = best_scale(d.cd, result.distribution.cd, weight);
-  for (double& cd : d.cd) cd *= scale;
   return out;
 }
 
@@ -83,8 +79,9 @@ std::string sections_plot(HtmlPage& page, const FarFieldTable& result, const Far
                      fmt::format("data-curves=\"{}\"", index));
 }
 
-std::string comparison_table(const FarFieldTable& result, const FarFieldTable& target) {
-  const DistributionComparison c = compare_distributions(target.distribution, result.distribution,
+std::string comparison_table(const TraceFolder& folder, const IntensityDistribution& target) {
+  const FarFieldTable& result = folder.far_fields.front();
+  const DistributionComparison c = compare_distributions(target, result.distribution,
                                                          {.test_error_cd = result.standard_error,
                                                           .test_flux_error = result.flux_standard_error,
                                                           .align = false});
@@ -102,13 +99,20 @@ std::string comparison_table(const FarFieldTable& result, const FarFieldTable& t
   row("Overlap", percent(c.overlap), "of the light in the right place");
   row("Wasserstein-1", figure_text(c.wasserstein_deg.mean, c.wasserstein_deg.standard_error) + "°",
       "mean angle that light would have to move");
-  row("Peak", figure_text(c.peak_ratio.mean, c.peak_ratio.standard_error), "result over target");
+  // Of the peaks as the summary has them: the largest value of a table is its noisiest.
+  const auto peak = [&](const char* key) { return folder.result.value(Pointer(key), std::nan("")); };
+  const double wanted = peak("/target/peak/intensity");
+  row("Peak",
+      figure_text(peak("/peak/intensity/value") / wanted, peak("/peak/intensity/standard_error") / wanted),
+      "result over target");
   row("Flux", figure_text(c.flux_ratio.mean, c.flux_ratio.standard_error), "result over target");
   return html_table(table);
 }
 
-void directions_section(HtmlPage& page, const DesignTarget& wanted, const FarFieldTable& result) {
-  const FarFieldTable target = target_on(result, wanted);
+void directions_section(HtmlPage& page, const DesignTarget& wanted, const TraceFolder& folder) {
+  const FarFieldTable& result = folder.far_fields.front();
+  const IntensityDistribution expected = scaled_target(wanted, folder);
+  const FarFieldTable target = on_grid_of(result, expected);
   FarFieldFigure figure = add_far_field(page, result);
   figure.target = add_far_field(page, target).index;
   const std::string attributes =
@@ -123,42 +127,37 @@ void directions_section(HtmlPage& page, const DesignTarget& wanted, const FarFie
                      "target-polar", "Polar diagram of result and target", attributes);
   out += direction_map("target-and-result", figure);
   out += sections_plot(page, result, target);
-  out += "</div>\n" + comparison_table(result, target);
+  out += "</div>\n" + comparison_table(folder, expected);
   page.section("target", "Target and result", out);
 }
 
-void plane_section(HtmlPage& page, const DesignTarget& prescribed, Scene scene) {
+/// Null where the folder has none.
+const PlaneTable* target_plane(const TraceFolder& folder) {
+  const auto at = std::ranges::find(folder.planes, kTargetPlane, &PlaneTable::name);
+  return at == folder.planes.end() ? nullptr : &*at;
+}
+
+void plane_section(HtmlPage& page, const DesignTarget& prescribed, const PlaneTable& found, double factor) {
   const PlaneTarget& wanted = *prescribed.plane;
-  PlaneDetector detector{"target", {wanted.world_from_plane, wanted.size_x_mm, wanted.size_y_mm}};
-  detector.grid.nx = std::min(kMaxPlaneCells, std::max<std::size_t>(wanted.map.nx, 16));
-  detector.grid.ny = std::min(kMaxPlaneCells, std::max<std::size_t>(wanted.map.ny, 16));
-  scene.planes = {detector};
-  scene.luminances.clear();
-  scene.ray_detectors.clear();
-  TraceOptions options;
-  options.seed = 2;
-  options.last_ray = kPlaneRays;
-  const PlaneImage found = illuminance(trace(scene, options, no_progress()), 0);
   std::vector<double> target;
-  for (std::size_t i = 0; i < detector.grid.size(); ++i)
-    target.push_back(wanted.at(detector.grid.cell_x_mm(i), detector.grid.cell_y_mm(i)));
-  const bool shape = prescribed.mode == TargetMode::shape;
-  const double scale = shape ? best_scale(target, found.value, std::vector<double>(target.size(), 1.0)) : 1.0;
-  for (double& lx : target) lx *= scale;
+  for (const double y : found.y_mm) {
+    for (const double x : found.x_mm) target.push_back(factor * wanted.at(x, y));
+  }
 
   GridMap map;
   map.x_label = "x, mm", map.y_label = "y, mm";
   map.x_first = -0.5 * wanted.size_x_mm, map.x_last = -map.x_first;
   map.y_first = -0.5 * wanted.size_y_mm, map.y_last = -map.y_first;
-  map.nx = detector.grid.nx, map.ny = detector.grid.ny;
+  map.nx = found.x_mm.size(), map.ny = found.y_mm.size();
   map.unit = found.unit == FluxUnit::lumen ? "lx" : "W/m²";
   map.size = 250.0;
   map.range = {0.0, std::max(*std::ranges::max_element(found.value), *std::ranges::max_element(target))};
   std::string out = fmt::format(
-      "<p>{} The result was traced again with {} rays, noise included.</p>\n<div class=\"trio\">\n",
-      shape ? "The target's shape counts: it is scaled to fit best."
-            : "The target counts as it is, in absolute figures.",
-      kPlaneRays);
+      "<p>{} What was found is the plane {} of the final trace, noise included.</p>\n<div "
+      "class=\"trio\">\n",
+      prescribed.mode == TargetMode::shape ? "The target's shape counts: it is scaled to fit best."
+                                           : "The target counts as it is, in absolute figures.",
+      found.name);
   map.title = "target";
   map.value = target;
   out += grid_figure(page, map, "plane-target", "Target illuminance");
@@ -177,15 +176,15 @@ void plane_section(HtmlPage& page, const DesignTarget& prescribed, Scene scene) 
 
 }  // namespace
 
-void add_target_section(HtmlPage& page, const DesignTarget& target, const Scene& scene,
-                        const TraceFolder& folder) {
-  if (target.plane) {
-    plane_section(page, target, scene);
-  } else if (folder.far_fields.empty()) {
+void add_target_section(HtmlPage& page, const DesignTarget& target, const TraceFolder& folder) {
+  const PlaneTable* plane = target_plane(folder);
+  if (target.plane && plane != nullptr) {
+    plane_section(page, target, *plane, target_factor(folder));
+  } else if (target.plane || folder.far_fields.empty()) {
     page.section("target", "Target and result",
-                 "<p>There is no comparison: the project has no far-field detector.</p>\n");
+                 "<p>There is no comparison: the project has no detector for it.</p>\n");
   } else {
-    directions_section(page, target, folder.far_fields.front());
+    directions_section(page, target, folder);
   }
 }
 

@@ -163,11 +163,13 @@ void error_lines(const DesignFindings& result, bool with_bound, std::vector<std:
       100.0 * e.worst_cell.standard_error));
 }
 
-void light_line(const DesignFindings& result, bool with_error, std::vector<std::string>& lines) {
+void light_line(const DesignFindings& result, bool is_lens, bool with_error,
+                std::vector<std::string>& lines) {
   const DesignError& e = result.error;
-  std::string line = fmt::format("  light: {} leaves; {} in the target's rectangle, {} outside ({} directly)",
-                                 share_text(result.efficiency), share_text(e.in_rectangle),
-                                 share_text(e.outside_share), share_text(e.outside_direct));
+  std::string line =
+      fmt::format("  light: {} leaves; {} in the target's rectangle, {} outside ({} {})",
+                  share_text(result.efficiency), share_text(e.in_rectangle), share_text(e.outside_share),
+                  share_text(e.outside_direct), is_lens ? "past the lens" : "directly");
   if (with_error) {
     line += fmt::format(", where the error is {:.2f} +- {:.2f} %", 100.0 * e.outside.excess,
                         100.0 * e.outside.standard_error);
@@ -328,7 +330,7 @@ std::vector<std::string> design_summary(const DesignTarget& target, const Design
   plane_rows(f, table);
   std::vector<std::string>& lines = table.lines;
   if (!zones_only) error_lines(result, !form.is_lens, lines);
-  light_line(result, !zones_only, lines);
+  light_line(result, form.is_lens, !zones_only, lines);
   for (std::string& line : zones_summary(result.zones, f.trace.ledger.unit)) lines.push_back(std::move(line));
   pareto_lines(result, lines);
   advice_lines(result, lines);

@@ -62,6 +62,19 @@ std::string coarse_grid(const FarFieldResult& f) {
       f.field.name, *largest, unit, estimate_text(peak->cd, unit), finer);
 }
 
+/// Counted light knows a lobe that is narrow for its cells only blurred, and not by how much.
+std::string coarse_cells(const FarFieldResult& f) {
+  const auto& peak = f.metrics.peak;
+  const bool counted = peak && (peak->radius_deg > 0.0 || peak->c_radius_deg > 0.0);
+  if (!counted || !(f.field.gamma_step_deg > kStepOfHalfWidth * peak->half_width_deg)) return "";
+  return fmt::format(
+      "{}: peak, axis and angles are of light counted in cells of {:g} deg, which are wide for a lobe whose "
+      "half "
+      "width is {:.2g} deg: what they blur is not in all of the errors; a finer grid: gamma_step_deg = {:g} "
+      "of the detector",
+      f.field.name, f.field.gamma_step_deg, peak->half_width_deg, resolving_step_deg(peak->half_width_deg));
+}
+
 std::string dark_mirrors(const Ledger& ledger, const Scene& scene) {
   if (scene.reflectors.empty() || ledger.rays == 0 || ledger.reflections_per_ray.mean > 0.0) return "";
   const auto absorbed = [&](std::string_view cause) {
@@ -86,7 +99,9 @@ std::string too_few_rays(const Ledger& ledger) {
 std::vector<std::string> trace_warnings(const TraceMetrics& figures) {
   std::vector<std::string> warnings;
   for (const FarFieldResult& f : figures.far_fields) {
-    if (std::string warning = coarse_grid(f); !warning.empty()) warnings.push_back(std::move(warning));
+    for (std::string warning : {coarse_grid(f), coarse_cells(f)}) {
+      if (!warning.empty()) warnings.push_back(std::move(warning));
+    }
   }
   return warnings;
 }

@@ -60,15 +60,23 @@ TEST(TraceWarnings, WhatIsNoFaultOfTheGridIsNone) {
   FarFieldResult noisy = beam(81300.0, 66152.0);
   noisy.intensity.standard_error_cd[0] = 5000.0;
   EXPECT_THAT(warnings_of(noisy), IsEmpty());
-  FarFieldResult fitted = beam(81300.0, 66152.0);
-  fitted.metrics.peak->radius_deg = 1.0;
-  EXPECT_THAT(warnings_of(fitted), IsEmpty()) << "a peak of counted cells knows no better";
   FarFieldResult wide = beam(81300.0, 66152.0);
   wide.metrics.peak->half_width_deg = 40.0;
   EXPECT_THAT(warnings_of(wide), IsEmpty()) << "no finer grid would bring it nearer";
   FarFieldResult dark = beam(0.0, 0.0);
   dark.metrics.peak.reset();
   EXPECT_THAT(warnings_of(dark), IsEmpty());
+}
+
+TEST(TraceWarnings, CountedLightInCellsThatAreWideForTheLobeIsNamed) {
+  FarFieldResult counted = beam(81300.0, 66152.0);
+  counted.metrics.peak->radius_deg = 1.0;
+  EXPECT_THAT(
+      warnings_of(counted),
+      ElementsAre(HasSubstr("far: peak, axis and angles are of light counted in cells of 1 deg, which are "
+                            "wide for a lobe whose half width is 1.2 deg")));
+  counted.metrics.peak->half_width_deg = 3.5;
+  EXPECT_THAT(warnings_of(counted), IsEmpty());
 }
 
 constexpr const char* kSpot = R"([[source]]

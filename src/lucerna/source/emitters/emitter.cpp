@@ -133,6 +133,14 @@ double positive(double value, std::string_view name) {
   return value;
 }
 
+/// Rays keep their starts as float.
+double size_mm(double value, std::string_view name) {
+  constexpr double kLargest_mm = 1e9;
+  if (value > kLargest_mm)
+    throw InputError(fmt::format("{} is {}, expected at most {:g} mm", name, value, kLargest_mm));
+  return positive(value, name);
+}
+
 /// A size that changes nothing is a mistake.
 void check_sizes(const EmitterOptions& o) {
   const bool coil = o.kind == EmitterKind::filament, cylinder = o.kind == EmitterKind::cylinder;
@@ -158,10 +166,10 @@ EmitterShape shape_of(const EmitterOptions& o) {
   const std::array<double, 2> size = o.size_mm.value_or(std::array{1.0, 1.0});
   const double radius = o.radius_mm.value_or(coil ? 0.6 : is_seed_set(o.kind) ? 10.0 : 1.0);
   return {o.kind,
-          positive(radius, "radius_mm"),
-          positive(o.length_mm.value_or(coil ? 8.0 : 6.0), "length_mm"),
-          positive(size[0], "size_mm[0]"),
-          positive(size[1], "size_mm[1]"),
+          size_mm(radius, "radius_mm"),
+          size_mm(o.length_mm.value_or(coil ? 8.0 : 6.0), "length_mm"),
+          size_mm(size[0], "size_mm[0]"),
+          size_mm(size[1], "size_mm[1]"),
           ghost_share};
 }
 

@@ -271,6 +271,8 @@ TEST(Emitter, BadSizesAreNamed) {
             std::string::npos);
   EXPECT_NE(message({.kind = EmitterKind::cylinder, .surface = BoundingSurface::sphere(2.0)}).find("outside"),
             std::string::npos);
+  EXPECT_NE(message({.kind = EmitterKind::disk, .radius_mm = 1e300}).find("expected at most 1e+09 mm"),
+            std::string::npos);
   EXPECT_EQ(message({.kind = EmitterKind::disk, .length_mm = 3.0}),
             "found length_mm, which a disk does not have");
   EXPECT_NE(message({.kind = EmitterKind::led, .radius_mm = 1.0}), "");

@@ -100,7 +100,7 @@ std::string peak_place_text(const PeakEstimate& p) {
   const double gamma = degrees(type_c_angles(p.direction).gamma_rad), off = std::min(gamma, 180.0 - gamma);
   // The draws of a ring of light are far apart too, but all as far from the axis.
   if (p.gamma_deg && off <= 2.0 * std::min(p.direction_error_deg, 2.0 * p.gamma_deg->standard_error))
-    return fmt::format("on the axis within {:.2g} deg", std::max(off, p.direction_error_deg));
+    return fmt::format("within {:.2g} deg of the axis", std::max(off, p.direction_error_deg));
   if (p.gamma_deg) return fmt::format("gamma {} deg, C not determined", estimate_text(*p.gamma_deg));
   if (p.c_deg) return fmt::format("C {} deg, gamma not determined", estimate_text(*p.c_deg));
   return "direction not determined";
@@ -152,10 +152,10 @@ std::string plane_line(const PlaneMetrics& f, std::string_view flux_unit) {
 void far_field_lines(const FarFieldResult& f, std::vector<std::string>& lines) {
   const std::string_view unit = intensity_symbol(f.field.unit);
   const FarFieldMetrics& m = f.metrics;
-  if (m.peak) {
-    lines.push_back(fmt::format("  {}: peak {}, {}; axis {}", f.field.name, estimate_text(m.peak->cd, unit),
-                                peak_place_text(*m.peak), estimate_text(m.axis_cd, unit)));
-  }
+  const std::string peak =
+      m.peak ? fmt::format("{}, {}", estimate_text(m.peak->cd, unit), peak_place_text(*m.peak))
+             : std::string("not determined");
+  lines.push_back(fmt::format("  {}: peak {}; axis {}", f.field.name, peak, estimate_text(m.axis_cd, unit)));
   for (const auto& plane : m.planes) {
     if (plane.c_deg != 0.0 && plane.c_deg != 90.0) continue;
     lines.push_back(
