@@ -29,7 +29,8 @@ inline constexpr CadTolerance kOpticalTolerance{.chord_mm = 0.01, .slope_deg = 0
 /// A reflector as triangles, for STL and OBJ: a grid over the aperture (from the hole's rim outwards where
 /// there is one, and over circles; else of rows and columns), counter-clockwise seen from the reflecting
 /// side, fine enough for the tolerance everywhere. Vertices are on the exact surface. Throws InputError if a
-/// tolerance is not above 0, or would need more than 4 M triangles; says what would do.
+/// tolerance is not above 0, or would need more than 4 M triangles, and for a faceted mirror, whose steps no
+/// connected mesh follows.
 [[nodiscard]] Mesh cad_mesh(const Reflector& reflector, const CadTolerance& tolerance = {});
 
 /// The same with a tolerance that is raised until 1 M triangles do, to within a fifth; it then says what is

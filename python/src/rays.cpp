@@ -74,7 +74,7 @@ format : str, optional
     'tm25', 'zemax-binary', 'zemax-text', 'lighttools-binary', 'lighttools-ascii', 'speos', 'mcpl', 'asap'
     or 'text'.
 length_unit : str
-    Unit of the file's lengths, for formats that have a choice.
+    Unit of the file's lengths, for formats that have a choice: 'mm', 'cm', 'm', 'inch' or 'feet'.
 
 Returns
 -------

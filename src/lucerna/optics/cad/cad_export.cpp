@@ -11,6 +11,7 @@
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/parallel/parallel.h"
 #include "lucerna/geometry.h"
+#include "lucerna/optics/shapes/faceted_surface.h"
 
 namespace lucerna {
 
@@ -221,6 +222,12 @@ Mesh mesh_of(const Grid& grid) {
 
 Mesh cad_mesh(const Reflector& reflector, const CadTolerance& tolerance) {
   check_tolerance(tolerance);
+  if (const auto* faceted = dynamic_cast<const FacetedSurface*>(reflector.surface.get())) {
+    throw InputError(fmt::format("CAD: a faceted mirror steps where its facets of {} mm meet, and no "
+                                 "connected mesh follows it at any tolerance",
+                                 faceted->pitch_mm()),
+                     ErrorCause::unsupported);
+  }
   const auto grid = grid_for(reflector, tolerance, kMaxTriangles);
   if (!grid) {
     throw InputError(

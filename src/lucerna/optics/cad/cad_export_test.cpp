@@ -9,6 +9,7 @@
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
 #include "lucerna/geometry.h"
+#include "lucerna/optics/shapes/faceted_surface.h"
 #include "lucerna/optics/shapes/smooth_shape.h"
 #include "tests/support/temp_dir.h"
 
@@ -136,6 +137,20 @@ TEST(CadExport, RefusesSenselessTolerances) {
   EXPECT_THROW(cad_mesh(wavy(Aperture::circle(50)), {.chord_mm = 0.0}), InputError);
   EXPECT_THROW(cad_mesh(wavy(Aperture::circle(50)), {.chord_mm = 1e-9}), InputError);
   EXPECT_THROW(cad_mesh(wavy(Aperture::circle(50)), {.slope_deg = 0.0}), InputError);
+}
+
+// Their steps are finer than any mesh: coarser tolerances would not help.
+TEST(CadExport, RefusesFacetsByName) {
+  const Reflector smooth = wavy(Aperture::circle(50));
+  const Reflector faceted{std::make_shared<FacetedSurface>(smooth.surface, 5.0, INFINITY), smooth.aperture};
+  try {
+    static_cast<void>(cad_mesh(faceted, {.chord_mm = 1.0, .slope_deg = 45.0}));
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("faceted mirror steps where its facets of 5 mm meet"),
+              std::string::npos)
+        << e.what();
+  }
 }
 
 }  // namespace

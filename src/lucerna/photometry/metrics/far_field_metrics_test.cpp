@@ -118,7 +118,7 @@ TEST(FarFieldMetrics, ADarkAxisIsNotBelowZero) {
 
 // Nor does a peak: of a few rays it may not be determined.
 TEST(FarFieldMetrics, APeakOfFewRaysIsNotBelowZero) {
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 15; ++seed) {
     const auto peak = far_field_metrics(sphere(lobe(40.0, 60.0, 2.0), 12.0, seed), {}).peak;
     EXPECT_GT(peak ? peak->cd.mean : 1.0, 0.0) << seed;
   }

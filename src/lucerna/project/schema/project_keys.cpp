@@ -200,7 +200,7 @@ constexpr std::array kKeys{
     ProjectKey{"target.zone", "min_ul", Type::number, up_to(1, true), "", "none", "Uniformity along a line: minimum over maximum illuminance."},
     ProjectKey{"target.zone", "min_of_mean", Type::number, kAboveZero, "", "none", "Minimum of every cell as a multiple of the mean over a zone."},
     ProjectKey{"target.zone", "max_of_mean", Type::number, kAboveZero, "", "none", "Maximum of every cell as a multiple of the mean over a zone."},
-    ProjectKey{"target.zone", "mean_of", Type::text, kAny, "", "the zone itself", "Name of the zone that the mean is of."},
+    ProjectKey{"target.zone", "mean_of", Type::text, kAny, "", "required with min_of_mean, max_of_mean", "Name of the zone that their mean is of; `min_uo` is of the mean of its own zone."},
 
     ProjectKey{"design", "reflector", Type::number, kAny, "", "0 where there is one", "Number, from 0, of the reflector that is shaped."},
     ProjectKey{"design", "free_sides", Type::number_or_numbers, whole(0, 10000), "", "none", "Of a lens, instead of a reflector: numbers, from 0, of the sides of its `outline_mm` that are shaped, each with all of its face; side 0 leads from the first corner to the second. Beside a bspline, the face from the axis to the base may be free: it becomes a cavity, or stays."},

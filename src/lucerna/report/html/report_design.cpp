@@ -42,7 +42,8 @@ std::vector<std::string_view> words_of(std::string_view line) {
 std::string percent_with_error(const ResultFigures& result, const std::string& key,
                                const std::string& value = "/value") {
   const double error = 100.0 * result.number(key + "/standard_error");
-  if (!(error > 0.0)) return result.percent(key + value);
+  constexpr double kLeastShown = 1e-6;  // six decimals
+  if (!(error >= kLeastShown)) return result.percent(key + value);
   const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 6);
   return result.percent(key + value, decimals) + " ± " + result.percent(key + "/standard_error", decimals);
 }
