@@ -10,16 +10,24 @@ namespace lucerna {
 namespace {
 
 constexpr double kGlareRing_deg = 5.0;
-constexpr std::size_t kGlareSectors = 12;
+constexpr double kMostSectors = 12.0;
 
 }  // namespace
 
 GlareCells::GlareCells(const Frame& world_from_mirror, double beyond_deg)
-    : mirror_from_world_(world_from_mirror.inverse()),
-      beyond_deg_(beyond_deg),
-      rings_(static_cast<std::size_t>(std::max(1L, std::lround((180.0 - beyond_deg) / kGlareRing_deg)))) {}
-
-std::size_t GlareCells::size() const { return rings_ * kGlareSectors; }
+    : mirror_from_world_(world_from_mirror.inverse()), beyond_deg_(beyond_deg) {
+  const long count = std::max(1L, std::lround((180.0 - beyond_deg) / kGlareRing_deg));
+  const double high = radians(180.0 - beyond_deg) / static_cast<double>(count);
+  std::size_t first = 0;
+  for (long k = 0; k < count; ++k) {
+    const double near = radians(beyond_deg) + high * static_cast<double>(k);
+    const double around = 2.0 * std::numbers::pi * std::sin(near + 0.5 * high);
+    const auto sectors = static_cast<std::size_t>(std::clamp(std::floor(around / high), 1.0, kMostSectors));
+    const double sr = 2.0 * std::numbers::pi * (std::cos(near) - std::cos(near + high));
+    rings_.push_back({first, sectors, sr / static_cast<double>(sectors)});
+    first += sectors;
+  }
+}
 
 void GlareCells::add(const Vec3& direction, double flux, std::span<double> sums) const {
   const Vec3 d = mirror_from_world_.vector(direction);
@@ -28,22 +36,17 @@ void GlareCells::add(const Vec3& direction, double flux, std::span<double> sums)
   const auto place = [](double share, std::size_t n) {
     return std::min(static_cast<std::size_t>(share * static_cast<double>(n)), n - 1);
   };
+  const Ring& ring = rings_[place(off_deg / (180.0 - beyond_deg_), rings_.size())];
   const double turn = 0.5 + std::atan2(d.y, d.x) / (2.0 * std::numbers::pi);
-  sums[place(off_deg / (180.0 - beyond_deg_), rings_) * kGlareSectors + place(turn, kGlareSectors)] += flux;
+  sums[ring.first + place(turn, ring.sectors)] += flux;
 }
 
 Estimate GlareCells::brightest(std::span<const BoxSums> replicates) const {
   Estimate most;
-  for (std::size_t ring = 0; ring < rings_; ++ring) {
-    const auto cosine = [&](std::size_t k) {
-      return std::cos(radians(beyond_deg_ +
-                              (180.0 - beyond_deg_) * static_cast<double>(k) / static_cast<double>(rings_)));
-    };
-    const double sr =
-        (cosine(ring) - cosine(ring + 1)) * 2.0 * std::numbers::pi / static_cast<double>(kGlareSectors);
-    for (std::size_t sector = 0; sector < kGlareSectors; ++sector) {
-      const std::size_t cell = ring * kGlareSectors + sector;
-      const Estimate e = replicate_share(replicates, [&](const BoxSums& r) { return r.glare[cell] / sr; });
+  for (const Ring& ring : rings_) {
+    for (std::size_t cell = ring.first; cell < ring.first + ring.sectors; ++cell) {
+      const Estimate e =
+          replicate_share(replicates, [&](const BoxSums& r) { return r.glare[cell] / ring.measure_sr; });
       if (e.mean > most.mean) most = e;
     }
   }
