@@ -38,19 +38,14 @@ std::vector<std::string_view> words_of(std::string_view line) {
   }
 }
 
-/// "3.38 ± 0.11", both in per cent: a value and its error, with two digits of the error.
-std::string percent_with_error(const ResultFigures& result, const std::string& key,
-                               const std::string& value = "/value") {
-  const double error = 100.0 * result.number(key + "/standard_error");
-  constexpr double kLeastShown = 1e-6;  // six decimals
-  if (!(error >= kLeastShown)) return result.percent(key + value);
-  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 6);
-  return result.percent(key + value, decimals) + " ± " + result.percent(key + "/standard_error", decimals);
+/// A share with its error, in per cent.
+std::string percent_with_error(const ResultFigures& result, const std::string& key) {
+  return result.percent(key + "/value", key + "/standard_error");
 }
 
 /// The same of an error in boxes, less its noise.
 std::string box_error_text(const ResultFigures& result, const std::string& key) {
-  return percent_with_error(result, key, "/excess");
+  return result.percent(key + "/excess", key + "/standard_error");
 }
 
 /// Against the target: not where zones are all there is.
@@ -215,7 +210,7 @@ std::string design_report_html(const TraceFolder& folder, const std::vector<Hist
     page.section("target", "Target and result",
                  "<p>The target is its zones: see the table above. There is no light to compare with.</p>\n");
   } else if (options.target != nullptr) {
-    add_target_section(page, *options.target, folder);
+    add_target_section(page, *options.target, result, folder);
   } else {
     page.section("target", "Target and result",
                  fmt::format("<p>There is no comparison: {}.</p>\n", html_escaped(options.no_problem)));

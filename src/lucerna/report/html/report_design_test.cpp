@@ -59,7 +59,7 @@ constexpr const char* kWatch =
     "size_mm = [300, 300]\ncells = [30, 30]\n";
 
 /// A folder as `lucerna design` leaves it: the mirror that was there, called the result.
-void make_design(const test::TempDir& dir, const std::string& target) {
+void make_design(const test::TempDir& dir, const std::string& target, double target_factor = 1.0) {
   write_file(dir / "p.toml", kMirror + target);
   const Project project = read_project(dir / "p.toml");
   TraceOptions options;
@@ -88,6 +88,8 @@ void make_design(const test::TempDir& dir, const std::string& target) {
               {"reason", "the <brightest> boxes"}}},
             {"worst_cell", kEstimate},
             {"in_rectangle", kEstimate},
+            {"target", {{"factor", target_factor}, {"peak", {{"intensity", 1234.0}}}}},
+            {"peak", {{"intensity", {{"value", 1000.0}, {"standard_error", 10.0}}}}},
             {"scale", 993.8},
             {"efficiency", kEstimate},
             {"evaluations", 5},
@@ -122,9 +124,9 @@ TEST(ReportDesign, ShowsTheTargetTheConvergenceAndTheLosses) {
   EXPECT_LT(html.size(), 1'500'000u);
   const auto seen = test::check_keyed_figures(html, test::embedded(html, "result"));
   for (const char* key :
-       {"/error/c48/excess", "/error/c48/standard_error", "/error/c12/excess", "/start/error/c48/excess",
-        "/outside/share/value", "/outside/error/excess", "/worst_cell/value", "/in_rectangle/value",
-        "/efficiency/value", "/evaluations", "/ledger/absorbed/mirror/value", "/detectors/1/mean/value"})
+       {"/error/c48/excess", "/error/c12/excess", "/start/error/c48/excess", "/outside/share/value",
+        "/outside/error/excess", "/worst_cell/value", "/in_rectangle/value", "/efficiency/value",
+        "/evaluations", "/ledger/absorbed/mirror/value", "/detectors/1/mean/value"})
     EXPECT_TRUE(seen.contains(key)) << key;
   EXPECT_TRUE(has(html, "the &lt;brightest&gt; boxes"));
   EXPECT_TRUE(has(html, "the target is &lt;not&gt; reached"));
@@ -147,6 +149,24 @@ TEST(ReportDesign, ShowsTheTargetTheConvergenceAndTheLosses) {
   const Json grids = test::embedded(html, "grids");
   ASSERT_EQ(grids.size(), 1u);
   EXPECT_EQ(test::unpacked<float>(grids[0]["value"]).size(), 150u);
+}
+
+// One comparison: a factor and peaks of the report's own had been others than the design's.
+TEST(ReportDesign, TheTargetIsScaledAsTheDesignWasComparedWithIt) {
+  const test::TempDir dir, other;
+  make_design(other, "");
+  std::filesystem::copy(other / "far.ldt", dir / "target.ldt");
+  make_design(dir, "[target]\nfile = 'target.ldt'\n", 2.0);
+  const std::string html = report_of(dir);
+  const Json fields = test::embedded(html, "far-fields");
+  ASSERT_EQ(fields.size(), 2u);
+  const auto result = test::unpacked<float>(fields[0]["intensity"]),
+             target = test::unpacked<float>(fields[1]["intensity"]);
+  ASSERT_EQ(result.size(), target.size());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    EXPECT_NEAR(target[i], 2.0f * result[i], 0.01f * result[i] + 0.01f) << i;
+  }
+  EXPECT_TRUE(has(html, "0.8104 ± 0.0081")) << "1000 +- 10 over 1234";
 }
 
 TEST(ReportDesign, PlaneTargetsAreComparedOnTheirRectangle) {

@@ -65,6 +65,11 @@ std::string ResultFigures::percent(const std::string& key, int decimals) const {
                      std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "–");
 }
 
+std::string ResultFigures::percent(const std::string& key, const std::string& error_key) const {
+  return fmt::format("<span data-key=\"{}\" data-factor=\"100\">{}</span>", html_escaped(key),
+                     figure_text(100.0 * number(key), 100.0 * number(error_key)));
+}
+
 std::string pointer_word(const std::string& key) {
   std::string out;
   for (const char c : key) out += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);

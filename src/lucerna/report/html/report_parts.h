@@ -28,6 +28,8 @@ class ResultFigures {
   std::string fixed(const std::string& key, int decimals) const;
   /// A share in per cent: the element's `data-factor` is 100.
   std::string percent(const std::string& key, int decimals = 2) const;
+  /// The same with its error, to the digits of figure_text.
+  std::string percent(const std::string& key, const std::string& error_key) const;
 
  private:
   const nlohmann::ordered_json& json_;

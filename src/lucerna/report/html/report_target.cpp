@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "lucerna/design/problem/design_detectors.h"
 #include "lucerna/intensity_comparison.h"
@@ -22,18 +21,16 @@ namespace lucerna {
 
 namespace {
 
-using Pointer = nlohmann::ordered_json::json_pointer;
-
 /// What the design scaled the target by, 1 in absolute mode.
-double target_factor(const TraceFolder& folder) {
-  return folder.result.value(Pointer("/target/factor"), 1.0);
+double target_factor(const ResultFigures& result) {
+  return result.has("/target/factor") ? result.number("/target/factor") : 1.0;
 }
 
 /// The target as the result was compared with it, in the result's unit.
-IntensityDistribution scaled_target(const DesignTarget& target, const TraceFolder& folder) {
+IntensityDistribution scaled_target(const DesignTarget& target, double factor, FluxUnit unit) {
   IntensityDistribution out = target.distribution;
-  scale(out, target_factor(folder));
-  out.unit = folder.far_fields.front().distribution.unit;
+  scale(out, factor);
+  out.unit = unit;
   return out;
 }
 
@@ -79,8 +76,15 @@ std::string sections_plot(HtmlPage& page, const FarFieldTable& result, const Far
                      fmt::format("data-curves=\"{}\"", index));
 }
 
-std::string comparison_table(const TraceFolder& folder, const IntensityDistribution& target) {
-  const FarFieldTable& result = folder.far_fields.front();
+std::string peak_ratio(const ResultFigures& figures) {
+  if (!figures.has("/peak/intensity/value") || !figures.has("/target/peak/intensity")) return kNoFigure;
+  const double wanted = figures.number("/target/peak/intensity");
+  return figure_text(figures.number("/peak/intensity/value") / wanted,
+                     figures.number("/peak/intensity/standard_error") / wanted);
+}
+
+std::string comparison_table(const ResultFigures& figures, const FarFieldTable& result,
+                             const IntensityDistribution& target) {
   const DistributionComparison c = compare_distributions(target, result.distribution,
                                                          {.test_error_cd = result.standard_error,
                                                           .test_flux_error = result.flux_standard_error,
@@ -100,18 +104,15 @@ std::string comparison_table(const TraceFolder& folder, const IntensityDistribut
   row("Wasserstein-1", figure_text(c.wasserstein_deg.mean, c.wasserstein_deg.standard_error) + "°",
       "mean angle that light would have to move");
   // Of the peaks as the summary has them: the largest value of a table is its noisiest.
-  const auto peak = [&](const char* key) { return folder.result.value(Pointer(key), std::nan("")); };
-  const double wanted = peak("/target/peak/intensity");
-  row("Peak",
-      figure_text(peak("/peak/intensity/value") / wanted, peak("/peak/intensity/standard_error") / wanted),
-      "result over target");
+  row("Peak", peak_ratio(figures), "result over target");
   row("Flux", figure_text(c.flux_ratio.mean, c.flux_ratio.standard_error), "result over target");
   return html_table(table);
 }
 
-void directions_section(HtmlPage& page, const DesignTarget& wanted, const TraceFolder& folder) {
-  const FarFieldTable& result = folder.far_fields.front();
-  const IntensityDistribution expected = scaled_target(wanted, folder);
+void directions_section(HtmlPage& page, const DesignTarget& wanted, const ResultFigures& figures,
+                        const FarFieldTable& result) {
+  const IntensityDistribution expected =
+      scaled_target(wanted, target_factor(figures), result.distribution.unit);
   const FarFieldTable target = on_grid_of(result, expected);
   FarFieldFigure figure = add_far_field(page, result);
   figure.target = add_far_field(page, target).index;
@@ -127,7 +128,7 @@ void directions_section(HtmlPage& page, const DesignTarget& wanted, const TraceF
                      "target-polar", "Polar diagram of result and target", attributes);
   out += direction_map("target-and-result", figure);
   out += sections_plot(page, result, target);
-  out += "</div>\n" + comparison_table(folder, expected);
+  out += "</div>\n" + comparison_table(figures, result, expected);
   page.section("target", "Target and result", out);
 }
 
@@ -176,15 +177,16 @@ void plane_section(HtmlPage& page, const DesignTarget& prescribed, const PlaneTa
 
 }  // namespace
 
-void add_target_section(HtmlPage& page, const DesignTarget& target, const TraceFolder& folder) {
+void add_target_section(HtmlPage& page, const DesignTarget& target, const ResultFigures& result,
+                        const TraceFolder& folder) {
   const PlaneTable* plane = target_plane(folder);
   if (target.plane && plane != nullptr) {
-    plane_section(page, target, *plane, target_factor(folder));
+    plane_section(page, target, *plane, target_factor(result));
   } else if (target.plane || folder.far_fields.empty()) {
     page.section("target", "Target and result",
                  "<p>There is no comparison: the project has no detector for it.</p>\n");
   } else {
-    directions_section(page, target, folder);
+    directions_section(page, target, result, folder.far_fields.front());
   }
 }
 
