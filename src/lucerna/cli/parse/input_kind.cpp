@@ -28,16 +28,17 @@ std::string other_kind(const std::filesystem::path& path) {
   return "";
 }
 
-/// What is wrong with a file that is called light and has neither light nor rays in it; empty for others.
-std::string photometry_fault(const std::filesystem::path& path) {
+/// Throws what is wrong with a file that is called light and has neither light nor rays in it.
+void refuse_broken_light(const std::filesystem::path& path) {
   const std::string ending = lower_ending(path);
   std::error_code ignored;
-  if ((ending != ".ies" && ending != ".ldt") || !std::filesystem::is_regular_file(path, ignored)) return "";
-  if (std::filesystem::file_size(path, ignored) == 0)
-    return "empty, the IES or EULUMDAT file expected that its name says";
-  if (detect_ray_format(path)) return "";
-  static_cast<void>(read_photometric_file(path));  // throws where it can say what is wrong
-  return "neither rays nor the IES or EULUMDAT file that its name says";
+  if ((ending != ".ies" && ending != ".ldt") || !std::filesystem::is_regular_file(path, ignored)) return;
+  if (std::filesystem::file_size(path, ignored) == 0) {
+    throw InputError(
+        fmt::format("{}: empty, the IES or EULUMDAT file expected that its name says", path.string()),
+        ErrorCause::damaged);
+  }
+  if (!detect_ray_format(path)) static_cast<void>(read_photometric_file(path));
 }
 
 }  // namespace
@@ -47,8 +48,7 @@ bool is_project_file(const std::filesystem::path& path) { return lower_ending(pa
 void require_ray_file(const std::filesystem::path& path) {
   const std::string kind = other_kind(path);
   if (!kind.empty()) throw InputError(fmt::format("{}: rays expected, this is {}", path.string(), kind));
-  if (const std::string fault = photometry_fault(path); !fault.empty())
-    throw InputError(fmt::format("{}: {}", path.string(), fault), ErrorCause::damaged);
+  refuse_broken_light(path);
 }
 
 }  // namespace lucerna::cli

@@ -127,12 +127,12 @@ DesignBound ResultCheck::bound(const DesignShape& shape, const Validation& light
                       problem_.world_from_mirror.ez());
 }
 
-void ResultCheck::set_error(std::uint64_t max_rays, double max_s, DesignResult& result, Progress& progress) {
+Estimate ResultCheck::set_error(std::uint64_t max_rays, double max_s, DesignResult& result,
+                                Progress& progress) {
   const Validation v = validated(result.shape, ValidationOptions().min_rays, max_rays, max_s, progress);
   result.error = v.error;
   result.zones = v.zones;
   result.efficiency = v.efficiency;
-  if (glare_) glare_per_flux_ = glare_->brightest(v.replicates);
   result.absorbed = v.absorbed;
   result.back = v.back;
   result.bodies = v.bodies;
@@ -141,19 +141,20 @@ void ResultCheck::set_error(std::uint64_t max_rays, double max_s, DesignResult& 
   result.start_error = start_.error;
   result.start_zones = start_.zones;
   result.bound = bound(result.shape, v);
+  return glare_ ? glare_->brightest(v.replicates) : Estimate{};
 }
 
 void ResultCheck::fill(const FitProblem& fit, std::uint64_t max_rays, double max_s, DesignResult& result,
                        Progress& progress) {
-  set_error(max_rays, max_s, result, progress);
+  Estimate glare_per_flux = set_error(max_rays, max_s, result, progress);
   const bool keep_given = given_is_better(problem_, result);
   if (keep_given) {
     result.shape = problem_.start;
-    set_error(max_rays, max_s, result, progress);
+    glare_per_flux = set_error(max_rays, max_s, result, progress);
   }
   const CadTolerance stl = mesh_tolerance(boxes_, target_, problem_.world_from_mirror.origin_mm());
   result.limits =
-      checked_limits(problem_, result.shape, stl, rays_.flux(), result.efficiency, glare_per_flux_);
+      checked_limits(problem_, result.shape, stl, rays_.flux(), result.efficiency, glare_per_flux);
   const double behind = share_behind(result.shape, rays_), given = share_behind(problem_.start, rays_);
   if (behind > given + kMaxBehind) {
     const double error = std::sqrt(behind * (1.0 - behind) / static_cast<double>(rays_.size()));

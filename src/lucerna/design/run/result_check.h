@@ -32,7 +32,8 @@ class ResultCheck {
   Validation validated(const DesignShape& shape, std::uint64_t min_rays, std::uint64_t max_rays, double max_s,
                        Progress& progress) const;
   DesignBound bound(const DesignShape& shape, const Validation& light);
-  void set_error(std::uint64_t max_rays, double max_s, DesignResult& result, Progress& progress);
+  /// Returns the brightest cell of glare, 0 without a limit on it.
+  Estimate set_error(std::uint64_t max_rays, double max_s, DesignResult& result, Progress& progress);
 
   const DesignProblem& problem_;
   const DesignOptions& options_;
@@ -42,9 +43,8 @@ class ResultCheck {
   ErrorBoxes boxes_;
   std::vector<double> target_;
   Validation start_;
-  /// Where glare is limited: where it is looked for, and the brightest cell in the result's light.
+  /// Where glare is limited.
   std::optional<GlareCells> glare_;
-  Estimate glare_per_flux_;
 };
 
 }  // namespace lucerna

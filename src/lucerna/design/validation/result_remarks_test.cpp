@@ -26,6 +26,11 @@ TEST(ResultRemarks, ASearchWithoutAStepHasDesignedNothing) {
   result.end = DesignTermination::time;
   ASSERT_TRUE(no_step_remark(result));
   EXPECT_NE(no_step_remark(result)->find("nothing was designed"), std::string::npos);
+  result.start_error.c48 = {0.7, 0.0, 0.684, 0.001};
+  result.error.c48 = {0.1, 0.0, 0.096, 0.001};
+  EXPECT_NE(no_step_remark(result)->find("the best of the shapes that it could begin with"),
+            std::string::npos)
+      << "another shape than the search began with";
   result.evaluations = 1;
   EXPECT_FALSE(no_step_remark(result));
 }

@@ -70,13 +70,16 @@ ZoneVerdict worse(ZoneVerdict a, ZoneVerdict b) {
   return a == ZoneVerdict::undetermined ? a : b;
 }
 
+bool is_clearly_above_zero(const Estimate& e) {
+  return e.mean > 0.0 && e.mean >= kZoneErrors * e.standard_error;
+}
+
 /// What the direct light alone makes of an upper bound in cd or lx.
 void check_direct(const ZoneLight& direct, std::size_t zone, const ZoneBound& bound, ZoneBoundCheck& out) {
   if (bound.is_min || bound.reference != ZoneReference::absolute) return;
   const Estimate& most = direct.mean(direct.brightest(zone));
   out.direct = most;
-  out.broken_by_direct =
-      most.mean > bound.value && most.mean - bound.value >= kZoneErrors * most.standard_error;
+  out.broken_by_direct = is_clearly_above_zero({most.mean - bound.value, most.standard_error});
 }
 
 ZoneBoundCheck check_bound(const ZoneCells& cells, const ZoneLight& light, std::size_t zone,
@@ -92,8 +95,8 @@ ZoneBoundCheck check_bound(const ZoneCells& cells, const ZoneLight& light, std::
       short_by[r] = bound.is_min ? tolerance : -tolerance;
     }
     const Estimate e = mean_estimate(short_by);
-    const bool held = e.mean < 0.0 && -e.mean >= kZoneErrors * e.standard_error;
-    const bool broken = e.mean > 0.0 && e.mean >= kZoneErrors * e.standard_error;
+    const bool held = is_clearly_above_zero({-e.mean, e.standard_error});
+    const bool broken = is_clearly_above_zero(e);
     out.verdict = worse(out.verdict,
                         broken ? ZoneVerdict::missed : (held ? ZoneVerdict::met : ZoneVerdict::undetermined));
     const double missing = unit > 0.0 ? e.mean / (bound.value * unit) : 1.0;

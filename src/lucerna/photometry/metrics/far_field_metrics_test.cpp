@@ -118,10 +118,13 @@ TEST(FarFieldMetrics, ADarkAxisIsNotBelowZero) {
 
 // Nor does a peak: of a few rays it may not be determined.
 TEST(FarFieldMetrics, APeakOfFewRaysIsNotBelowZero) {
-  for (std::uint64_t seed = 1; seed <= 15; ++seed) {
-    const auto peak = far_field_metrics(sphere(lobe(40.0, 60.0, 2.0), 12.0, seed), {}).peak;
+  int none = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const auto peak = far_field_metrics(sphere(lobe(0.0, 0.0, 8.0), 40.0, seed), {}).peak;
     EXPECT_GT(peak ? peak->cd.mean : 1.0, 0.0) << seed;
+    none += !peak;
   }
+  EXPECT_GT(none, 0) << "two of these ended below";
 }
 
 TEST(FarFieldMetrics, ZonesAreTheFluxOfTheirRays) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/project/sections/project_memory.h"
 
+#include <fmt/format.h>
+
 #include "lucerna/core/io/file.h"
 #include "lucerna/photometric_file.h"
 #include "lucerna/project/schema/project_files.h"
@@ -26,30 +28,24 @@ fs::path place_of(const std::string& name, const fs::path& folder, const char* e
   return (fs::absolute(folder) / fs::path(name).filename()).replace_extension(ending).lexically_normal();
 }
 
-/// Writes to `file`, or where another is there already to the first of "name-2", "name-3", ... that is free
-/// or holds the same bytes. Returns its name.
+/// Writes to the first of "name", "name-2", "name-3", ... that is free, unless one before it holds the same
+/// bytes. Returns the name of what holds them.
 template <class Write>
 fs::path write_beside(const fs::path& file, const Write& write) {
-  const auto numbered = [&](const std::string& what) {
-    return file.parent_path() / (file.stem().string() + "-" + what + file.extension().string());
+  const auto place = [&](int n) {
+    return n == 1 ? file
+                  : file.parent_path() /
+                        fmt::format("{}-{}{}", file.stem().string(), n, file.extension().string());
   };
-  if (!fs::exists(file)) {
-    write(file);
-    return file;
+  int free = 1;
+  while (fs::exists(place(free))) ++free;
+  write(place(free));
+  for (int n = 1; n < free; ++n) {
+    if (sha256_of_file(place(n)) != sha256_of_file(place(free))) continue;
+    fs::remove(place(free));
+    return place(n);
   }
-  const fs::path written = numbered("new");
-  write(written);
-  const std::string bytes = sha256_of_file(written);
-  for (int n = 1;; ++n) {
-    const fs::path place = n == 1 ? file : numbered(std::to_string(n));
-    if (!fs::exists(place)) {
-      fs::rename(written, place);
-      return place;
-    }
-    if (sha256_of_file(place) != bytes) continue;
-    fs::remove(written);
-    return place;
-  }
+  return place(free);
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ TEST(ProjectMemory, FilesOfOtherProjectsStay) {
   EXPECT_EQ(other.inputs, again.inputs) << "what is there already is not written again";
   EXPECT_EQ(total_flux(parse_project(project_text(one), dir / "1.toml").scene.sources), 107.0);
   EXPECT_EQ(total_flux(parse_project(project_text(other), dir / "2.toml").scene.sources), 1006.0);
-  EXPECT_FALSE(std::filesystem::exists(dir / "a-new.nfl"));
+  EXPECT_FALSE(std::filesystem::exists(dir / "a-3.nfl"));
 }
 
 TEST(ProjectMemory, RaysWithoutAFluxGetTheProjects) {

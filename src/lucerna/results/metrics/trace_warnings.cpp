@@ -41,12 +41,14 @@ std::string finer_steps(const FarField& field, const PeakEstimate& peak) {
   return text;
 }
 
+/// Of single directions, by backward light; else of counted light.
+bool is_exact(const PeakEstimate& peak) { return peak.radius_deg == 0.0 && peak.c_radius_deg == 0.0; }
+
 std::string coarse_grid(const FarFieldResult& f) {
   const auto& peak = f.metrics.peak;
   const std::vector<double>& cd = f.intensity.distribution.cd;
   const std::vector<double>& errors = f.intensity.standard_error_cd;
-  const bool exact = peak && peak->radius_deg == 0.0 && peak->c_radius_deg == 0.0;
-  if (!exact || cd.empty()) return "";
+  if (!peak || !is_exact(*peak) || cd.empty()) return "";
   const auto largest = std::max_element(cd.begin(), cd.end());
   const double error = errors.empty() ? 0.0 : errors[static_cast<std::size_t>(largest - cd.begin())];
   const double gap = peak->cd.mean - *largest;
@@ -65,8 +67,8 @@ std::string coarse_grid(const FarFieldResult& f) {
 /// Counted light knows a lobe that is narrow for its cells only blurred, and not by how much.
 std::string coarse_cells(const FarFieldResult& f) {
   const auto& peak = f.metrics.peak;
-  const bool counted = peak && (peak->radius_deg > 0.0 || peak->c_radius_deg > 0.0);
-  if (!counted || !(f.field.gamma_step_deg > kStepOfHalfWidth * peak->half_width_deg)) return "";
+  if (!peak || is_exact(*peak) || !(f.field.gamma_step_deg > kStepOfHalfWidth * peak->half_width_deg))
+    return "";
   return fmt::format(
       "{}: peak, axis and angles are of light counted in cells of {:g} deg, which are wide for a lobe whose "
       "half "
