@@ -66,17 +66,17 @@ Project save_memory(const Project& project, const fs::path& folder) {
   };
   for (const auto& [name, model] : project.memory.models) {
     add(name, write_beside(place_of(name, folder, ".nfl"),
-                           [&](const fs::path& file) { save_source_model(file, *model); }));
+                           [&source = *model](const fs::path& file) { save_source_model(file, source); }));
   }
   for (const auto& [name, rays] : project.memory.rays) {
     add(name, write_beside(place_of(name, folder, ".tm25ray"),
-                           [&](const fs::path& file) { write_ray_set(file, *rays, "tm25"); }));
+                           [&set = *rays](const fs::path& file) { write_ray_set(file, set, "tm25"); }));
   }
   for (const auto& [name, target] : project.memory.targets) {
     const bool lumen = target->unit == FluxUnit::lumen;
-    const auto write = [&](const fs::path& file) {
-      write_photometric_file(file, {*target, {}},
-                             lumen ? PhotometricFormat::ldt : PhotometricFormat::ies_2019, {.digits = 17});
+    const auto write = [&light = *target, lumen](const fs::path& file) {
+      write_photometric_file(file, {light, {}}, lumen ? PhotometricFormat::ldt : PhotometricFormat::ies_2019,
+                             {.digits = 17});
     };
     add(name, write_beside(place_of(name, folder, lumen ? ".ldt" : ".ies"), write));
   }
