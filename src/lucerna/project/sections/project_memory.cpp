@@ -40,8 +40,9 @@ fs::path write_beside(const fs::path& file, const Write& write) {
   int free = 1;
   while (fs::exists(place(free))) ++free;
   write(place(free));
+  const std::string written = free > 1 ? sha256_of_file(place(free)) : "";
   for (int n = 1; n < free; ++n) {
-    if (sha256_of_file(place(n)) != sha256_of_file(place(free))) continue;
+    if (sha256_of_file(place(n)) != written) continue;
     fs::remove(place(free));
     return place(n);
   }
