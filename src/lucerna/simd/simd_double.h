@@ -1,16 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Vectors of doubles for the searches of first_hit.h. Included only by the hit_kernels_*.cpp files, each
-// compiled for one instruction set, so everything is in an anonymous namespace and nothing here may pull in
-// headers of the standard library with inline functions: the linker could keep a copy that uses instructions
-// the machine does not have. Products and sums are never fused: every instruction set finds the same bits.
+// Vectors of doubles for the searches of first_hit.h and the kernels of solid_lanes.h. Included only by the
+// hit_kernels_*.cpp and solid_kernels_*.cpp files, each compiled for one instruction set, so everything is in
+// an anonymous namespace and nothing here may pull in headers of the standard library with inline functions:
+// the linker could keep a copy that uses instructions the machine does not have. Products and sums are never
+// fused: every instruction set finds the same bits.
 
 #include <immintrin.h>
 #include <stdint.h>
 
 namespace lucerna {
 namespace {
+
+/// a b + c, rounded once or twice: for bounds with room for either.
+inline float fused(float a, float b, float c) { return __builtin_fmaf(a, b, c); }
+/// Bit k is the sign of p[k], k < 8; `p` is on a multiple of 32 bytes.
+inline uint32_t signs_of_eight(const int32_t* p) {
+  const __m256i eight = _mm256_load_si256(reinterpret_cast<const __m256i*>(p));
+  return static_cast<uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps(eight)));
+}
 
 #if defined(__AVX512F__)
 
@@ -24,6 +33,7 @@ struct SimdDouble {
   SimdDouble(__m512d x) : v(x) {}
   SimdDouble(double x) : v(_mm512_set1_pd(x)) {}
   static Mask mask_of(uint32_t b) { return {static_cast<__mmask8>(b)}; }
+  static SimdDouble load(const double* p) { return _mm512_loadu_pd(p); }
 };
 
 inline SimdDouble::Mask operator&(SimdDouble::Mask a, SimdDouble::Mask b) {
@@ -61,9 +71,7 @@ inline SimdDouble gather(const double* p, SimdDouble i) {
   return _mm512_i32gather_pd(_mm512_cvttpd_epi32(i.v), p, 8);
 }
 /// By whole loads and a transpose, which is faster than four gathers.
-inline void gather4(const double* p, SimdDouble i, SimdDouble* out) {
-  alignas(32) int32_t k[8];
-  _mm256_store_si256(reinterpret_cast<__m256i*>(k), _mm512_cvttpd_epi32(i.v));
+inline void gather4(const double* p, const int32_t* k, SimdDouble* out) {
   const auto rows = [&](int n) {
     return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(p + k[n])),
                               _mm256_loadu_pd(p + k[n + 4]), 1);
@@ -77,6 +85,11 @@ inline void gather4(const double* p, SimdDouble i, SimdDouble* out) {
   out[1] = _mm512_permutex2var_pd(h01, even, h23);
   out[2] = _mm512_permutex2var_pd(l01, odd, l23);
   out[3] = _mm512_permutex2var_pd(h01, odd, h23);
+}
+inline void gather4(const double* p, SimdDouble i, SimdDouble* out) {
+  alignas(32) int32_t k[8];
+  _mm256_store_si256(reinterpret_cast<__m256i*>(k), _mm512_cvttpd_epi32(i.v));
+  gather4(p, k, out);
 }
 
 #elif defined(__AVX2__)
@@ -95,6 +108,7 @@ struct SimdDouble {
     const __m256i set = _mm256_and_si256(_mm256_set1_epi64x(b), lane);
     return {_mm256_castsi256_pd(_mm256_cmpeq_epi64(set, lane))};
   }
+  static SimdDouble load(const double* p) { return _mm256_loadu_pd(p); }
 };
 
 inline SimdDouble::Mask operator&(SimdDouble::Mask a, SimdDouble::Mask b) {
@@ -135,9 +149,7 @@ inline SimdDouble gather(const double* p, SimdDouble i) {
   const __m256d all = _mm256_castsi256_pd(_mm256_set1_epi64x(-1));
   return _mm256_mask_i32gather_pd(_mm256_setzero_pd(), p, _mm256_cvttpd_epi32(i.v), all, 8);
 }
-inline void gather4(const double* p, SimdDouble i, SimdDouble* out) {
-  alignas(16) int32_t k[4];
-  _mm_store_si128(reinterpret_cast<__m128i*>(k), _mm256_cvttpd_epi32(i.v));
+inline void gather4(const double* p, const int32_t* k, SimdDouble* out) {
   const __m256d r0 = _mm256_loadu_pd(p + k[0]), r1 = _mm256_loadu_pd(p + k[1]);
   const __m256d r2 = _mm256_loadu_pd(p + k[2]), r3 = _mm256_loadu_pd(p + k[3]);
   const __m256d l01 = _mm256_unpacklo_pd(r0, r1), h01 = _mm256_unpackhi_pd(r0, r1);
@@ -146,6 +158,11 @@ inline void gather4(const double* p, SimdDouble i, SimdDouble* out) {
   out[1] = _mm256_permute2f128_pd(h01, h23, 0x20);
   out[2] = _mm256_permute2f128_pd(l01, l23, 0x31);
   out[3] = _mm256_permute2f128_pd(h01, h23, 0x31);
+}
+inline void gather4(const double* p, SimdDouble i, SimdDouble* out) {
+  alignas(16) int32_t k[4];
+  _mm_store_si128(reinterpret_cast<__m128i*>(k), _mm256_cvttpd_epi32(i.v));
+  gather4(p, k, out);
 }
 
 #endif

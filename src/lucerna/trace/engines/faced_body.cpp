@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lucerna/optics/shapes/faced_outline.h"
+#include "lucerna/trace/engines/solid_rays.h"
 
 namespace lucerna {
 
@@ -16,9 +17,11 @@ constexpr double kOverlap = 1e-10;
 /// Cells of the face's quadtree, 2^this a side.
 constexpr int kLevels = 7;
 
-double highest_mm(const HeightSurface& face, double radius_mm) {
-  return face.range({-radius_mm, radius_mm, -radius_mm, radius_mm}).high_mm;
+HeightRange band_of(const HeightSurface& face, double radius_mm) {
+  return face.range({-radius_mm, radius_mm, -radius_mm, radius_mm});
 }
+
+double highest_mm(const HeightSurface& face, double radius_mm) { return band_of(face, radius_mm).high_mm; }
 
 /// The sides of base and walls, which go on as high as any of their faces: the inner wall first, where there
 /// is a bottom face, and the outer wall last.
@@ -46,6 +49,7 @@ FacedBody::Face::Face(std::shared_ptr<const HeightSurface> height_field, double 
                       std::int32_t wall_part, std::int32_t face_part)
     : height(std::move(height_field)),
       tracer(face_within(height, radius_mm), kLevels),
+      band(band_of(*height, (1.0 + kOverlap) * radius_mm)),
       up(up_side),
       wall(wall_part),
       part(face_part) {}
@@ -101,6 +105,68 @@ SurfaceHit FacedBody::first(const Ray& ray, double t_min_mm, double t_max_mm) co
     if (t_mm < (hit.part < 0 ? t_max_mm : hit.t_mm)) hit = {face.part, t_mm, 0.0, 0.0};
   }
   return hit;
+}
+
+void FacedBody::first(const SolidKernels& kernels, double t_min_mm, std::size_t n, SolidBatch& batch) const {
+  double t_max_mm[kSolidBatch];
+  std::copy_n(batch.t, n, t_max_mm);
+  kernels.first_sides(below_.blocks(), t_min_mm, n, batch);
+  std::fill_n(batch.v, n, 0.0);
+  for (const Face& face : faces_) face.meet(t_min_mm, n, batch);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Ray ray = ray_of(batch, i);
+    const auto passes_above = [&](const Face& face) {
+      return face.wall == batch.part[i] && !face.is_below(ray.at(batch.t[i]));
+    };
+    if (!std::ranges::any_of(faces_, passes_above)) continue;
+    const SurfaceHit hit = first(ray, t_min_mm, t_max_mm[i]);
+    batch.part[i] = hit.part;
+    batch.t[i] = hit.part < 0 ? t_max_mm[i] : hit.t_mm;
+    batch.u[i] = hit.u;
+  }
+}
+
+void FacedBody::Face::meet(double t_min_mm, std::size_t n, SolidBatch& batch) const {
+  HitRays rays;
+  std::size_t number[kSolidBatch], count = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    // What does not come to its height before it meets something else does not meet it.
+    const double from = batch.oz[i] + t_min_mm * batch.dz[i], to = batch.oz[i] + batch.t[i] * batch.dz[i];
+    if (std::max(from, to) < band.low_mm || std::min(from, to) > band.high_mm) continue;
+    const Vec3 start_mm = ray_of(batch, i).at(t_min_mm);
+    rays.x[count] = start_mm.x, rays.y[count] = start_mm.y, rays.z[count] = start_mm.z;
+    rays.dx[count] = batch.dx[i], rays.dy[count] = batch.dy[i], rays.dz[count] = batch.dz[i];
+    rays.on_mirror[count] = rays.slope[count] = 0.0;
+    number[count++] = i;
+  }
+  if (count == 0) return;
+  double way_mm[kSolidBatch];
+  tracer.first_mm(rays, count, way_mm);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = number[k];
+    const double t_mm = t_min_mm + way_mm[k];
+    if (!(t_mm < batch.t[i])) continue;
+    batch.part[i] = part;
+    batch.t[i] = t_mm;
+    batch.u[i] = 0.0;
+  }
+}
+
+void FacedBody::normals(const SolidKernels& kernels, std::size_t n, SolidBatch& batch) const {
+  std::int32_t part[kSolidBatch];
+  std::copy_n(batch.part, n, part);
+  // The kernel knows sides only: what is on a face is written over.
+  for (std::size_t i = 0; i < n; ++i) batch.part[i] = face_of(part[i]) == nullptr ? part[i] : 0;
+  kernels.side_normals(below_.view().sides, n, batch);
+  std::copy_n(part, n, batch.part);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Face* const face = face_of(part[i]);
+    if (face == nullptr) continue;
+    const Vec3 normal = face->normal(ray_of(batch, i).at(batch.t[i]));
+    batch.nx[i] = batch.sx[i] = normal.x;
+    batch.ny[i] = batch.sy[i] = normal.y;
+    batch.nz[i] = batch.sz[i] = normal.z;
+  }
 }
 
 const FacedBody::Face* FacedBody::face_of(std::int32_t part) const {

@@ -10,6 +10,7 @@
 #include "lucerna/trace/engines/mirror_tracer.h"
 #include "lucerna/trace/kernels/revolved_tree.h"
 #include "lucerna/trace/kernels/solid_kernel.h"
+#include "lucerna/trace/kernels/solid_kernels.h"
 
 namespace lucerna {
 
@@ -27,6 +28,10 @@ class FacedBody {
   Vec3 outward(const Vec3& point_mm, const SurfaceHit& hit) const;
   Vec3 smooth(const Vec3& point_mm, const SurfaceHit& hit) const;
 
+  /// The same of many rays, as SolidFlight asks of a surface.
+  void first(const SolidKernels& kernels, double t_min_mm, std::size_t n, SolidBatch& batch) const;
+  void normals(const SolidKernels& kernels, std::size_t n, SolidBatch& batch) const;
+
   /// Of each part of the surface: the corner of FacedBase at which its side begins, of a face that of its lid
   /// or floor.
   const std::vector<std::size_t>& corners() const { return corners_; }
@@ -39,9 +44,13 @@ class FacedBody {
     /// Along or against the outward side.
     Vec3 normal(const Vec3& point_mm) const;
     bool is_below(const Vec3& point_mm) const;
+    /// Moves the rays of a batch to it that meet it before batch.t.
+    void meet(double t_min_mm, std::size_t n, SolidBatch& batch) const;
 
     std::shared_ptr<const HeightSurface> height;
     MirrorTracer tracer;
+    /// It is nowhere beyond these heights.
+    HeightRange band;
     /// 1 where the outside is above, -1 where it is below.
     double up;
     std::int32_t wall, part;

@@ -57,4 +57,25 @@ std::optional<GlassHit> GlassTracer::first_hit(const Ray& ray, double t_max_mm, 
   return solid;
 }
 
+void GlassTracer::first_hits(std::span<const Ray> rays, bool started, std::span<double> t_max_mm,
+                             std::span<std::optional<GlassHit>> hits) const {
+  for (std::size_t i = 0; i < rays.size(); ++i) hits[i].reset();
+  solids_.first_hits(rays, started, t_max_mm, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i]) hits[i]->glass += cover_glasses_.size();
+    const auto plate = first_cover_glass(cover_glasses_.data(), cover_glasses_.size(), rays[i], t_max_mm[i]);
+    if (!plate) continue;
+    hits[i] = plate;
+    t_max_mm[i] = plate->t_mm;
+  }
+}
+
+void GlassTracer::pass(std::span<const GlassRay> rays, std::span<GlassPassage> out) const {
+  for (std::size_t i = 0; !cover_glasses_.empty() && i < rays.size(); ++i) {
+    const GlassRay& r = rays[i];
+    if (!is_solid(r.hit)) out[i] = through_cover_glass(cover_glasses_[r.hit.glass], r.ray, r.hit, r.key);
+  }
+  solids_.pass(rays, cover_glasses_.size(), out);
+}
+
 }  // namespace lucerna

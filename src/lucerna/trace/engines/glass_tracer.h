@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "lucerna/scene.h"
@@ -38,6 +39,11 @@ class GlassTracer {
     }
     return through_cover_glass(cover_glasses_[hit.glass], ray, hit, key);
   }
+
+  /// The same of many rays; `t_max_mm` becomes how far away the hits are.
+  void first_hits(std::span<const Ray> rays, bool started, std::span<double> t_max_mm,
+                  std::span<std::optional<GlassHit>> hits) const;
+  void pass(std::span<const GlassRay> rays, std::span<GlassPassage> out) const;
 
   bool is_solid(const GlassHit& hit) const { return hit.glass >= cover_glasses_.size(); }
 

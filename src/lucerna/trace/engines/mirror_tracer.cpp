@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/trace/engines/mirror_tracer.h"
 
+#include <algorithm>
+#include <limits>
 #include <type_traits>
 
 #include "lucerna/optics/shapes/smooth_shape.h"
+#include "lucerna/trace/kernels/hit_kernels.h"
 
 namespace lucerna {
 
@@ -32,6 +35,26 @@ std::optional<double> MirrorTracer::first_mm(const Ray& ray) const {
     return found->what == kHitNothing ? std::nullopt : std::optional(found->t_mm);
   const auto hit = reference_.first_hit(ray);
   return hit ? std::optional(hit->t_mm) : std::nullopt;
+}
+
+void MirrorTracer::first_mm(const HitRays& rays, std::size_t n, double* t_mm) const {
+  HitEnds ends;
+  const HitKernels& kernels = best_hit_kernels();
+  if (const auto* m = std::get_if<HitMirror<BsplineHitTable>>(&mirror_)) {
+    kernels.bspline(*m, rays, n, ends);
+  } else if (const auto* r = std::get_if<HitMirror<RevolutionHitTable>>(&mirror_)) {
+    kernels.revolution(*r, rays, n, ends);
+  } else {
+    std::fill_n(ends.what, n, static_cast<std::int32_t>(kHitFailed));
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    t_mm[i] = ends.what[i] == kHitNothing ? std::numeric_limits<double>::infinity() : ends.t[i];
+    if (ends.what[i] != kHitFailed) continue;
+    const Ray ray{{rays.x[i], rays.y[i], rays.z[i]},
+                  Direction::from_unit({rays.dx[i], rays.dy[i], rays.dz[i]})};
+    const auto hit = reference_.first_hit(ray);
+    t_mm[i] = hit ? hit->t_mm : std::numeric_limits<double>::infinity();
+  }
 }
 
 std::optional<MirrorHit> MirrorTracer::first_hit(const Ray& ray) const {

@@ -24,6 +24,9 @@ class MirrorTracer {
   std::optional<MirrorHit> first_hit(const Ray& ray) const;
   /// Its distance alone.
   std::optional<double> first_mm(const Ray& ray) const;
+  /// The same of the first n <= kHitBatch rays, none of which starts on the mirror, by vectors; infinity for
+  /// none.
+  void first_mm(const HitRays& rays, std::size_t n, double* t_mm) const;
 
  private:
   using Found = std::optional<HitEnd>;

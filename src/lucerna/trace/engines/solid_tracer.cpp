@@ -242,17 +242,19 @@ SurfaceHit first_from_outside(const Surface& surface, const Ray& ray, double t_m
 
 }  // namespace
 
+void SolidTracer::find_triangles(const Ray& ray, bool started, double& t_max_mm,
+                                 std::optional<GlassHit>& hit) const {
+  const TriangleHit found =
+      first_triangle(tree_->view(), ray.origin_mm, ray.direction.vec(), started ? kBodyStart : 0.0, t_max_mm);
+  if (found.triangle < 0) return;
+  const std::uint32_t body = tree_->triangles()[static_cast<std::size_t>(found.triangle)].body;
+  hit = GlassHit{found.t, of_triangles_[body], false, found.triangle, found.u, found.v};
+  t_max_mm = found.t;
+}
+
 std::optional<GlassHit> SolidTracer::first_hit(const Ray& ray, double t_max_mm, bool started) const {
   std::optional<GlassHit> out;
-  if (tree_ != nullptr) {
-    const TriangleHit hit = first_triangle(tree_->view(), ray.origin_mm, ray.direction.vec(),
-                                           started ? kBodyStart : 0.0, t_max_mm);
-    if (hit.triangle >= 0) {
-      const std::uint32_t body = tree_->triangles()[static_cast<std::size_t>(hit.triangle)].body;
-      out = GlassHit{hit.t, of_triangles_[body], false, hit.triangle, hit.u, hit.v};
-      t_max_mm = hit.t;
-    }
-  }
+  if (tree_ != nullptr) find_triangles(ray, started, t_max_mm, out);
   for (std::size_t i = 0; i < solids_.size(); ++i) {
     if (solids_[i].is_of_triangles()) continue;
     const SurfaceHit hit = solids_[i].with_surface([&](const auto& surface) {
@@ -266,15 +268,54 @@ std::optional<GlassHit> SolidTracer::first_hit(const Ray& ray, double t_max_mm, 
   return out;
 }
 
+void SolidTracer::first_hits(std::span<const Ray> rays, bool started, std::span<double> t_max_mm,
+                             std::span<std::optional<GlassHit>> hits) const {
+  for (std::size_t i = 0; tree_ != nullptr && i < rays.size(); ++i)
+    find_triangles(rays[i], started, t_max_mm[i], hits[i]);
+  for (std::size_t solid = 0; solid < solids_.size(); ++solid) {
+    if (solids_[solid].is_of_triangles()) continue;
+    for (std::size_t i = 0; i < rays.size(); i += kSolidBatch) {
+      const std::size_t n = std::min(kSolidBatch, rays.size() - i);
+      find_surfaces(solid, rays.subspan(i, n), started, t_max_mm.subspan(i, n), hits.subspan(i, n));
+    }
+  }
+}
+
+void SolidTracer::find_surfaces(std::size_t solid, std::span<const Ray> rays, bool started,
+                                std::span<double> t_max_mm, std::span<std::optional<GlassHit>> hits) const {
+  const Traced& traced = solids_[solid];
+  SolidBatch batch;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    put_ray(traced.solid_from_world.ray(rays[i]), i, batch);
+    batch.t[i] = t_max_mm[i];
+    batch.v[i] = 0.0;
+  }
+  traced.with_batch_surface([&](const auto& surface) {
+    surface.first(started ? kSolidStart : 0.0, rays.size(), batch);
+    if (started) surface.normals(rays.size(), batch);
+  });
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    SurfaceHit hit{batch.part[i], batch.t[i], batch.u[i], batch.v[i]};
+    if (hit.part < 0) continue;
+    const Ray local = ray_of(batch, i);
+    if (started && dot(outward_of(batch, i), local.direction.vec()) > 0.0) {
+      hit = traced.with_surface(
+          [&](const auto& surface) { return first_from_outside(surface, local, t_max_mm[i]); });
+      if (hit.part < 0) continue;
+    }
+    hits[i] = GlassHit{hit.t_mm, solid, false, hit.part, hit.u, hit.v};
+    t_max_mm[i] = hit.t_mm;
+  }
+}
+
 GlassPassage SolidTracer::pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key,
                                float wavelength_nm, const std::function<void(const Vec3&)>& visit) const {
   const Traced& solid = solids_[hit.glass];
   const MediumView medium = solid.medium_at(wavelength_nm);
   const SurfaceHit at{hit.part, hit.t_mm, hit.u, hit.v};
   if (solid.is_of_triangles()) {
-    const Vec3* const normals = solid.corner_normals.empty() ? nullptr : solid.corner_normals.data();
-    return through_solid(TriangleSurface{tree_->view(), solid.sense, normals}, medium, solid.finish(), ray,
-                         at, key, [&](const Vec3& point) {
+    return through_solid(solid.triangles(*tree_), medium, solid.finish(), ray, at, key,
+                         [&](const Vec3& point) {
                            if (visit) visit(point);
                          });
   }
@@ -286,6 +327,42 @@ GlassPassage SolidTracer::pass(const Ray& ray, const GlassHit& hit, const Reflec
   });
   out.ray = solid.world_from_solid.ray(out.ray);
   return out;
+}
+
+void SolidTracer::pass(std::span<const GlassRay> rays, std::size_t first_solid,
+                       std::span<GlassPassage> out) const {
+  std::vector<std::size_t> which;
+  for (std::size_t solid = 0; solid < solids_.size(); ++solid) {
+    const auto flush = [&] {
+      pass_solid(solid, rays, which, out);
+      which.clear();
+    };
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (rays[i].hit.glass != first_solid + solid) continue;
+      which.push_back(i);
+      if (which.size() == kSolidBatch) flush();
+    }
+    flush();
+  }
+}
+
+void SolidTracer::pass_solid(std::size_t number, std::span<const GlassRay> rays,
+                             std::span<const std::size_t> which, std::span<GlassPassage> out) const {
+  const Traced& solid = solids_[number];
+  if (solid.is_of_triangles()) {
+    for (const std::size_t i : which) {
+      GlassHit hit = rays[i].hit;
+      hit.glass = number;
+      out[i] = pass(rays[i].ray, hit, rays[i].key, rays[i].wavelength_nm);
+    }
+    return;
+  }
+  std::vector<MediumView> media;
+  media.reserve(which.size());
+  for (const std::size_t i : which) media.push_back(solid.medium_at(rays[i].wavelength_nm));
+  SolidFlight flight(best_solid_kernels(), {solid.world_from_solid, solid.solid_from_world, solid.finish()},
+                     rays, which, media, out);
+  solid.with_batch_surface([&](const auto& surface) { flight.run(surface); });
 }
 
 namespace {

@@ -5,10 +5,12 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "lucerna/scene.h"
 #include "lucerna/trace/engines/faced_body.h"
+#include "lucerna/trace/engines/solid_flight.h"
 #include "lucerna/trace/kernels/revolved_tree.h"
 #include "lucerna/trace/kernels/solid_kernel.h"
 #include "lucerna/trace/kernels/triangle_bvh.h"
@@ -34,6 +36,13 @@ class SolidTracer {
   GlassPassage pass(const Ray& ray, const GlassHit& hit, const ReflectionKey& key, float wavelength_nm,
                     const std::function<void(const Vec3&)>& visit = {}) const;
 
+  /// The same of many rays, faster where vectors follow them: about a third of the time. Hits within
+  /// t_max_mm[i] take the place of what is in `hits`, and of t_max_mm[i].
+  void first_hits(std::span<const Ray> rays, bool started, std::span<double> t_max_mm,
+                  std::span<std::optional<GlassHit>> hits) const;
+  /// Of the rays that hit bodies, which are numbered from `first_solid` on; others stay as they are in `out`.
+  void pass(std::span<const GlassRay> rays, std::size_t first_solid, std::span<GlassPassage> out) const;
+
  private:
   /// A body by its outline, with a face at its top or not, or of triangles, which has neither of these.
   struct Traced {
@@ -56,7 +65,25 @@ class SolidTracer {
     auto with_surface(const Use& use) const {
       return faced != nullptr ? use(*faced) : use(RevolvedSurface{revolved->view()});
     }
+    /// The same of what takes many rays.
+    template <class Use>
+    void with_batch_surface(const Use& use) const {
+      if (faced != nullptr) {
+        use(FacedBatchSurface(*faced, best_solid_kernels()));
+      } else {
+        use(RevolvedBatchSurface(*revolved, best_solid_kernels()));
+      }
+    }
+    TriangleSurface triangles(const TriangleBvh& tree) const {
+      return {tree.view(), sense, corner_normals.empty() ? nullptr : corner_normals.data()};
+    }
   };
+
+  void find_triangles(const Ray& ray, bool started, double& t_max_mm, std::optional<GlassHit>& hit) const;
+  void find_surfaces(std::size_t solid, std::span<const Ray> rays, bool started, std::span<double> t_max_mm,
+                     std::span<std::optional<GlassHit>> hits) const;
+  void pass_solid(std::size_t solid, std::span<const GlassRay> rays, std::span<const std::size_t> which,
+                  std::span<GlassPassage> out) const;
 
   std::vector<Traced> solids_;
   /// Over the triangles of all bodies that have them, and the numbers of these.

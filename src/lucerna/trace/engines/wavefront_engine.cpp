@@ -262,13 +262,17 @@ class WavefrontEngine final : public TraceEngine {
 
   /// First hits with cover glasses and solids; mirrors and bodies behind them become misses.
   void intersect_glasses(Batch& batch, std::size_t n, int bounce, std::span<MirrorHits> mirror_hits) const {
+    std::vector<Ray> rays(n);
+    std::vector<double> nearest(n, std::numeric_limits<float>::max());
     for (std::size_t i = 0; i < n; ++i) {
-      double nearest = std::numeric_limits<float>::max();
+      rays[i] = ray_of(batch.rays, i);
       for (const MirrorHits& m : mirror_hits) {
-        if (m.hits.state[i] != kMiss) nearest = std::min(nearest, static_cast<double>(m.hits.t[i]));
+        if (m.hits.state[i] != kMiss) nearest[i] = std::min(nearest[i], static_cast<double>(m.hits.t[i]));
       }
-      if (!bodies().empty() && batch.body[i]) nearest = std::min(nearest, batch.body[i]->t_mm);
-      batch.glass[i] = glasses().first_hit(ray_of(batch.rays, i), nearest, bounce > 0);
+      if (!bodies().empty() && batch.body[i]) nearest[i] = std::min(nearest[i], batch.body[i]->t_mm);
+    }
+    glasses().first_hits(rays, bounce > 0, nearest, std::span(batch.glass).first(n));
+    for (std::size_t i = 0; i < n; ++i) {
       if (!batch.glass[i]) continue;
       if (!bodies().empty()) batch.body[i].reset();
       for (MirrorHits& m : mirror_hits) m.hits.state[i] = kMiss;
@@ -306,14 +310,30 @@ class WavefrontEngine final : public TraceEngine {
     rays.dz[i] = static_cast<float>(ray.direction.z());
   }
 
-  /// Sends ray `i` through the cover glass or solid it hit; returns what resolve_interactions notes of it.
-  std::int32_t transmit(Batch& batch, std::size_t i, ReflectionKey key, Tally& tally) const {
+  /// Sends all rays through the cover glasses and solids that they hit, and notes their statuses.
+  void transmit(Batch& batch, std::size_t n, const ReflectionKey& first, std::int32_t* status,
+                Tally& tally) const {
+    std::vector<GlassRay> rays;
+    std::vector<std::size_t> which;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!batch.glass[i]) continue;
+      const auto number = static_cast<std::size_t>(batch.rays.number[i]);
+      ReflectionKey key = first;
+      key.ray += number;
+      rays.push_back({ray_of(batch.rays, i), *batch.glass[i], key, batch.wavelength_nm[number]});
+      which.push_back(i);
+    }
+    std::vector<GlassPassage> passages(rays.size());
+    glasses().pass(rays, passages);
+    for (std::size_t k = 0; k < which.size(); ++k)
+      status[which[k]] = transmit(batch, which[k], passages[k], first.bounce, tally);
+  }
+
+  /// Sends ray `i` on; returns what resolve_interactions notes of it.
+  std::int32_t transmit(Batch& batch, std::size_t i, const GlassPassage& passage, int bounce,
+                        Tally& tally) const {
     WorldRays& rays = batch.rays;
     const GlassHit& hit = *batch.glass[i];
-    const int bounce = key.bounce;
-    const auto number = static_cast<std::size_t>(rays.number[i]);
-    key.ray += number;
-    const GlassPassage passage = glasses().pass(ray_of(rays, i), hit, key, batch.wavelength_nm[number]);
     const bool reflected = passage.throughput > 0.0 && !passage.transmitted;
     if (reflected && !may_reflect(batch, i, bounce, tally)) return kTerminated;
     absorb(rays.flux[i], passage.throughput, glass_cause(hit.glass), tally);
@@ -392,9 +412,7 @@ class WavefrontEngine final : public TraceEngine {
     for (std::size_t i = 0; !bodies().empty() && i < n; ++i) {
       if (batch.body[i]) status[i] = reflect_off_body(batch, i, first, tally);
     }
-    for (std::size_t i = 0; !glasses().empty() && i < n; ++i) {
-      if (batch.glass[i]) status[i] = transmit(batch, i, first, tally);
-    }
+    if (!glasses().empty()) transmit(batch, n, first, status, tally);
     return kernels_.compact(rays, status, n, batch.out, batch.out_count);
   }
 

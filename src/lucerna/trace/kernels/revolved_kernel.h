@@ -6,33 +6,12 @@
 
 #include "lucerna/geometry.h"
 #include "lucerna/host_device.h"
+#include "lucerna/trace/kernels/revolved_view.h"
 
 namespace lucerna {
 
 // The first hit of a ray with a surface of revolution about z, made of cones, one ray at a time, in double;
 // small functions that CPU and GPU share.
-
-/// A ring about consecutive sides: r^2 and z within bounds. Nodes stand in depth-first order: a ray that
-/// misses a ring goes on at `skip`, else at the next node.
-struct RevolvedNode {
-  double r2_low, r2_high, z_low, z_high;
-  std::int32_t skip;
-  std::int32_t side;  ///< of a leaf; -1 within the tree
-};
-
-/// A straight side of the outline: part of the cone nr r + nz z = offset, (nr, nz) unit and outward.
-struct RevolvedSide {
-  double r, z;              ///< where it begins
-  double along_r, along_z;  ///< (to - from) / |to - from|^2: a point's share of the way
-  double nr, nz, offset;
-  double from_nr, from_nz, to_nr, to_nz;  ///< normals of the curve that it stands for, at its ends
-};
-
-struct RevolvedView {
-  const RevolvedNode* nodes = nullptr;
-  const RevolvedSide* sides = nullptr;
-  std::int32_t node_count = 0;
-};
 
 struct SideHit {
   std::int32_t side = -1;  ///< none

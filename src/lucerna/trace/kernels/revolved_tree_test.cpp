@@ -7,27 +7,13 @@
 #include <numbers>
 
 #include "lucerna/random.h"
+#include "tests/support/turned_outlines.h"
 
 namespace lucerna {
 namespace {
 
-using OutlineCorners = std::vector<OutlinePoint>;
-
-/// A collimator's outline with a pocket, a ball and a ring that does not touch the axis.
-std::vector<OutlineCorners> turned_outlines() {
-  OutlineCorners ball, ring;
-  for (int i = 0; i <= 60; ++i) {
-    const double a = std::numbers::pi * (i / 60.0 - 0.5);
-    ball.push_back({i == 0 || i == 60 ? 0.0 : 10.0 * std::cos(a), 10.0 * std::sin(a)});
-    if (i < 60) ring.push_back({12.0 + 3.0 * std::cos(2.0 * a), 3.0 * std::sin(2.0 * a)});
-  }
-  return {{{0, 4}, {2, 4}, {2, 0.1}, {3, 0.1}, {6, 4}, {9, 9}, {11, 14}, {11, 15}, {0, 15}}, ball, ring};
-}
-
-Ray ray_across(Rng& rng, double reach) {
-  const auto one = [&] { return 2.0 * rng.uniform() - 1.0; };
-  return {{reach * one(), reach * one(), reach * one()}, Direction::from({one(), one(), one()})};
-}
+using test::ray_across;
+using test::turned_outlines;
 
 SideHit side_hit(const RevolvedTree& tree, const Ray& ray, double t_min, double t_max = 1e300) {
   return first_side(tree.view(), ray.origin_mm, ray.direction.vec(), t_min, t_max);
@@ -57,7 +43,7 @@ TEST(RevolvedTree, HitsABallAtItsDistance) {
 
 TEST(RevolvedTree, FindsWhatAllSidesOneByOneHave) {
   Rng rng(2, 0);
-  for (const OutlineCorners& shape : turned_outlines()) {
+  for (const test::OutlineCorners& shape : turned_outlines()) {
     const RevolvedTree tree(outline_sides(shape, 20.0, 1e-3));
     std::vector<RevolvedSide> sides;
     for (std::int32_t i = 0; i < tree.view().node_count; ++i) {
@@ -84,7 +70,7 @@ TEST(RevolvedTree, FindsWhatAllSidesOneByOneHave) {
 TEST(RevolvedTree, NothingSlipsThroughBetweenSides) {
   Rng rng(3, 0);
   int crossings = 0;
-  for (const OutlineCorners& shape : turned_outlines()) {
+  for (const test::OutlineCorners& shape : turned_outlines()) {
     const RevolvedTree tree(outline_sides(shape, 20.0, 1e-5));
     for (int i = 0; i < 100000; ++i) {
       Ray ray = ray_across(rng, 16.0);
@@ -112,7 +98,7 @@ TEST(RevolvedTree, NothingSlipsThroughBetweenSides) {
 }
 
 TEST(RevolvedTree, StartsBeyondTheNearEndAndStopsBeforeTheFarOne) {
-  const RevolvedTree tree(outline_sides(OutlineCorners{{0, 0}, {5, 0}, {5, 2}, {0, 2}}, 0.0, 1e-3));
+  const RevolvedTree tree(outline_sides(test::OutlineCorners{{0, 0}, {5, 0}, {5, 2}, {0, 2}}, 0.0, 1e-3));
   const Ray up{{1.0, 1.0, -3.0}, Direction::from({0, 0, 1})};
   EXPECT_EQ(side_hit(tree, up, 0.0).t, 3.0);
   EXPECT_EQ(side_hit(tree, up, 3.0).t, 5.0);

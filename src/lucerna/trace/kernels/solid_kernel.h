@@ -193,6 +193,12 @@ LUCERNA_HD inline void scatter_on(const SurfaceFinish& lobes, const Direction& n
   light.field = any_field(out, side, rng.uniform());
 }
 
+/// What decides what becomes of a ray in a body: the streams of cover glasses, since a ray meets one thing at
+/// a time.
+LUCERNA_HD inline Rng solid_random(const ReflectionKey& key) {
+  return {key.sequence_seed, key.ray, 0x20000u + static_cast<std::uint32_t>(key.bounce)};
+}
+
 /// Follows a ray that met a clear body until it is outside again: reflected there, or after all its way
 /// within. One branch is taken by chance at each boundary, with weight 1. Polarisation is kept within the
 /// body. `visit` is called with every point of the surface on the way. What is given up has `lost` set.
@@ -200,8 +206,7 @@ template <class Surface, class Visit>
 LUCERNA_HD inline GlassPassage through_solid(const Surface& surface, const MediumView& medium,
                                              const SolidFinish& finish, const Ray& ray, SurfaceHit hit,
                                              const ReflectionKey& key, const Visit& visit) {
-  // The streams of cover glasses: a ray meets one thing at a time.
-  Rng rng(key.sequence_seed, key.ray, 0x20000u + static_cast<std::uint32_t>(key.bounce));
+  Rng rng = solid_random(key);
   GlassPassage out;
   out.throughput = 1.0;
   Vec3 outward = surface.outward(ray.at(hit.t_mm), hit);

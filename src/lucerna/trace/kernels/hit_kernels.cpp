@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lucerna/design/evaluation/hit_kernels.h"
+#include "lucerna/trace/kernels/hit_kernels.h"
 
 #include "lucerna/simd/dispatch.h"
 #include "lucerna/simd/scalar_double.h"
