@@ -12,18 +12,11 @@
 #include "lucerna/optics/mesh/faced_solid.h"
 #include "lucerna/optics/shapes/faced_outline.h"
 #include "lucerna/trace/engines/body_tracer.h"
+#include "lucerna/trace/kernels/triangle_bvh.h"
 
 namespace lucerna {
 
 namespace {
-
-/// Six times the volume; below 0 where triangles are clockwise seen from outside.
-double signed_volume(const Mesh& mesh) {
-  double sum = 0.0;
-  for (const auto& t : mesh.triangles)
-    sum += dot(mesh.vertices_mm[t[0]], cross(mesh.vertices_mm[t[1]], mesh.vertices_mm[t[2]]));
-  return sum;
-}
 
 /// Edges that two triangles run along in the same direction: one of them is turned.
 std::size_t turned_edges(const Mesh& mesh) {
@@ -199,8 +192,6 @@ SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
     if (s.mesh != nullptr) {
       of_triangles_.push_back(solids_.size());
       meshes.push_back(as_body(s, s.mesh));
-      traced.sense = signed_volume(*s.mesh) < 0.0 ? -1.0 : 1.0;
-      traced.corner_normals = smooth_normals(meshes.back());
     } else if (s.face != nullptr) {
       traced.faced = faced_body(s);
       traced.rough = rough_parts(s, traced.faced->corners());
@@ -211,7 +202,7 @@ SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
     }
     solids_.push_back(std::move(traced));
   }
-  if (!meshes.empty()) tree_ = std::make_unique<const TriangleBvh>(meshes, true);
+  if (!meshes.empty()) meshes_ = std::make_unique<const SolidMeshes>(meshes);
 }
 
 MediumView SolidTracer::Traced::medium_at(float wavelength_nm) const {
@@ -244,17 +235,16 @@ SurfaceHit first_from_outside(const Surface& surface, const Ray& ray, double t_m
 
 void SolidTracer::find_triangles(const Ray& ray, bool started, double& t_max_mm,
                                  std::optional<GlassHit>& hit) const {
-  const TriangleHit found =
-      first_triangle(tree_->view(), ray.origin_mm, ray.direction.vec(), started ? kBodyStart : 0.0, t_max_mm);
-  if (found.triangle < 0) return;
-  const std::uint32_t body = tree_->triangles()[static_cast<std::size_t>(found.triangle)].body;
-  hit = GlassHit{found.t, of_triangles_[body], false, found.triangle, found.u, found.v};
-  t_max_mm = found.t;
+  const SurfaceHit found = meshes_->first(ray, started ? kBodyStart : 0.0, t_max_mm);
+  if (found.part < 0) return;
+  hit =
+      GlassHit{found.t_mm, of_triangles_[meshes_->body_of(found.part)], false, found.part, found.u, found.v};
+  t_max_mm = found.t_mm;
 }
 
 std::optional<GlassHit> SolidTracer::first_hit(const Ray& ray, double t_max_mm, bool started) const {
   std::optional<GlassHit> out;
-  if (tree_ != nullptr) find_triangles(ray, started, t_max_mm, out);
+  if (meshes_ != nullptr) find_triangles(ray, started, t_max_mm, out);
   for (std::size_t i = 0; i < solids_.size(); ++i) {
     if (solids_[i].is_of_triangles()) continue;
     const SurfaceHit hit = solids_[i].with_surface([&](const auto& surface) {
@@ -270,7 +260,7 @@ std::optional<GlassHit> SolidTracer::first_hit(const Ray& ray, double t_max_mm, 
 
 void SolidTracer::first_hits(std::span<const Ray> rays, bool started, std::span<double> t_max_mm,
                              std::span<std::optional<GlassHit>> hits) const {
-  for (std::size_t i = 0; tree_ != nullptr && i < rays.size(); ++i)
+  for (std::size_t i = 0; meshes_ != nullptr && i < rays.size(); ++i)
     find_triangles(rays[i], started, t_max_mm[i], hits[i]);
   for (std::size_t solid = 0; solid < solids_.size(); ++solid) {
     if (solids_[solid].is_of_triangles()) continue;
@@ -314,10 +304,9 @@ GlassPassage SolidTracer::pass(const Ray& ray, const GlassHit& hit, const Reflec
   const MediumView medium = solid.medium_at(wavelength_nm);
   const SurfaceHit at{hit.part, hit.t_mm, hit.u, hit.v};
   if (solid.is_of_triangles()) {
-    return through_solid(solid.triangles(*tree_), medium, solid.finish(), ray, at, key,
-                         [&](const Vec3& point) {
-                           if (visit) visit(point);
-                         });
+    return through_solid(*meshes_, medium, solid.finish(), ray, at, key, [&](const Vec3& point) {
+      if (visit) visit(point);
+    });
   }
   GlassPassage out = solid.with_surface([&](const auto& surface) {
     return through_solid(surface, medium, solid.finish(), solid.solid_from_world.ray(ray), at, key,
@@ -349,17 +338,15 @@ void SolidTracer::pass(std::span<const GlassRay> rays, std::size_t first_solid,
 void SolidTracer::pass_solid(std::size_t number, std::span<const GlassRay> rays,
                              std::span<const std::size_t> which, std::span<GlassPassage> out) const {
   const Traced& solid = solids_[number];
-  if (solid.is_of_triangles()) {
-    for (const std::size_t i : which) {
-      GlassHit hit = rays[i].hit;
-      hit.glass = number;
-      out[i] = pass(rays[i].ray, hit, rays[i].key, rays[i].wavelength_nm);
-    }
-    return;
-  }
   std::vector<MediumView> media;
   media.reserve(which.size());
   for (const std::size_t i : which) media.push_back(solid.medium_at(rays[i].wavelength_nm));
+  if (solid.is_of_triangles()) {
+    const Frame in_place;
+    SolidFlight(best_solid_kernels(), {in_place, in_place, solid.finish()}, rays, which, media, out)
+        .run(MeshBatchSurface(*meshes_));
+    return;
+  }
   SolidFlight flight(best_solid_kernels(), {solid.world_from_solid, solid.solid_from_world, solid.finish()},
                      rays, which, media, out);
   solid.with_batch_surface([&](const auto& surface) { flight.run(surface); });

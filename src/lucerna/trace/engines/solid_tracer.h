@@ -11,9 +11,9 @@
 #include "lucerna/scene.h"
 #include "lucerna/trace/engines/faced_body.h"
 #include "lucerna/trace/engines/solid_flight.h"
+#include "lucerna/trace/engines/solid_meshes.h"
 #include "lucerna/trace/kernels/revolved_tree.h"
 #include "lucerna/trace/kernels/solid_kernel.h"
-#include "lucerna/trace/kernels/triangle_bvh.h"
 
 namespace lucerna {
 
@@ -51,8 +51,6 @@ class SolidTracer {
     std::unique_ptr<const RevolvedTree> revolved;
     std::unique_ptr<const FacedBody> faced;
     Frame world_from_solid, solid_from_world;
-    double sense = 1.0;
-    std::vector<Vec3> corner_normals;
     /// What scatters, and where: by parts of the surface, empty for everywhere.
     Scatter scatter;
     std::vector<std::uint8_t> rough;
@@ -74,9 +72,6 @@ class SolidTracer {
         use(RevolvedBatchSurface(*revolved, best_solid_kernels()));
       }
     }
-    TriangleSurface triangles(const TriangleBvh& tree) const {
-      return {tree.view(), sense, corner_normals.empty() ? nullptr : corner_normals.data()};
-    }
   };
 
   void find_triangles(const Ray& ray, bool started, double& t_max_mm, std::optional<GlassHit>& hit) const;
@@ -86,8 +81,8 @@ class SolidTracer {
                   std::span<GlassPassage> out) const;
 
   std::vector<Traced> solids_;
-  /// Over the triangles of all bodies that have them, and the numbers of these.
-  std::unique_ptr<const TriangleBvh> tree_;
+  /// Of all bodies that have triangles, and the numbers of these.
+  std::unique_ptr<const SolidMeshes> meshes_;
   std::vector<std::size_t> of_triangles_;
 };
 

@@ -12,7 +12,6 @@
 #include "lucerna/trace/kernels/cover_glass_kernel.h"
 #include "lucerna/trace/kernels/revolved_kernel.h"
 #include "lucerna/trace/kernels/scatter_kernel.h"
-#include "lucerna/trace/kernels/triangle_kernel.h"
 
 namespace lucerna {
 
@@ -85,27 +84,6 @@ inline constexpr int kMaxInsideHits = 1000;
 
 // A surface as through_solid takes it: `first` hit, the `outward` normal there (any length), and the `smooth`
 // one (any length and side, 0 for none).
-
-/// Triangles, in the luminaire frame, in one tree with those of other bodies, which none touches.
-struct TriangleSurface {
-  TriangleBvhView tree;
-  /// 1 where triangles are counter-clockwise seen from outside, else -1.
-  double sense = 1.0;
-  /// Three a triangle; null for flat triangles.
-  const Vec3* corner_normals = nullptr;
-
-  LUCERNA_HD SurfaceHit first(const Ray& ray, double t_min_mm, double t_max_mm) const {
-    const TriangleHit hit = first_triangle(tree, ray.origin_mm, ray.direction.vec(), t_min_mm, t_max_mm);
-    return {hit.triangle, hit.t, hit.u, hit.v};
-  }
-  LUCERNA_HD Vec3 outward(const Vec3&, const SurfaceHit& hit) const {
-    return sense * normal_of(tree.triangles[hit.part]);
-  }
-  LUCERNA_HD Vec3 smooth(const Vec3&, const SurfaceHit& hit) const {
-    if (corner_normals == nullptr) return {};
-    return blended_normal(corner_normals + std::size_t{3} * tree.triangles[hit.part].number, hit.u, hit.v);
-  }
-};
 
 /// An outline that turns about z, in the body's frame.
 struct RevolvedSurface {
