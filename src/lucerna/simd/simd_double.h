@@ -139,11 +139,24 @@ inline SimdDouble sqrt(SimdDouble a) { return _mm256_sqrt_pd(a.v); }
 inline SimdDouble abs(SimdDouble a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a.v); }
 inline SimdDouble floor(SimdDouble a) { return _mm256_floor_pd(a.v); }
 inline void store(double* p, SimdDouble a) { _mm256_storeu_pd(p, a.v); }
+/// Halves of doubles: lane k takes as many doubles on as lanes before it are set.
+struct ExpandedLanes {
+  alignas(32) int32_t of[16][8];
+  constexpr ExpandedLanes() : of() {
+    for (int set = 0; set < 16; ++set) {
+      for (int lane = 0, next = 0; lane < 4; next += set >> lane & 1, ++lane) {
+        of[set][2 * lane] = 2 * next;
+        of[set][2 * lane + 1] = 2 * next + 1;
+      }
+    }
+  }
+};
+inline constexpr ExpandedLanes kExpandedLanes;
 inline SimdDouble expand(SimdDouble::Mask m, const double* p, SimdDouble old) {
-  alignas(32) double lane[4];
-  _mm256_store_pd(lane, old.v);
-  for (uint32_t left = bits(m); left != 0; left &= left - 1) lane[__builtin_ctz(left)] = *p++;
-  return _mm256_load_pd(lane);
+  const auto* const lanes = reinterpret_cast<const __m256i*>(kExpandedLanes.of[bits(m)]);
+  const __m256 all = _mm256_castpd_ps(_mm256_loadu_pd(p));
+  return _mm256_blendv_pd(old.v, _mm256_castps_pd(_mm256_permutevar8x32_ps(all, _mm256_load_si256(lanes))),
+                          m.m);
 }
 inline SimdDouble gather(const double* p, SimdDouble i) {
   const __m256d all = _mm256_castsi256_pd(_mm256_set1_epi64x(-1));

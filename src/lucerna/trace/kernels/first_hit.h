@@ -144,8 +144,8 @@ LUCERNA_HD inline HitLook<V> hit_look(const RevolutionHitTable& s, V x, V y) {
 /// found without hierarchy or sampling, however often the ray crosses. A has several values: B for the cells
 /// about the place, good for so many cells, and for the whole surface; the longest step is taken. Where the
 /// bounds show that f falls all the way to its only zero, the steps of the paraboloid's own curvature are
-/// taken instead, which need about two looks. The band of s skips the air above the surface at once. Behind
-/// the mirror all is the same with -f.
+/// taken instead, which need about two looks. The band of s skips the air above the surface at once, and what
+/// is below it. Behind the mirror all is the same with -f.
 template <class V, class Table>
 class HitSearch {
  public:
@@ -210,6 +210,7 @@ class HitSearch {
     cell_t_ = select(m, o.cell_t_, cell_t_);
     rise_ = select(m, o.rise_, rise_);
     fall_ = select(m, o.fall_, fall_);
+    reach_ = select(m, o.reach_, reach_);
     low_ = select(m, o.low_, low_);
     t_end_ = select(m, o.t_end_, t_end_);
     t_ = select(m, o.t_, t_);
@@ -257,7 +258,7 @@ class HitSearch {
     t_end_ = select(~moves & (V(half) < abs(o)), V(-1.0), t_end_);
   }
 
-  /// q is above the band of s between `rise` and `fall`; beyond `low` the ray is below it.
+  /// q is above the band of s between `rise` and `fall`; before `reach` and beyond `low` the ray is below it.
   LUCERNA_HD void find_band(const HitMirror<Table>& m) {
     const V above = c0_ - V(m.high), root = c1_ * c1_ + V(4.0) * c2_ * above;
     const V w = sqrt(max(root, V(0.0)));
@@ -270,6 +271,8 @@ class HitSearch {
     // Without a base c2 is next to nothing: the root is taken where no digits are lost.
     const V low = select(up, (c1_ + low_w) / (V(2.0) * c2_), V(2.0) * over_low / (low_w - c1_));
     low_ = select(V(0.0) < low_root, low, V(-1.0));
+    const Mask from_below = up & (over_low < V(0.0)) & (V(0.0) < low_root);
+    reach_ = select(from_below, V(-2.0) * over_low / (c1_ + low_w), V(0.0));
   }
 
   /// From behind a ray comes into the air only through the surface, which may touch the top of the band.
@@ -278,6 +281,9 @@ class HitSearch {
     const Mask air = searching & ~behind & ~is(only_one_) & (rise_ <= t_) & (t_ < fall_);
     side_ = select(air, V(1.0), side_);
     t_ = select(air, fall_, t_);
+    const Mask below = searching & ~is(side_) & ~is(only_one_) & (t_ < reach_);
+    side_ = select(below, V(-1.0), side_);
+    t_ = select(below, reach_, t_);
   }
 
   /// f and f' of this place; the first look tells the side.
@@ -324,12 +330,14 @@ class HitSearch {
     const V behind = select(front, V(0.0), V(2.0) * c2_);  // there the base bends the other way
     // On a stretch as long as `good`, |f''| is at most twice `max`.
     V good = V(static_cast<double>(near_cells(0))) * cell_t_, bound = c2_ + look.near[0] * half;
-    const V to_low = low_ - t_;
-    const V falls = max(V(2.0) * (select(to_low < good, bound, whole) - V(2.0) * c2_), V(0.0));
-    const Mask only = front & (df_ < V(0.0)) & (V(0.0) < to_low) & (df_ + falls * to_low < V(0.0));
+    // As far as the other side of the band f falls, if it does here and cannot bend enough to rise again.
+    const V to_side = select(front, low_, rise_) - t_;
+    const V bends = select(to_side < good, bound, whole) - select(front, V(2.0) * c2_, V(0.0));
+    const V falls = max(V(2.0) * bends, V(0.0));
+    const Mask only = (df_ < V(0.0)) & (V(0.0) < to_side) & (df_ + falls * to_side < V(0.0));
     only_one_ = select(only, V(1.0), only_one_);
     const Mask one = is(only_one_);
-    V ahead = zero_ahead(f_, df_, c2_);
+    V ahead = zero_ahead(f_, df_, c2_ - behind);
     if (!any(~one)) return ahead;
     V longest = V(0.0);
     for (int size = 0; size <= kNearSizes; ++size) {
@@ -343,7 +351,7 @@ class HitSearch {
     return select(one, ahead, longest);
   }
 
-  V x_, y_, dx_, dy_, across_, c0_, c1_, c2_, cell_t_, rise_, fall_, low_, t_end_;
+  V x_, y_, dx_, dy_, across_, c0_, c1_, c2_, cell_t_, rise_, fall_, reach_, low_, t_end_;
   V t_, side_;  ///< side: +1 in front of the mirror, -1 behind it, 0 not known yet
   V only_one_;  ///< f falls from here to its only zero: plain steps may overshoot
   V f_, df_, looks_, what_;
