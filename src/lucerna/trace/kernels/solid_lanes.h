@@ -38,15 +38,16 @@ struct RingRay {
 inline void set_ring_ray(const RevolvedRow& r, const RevolvedBlocks& blocks, double t_min, double t_max,
                          RingRay& out) {
   const double z = r.oz - blocks.centre_z, reach = blocks.reach;
-  const double t0 = -(r.b + z * r.dz), at_z = z + t0 * r.dz;
-  const double b = r.b + t0 * r.a, c = (r.a * t0 + 2.0 * r.b) * t0 + r.c;
+  const double t0 = -(r.b + z * r.dz);
+  const double at_x = r.ox + t0 * r.dx, at_y = r.oy + t0 * r.dy, at_z = z + t0 * r.dz;
+  const double b = at_x * r.dx + at_y * r.dy;
   const double inverse_dz = 1.0 / (__builtin_fabs(r.dz) < 1e-15 ? 1e-15 : r.dz);
   out.rises = inverse_dz > 0.0;
   out.inverse_dz = static_cast<float>(inverse_dz);
   out.z_over_dz = static_cast<float>(at_z * inverse_dz);
   out.a = static_cast<float>(r.a);
   out.two_b = static_cast<float>(2.0 * b);
-  out.c = static_cast<float>(c);
+  out.c = static_cast<float>(at_x * at_x + at_y * at_y);
   out.nearest = static_cast<float>(-b / (r.a > 1e-15 ? r.a : 1e-15));
   // Beyond the ball there is nothing.
   const double from = t_min - t0, to = t_max - t0, slack = 1e-6 * reach;
