@@ -143,10 +143,12 @@ inline void store(double* p, SimdDouble a) { _mm256_storeu_pd(p, a.v); }
 struct ExpandedLanes {
   alignas(32) int32_t of[16][8];
   constexpr ExpandedLanes() : of() {
-    for (int set = 0; set < 16; ++set) {
-      for (int lane = 0, next = 0; lane < 4; next += set >> lane & 1, ++lane) {
+    for (unsigned set = 0; set < 16; ++set) {
+      int32_t next = 0;
+      for (unsigned lane = 0; lane < 4; ++lane) {
         of[set][2 * lane] = 2 * next;
         of[set][2 * lane + 1] = 2 * next + 1;
+        next += (set >> lane & 1U) != 0 ? 1 : 0;
       }
     }
   }

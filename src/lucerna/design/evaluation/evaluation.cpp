@@ -17,8 +17,8 @@
 #include "lucerna/design/evaluation/device_evaluator.h"
 #include "lucerna/design/evaluation/evaluation_sums.h"
 #include "lucerna/design/evaluation/face_tracer.h"
-#include "lucerna/trace/kernels/hit_kernels.h"
 #include "lucerna/design/evaluation/shared_sums.h"
+#include "lucerna/trace/kernels/hit_kernels.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
 namespace lucerna {

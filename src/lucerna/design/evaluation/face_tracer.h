@@ -7,8 +7,8 @@
 
 #include "lucerna/design/evaluation/design_rays.h"
 #include "lucerna/design/evaluation/evaluation_kernel.h"
-#include "lucerna/trace/kernels/hit_kernels.h"
 #include "lucerna/design/evaluation/refracting_face.h"
+#include "lucerna/trace/kernels/hit_kernels.h"
 
 namespace lucerna {
 

@@ -69,7 +69,7 @@ inline uint32_t rings_met(const RingRay& ray, const RingBlock& block) {
     const float r2_from = fused(fused(ray.a, from, ray.two_b), from, ray.c);
     const float r2_to = fused(fused(ray.a, to, ray.two_b), to, ray.c);
     const float r2_most = r2_from > r2_to ? r2_from : r2_to;
-    met[k] = (from <= to) & (r2 <= block.r2_high[k]) & (block.r2_low[k] <= r2_most) ? -1 : 0;
+    met[k] = ((from <= to) & (r2 <= block.r2_high[k]) & (block.r2_low[k] <= r2_most)) ? -1 : 0;
   }
   return signs_of_eight(met);
 }
