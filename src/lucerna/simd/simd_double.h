@@ -8,6 +8,7 @@
 // fused: every instruction set finds the same bits.
 
 #include <immintrin.h>
+#include <stddef.h>
 #include <stdint.h>
 
 namespace lucerna {
@@ -145,7 +146,7 @@ struct ExpandedLanes {
   constexpr ExpandedLanes() : of() {
     for (unsigned set = 0; set < 16; ++set) {
       int32_t next = 0;
-      for (unsigned lane = 0; lane < 4; ++lane) {
+      for (size_t lane = 0; lane < 4; ++lane) {
         of[set][2 * lane] = 2 * next;
         of[set][2 * lane + 1] = 2 * next + 1;
         next += (set >> lane & 1U) != 0 ? 1 : 0;
