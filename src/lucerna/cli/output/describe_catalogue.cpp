@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <set>
+#include <string>
+
 #include "lucerna/cli/output/describe.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
@@ -41,7 +44,13 @@ Description describe_catalogue(const std::string& path) {
   d.json = Json{{"path", path}, {"format", "agf"}, {"glasses", Json::array()}};
   d.lines.push_back(
       fmt::format("  format              agf, {} glasses; index at {:.2f} nm", names.size(), kDLineNm));
+  std::set<std::string> known;
   for (const std::string& name : names) {
+    if (!known.insert(name).second) {
+      d.warnings.push_back(
+          fmt::format("{}: the name stands more than once; the first glass of it counts", name));
+      continue;
+    }
     try {
       add_glass(read_glass(path, name), d);
     } catch (const InputError& e) {

@@ -15,7 +15,7 @@ TEST(DescribeCatalogue, ListsGlassesAndWarnsOfThoseThatCannotBeRead) {
   const std::string file = (dir / "made.AGF").string();
   write_file(file,
              "NM CLEAR 1 0 1.5\nCD 2.25 0 0 0 0 0\nLD 0.4 0.7\nNM INFRARED 1\nCD 4 0 0 0 0 0\nLD 1 2\n"
-             "NM BROKEN 1\nLD 0.4 0.7\n");
+             "NM BROKEN 1\nLD 0.4 0.7\nNM CLEAR 1\nCD 4 0 0 0 0 0\nLD 0.4 0.7\n");
   EXPECT_TRUE(is_glass_catalogue(file));
   EXPECT_FALSE(is_glass_catalogue("agf.txt"));
   const Description d = describe_catalogue(file);
@@ -23,8 +23,9 @@ TEST(DescribeCatalogue, ListsGlassesAndWarnsOfThoseThatCannotBeRead) {
   EXPECT_NEAR(d.json["glasses"][0]["index_d"].get<double>(), 1.5, 1e-12);
   EXPECT_TRUE(d.json["glasses"][1]["index_d"].is_null()) << "not at the d line";
   EXPECT_EQ(d.lines.size(), 3u);
-  ASSERT_EQ(d.warnings.size(), 1u);
+  ASSERT_EQ(d.warnings.size(), 2u);
   EXPECT_THAT(d.warnings[0], testing::HasSubstr("BROKEN"));
+  EXPECT_THAT(d.warnings[1], testing::HasSubstr("CLEAR: the name stands more than once"));
   write_file(file, "CC nothing\n");
   EXPECT_THROW(describe_catalogue(file), InputError);
 }

@@ -118,11 +118,14 @@ Mesh read_text_stl(const std::string& text, const std::string& file) {
 }  // namespace
 
 Mesh read_stl(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path, kMaxMeshBytes);
+  std::string bytes = read_file(path, kMaxMeshBytes);
   std::uint32_t count = 0;
   if (bytes.size() >= 84) std::memcpy(&count, bytes.data() + 80, sizeof count);
   // A binary file's size follows from its count; many begin with "solid" all the same.
   const bool binary = bytes.size() >= 84 && bytes.size() == 84 + std::uint64_t{50} * count;
+  if (!binary) {  // some programs write SOLID, FACET, ...
+    for (char& c : bytes) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  }
   if (!binary && !std::string_view(bytes).starts_with("solid")) {
     throw_input_error(path.string(), "byte 80", "{} bytes do not hold the {} triangles that are announced",
                       bytes.size(), count);

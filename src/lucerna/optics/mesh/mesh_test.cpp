@@ -64,6 +64,10 @@ TEST(Mesh, TextStl) {
   const Mesh m = read_stl(dir / "t.stl");
   ASSERT_EQ(m.triangles.size(), 1u);
   EXPECT_EQ(m.vertices_mm[2], (Vec3{0, 1, 0}));
+  write_file(dir / "upper.stl",
+             "SOLID X\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\nVERTEX 0 1E0 "
+             "0\nENDLOOP\nENDFACET\nENDSOLID X\n");
+  EXPECT_EQ(read_stl(dir / "upper.stl").vertices_mm, m.vertices_mm);
 }
 
 TEST(Mesh, BadFilesAreRefused) {

@@ -69,7 +69,7 @@ void warn_of_wavelengths(Project& project, const std::string& file) {
         some += is_unknown(at) ? weight : 0.0;
       }
       if (!(some > 0.0)) return;
-      project.warnings.push_back(fmt::format("{}: source[{}]: some {:.2g} % of its light has {}", file, s,
+      project.warnings.push_back(fmt::format("{}: source[{}]: some {:.3g} % of its light has {}", file, s,
                                              100.0 * some / all, what));
     };
     warn([](double w) { return !(w > 0.0); },
