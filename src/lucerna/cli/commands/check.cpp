@@ -19,6 +19,7 @@
 #include "lucerna/ray_file.h"
 #include "lucerna/rayset/files/ray_check.h"
 #include "lucerna/source_model.h"
+#include "lucerna/trace/engines/solids_apart.h"
 
 namespace lucerna::cli {
 
@@ -43,6 +44,11 @@ std::vector<Diagnostic> as_faults(const std::vector<std::string>& warnings, cons
 std::vector<std::string> project_warnings(const std::string& path, Session& session) {
   Project project = read_project(path, session.progress());
   std::vector<std::string> warnings = project.warnings;
+  try {
+    check_apart(project.scene);
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("{}: {}", path, e.what()));
+  }
   if (is_lens_design(project)) {
     static_cast<void>(lens_problem(std::move(project), path));
   } else if (is_finished_lens(project)) {

@@ -11,6 +11,7 @@
 #include "lucerna/core/io/error.h"
 #include "lucerna/random.h"
 #include "lucerna/trace/engines/solid_tracer.h"
+#include "lucerna/trace/engines/solids_apart.h"
 #include "tests/support/random_rays.h"
 #include "tests/support/spline_face.h"
 #include "tests/support/through_solid.h"

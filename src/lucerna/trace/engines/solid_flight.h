@@ -9,7 +9,7 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/trace/engines/faced_body.h"
-#include "lucerna/trace/engines/solid_meshes.h"
+#include "lucerna/trace/engines/solid_mesh.h"
 #include "lucerna/trace/engines/solid_rays.h"
 #include "lucerna/trace/kernels/revolved_tree.h"
 #include "lucerna/trace/kernels/solid_kernel.h"
@@ -59,14 +59,14 @@ class FacedBatchSurface {
   const SolidKernels* kernels_;
 };
 
-/// Bodies of triangles, one ray at a time, in the luminaire frame.
+/// A body of triangles, one ray at a time.
 class MeshBatchSurface {
  public:
-  explicit MeshBatchSurface(const SolidMeshes& meshes) : meshes_(&meshes) {}
+  explicit MeshBatchSurface(const SolidMesh& mesh) : mesh_(&mesh) {}
 
   void first(double t_min_mm, std::size_t n, SolidBatch& batch) const {
     for (std::size_t i = 0; i < n; ++i) {
-      const SurfaceHit hit = meshes_->first(ray_of(batch, i), t_min_mm, batch.t[i]);
+      const SurfaceHit hit = mesh_->first(ray_of(batch, i), t_min_mm, batch.t[i]);
       batch.part[i] = hit.part;
       if (hit.part < 0) continue;
       batch.t[i] = hit.t_mm, batch.u[i] = hit.u, batch.v[i] = hit.v;
@@ -75,15 +75,16 @@ class MeshBatchSurface {
   void normals(std::size_t n, SolidBatch& batch) const {
     for (std::size_t i = 0; i < n; ++i) {
       const SurfaceHit hit{batch.part[i], batch.t[i], batch.u[i], batch.v[i]};
+      if (hit.part < 0) continue;
       const Vec3 at_mm = ray_of(batch, i).at(hit.t_mm);
-      const Vec3 outward = meshes_->outward(at_mm, hit), smooth = meshes_->smooth(at_mm, hit);
+      const Vec3 outward = mesh_->outward(at_mm, hit), smooth = mesh_->smooth(at_mm, hit);
       batch.nx[i] = outward.x, batch.ny[i] = outward.y, batch.nz[i] = outward.z;
       batch.sx[i] = smooth.x, batch.sy[i] = smooth.y, batch.sz[i] = smooth.z;
     }
   }
 
  private:
-  const SolidMeshes* meshes_;
+  const SolidMesh* mesh_;
 };
 
 /// A body that light goes through: where it stands, and what its surface does.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -11,42 +10,35 @@
 
 namespace lucerna {
 
-/// The triangles of closed bodies, in the luminaire frame, as a surface that through_solid takes. By Embree
-/// where it is built with it, which is several times as fast, else by a TriangleBvh. Places are computed in
-/// double either way, of corners that are rounded to float. Immutable and thread safe.
-class SolidMeshes {
+/// The triangles of a closed body, in its frame, as a surface that through_solid takes; parts are its
+/// triangles. By Embree where it is built with it, which is several times as fast, else by a TriangleBvh.
+/// Corners are rounded to float as seen from the middle of the body, wherever that is; places are computed in
+/// double. Immutable and thread safe.
+class SolidMesh {
  public:
-  explicit SolidMeshes(const std::vector<Body>& bodies);
-  ~SolidMeshes();
-  SolidMeshes(const SolidMeshes&) = delete;
-  SolidMeshes& operator=(const SolidMeshes&) = delete;
+  /// Normals change steadily across triangles that meet at less than `smooth_below_deg`.
+  SolidMesh(const Mesh& mesh, double smooth_below_deg);
+  ~SolidMesh();
+  SolidMesh(const SolidMesh&) = delete;
+  SolidMesh& operator=(const SolidMesh&) = delete;
 
   /// The first triangle in (t_min_mm, t_max_mm).
   SurfaceHit first(const Ray& ray, double t_min_mm, double t_max_mm) const;
   Vec3 outward(const Vec3& point_mm, const SurfaceHit& hit) const;
   Vec3 smooth(const Vec3& point_mm, const SurfaceHit& hit) const;
 
-  /// Number of the body that part of the surface belongs to.
-  std::size_t body_of(std::int32_t part) const;
-
  private:
   /// How triangles are found.
   struct Finder;
 
-  struct Placed {
-    /// The parts of the surface that are its triangles begin here.
-    std::int32_t first_part;
-    /// 1 where triangles are counter-clockwise seen from outside, else -1.
-    double sense;
-    /// Three a triangle; empty for flat triangles.
-    std::vector<Vec3> corner_normals;
-  };
-
-  void add(const Body& body);
-
-  std::vector<Placed> bodies_;
-  /// Three a triangle.
+  Vec3 centre_mm_;
+  double reach_mm_ = 0.0;  ///< of all corners from there
+  /// 1 where triangles are counter-clockwise seen from outside, else -1.
+  double sense_ = 1.0;
+  /// Three a triangle, from the centre.
   std::vector<Vec3> corners_mm_;
+  /// Likewise; empty for flat triangles.
+  std::vector<Vec3> corner_normals_;
   std::unique_ptr<const Finder> finder_;
 };
 

@@ -12,7 +12,6 @@
 #include "lucerna/optics/mesh/faced_solid.h"
 #include "lucerna/optics/shapes/faced_outline.h"
 #include "lucerna/trace/engines/body_tracer.h"
-#include "lucerna/trace/kernels/triangle_bvh.h"
 
 namespace lucerna {
 
@@ -26,16 +25,6 @@ std::size_t turned_edges(const Mesh& mesh) {
     for (std::size_t k = 0; k < 3; ++k) turned += seen.insert({t[k], t[(k + 1) % 3]}).second ? 0 : 1;
   }
   return turned;
-}
-
-/// As the tree takes it; `mesh` stands for its surface.
-Body as_body(const Solid& solid, std::shared_ptr<const Mesh> mesh) {
-  Body body;
-  body.name = solid.name;
-  body.mesh = std::move(mesh);
-  body.world_from_body = solid.world_from_solid;
-  body.smooth_below_deg = solid.smooth_below_deg;
-  return body;
 }
 
 void check_mesh(const Solid& solid) {
@@ -180,7 +169,6 @@ std::shared_ptr<const Mesh> surface_mesh(const Solid& solid, double tolerance) {
 }
 
 SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
-  std::vector<Body> meshes;
   for (const Solid& s : solids) {
     check(s);
     Traced traced;
@@ -190,8 +178,7 @@ SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
     traced.world_from_solid = s.world_from_solid;
     traced.solid_from_world = s.world_from_solid.inverse();
     if (s.mesh != nullptr) {
-      of_triangles_.push_back(solids_.size());
-      meshes.push_back(as_body(s, s.mesh));
+      traced.mesh = std::make_unique<const SolidMesh>(*s.mesh, s.smooth_below_deg);
     } else if (s.face != nullptr) {
       traced.faced = faced_body(s);
       traced.rough = rough_parts(s, traced.faced->corners());
@@ -202,7 +189,6 @@ SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
     }
     solids_.push_back(std::move(traced));
   }
-  if (!meshes.empty()) meshes_ = std::make_unique<const SolidMeshes>(meshes);
 }
 
 MediumView SolidTracer::Traced::medium_at(float wavelength_nm) const {
@@ -233,20 +219,9 @@ SurfaceHit first_from_outside(const Surface& surface, const Ray& ray, double t_m
 
 }  // namespace
 
-void SolidTracer::find_triangles(const Ray& ray, bool started, double& t_max_mm,
-                                 std::optional<GlassHit>& hit) const {
-  const SurfaceHit found = meshes_->first(ray, started ? kBodyStart : 0.0, t_max_mm);
-  if (found.part < 0) return;
-  hit =
-      GlassHit{found.t_mm, of_triangles_[meshes_->body_of(found.part)], false, found.part, found.u, found.v};
-  t_max_mm = found.t_mm;
-}
-
 std::optional<GlassHit> SolidTracer::first_hit(const Ray& ray, double t_max_mm, bool started) const {
   std::optional<GlassHit> out;
-  if (meshes_ != nullptr) find_triangles(ray, started, t_max_mm, out);
   for (std::size_t i = 0; i < solids_.size(); ++i) {
-    if (solids_[i].is_of_triangles()) continue;
     const SurfaceHit hit = solids_[i].with_surface([&](const auto& surface) {
       const Ray local = solids_[i].solid_from_world.ray(ray);
       return started ? first_from_outside(surface, local, t_max_mm) : surface.first(local, 0.0, t_max_mm);
@@ -260,10 +235,7 @@ std::optional<GlassHit> SolidTracer::first_hit(const Ray& ray, double t_max_mm, 
 
 void SolidTracer::first_hits(std::span<const Ray> rays, bool started, std::span<double> t_max_mm,
                              std::span<std::optional<GlassHit>> hits) const {
-  for (std::size_t i = 0; meshes_ != nullptr && i < rays.size(); ++i)
-    find_triangles(rays[i], started, t_max_mm[i], hits[i]);
   for (std::size_t solid = 0; solid < solids_.size(); ++solid) {
-    if (solids_[solid].is_of_triangles()) continue;
     for (std::size_t i = 0; i < rays.size(); i += kSolidBatch) {
       const std::size_t n = std::min(kSolidBatch, rays.size() - i);
       find_surfaces(solid, rays.subspan(i, n), started, t_max_mm.subspan(i, n), hits.subspan(i, n));
@@ -303,11 +275,6 @@ GlassPassage SolidTracer::pass(const Ray& ray, const GlassHit& hit, const Reflec
   const Traced& solid = solids_[hit.glass];
   const MediumView medium = solid.medium_at(wavelength_nm);
   const SurfaceHit at{hit.part, hit.t_mm, hit.u, hit.v};
-  if (solid.is_of_triangles()) {
-    return through_solid(*meshes_, medium, solid.finish(), ray, at, key, [&](const Vec3& point) {
-      if (visit) visit(point);
-    });
-  }
   GlassPassage out = solid.with_surface([&](const auto& surface) {
     return through_solid(surface, medium, solid.finish(), solid.solid_from_world.ray(ray), at, key,
                          [&](const Vec3& point) {
@@ -341,171 +308,9 @@ void SolidTracer::pass_solid(std::size_t number, std::span<const GlassRay> rays,
   std::vector<MediumView> media;
   media.reserve(which.size());
   for (const std::size_t i : which) media.push_back(solid.medium_at(rays[i].wavelength_nm));
-  if (solid.is_of_triangles()) {
-    const Frame in_place;
-    SolidFlight(best_solid_kernels(), {in_place, in_place, solid.finish()}, rays, which, media, out)
-        .run(MeshBatchSurface(*meshes_));
-    return;
-  }
   SolidFlight flight(best_solid_kernels(), {solid.world_from_solid, solid.solid_from_world, solid.finish()},
                      rays, which, media, out);
   solid.with_batch_surface([&](const auto& surface) { flight.run(surface); });
-}
-
-namespace {
-
-/// Solids that are nearer to each other than this touch, mm.
-constexpr double kTouch = 5e-3;
-
-struct Extents {
-  Vec3 low_mm, high_mm;
-};
-
-Extents extents_of(const Body& body) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Extents box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
-  for (const Vec3& v : body.mesh->vertices_mm) {
-    const Vec3 p = body.world_from_body.point(v);
-    box.low_mm = {std::min(box.low_mm.x, p.x), std::min(box.low_mm.y, p.y), std::min(box.low_mm.z, p.z)};
-    box.high_mm = {std::max(box.high_mm.x, p.x), std::max(box.high_mm.y, p.y), std::max(box.high_mm.z, p.z)};
-  }
-  return box;
-}
-
-/// Are bodies in these boxes so far apart that they cannot touch?
-bool are_far(const Extents& a, const Extents& b) {
-  return a.low_mm.x > b.high_mm.x + kTouch || b.low_mm.x > a.high_mm.x + kTouch ||
-         a.low_mm.y > b.high_mm.y + kTouch || b.low_mm.y > a.high_mm.y + kTouch ||
-         a.low_mm.z > b.high_mm.z + kTouch || b.low_mm.z > a.high_mm.z + kTouch;
-}
-
-bool is_within(const Extents& box, const Vec3& p) {
-  return p.x >= box.low_mm.x && p.x <= box.high_mm.x && p.y >= box.low_mm.y && p.y <= box.high_mm.y &&
-         p.z >= box.low_mm.z && p.z <= box.high_mm.z;
-}
-
-/// A closed or open mesh in the luminaire frame, and a tree over it, which is made when it is asked for: most
-/// bodies are far from each other.
-class Placed {
- public:
-  explicit Placed(Body body)
-      : name(body.name), extents(extents_of(body)), mesh(*body.mesh), body_(std::move(body)) {
-    for (const Vec3& v : mesh.vertices_mm) vertices_mm.push_back(body_.world_from_body.point(v));
-  }
-
-  TriangleBvhView tree() {
-    if (!tree_) tree_.emplace(std::vector<Body>{body_}, true);
-    return tree_->view();
-  }
-
-  std::string name;
-  Extents extents;
-  std::vector<Vec3> vertices_mm;
-  const Mesh& mesh;
-
- private:
-  Body body_;
-  std::optional<TriangleBvh> tree_;
-};
-
-/// Does anything of `p` lie on the way from a to b, its ends left out?
-bool crosses(Placed& p, const Vec3& a, const Vec3& b) {
-  const double reach = length(b - a);
-  if (!(reach > 0.0)) return false;
-  return first_triangle(p.tree(), a, (b - a) / reach, 1e-9 * reach, (1.0 - 1e-9) * reach).triangle >= 0;
-}
-
-/// Is a point within a closed mesh? By how many surfaces a ray that is parallel to no axis meets.
-bool contains(Placed& p, Vec3 point) {
-  const Direction d = Direction::from({0.8017, 0.3141, 0.5087});
-  bool inside = false;
-  for (int i = 0; i < 10000; ++i) {
-    const TriangleHit hit = first_triangle(p.tree(), point, d.vec(), i == 0 ? 0.0 : 1e-9,
-                                           std::numeric_limits<double>::infinity());
-    if (hit.triangle < 0) return inside;
-    inside = !inside;
-    point = point + hit.t * d.vec();
-  }
-  return inside;
-}
-
-/// A corner of it.
-const Vec3& corner_of(const Placed& p) { return p.vertices_mm[p.mesh.triangles.front()[0]]; }
-
-/// Does an edge of `a` run through the surface of `b`?
-bool edges_cut(const Placed& a, Placed& b) {
-  for (const auto& t : a.mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = t[k], to = t[(k + 1) % 3];
-      if (from < to && crosses(b, a.vertices_mm[from], a.vertices_mm[to])) return true;
-    }
-  }
-  return false;
-}
-
-/// Does the surface of one run through that of the other?
-bool cut(Placed& a, Placed& b) { return edges_cut(a, b) || edges_cut(b, a); }
-
-/// Does the middle of a triangle of `a` lie on `b`?
-bool touches(const Placed& a, Placed& b) {
-  for (const auto& t : a.mesh.triangles) {
-    const Vec3 &p = a.vertices_mm[t[0]], &q = a.vertices_mm[t[1]], &r = a.vertices_mm[t[2]];
-    const Vec3 across = cross(q - p, r - p), middle = (1.0 / 3.0) * (p + q + r);
-    if (!(length(across) > 0.0)) continue;
-    const Vec3 step = (kTouch / length(across)) * across;
-    if (crosses(b, middle - step, middle + step)) return true;
-  }
-  return false;
-}
-
-/// Points of a mirror, dense enough for what is as large as a lens.
-std::vector<Vec3> points_of(const PlacedReflector& mirror) {
-  constexpr int kSide = 24;
-  std::vector<Vec3> out;
-  const Aperture& a = mirror.reflector.aperture;
-  if (!mirror.reflector.surface) return out;  // a swept curve
-  for (int i = 0; i <= kSide; ++i) {
-    for (int k = 0; k <= kSide; ++k) {
-      const double x = a.half_x_mm() * (2.0 * i / kSide - 1.0), y = a.half_y_mm() * (2.0 * k / kSide - 1.0);
-      if (!a.contains(x, y)) continue;
-      out.push_back(mirror.world_from_reflector.point({x, y, mirror.reflector.surface->at(x, y).z_mm}));
-    }
-  }
-  return out;
-}
-
-[[noreturn]] void fail_apart(const std::string& solid, const std::string& other) {
-  throw InputError(fmt::format("solid '{}' and {}: one holds, cuts or touches the other; expected them apart",
-                               solid, other));
-}
-
-}  // namespace
-
-void check_apart(const Scene& scene) {
-  std::vector<std::unique_ptr<Placed>> solids;
-  for (const Solid& solid : scene.solids) {
-    check(solid);
-    Placed& s = *solids.emplace_back(std::make_unique<Placed>(as_body(solid, surface_mesh(solid))));
-    for (std::size_t k = 0; k + 1 < solids.size(); ++k) {
-      Placed& other = *solids[k];
-      if (are_far(s.extents, other.extents)) continue;
-      if (cut(s, other) || contains(s, corner_of(other)) || contains(other, corner_of(s)) ||
-          touches(s, other) || touches(other, s)) {
-        fail_apart(s.name, fmt::format("solid '{}'", other.name));
-      }
-    }
-    for (const Body& body : scene.bodies) {
-      if (are_far(s.extents, extents_of(body))) continue;
-      Placed b(body);
-      if (cut(b, s) || contains(s, corner_of(b))) fail_apart(s.name, fmt::format("body '{}'", body.name));
-    }
-    for (std::size_t m = 0; m < scene.reflectors.size(); ++m) {
-      for (const Vec3& point : points_of(scene.reflectors[m])) {
-        if (is_within(s.extents, point) && contains(s, point))
-          fail_apart(s.name, fmt::format("reflector {}", m + 1));
-      }
-    }
-  }
 }
 
 }  // namespace lucerna

@@ -11,7 +11,7 @@
 #include "lucerna/scene.h"
 #include "lucerna/trace/engines/faced_body.h"
 #include "lucerna/trace/engines/solid_flight.h"
-#include "lucerna/trace/engines/solid_meshes.h"
+#include "lucerna/trace/engines/solid_mesh.h"
 #include "lucerna/trace/kernels/revolved_tree.h"
 #include "lucerna/trace/kernels/solid_kernel.h"
 
@@ -26,8 +26,7 @@ class SolidTracer {
   bool empty() const { return solids_.empty(); }
 
   /// The first surface within (0, t_max_mm) of a ray in the luminaire frame. `started`: it comes from
-  /// something that it met before, and is outside of all bodies; what is nearer than a thousandth of a
-  /// millimetre to triangles is that.
+  /// something that it met before, and is outside of all bodies.
   std::optional<GlassHit> first_hit(const Ray& ray, double t_max_mm, bool started) const;
 
   /// What becomes of the ray there; `key.bounce` counts all that it met before, a body once. `wavelength_nm`
@@ -44,12 +43,13 @@ class SolidTracer {
   void pass(std::span<const GlassRay> rays, std::size_t first_solid, std::span<GlassPassage> out) const;
 
  private:
-  /// A body by its outline, with a face at its top or not, or of triangles, which has neither of these.
+  /// A body by its outline, with a face at its top or not, or of triangles.
   struct Traced {
     MediumView medium;
     std::shared_ptr<const Dispersion> dispersion;
     std::unique_ptr<const RevolvedTree> revolved;
     std::unique_ptr<const FacedBody> faced;
+    std::unique_ptr<const SolidMesh> mesh;
     Frame world_from_solid, solid_from_world;
     /// What scatters, and where: by parts of the surface, empty for everywhere.
     Scatter scatter;
@@ -57,16 +57,18 @@ class SolidTracer {
 
     MediumView medium_at(float wavelength_nm) const;
     SolidFinish finish() const;
-    bool is_of_triangles() const { return revolved == nullptr && faced == nullptr; }
-    /// Calls `use` with the surface, in the body's frame; not of triangles.
+    /// Calls `use` with the surface, in the body's frame.
     template <class Use>
     auto with_surface(const Use& use) const {
+      if (mesh != nullptr) return use(*mesh);
       return faced != nullptr ? use(*faced) : use(RevolvedSurface{revolved->view()});
     }
     /// The same of what takes many rays.
     template <class Use>
     void with_batch_surface(const Use& use) const {
-      if (faced != nullptr) {
+      if (mesh != nullptr) {
+        use(MeshBatchSurface(*mesh));
+      } else if (faced != nullptr) {
         use(FacedBatchSurface(*faced, best_solid_kernels()));
       } else {
         use(RevolvedBatchSurface(*revolved, best_solid_kernels()));
@@ -74,20 +76,12 @@ class SolidTracer {
     }
   };
 
-  void find_triangles(const Ray& ray, bool started, double& t_max_mm, std::optional<GlassHit>& hit) const;
   void find_surfaces(std::size_t solid, std::span<const Ray> rays, bool started, std::span<double> t_max_mm,
                      std::span<std::optional<GlassHit>> hits) const;
   void pass_solid(std::size_t solid, std::span<const GlassRay> rays, std::span<const std::size_t> which,
                   std::span<GlassPassage> out) const;
 
   std::vector<Traced> solids_;
-  /// Of all bodies that have triangles, and the numbers of these.
-  std::unique_ptr<const SolidMeshes> meshes_;
-  std::vector<std::size_t> of_triangles_;
 };
-
-/// Throws InputError, naming both, where a clear body holds, cuts or touches (within 5 um) another one, or
-/// holds or cuts a body or a mirror: light inside would not meet it.
-void check_apart(const Scene& scene);
 
 }  // namespace lucerna

@@ -14,6 +14,7 @@
 #include "lucerna/trace/engines/glass_tracer.h"
 #include "lucerna/trace/engines/ray_colours.h"
 #include "lucerna/trace/engines/ray_numbering.h"
+#include "lucerna/trace/engines/solids_apart.h"
 #include "lucerna/trace/tally/flux_quanta.h"
 
 namespace lucerna {
