@@ -211,9 +211,45 @@ void check_shells(const Solid& solid) {
                                solid, other));
 }
 
+/// Is a point of the luminaire frame within a plate, not just on it?
+bool is_within(const CoverGlass& glass, const Vec3& point) {
+  constexpr double kSkin = 1e-3;
+  const Vec3 p = glass.world_from_glass.inverse().point(point);
+  return p.z > kSkin && p.z < glass.thickness_mm - kSkin && glass.aperture.contains(p.x, p.y);
+}
+
+/// Points within a plate, from just within its faces on.
+std::vector<Vec3> points_of(const CoverGlass& glass) {
+  constexpr int kSide = 16;
+  std::vector<Vec3> out;
+  const Aperture& a = glass.aperture;
+  for (int i = 0; i <= kSide; ++i) {
+    for (int k = 0; k <= kSide; ++k) {
+      const double x = a.half_x_mm() * (2.0 * i / kSide - 1.0), y = a.half_y_mm() * (2.0 * k / kSide - 1.0);
+      if (!a.contains(x, y)) continue;
+      for (const double share : {0.01, 0.5, 0.99})
+        out.push_back(glass.world_from_glass.point({x, y, share * glass.thickness_mm}));
+    }
+  }
+  return out;
+}
+
+/// Plates may touch each other, but not share room.
+void check_plates_apart(const std::vector<CoverGlass>& glasses) {
+  for (const CoverGlass& glass : glasses) {
+    for (const CoverGlass& other : glasses) {
+      const auto is_in_glass = [&](const Vec3& p) { return is_within(glass, p); };
+      if (&other == &glass || !std::ranges::any_of(points_of(other), is_in_glass)) continue;
+      throw InputError(fmt::format("cover glass '{}' and cover glass '{}' share room; expected them apart",
+                                   glass.name, other.name));
+    }
+  }
+}
+
 }  // namespace
 
 void check_apart(const Scene& scene) {
+  check_plates_apart(scene.glasses);
   std::vector<std::unique_ptr<Placed>> solids;
   for (const Solid& solid : scene.solids) {
     check(solid);

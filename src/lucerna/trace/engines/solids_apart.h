@@ -7,8 +7,8 @@ namespace lucerna {
 
 /// Throws InputError where light within a clear body would not meet what it should, naming both: where it
 /// holds, cuts or touches (within 5 um) another one or a cover glass, or holds or cuts a body or a mirror;
-/// and where shells of one mesh cut each other, or are turned so that one is not outside or a hollow of
-/// another. Some microseconds a triangle of what is near to each other.
+/// where shells of one mesh cut each other, or are turned so that one is not outside or a hollow of another;
+/// and where two cover glasses share room. Some microseconds a triangle of what is near to each other.
 void check_apart(const Scene& scene);
 
 }  // namespace lucerna

@@ -58,6 +58,22 @@ TEST(SolidsApart, CoverGlassesMayNotTouchASolid) {
   }
 }
 
+TEST(SolidsApart, CoverGlassesShareNoRoom) {
+  Scene scene;
+  scene.glasses = {glass_from(0.0, Aperture::circle(12.0)), glass_from(2.0, Aperture::circle(12.0))};
+  EXPECT_NO_THROW(check_apart(scene)) << "face to face";
+  scene.glasses[1] = glass_from(1.0, Aperture::circle(12.0));
+  scene.glasses[1].name = "other";
+  EXPECT_EQ(apart_error(scene),
+            "cover glass 'window' and cover glass 'other' share room; expected them apart");
+  // Crossing it at an angle; smaller and within.
+  scene.glasses[1].world_from_glass = Frame::rotation(Direction::from({1, 0, 0}), 1.0);
+  EXPECT_THAT(apart_error(scene), HasSubstr("share room"));
+  scene.glasses[1] = glass_from(0.5, Aperture::circle(2.0));
+  scene.glasses[1].thickness_mm = 0.2;
+  EXPECT_THAT(apart_error(scene), HasSubstr("share room"));
+}
+
 Mesh cylinder_mesh(double radius, double z, double height, bool outward) {
   Mesh m = solid_of_revolution(
       std::vector<std::array<double, 2>>{{0, z}, {radius, z}, {radius, z + height}, {0, z + height}}, 24);
