@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hit by hit with clear bodies: the tracer of solids, on cones, splines and its own tree of triangles in
-// double, against Embree on fine triangles in float. Every disagreement is put down to its cause.
+// Hit by hit with clear bodies: the tracer of solids, on cones and splines in double and on triangles with
+// distances in double, against Embree on fine triangles in float. Every disagreement is put down to its
+// cause.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

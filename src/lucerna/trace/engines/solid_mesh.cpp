@@ -36,9 +36,9 @@ Vec3 middle_of(const Mesh& mesh) {
 }
 
 /// A mesh as a body whose own origin is elsewhere.
-Body seen_from(const Vec3& centre_mm, const Mesh& mesh, double smooth_below_deg) {
+Body seen_from(const Vec3& centre_mm, const std::shared_ptr<const Mesh>& mesh, double smooth_below_deg) {
   Body body;
-  body.mesh = std::make_shared<const Mesh>(mesh);
+  body.mesh = mesh;
   body.world_from_body = Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, -centre_mm);
   body.smooth_below_deg = smooth_below_deg;
   return body;
@@ -141,13 +141,13 @@ struct SolidMesh::Finder {
 
 #endif
 
-SolidMesh::SolidMesh(const Mesh& mesh, double smooth_below_deg)
-    : centre_mm_(middle_of(mesh)), sense_(signed_volume(mesh) < 0.0 ? -1.0 : 1.0) {
+SolidMesh::SolidMesh(const std::shared_ptr<const Mesh>& mesh, double smooth_below_deg)
+    : centre_mm_(middle_of(*mesh)), sense_(signed_volume(*mesh) < 0.0 ? -1.0 : 1.0) {
   const Body body = seen_from(centre_mm_, mesh, smooth_below_deg);
   corner_normals_ = smooth_normals(body);
-  for (const auto& triangle : mesh.triangles) {
+  for (const auto& triangle : mesh->triangles) {
     for (const std::uint32_t k : triangle) {
-      corners_mm_.push_back(rounded(mesh.vertices_mm[k] - centre_mm_));
+      corners_mm_.push_back(rounded(mesh->vertices_mm[k] - centre_mm_));
       reach_mm_ = std::max(reach_mm_, length(corners_mm_.back()));
     }
   }

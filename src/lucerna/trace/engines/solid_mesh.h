@@ -17,7 +17,7 @@ namespace lucerna {
 class SolidMesh {
  public:
   /// Normals change steadily across triangles that meet at less than `smooth_below_deg`.
-  SolidMesh(const Mesh& mesh, double smooth_below_deg);
+  SolidMesh(const std::shared_ptr<const Mesh>& mesh, double smooth_below_deg);
   ~SolidMesh();
   SolidMesh(const SolidMesh&) = delete;
   SolidMesh& operator=(const SolidMesh&) = delete;

@@ -178,7 +178,7 @@ SolidTracer::SolidTracer(const std::vector<Solid>& solids) {
     traced.world_from_solid = s.world_from_solid;
     traced.solid_from_world = s.world_from_solid.inverse();
     if (s.mesh != nullptr) {
-      traced.mesh = std::make_unique<const SolidMesh>(*s.mesh, s.smooth_below_deg);
+      traced.mesh = std::make_unique<const SolidMesh>(s.mesh, s.smooth_below_deg);
     } else if (s.face != nullptr) {
       traced.faced = faced_body(s);
       traced.rough = rough_parts(s, traced.faced->corners());
@@ -298,7 +298,7 @@ void SolidTracer::pass(std::span<const GlassRay> rays, std::size_t first_solid,
       which.push_back(i);
       if (which.size() == kSolidBatch) flush();
     }
-    flush();
+    if (!which.empty()) flush();
   }
 }
 

@@ -211,10 +211,9 @@ void check_shells(const Solid& solid) {
                                solid, other));
 }
 
-/// Is a point of the luminaire frame within a plate, not just on it?
-bool is_within(const CoverGlass& glass, const Vec3& point) {
+/// Is a point of a plate's frame within it, not just on it?
+bool is_within(const CoverGlass& glass, const Vec3& p) {
   constexpr double kSkin = 1e-3;
-  const Vec3 p = glass.world_from_glass.inverse().point(point);
   return p.z > kSkin && p.z < glass.thickness_mm - kSkin && glass.aperture.contains(p.x, p.y);
 }
 
@@ -236,10 +235,19 @@ std::vector<Vec3> points_of(const CoverGlass& glass) {
 
 /// Plates may touch each other, but not share room.
 void check_plates_apart(const std::vector<CoverGlass>& glasses) {
+  std::vector<Extents> boxes;
+  std::vector<std::vector<Vec3>> points;
   for (const CoverGlass& glass : glasses) {
-    for (const CoverGlass& other : glasses) {
-      const auto is_in_glass = [&](const Vec3& p) { return is_within(glass, p); };
-      if (&other == &glass || !std::ranges::any_of(points_of(other), is_in_glass)) continue;
+    boxes.push_back(extents_of(as_body(glass)));
+    points.push_back(points_of(glass));
+  }
+  for (std::size_t i = 0; i < glasses.size(); ++i) {
+    const CoverGlass& glass = glasses[i];
+    const Frame glass_from_world = glass.world_from_glass.inverse();
+    const auto is_in_glass = [&](const Vec3& p) { return is_within(glass, glass_from_world.point(p)); };
+    for (std::size_t k = 0; k < glasses.size(); ++k) {
+      const CoverGlass& other = glasses[k];
+      if (k == i || are_far(boxes[i], boxes[k]) || !std::ranges::any_of(points[k], is_in_glass)) continue;
       throw InputError(fmt::format("cover glass '{}' and cover glass '{}' share room; expected them apart",
                                    glass.name, other.name));
     }
@@ -250,7 +258,8 @@ void check_plates_apart(const std::vector<CoverGlass>& glasses) {
 
 void check_apart(const Scene& scene) {
   check_plates_apart(scene.glasses);
-  std::vector<std::unique_ptr<Placed>> solids;
+  std::vector<std::unique_ptr<Placed>> solids, plates;
+  for (const CoverGlass& glass : scene.glasses) plates.push_back(std::make_unique<Placed>(as_body(glass)));
   for (const Solid& solid : scene.solids) {
     check(solid);
     if (solid.mesh != nullptr) check_shells(solid);
@@ -259,9 +268,8 @@ void check_apart(const Scene& scene) {
       Placed& other = *solids[k];
       if (meet(s, other)) fail_apart(s.name, fmt::format("solid '{}'", other.name));
     }
-    for (const CoverGlass& glass : scene.glasses) {
-      Placed g(as_body(glass));
-      if (meet(s, g)) fail_apart(s.name, fmt::format("cover glass '{}'", glass.name));
+    for (const auto& plate : plates) {
+      if (meet(s, *plate)) fail_apart(s.name, fmt::format("cover glass '{}'", plate->name));
     }
     for (const Body& body : scene.bodies) {
       if (are_far(s.extents, extents_of(body))) continue;

@@ -27,6 +27,9 @@ const HitKernels& scalar_hit_kernels() {
 
 const HitKernels* hit_kernels_named(const char* isa) { return all_hit_kernels().named(isa); }
 
-const HitKernels& best_hit_kernels() { return all_hit_kernels().best(); }
+const HitKernels& best_hit_kernels() {
+  static const HitKernels& best = all_hit_kernels().best();  // asked for by every batch
+  return best;
+}
 
 }  // namespace lucerna

@@ -51,12 +51,10 @@ struct RevolvedRay {
 /// way on the cone; the other sign is its mirror image beyond the apex.
 LUCERNA_HD inline void meet_side_at(const RevolvedSide& k, std::int32_t i, const RevolvedRay& ray, double t,
                                     double w, double g, double t_min, SideHit& best) {
-  // A point on the border of two sides belongs to both: none slips through between them.
-  constexpr double kBorder = 1e-9;
   if (!(t > t_min && t < best.t) || k.nr * (w - g * t) < 0.0) return;
   const double x = ray.o.x + t * ray.d.x, y = ray.o.y + t * ray.d.y, z = ray.o.z + t * ray.d.z;
   const double share = (std::sqrt(x * x + y * y) - k.r) * k.along_r + (z - k.z) * k.along_z;
-  if (share < -kBorder || share > 1.0 + kBorder) return;
+  if (share < -kSideBorder || share > 1.0 + kSideBorder) return;
   best = {i, t, share};
 }
 

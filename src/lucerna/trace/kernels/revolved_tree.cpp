@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lucerna/core/io/error.h"
 
@@ -71,7 +72,8 @@ std::vector<RingBlock> blocks_of(const std::vector<RevolvedNode>& rings, double 
     const std::size_t k = i % kRingBlock;
     if (k == 0) {
       out.emplace_back();
-      std::fill_n(out.back().r2_high, kRingBlock, -1.0F);
+      // Below whatever r^2 is rounded to, also in a body of kilometres.
+      std::fill_n(out.back().r2_high, kRingBlock, std::numeric_limits<float>::lowest());
     }
     RingBlock& block = out.back();
     block.r2_low[k] = static_cast<float>(rings[i].r2_low - slack * reach);

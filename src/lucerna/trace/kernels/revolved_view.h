@@ -23,6 +23,9 @@ struct RevolvedSide {
   double from_nr, from_nz, to_nr, to_nz;  ///< normals of the curve that it stands for, at its ends
 };
 
+/// A point on the border of two sides belongs to both: none slips through between them. Share of a side.
+inline constexpr double kSideBorder = 1e-9;
+
 struct RevolvedView {
   const RevolvedNode* nodes = nullptr;
   const RevolvedSide* sides = nullptr;
@@ -32,8 +35,8 @@ struct RevolvedView {
 /// Rings that vectors test at once.
 inline constexpr int32_t kRingBlock = 8;
 
-/// The bounds of eight rings in float, wider than in RevolvedNode by what float rounds; `r2_high` is below 0
-/// where there is none. z is counted from the centre of RevolvedBlocks.
+/// The bounds of eight rings in float, wider than in RevolvedNode by what float rounds; `r2_high` is
+/// the lowest number where there is none. z is counted from the centre of RevolvedBlocks.
 struct RingBlock {
   alignas(32) float r2_low[kRingBlock];
   float r2_high[kRingBlock], z_low[kRingBlock], z_high[kRingBlock];
@@ -48,8 +51,8 @@ struct RevolvedBlocks {
   const RevolvedSide* sides = nullptr;
   const RingBlock* levels[kMostLevels] = {};
   int32_t level_count = 0;
-  int32_t top_blocks = 0;  ///< of the last level, one or two
-  double centre_z, reach;  ///< of a ball about all
+  int32_t top_blocks = 0;              ///< of the last level, one or two
+  double centre_z = 0.0, reach = 0.0;  ///< of a ball about all
 };
 
 }  // namespace lucerna

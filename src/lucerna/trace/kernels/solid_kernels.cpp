@@ -28,6 +28,9 @@ const SolidKernels& scalar_solid_kernels() {
 
 const SolidKernels* solid_kernels_named(const char* isa) { return all_solid_kernels().named(isa); }
 
-const SolidKernels& best_solid_kernels() { return all_solid_kernels().best(); }
+const SolidKernels& best_solid_kernels() {
+  static const SolidKernels& best = all_solid_kernels().best();  // asked for by every batch
+  return best;
+}
 
 }  // namespace lucerna

@@ -11,10 +11,9 @@ namespace lucerna {
 // What the kernels of clear bodies share with the rest: plain data only, as in kernel.h. They do for many
 // rays, in double, what solid_kernel.h and revolved_kernel.h do for one, with the same bits.
 
-/// Rays of a batch, small enough for a processor's nearest cache.
+/// Rays of a batch, small enough for a processor's nearest cache; a whole number of vectors of any
+/// instruction set.
 inline constexpr size_t kSolidBatch = 128;
-/// Arrays that lanes are read from end with whole vectors of any instruction set.
-inline constexpr size_t kSolidLanes = 8;
 
 /// Light at the surfaces of a body, in the body's frame; see PolarisedRay and BoundaryHit.
 struct SolidBatch {

@@ -80,6 +80,30 @@ TEST(SolidKernels, AllFindTheFirstSidesOfSingleRays) {
   }
 }
 
+// Where float has no digits left for millimetres, what is no ring must not count as one.
+TEST(SolidKernels, ABodyOfKilometresHasNoSidesThatAreNotThere) {
+  const double r = 1e6;
+  const RevolvedTree tree(outline_sides(test::OutlineCorners{{0, 0}, {r, 0}, {r, 10}, {0, 10}}, 0.0, 1e-3));
+  const RingBlock& block = tree.blocks().levels[0][0];
+  for (int k = 3; k < kRingBlock; ++k) EXPECT_LT(block.r2_high[k], -1e30F) << k;
+  const auto batch = std::make_unique<SolidBatch>();
+  for (const SolidKernels* kernels : all_solid_kernels_here()) {
+    Rng rng(8, 0);
+    for (std::size_t i = 0; i < kSolidBatch; ++i) {
+      put_ray({{r * (rng.uniform() - 0.5), r * (rng.uniform() - 0.5), -1e3 * rng.uniform()},
+               Direction::from({rng.uniform() - 0.5, rng.uniform() - 0.5, 0.01 * rng.uniform()})},
+              i, *batch);
+      batch->t[i] = 1e300;
+    }
+    kernels->first_sides(tree.blocks(), 0.0, kSolidBatch, *batch);
+    for (std::size_t i = 0; i < kSolidBatch; ++i) {
+      ASSERT_LT(batch->part[i], 3) << kernels->isa << ' ' << i;
+      ASSERT_EQ(batch->part[i], (RevolvedSurface{tree.view()}.first(ray_of(*batch, i), 0.0, 1e300).part))
+          << i;
+    }
+  }
+}
+
 // More than the lists of a search hold: thin rings about each other, and rays that cross them all.
 TEST(SolidKernels, RaysMayMeetManySides) {
   test::OutlineCorners comb{{0, 0}};

@@ -111,7 +111,7 @@ void meet_sides(const RevolvedRow* rows, const int32_t* ray, const RevolvedSide*
   const auto root_at = [&](Lanes t) {
     const Lanes x = o.x + t * d.x, y = o.y + t * d.y, z = o.z + t * d.z;
     const Lanes share = (sqrt(x * x + y * y) - line[0]) * line[2] + (z - line[1]) * line[3];
-    const Lanes border(1e-9);
+    const Lanes border(kSideBorder);
     const auto beside = (nr * (w - g * t) < zero) | (share < zero - border) | (Lanes(1.0) + border < share);
     return SideRoot<Lanes>{(zero <= spread) & (t_min < t) & ~beside, t, share};
   };
