@@ -92,7 +92,6 @@ set(lucerna_long_tests
   SharedDesign.TolerancesAreSharedByCase
   SolidTracer.LightThatLeftAWideBodyIsOutOfIt
   SourceEtendue.OfOneModelAndOfTwo
-  Tolerances.NothingMovesNothing
   Tolerances.TheSweepSeesWhatOpticsSays
   TraceNoiseCli.ATraceThatWasTooNoisyGoesOnToTheSameBits
   TutorialsCli.AsALibrary

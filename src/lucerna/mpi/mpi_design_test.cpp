@@ -55,6 +55,9 @@ restarts = 0
 optimizer = "least-squares"
 time_s = 1e6
 [design.tolerances]
+source_shift_mm = 0
+source_tilt_deg = 0
+slope_error_mrad = 0
 samples = 2
 rays = 20000
 )";

@@ -23,8 +23,9 @@ std::vector<ToleranceCase> tolerance_cases(const ToleranceRanges& ranges, std::u
 /// stays within [0, 1].
 Scene changed(const Scene& scene, const ToleranceCase& change);
 
-/// Traces every case. Progress phase "tolerances", in cases. Throws Interrupted when asked to stop. `peers`:
-/// processes that make the same sweep and share its cases (peers.h); null: this one alone.
+/// Traces every case that changes anything, one to two seconds each. Progress phase "tolerances", in cases.
+/// Throws Interrupted when asked to stop. `peers`: processes that make the same sweep and share its cases
+/// (peers.h); null: this one alone.
 ToleranceSweep tolerance_sweep(const Scene& scene, const ToleranceRanges& ranges, std::uint64_t seed,
                                Progress& progress = no_progress(), Peers* peers = nullptr);
 

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "lucerna/progress.h"
 #include "lucerna/source.h"
 
 namespace lucerna {
@@ -42,6 +44,12 @@ TEST(Tolerances, TheSweepSeesWhatOpticsSays) {
   const ToleranceSweep sweep = tolerance_sweep(spot(), ranges, 3);
   const ToleranceMetrics& nominal = sweep.figures.front();
   EXPECT_EQ(sweep.cases.front().name, "nominal");
+  // On the axis all of the mirror that the disk's face lights shows its luminance. The beam is half a degree
+  // wide, so that cells of one degree alone would have less than half of it.
+  const double truth_cd = 0.85 * 1000.0 * 20.0 * 20.0 / (std::numbers::pi * 0.1 * 0.1);
+  EXPECT_NEAR(nominal.centre.mean, truth_cd, 3.0 * nominal.centre.standard_error);
+  EXPECT_LT(nominal.centre.standard_error, 0.01 * truth_cd);
+  EXPECT_NEAR(nominal.peak.mean, truth_cd, 3.0 * nominal.peak.standard_error + 0.005 * truth_cd);
   // The disk looks at the mirror: every ray is reflected once, so efficiency follows the reflectance.
   EXPECT_NEAR(nominal.efficiency.mean, 0.85, 0.01);
   EXPECT_NEAR(figures(sweep, "reflectance+").efficiency.mean - nominal.efficiency.mean, 0.02, 2e-3);
@@ -65,13 +73,29 @@ TEST(Tolerances, TheSweepSeesWhatOpticsSays) {
   EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), sweep.cases.size() + 1);
 }
 
-TEST(Tolerances, NothingMovesNothing) {
-  ToleranceRanges none{0.0, 0.0, 0.0, 0.0, 2, 1 << 15};
-  const ToleranceSweep sweep = tolerance_sweep(spot(), none, 3);
-  for (const ToleranceMetrics& f : sweep.figures) {
-    EXPECT_EQ(f.efficiency.mean, sweep.figures[0].efficiency.mean);
-    EXPECT_EQ(f.peak.mean, sweep.figures[0].peak.mean);
-    EXPECT_GT(f.peak.standard_error, 0.0);
+/// Counts the cases that are traced.
+class CountCases final : public Progress {
+ public:
+  void update(std::string_view, std::uint64_t, std::uint64_t total) override { cases = total; }
+  bool stop_requested() const override { return false; }
+  std::uint64_t cases = 0;
+};
+
+TEST(Tolerances, WhatChangesNothingIsTheDesignItself) {
+  ToleranceRanges ranges{0.0, 0.0, 0.0, 0.05, 2, 1 << 15};
+  CountCases traced;
+  const ToleranceSweep sweep = tolerance_sweep(spot(), ranges, 3, traced);
+  ASSERT_EQ(sweep.cases.size(), 16u);
+  EXPECT_EQ(traced.cases, 5u) << "the design, two of reflectance, two combined";
+  const ToleranceMetrics& nominal = sweep.figures.front();
+  EXPECT_GT(nominal.peak.standard_error, 0.0);
+  for (std::size_t i = 1; i < sweep.cases.size(); ++i) {
+    const bool same = sweep.cases[i].reflectance == 0.0;
+    EXPECT_EQ(sweep.figures[i].efficiency.mean == nominal.efficiency.mean, same) << sweep.cases[i].name;
+    EXPECT_EQ(sweep.figures[i].peak.mean == nominal.peak.mean, same) << sweep.cases[i].name;
+    // With the same rays the light goes with the reflectance.
+    EXPECT_NEAR(sweep.figures[i].centre.mean / nominal.centre.mean, 1.0 + sweep.cases[i].reflectance / 0.85,
+                1e-9);
   }
 }
 

@@ -2,6 +2,7 @@
 #include "lucerna/photometry/metrics/far_field_metrics.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -17,6 +18,8 @@ namespace {
 
 constexpr double kDark = 0.002;    // far below every threshold
 constexpr double kCutOff = 0.025;  // photometric practice: less than 2.5 % of the maximum
+/// What beam and field angles are measured at, of the maximum or the axis.
+constexpr double kBeam = 0.5, kField = 0.1;
 /// A section is smoothed by no more than this share of the lobe's half width.
 constexpr double kSmoothing = 0.25;
 /// Of intensities that are read at fixed directions; a goniophotometer's detector has half of it.
@@ -41,6 +44,13 @@ Jackknife share(const Jackknife& x, double factor) {
   return x.map([factor](double v) { return factor * v; });
 }
 
+/// What angles are measured by: peak and axis with their values without each replicate, and how wide kernels
+/// of sections may be.
+struct Light {
+  Jackknife maximum, centre;
+  double widest_deg;
+};
+
 /// The angles of one pair of planes, and how far 2.5 % of the peak reach.
 struct PlaneResult {
   FarFieldMetrics::Plane plane;
@@ -63,9 +73,15 @@ std::optional<Estimate> arc_deg(const PointIntensity& exact, double resolution_d
   return ends && is_determined(*ends) ? ends : counted;
 }
 
-PlaneResult measure_plane(const CountedSphere& sphere, double c_deg, double widest_deg, bool up,
-                          const Jackknife& maximum, const Jackknife& centre, const PointIntensity& exact) {
-  Section section(sphere, c_deg, widest_deg, kDark * std::min(maximum.all(), centre.all()));
+/// A section of the light of a peak.
+Section section_of(const CountedSphere& sphere, double c_deg, const Light& light) {
+  return {sphere, c_deg, light.widest_deg, kDark * std::min(light.maximum.all(), light.centre.all())};
+}
+
+PlaneResult measure_plane(const CountedSphere& sphere, double c_deg, bool up, const Light& light,
+                          const PointIntensity& exact) {
+  const Jackknife &maximum = light.maximum, &centre = light.centre;
+  Section section = section_of(sphere, c_deg, light);
   PlaneResult r;
   r.plane.c_deg = c_deg;
   const bool has_ends = std::fmod(c_deg, kExactPlanes_deg) == 0.0;
@@ -73,11 +89,11 @@ PlaneResult measure_plane(const CountedSphere& sphere, double c_deg, double wide
     return arc_deg(has_ends ? exact : PointIntensity{}, sphere.resolution_deg(), section, full,
                    share_of_full);
   };
-  r.plane.beam_of_maximum = arc(maximum, 0.5);
-  r.plane.field_of_maximum = arc(maximum, 0.1);
+  r.plane.beam_of_maximum = arc(maximum, kBeam);
+  r.plane.field_of_maximum = arc(maximum, kField);
   const bool on_axis = centre.all() == maximum.all();
-  r.plane.beam_of_centre = on_axis ? r.plane.beam_of_maximum : arc(centre, 0.5);
-  r.plane.field_of_centre = on_axis ? r.plane.field_of_maximum : arc(centre, 0.1);
+  r.plane.beam_of_centre = on_axis ? r.plane.beam_of_maximum : arc(centre, kBeam);
+  r.plane.field_of_centre = on_axis ? r.plane.field_of_maximum : arc(centre, kField);
   r.reach = section.reach_deg(share(maximum, kCutOff), up);
   return r;
 }
@@ -198,6 +214,23 @@ std::optional<Estimate> furthest(const std::vector<PlaneResult>& results) {
   return reaches.empty() ? std::nullopt : std::optional(largest(reaches).estimate);
 }
 
+/// Peak and axis of the side with more light; returns what angles are measured by.
+Light measure_peak_and_axis(const CountedSphere& sphere, const PointIntensity& exact, FarFieldMetrics& m) {
+  std::optional<FoundPeak> peak = peak_estimate(sphere, static_cast<bool>(exact));
+  m.peak = peak;  // the lobe's width, for the axis
+  const bool up = sphere.zone_flux(90.0, 180.0).all() > sphere.zone_flux(0.0, 90.0).all();
+  m.axis_gamma_deg = up ? 180.0 : 0.0;
+  const Direction axis = Direction::from_unit({0.0, 0.0, up ? 1.0 : -1.0});
+  const Jackknife centre =
+      exact ? exact_axis(exact, axis, sphere.replicates(), m) : measure_axis(sphere, axis, m);
+  if (peak && exact) refine_peak(exact, {axis, m.axis_cd}, *peak);
+  // A quadratic of few rays may end below zero at its top too.
+  if (peak && !(peak->cd.mean > 0.0)) peak.reset();
+  m.peak = peak;
+  return {peak ? peak->values : Jackknife(sphere.replicates()), centre,
+          m.peak ? kSmoothing * m.peak->half_width_deg : kAxisRadius_deg};
+}
+
 }  // namespace
 
 FarFieldMetrics far_field_metrics(const CountedSphere& sphere, std::span<const double> planes_deg,
@@ -205,31 +238,31 @@ FarFieldMetrics far_field_metrics(const CountedSphere& sphere, std::span<const d
   FarFieldMetrics m;
   measure_zones(sphere, m);
   measure_glare(sphere, m);
-  std::optional<FoundPeak> peak = peak_estimate(sphere, static_cast<bool>(exact));
-  m.peak = peak;  // the lobe's width, for the axis
-  m.axis_gamma_deg = m.flux_90_180.mean > m.flux_0_90.mean ? 180.0 : 0.0;
-  const Direction axis = Direction::from_unit({0.0, 0.0, m.axis_gamma_deg == 0.0 ? -1.0 : 1.0});
-  const Jackknife centre =
-      exact ? exact_axis(exact, axis, sphere.replicates(), m) : measure_axis(sphere, axis, m);
-  if (peak && exact) refine_peak(exact, {axis, m.axis_cd}, *peak);
-  // A quadratic of few rays may end below zero at its top too.
-  if (peak && !(peak->cd.mean > 0.0)) peak.reset();
-  m.peak = peak;
+  const Light light = measure_peak_and_axis(sphere, exact, m);
   std::vector<double> planes{0.0, 90.0};
   for (const double c : planes_deg) {
     if (c < 180.0) planes.push_back(c);
   }
   std::sort(planes.begin(), planes.end());
   planes.erase(std::unique(planes.begin(), planes.end()), planes.end());
-  const double widest = m.peak ? kSmoothing * m.peak->half_width_deg : kAxisRadius_deg;
-  const Jackknife maximum = peak ? peak->values : Jackknife(sphere.replicates());
   std::vector<PlaneResult> results(planes.size());
   parallel_blocks(planes.size(), 1, [&](std::size_t i, std::size_t) {
-    results[i] = measure_plane(sphere, planes[i], widest, m.axis_gamma_deg == 180.0, maximum, centre, exact);
+    results[i] = measure_plane(sphere, planes[i], m.axis_gamma_deg == 180.0, light, exact);
   });
   for (const PlaneResult& r : results) m.planes.push_back(r.plane);
   m.cut_off_deg = furthest(results);
   return m;
+}
+
+PeakAndBeam peak_and_beam(const CountedSphere& sphere, const PointIntensity& exact) {
+  FarFieldMetrics m;
+  const Light light = measure_peak_and_axis(sphere, exact, m);
+  std::array<std::optional<Estimate>, 2> beam_deg;
+  parallel_blocks(beam_deg.size(), 1, [&](std::size_t i, std::size_t) {
+    Section section = section_of(sphere, 90.0 * static_cast<double>(i), light);
+    beam_deg[i] = arc_deg(exact, sphere.resolution_deg(), section, light.maximum, kBeam);
+  });
+  return {m.peak, m.axis_cd, beam_deg[0], beam_deg[1]};
 }
 
 }  // namespace lucerna

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "lucerna/far_field_metrics.h"
@@ -15,5 +16,16 @@ namespace lucerna {
 /// planes, and some seconds for `exact`.
 FarFieldMetrics far_field_metrics(const CountedSphere& sphere, std::span<const double> planes_deg,
                                   const PointIntensity& exact = {});
+
+/// What a beam is quoted by, each as FarFieldMetrics has it.
+struct PeakAndBeam {
+  std::optional<PeakEstimate> peak;
+  Estimate axis_cd;
+  /// FarFieldMetrics::Plane::beam_of_maximum of C0 and C90.
+  std::optional<Estimate> beam_c0_deg, beam_c90_deg;
+};
+
+/// These alone, to the same numbers: with `exact` in half the time.
+PeakAndBeam peak_and_beam(const CountedSphere& sphere, const PointIntensity& exact = {});
 
 }  // namespace lucerna

@@ -8,6 +8,9 @@
 
 namespace lucerna {
 
+/// Light that is reflected more often than this on average is found backward by chance only, and slowly.
+inline constexpr double kMaxBackwardReflections = 3.0;
+
 /// Intensity in single directions of a scene by light that is followed backward. Empty where that cannot be
 /// done (`no_backward_reason`), or where it does not find the light that was counted towards the brightest
 /// angle of `field` or the axis (light by many reflections is found by chance). `run_seed` makes runs

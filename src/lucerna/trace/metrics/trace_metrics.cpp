@@ -108,13 +108,10 @@ std::string peak_place_text(const PeakEstimate& p) {
 
 namespace {
 
-/// Light that is reflected more often than this on average is found backward by chance only, and slowly.
-constexpr double kMaxReflections = 3.0;
-
 TraceMetrics figures_of(const TraceResult& result, const Scene* scene, const BackwardLight& wanted,
                         const StopCheck& stop) {
   TraceMetrics figures{ledger(result), {}, {}, {}, {}};
-  if (figures.ledger.reflections_per_ray.mean > kMaxReflections) scene = nullptr;
+  if (figures.ledger.reflections_per_ray.mean > kMaxBackwardReflections) scene = nullptr;
   // Everything that leaves is in the far field, in every direction.
   const Estimate out = out_flux(result).estimate();
   for (std::size_t i = 0; i < result.far_fields.size(); ++i)
