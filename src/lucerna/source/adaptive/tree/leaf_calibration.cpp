@@ -222,6 +222,16 @@ Wanted wanted_shares(const std::vector<LeafBoxes>& boxes, const TreeBox& box, co
 
 }  // namespace
 
+double divergence_nats(std::span<const std::vector<double>> from, std::span<const std::vector<double>> to) {
+  double sum = 0.0;
+  for (std::size_t t = 0; t < from.size(); ++t) {
+    for (std::size_t i = 0; i < from[t].size(); ++i) {
+      if (from[t][i] > 0.0) sum += from[t][i] * std::log(from[t][i] / to[t][i]);
+    }
+  }
+  return sum / static_cast<double>(from.size());
+}
+
 std::array<double, 2> contradictions(std::span<const DensityTree> trees, const TreeBox& box,
                                      const TreeMarginals& rays,
                                      std::span<const std::vector<double>> leaf_shares) {
@@ -243,6 +253,7 @@ void calibrate_leaves(std::span<const DensityTree> trees, const TreeBox& box, co
   constexpr double kMostAtOnce = 3.0;
   const std::vector<LeafBoxes> boxes = all_leaf_boxes(trees, box);
   const Wanted wanted = wanted_shares(boxes, box, rays, leaf_shares);
+  const std::vector<std::vector<double>> counted(leaf_shares.begin(), leaf_shares.end());
   for (int pass = 0; pass < kPasses; ++pass) {
     for (std::size_t p = 0; p < kAxisPairs.size(); ++p) {
       if (wanted[p].empty() || (p >= 2 && pass >= kOtherPasses)) continue;
@@ -253,6 +264,7 @@ void calibrate_leaves(std::span<const DensityTree> trees, const TreeBox& box, co
       }
       multiply_leaves(boxes, rays.stretch(), ratio, kAxisPairs[p], leaf_shares);
     }
+    if (divergence_nats(counted, leaf_shares) > kMaxDivergence_nats) return;
   }
 }
 
