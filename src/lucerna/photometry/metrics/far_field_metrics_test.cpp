@@ -168,6 +168,26 @@ TEST(FarFieldMetrics, EndsInTheMainPlanesAreOfSingleDirections) {
   EXPECT_NEAR(plane(m, 30.0).beam_of_maximum.value().mean, beam_deg(1.3), 0.1);
 }
 
+TEST(FarFieldMetrics, PeakAndBeamAloneAreTheSame) {
+  const PointIntensity exact = [](const Direction& d, std::uint64_t, std::uint64_t) {
+    return Estimate{lobe(20.0, 1.0, 1.2)(d), 1.0};
+  };
+  const CountedSphere counted = sphere(lobe(20.0, 1.0, 1.3), 1e6);
+  for (const PointIntensity& known : {PointIntensity{}, exact}) {
+    const FarFieldMetrics all = far_field_metrics(counted, {}, known);
+    const PeakAndBeam some = peak_and_beam(counted, known);
+    const auto expect_same = [](const Estimate& a, const Estimate& b) {
+      EXPECT_EQ(a.mean, b.mean);
+      EXPECT_EQ(a.standard_error, b.standard_error);
+    };
+    expect_same(some.peak.value().cd, all.peak.value().cd);
+    expect_same(some.axis_cd, all.axis_cd);
+    expect_same(some.beam_c0_deg.value(), plane(all, 0.0).beam_of_maximum.value());
+    expect_same(some.beam_c90_deg.value(), plane(all, 90.0).beam_of_maximum.value());
+    EXPECT_NE(some.beam_c0_deg->mean, some.beam_c90_deg->mean);
+  }
+}
+
 // What is not determined is said: where two lobes are alike, on a ring, on the axis, below the threshold.
 TEST(FarFieldMetrics, SaysWhatIsNotDetermined) {
   const auto two = [a = lobe(0.0, 30.0, 5.0), b = lobe(180.0, 30.0, 5.0)](const Direction& d) {
