@@ -56,8 +56,12 @@ void check_alone(const TomlReader& root, const Scene& scene) {
 
 std::vector<std::size_t> read_sides(TomlReader& design) {
   std::vector<std::size_t> out;
-  for (const double side : design.number_or_numbers("free_sides").value_or(std::vector<double>()))
-    out.push_back(static_cast<std::size_t>(side));
+  for (const double number : design.number_or_numbers("free_sides").value_or(std::vector<double>())) {
+    const auto side = static_cast<std::size_t>(number);
+    if (std::ranges::find(out, side) != out.end())
+      design.fail("free_sides", fmt::format("found side {} twice, expected each once", side));
+    out.push_back(side);
+  }
   return out;
 }
 

@@ -126,6 +126,8 @@ TEST(TwoFaceFit, AProjectSaysWhatTheEntryBecomes) {
   };
   EXPECT_NE(refusal(changed_text("free_sides = [0, 2]", "free_sides = 2")).find("no side from the axis"),
             std::string::npos);
+  EXPECT_NE(refusal(changed_text("free_sides = [0, 2]", "free_sides = [0, 2, 0]")).find("side 0 twice"),
+            std::string::npos);
   EXPECT_NE(refusal(changed_text("family = \"bspline\"\n", "")).find("entry"), std::string::npos);
   EXPECT_NE(refusal(changed_text("entry = \"bspline\"", "entry = \"dome\"")).find("dome"), std::string::npos);
 }
