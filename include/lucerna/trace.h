@@ -202,7 +202,8 @@ struct TraceOptions {
   /// The rays to trace, [first_ray, last_ray); by default all from 0 to the scene's own count
   /// (`default_ray_count`).
   std::uint64_t first_ray = 0;
-  /// One past the last ray, at most 2^53; absent: `default_ray_count`.
+  /// One past the last ray, at most 2^53; absent: `default_ray_count`. No further than that where a source is
+  /// a ray file: its rays count once.
   std::optional<std::uint64_t> last_ray;
   /// Of the random numbers.
   std::uint64_t seed = 1;

@@ -102,7 +102,10 @@ DistributedNoise trace_all(const MpiTraceArguments& a, const Project& project, c
   }
   DistributedTrace traced = trace_on_ranks(ranks, empty, tracer, origin, how, session.progress());
   if (!traced.result) return {std::nullopt, traced.interrupted};
-  return {NoiseTrace{std::move(*traced.result), 0.0, NoiseEnd::rays}, false};
+  const bool file_ends = traced.result->last_ray < *options.last_ray;
+  NoiseTrace all{std::move(*traced.result), 0.0, file_ends ? NoiseEnd::finite_source : NoiseEnd::rays};
+  note_ray_file(*options.last_ray, all, session);
+  return {std::move(all), false};
 }
 
 /// What the first rank does once the light is counted. Returns whether it was asked to stop on the way.

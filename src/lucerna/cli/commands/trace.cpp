@@ -41,7 +41,11 @@ NoiseTrace run_rays(const TraceArguments& a, const Scene& scene, const TraceOpti
                     const TraceOrigin& origin, Session& session) {
   std::optional<TraceResult> from = a.resume ? stored_trace(a.output, a.seed, origin) : std::nullopt;
   if (a.resume && !from) session.note(fmt::format("{}: no trace yet, starting anew", a.output));
-  if (!a.rays.empty()) return trace_rays(scene, options, std::move(from), session.progress());
+  if (!a.rays.empty()) {
+    NoiseTrace traced = trace_rays(scene, options, std::move(from), session.progress());
+    note_ray_file(*options.last_ray, traced, session);
+    return traced;
+  }
   NoiseGoal goal;
   goal.noise = parse_share(a.noise);
   goal.max_seconds = parse_number(a.time);

@@ -23,6 +23,12 @@ std::vector<std::string> write_trace_output(const std::string& folder, const Tra
   return names;
 }
 
+void note_ray_file(std::uint64_t last_ray, const NoiseTrace& traced, Session& session) {
+  if (traced.end != NoiseEnd::finite_source) return;
+  session.note(fmt::format("rays up to {} of {} asked for: {}", traced.result.last_ray, last_ray,
+                           to_string(traced.end)));
+}
+
 void note_noise(const std::string& of, const NoiseTrace& traced, double goal, Session& session) {
   if (std::isnan(traced.noise)) return;  // so few rays are warned of
   const std::string_view why = to_string(traced.end);

@@ -19,6 +19,8 @@ std::vector<std::string> write_trace_output(const std::string& folder, const Tra
 
 /// Says what of the noise that was asked for (`goal`) is missing, and why. `of`: begins the sentence.
 void note_noise(const std::string& of, const NoiseTrace& traced, double goal, Session& session);
+/// Says that a ray file ended before the rays up to `last_ray` that were asked for.
+void note_ray_file(std::uint64_t last_ray, const NoiseTrace& traced, Session& session);
 
 /// Without the light that is followed backward, figures are those of `merge`.
 void note_interrupted_figures(Session& session);

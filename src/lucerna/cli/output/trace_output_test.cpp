@@ -29,6 +29,20 @@ TEST(NoteNoise, SaysHowMuchIsMissingAndWhy) {
   EXPECT_THAT(note(0.034, NoiseEnd::finite_source), HasSubstr(to_string(NoiseEnd::finite_source)));
 }
 
+TEST(NoteRayFile, SaysThatItEndedBeforeTheRaysThatWereAskedFor) {
+  NoiseTrace traced;
+  traced.result.last_ray = 3000;
+  for (const NoiseEnd end : {NoiseEnd::finite_source, NoiseEnd::rays}) {
+    traced.end = end;
+    Session session;
+    testing::internal::CaptureStderr();
+    note_ray_file(10000, traced, session);
+    EXPECT_EQ(testing::internal::GetCapturedStderr().find("rays up to 3000 of 10000 asked for: a ray file") !=
+                  std::string::npos,
+              end == NoiseEnd::finite_source);
+  }
+}
+
 TEST(NoteNoise, SaysThatOnlyThePeakIsMissing) {
   EXPECT_THAT(note(0.008, NoiseEnd::time),
               AllOf(HasSubstr("noise 0.8 % of the peak, as requested"),

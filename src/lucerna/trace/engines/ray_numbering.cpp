@@ -80,6 +80,12 @@ RayNumbering::RayNumbering(const std::vector<PlacedSource>& sources, std::uint64
   }
 }
 
+std::uint64_t RayNumbering::last_ray(std::optional<std::uint64_t> asked) const {
+  const std::uint64_t wanted = asked.value_or(default_count());
+  const bool has_file = std::ranges::any_of(streams_, [](const Stream& s) { return s.finite; });
+  return has_file ? std::min(wanted, default_count()) : wanted;
+}
+
 std::vector<SourceRun> RayNumbering::runs(std::uint64_t first, std::uint64_t last) const {
   const std::uint64_t block = first / kBlockRays;
   std::vector<SourceRun> result;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "lucerna/scene.h"
@@ -55,6 +56,9 @@ class RayNumbering {
 
   /// Rays of a run whose number is not given: the sum of all shares.
   std::uint64_t default_count() const { return word_.total(); }
+  /// One past the last ray of a trace for which `asked` was: the rays of a file count once, for the same ones
+  /// again would make errors smaller than they are.
+  std::uint64_t last_ray(std::optional<std::uint64_t> asked) const;
   const SourceInterleaving& word() const { return word_; }
   /// Flux of a ray of weight 1 of `source`, in units of the run's mean ray.
   double ray_flux(std::size_t source) const { return streams_[source].ray_flux; }

@@ -72,10 +72,13 @@ namespace {
 TraceResult empty_result(const Scene& scene, const RayNumbering& numbering, const TraceOptions& options) {
   TraceResult result;
   result.first_ray = options.first_ray;
-  result.last_ray = options.last_ray.value_or(numbering.default_count());
+  result.last_ray = numbering.last_ray(options.last_ray);
   if (!(result.first_ray < result.last_ray && result.last_ray <= kMaxRays)) {
-    throw UsageError(
-        fmt::format("rays {}:{}: expected first < last <= {}", result.first_ray, result.last_ray, kMaxRays));
+    const std::uint64_t asked = options.last_ray.value_or(result.last_ray);
+    const bool file_ends = result.last_ray < asked;
+    throw UsageError(fmt::format("rays {}:{}: expected first < last <= {}{}", result.first_ray, asked,
+                                 file_ends ? result.last_ray : kMaxRays,
+                                 file_ends ? ", all that the ray files have" : ""));
   }
   if (options.max_bounces < 1)
     throw UsageError(fmt::format("{} bounces: expected at least 1", options.max_bounces));

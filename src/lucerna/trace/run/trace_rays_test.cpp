@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "lucerna/build_info.h"
+#include "lucerna/random.h"
+#include "lucerna/rays.h"
 #include "lucerna/source.h"
 #include "lucerna/trace/run/noise_rounds.h"
 #include "lucerna/trace/run/trace_pieces.h"
@@ -82,6 +84,31 @@ TEST(BuildInfo, NamesVersionAndInstructionSet) {
   options.last_ray = 512;
   options.isa = info.isa;
   EXPECT_EQ(trace(disk(), options).isa, trace(disk(), {.last_ray = 512}).isa);
+}
+
+// The same rays again would make errors smaller than they are.
+TEST(TraceRays, RaysOfAFileCountOnce) {
+  const auto set = std::make_shared<RaySet>();
+  set->rays.resize(3000, 0);
+  make_emitter({.kind = EmitterKind::disk})->emit(Sequence(SequenceKind::random, 1), 0, set->rays);
+  set->header.set_flux(100.0);
+  Scene scene = disk();
+  scene.sources.front().rays = std::make_shared<RaySetSource>(set, "set");
+  TraceOptions options;
+  options.last_ray = 10 * 3000;
+  const NoiseTrace traced = trace_rays(scene, options);
+  EXPECT_EQ(traced.end, NoiseEnd::finite_source);
+  EXPECT_EQ(traced.result.last_ray, 3000u);
+  EXPECT_TRUE(traced.result == trace(scene, {}));
+  EXPECT_TRUE(trace(scene, options) == trace(scene, {}));
+  options.last_ray = 2000;
+  EXPECT_EQ(trace_rays(scene, options).end, NoiseEnd::rays);
+  options.first_ray = 3000, options.last_ray = 6000;
+  EXPECT_THROW(trace(scene, options), UsageError);
+  // A file beside a source that goes on ends the trace, too.
+  scene.sources.push_back(disk().sources.front());
+  options.first_ray = 0, options.last_ray = 1u << 30;
+  EXPECT_EQ(trace(scene, options).last_ray, default_ray_count(scene));
 }
 
 }  // namespace

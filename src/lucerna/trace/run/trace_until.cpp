@@ -6,6 +6,7 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/trace.h"
+#include "lucerna/trace/engines/ray_numbering.h"
 #include "lucerna/trace/result/node_noise.h"
 #include "lucerna/trace/run/noise_rounds.h"
 #include "lucerna/trace/run/piece_size.h"
@@ -142,7 +143,8 @@ NoiseTrace trace_rays(const Scene& scene, const TraceOptions& options, std::opti
 NoiseTrace trace_rays_in_pieces(std::uint64_t piece_rays, const Scene& scene, const TraceOptions& options,
                                 std::optional<TraceResult> from, Progress& progress) {
   TraceOptions run = options;
-  const std::uint64_t last = options.last_ray.value_or(default_ray_count(scene));
+  check(scene);
+  const std::uint64_t last = RayNumbering(scene.sources, 0).last_ray(options.last_ray);
   if (from) {
     if (options.first_ray != from->first_ray || last < from->last_ray) {
       throw UsageError(fmt::format("rays {}:{} asked for, rays {}:{} are there already", options.first_ray,
@@ -152,7 +154,8 @@ NoiseTrace trace_rays_in_pieces(std::uint64_t piece_rays, const Scene& scene, co
     run.seed = from->seed;
     run.sequence = from->sequence;
   }
-  NoiseTrace out{{}, std::nan(""), NoiseEnd::rays};
+  const bool file_ends = options.last_ray.value_or(last) > last;
+  NoiseTrace out{{}, std::nan(""), file_ends ? NoiseEnd::finite_source : NoiseEnd::rays};
   std::optional<TraceResult> sum = std::move(from);
   PieceSize size(piece_rays);
   if (!trace_on_to(last, size, scene, run, sum, never, progress)) out.end = NoiseEnd::interrupted;
