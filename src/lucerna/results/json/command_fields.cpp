@@ -119,7 +119,7 @@ constexpr std::array kCommandFields{
     ResultField{"files[].peak.c_deg", "info", "number", "degrees", "Its direction."},
     ResultField{"files[].peak.gamma_deg", "info", "number", "degrees", "Its direction."},
     ResultField{"files[].beam[].c_deg", "info", "number", "degrees", "A C plane, with the angles that `trace` has, of the file's own values:"},
-    ResultField{"files[].beam[].beam_angle_of_maximum_deg", "info", "number", "degrees", "above 50 % of the maximum in this plane,"},
+    ResultField{"files[].beam[].beam_angle_of_maximum_deg", "info", "number", "degrees", "in this plane, above 50 % of the largest value of the grid,"},
     ResultField{"files[].beam[].field_angle_of_maximum_deg", "info", "number", "degrees", "above 10 % of it,"},
     ResultField{"files[].beam[].beam_angle_of_centre_deg", "info", "number", "degrees", "above 50 % of the axis,"},
     ResultField{"files[].beam[].field_angle_of_centre_deg", "info", "number", "degrees", "above 10 % of it."},
