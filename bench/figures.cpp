@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a trace at its default noise prints, against a long trace with other random numbers: peak, beam and
 // field angles, angles of the written grid within three of their stated errors. At the end a table of all
-// projects; brackets have the long trace.
+// projects; brackets have the long trace. Also the nominal case of a tolerance sweep of its default rays.
 // Usage: bench_figures [TRUTH_RAYS [NOISE]] PROJECT.toml...   (default 300e6 0.01; bench/figures/*.toml)
 #include <fmt/format.h>
 
@@ -11,11 +11,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "lucerna/core/parallel/parallel.h"
+#include "lucerna/design/validation/tolerances.h"
 #include "lucerna/project.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace_metrics.h"
@@ -138,6 +140,23 @@ Column run(const std::string& file, std::uint64_t truth_rays, double noise) {
   return column;
 }
 
+/// The design itself as a sweep has it; ranges of 0 leave no other case.
+void add_tolerances(const Scene& scene, Column& column) {
+  const ToleranceRanges nothing{.source_shift_mm = 0.0,
+                                .source_tilt_deg = 0.0,
+                                .slope_error_mrad = 0.0,
+                                .reflectance = 0.0,
+                                .samples = 2};
+  const ToleranceMetrics nominal = tolerance_sweep(scene, nothing, 3).figures.front();
+  const auto add = [&](const char* what, const std::optional<Estimate>& e) {
+    column.cells.emplace_back(fmt::format("tolerances: {}", what), e ? estimate_text(*e) : "not determined");
+  };
+  add("peak, cd", nominal.peak);
+  add("axis, cd", nominal.centre);
+  add("beam C0, deg", nominal.beam_c0_deg);
+  add("beam C90, deg", nominal.beam_c90_deg);
+}
+
 /// The columns side by side; rows are those of the first.
 void print_table(const std::vector<Column>& columns) {
   if (columns.empty()) return;
@@ -170,7 +189,9 @@ int main(int argc, char** argv) {
     ++at;
   }
   std::vector<Column> columns;
-  for (; at < argc; ++at)
+  for (; at < argc; ++at) {
     columns.push_back(run(argv[at], static_cast<std::uint64_t>(numbers[0]), numbers[1]));
+    add_tolerances(read_project(argv[at]).scene, columns.back());
+  }
   print_table(columns);
 }

@@ -424,12 +424,9 @@ void set_shares(const std::vector<BoxSums>& replicates, Validation& out) {
   out.lost = replicate_share(replicates, [](const BoxSums& r) { return r.lost; });
 }
 
-/// Rays after which files would begin to repeat themselves; the options' own without files.
-ValidationOptions limited(ValidationOptions options, const Scene& scene, const RayNumbering& numbering) {
-  const bool all_files = std::all_of(scene.sources.begin(), scene.sources.end(),
-                                     [](const PlacedSource& s) { return s.rays->ray_count().has_value(); });
-  if (all_files) options.max_rays = std::min(options.max_rays, numbering.default_count());
-  options.max_rays = std::max(options.max_rays, kRoundUnit);
+/// Rays of a file count once, but for a first round of files that are shorter.
+ValidationOptions limited(ValidationOptions options, const RayNumbering& numbering) {
+  options.max_rays = std::max(numbering.last_ray(options.max_rays), kRoundUnit);
   options.min_rays = std::min(options.min_rays, options.max_rays);
   return options;
 }
@@ -444,7 +441,7 @@ Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const
   const Clock::time_point start = Clock::now();
   // A seed of its own: neither the fit's rays nor those of the trace that follows a design.
   const RayNumbering numbering(scene.sources, requested.seed ^ 0x56414C4944415445ull);
-  const ValidationOptions options = limited(requested, scene, numbering);
+  const ValidationOptions options = limited(requested, numbering);
   const Meshes meshes(scene, boxes, target, options);
   Validation out{.triangles = meshes.triangles(), .tolerance = meshes.tolerance(), .embree = meshes.embree()};
   std::vector<BoxSums>& replicates = out.replicates;
