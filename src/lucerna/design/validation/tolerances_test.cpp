@@ -45,7 +45,7 @@ TEST(Tolerances, TheSweepSeesWhatOpticsSays) {
   const ToleranceMetrics& nominal = sweep.figures.front();
   EXPECT_EQ(sweep.cases.front().name, "nominal");
   // On the axis all of the mirror that the disk's face lights shows its luminance. The beam is half a degree
-  // wide, so that cells of one degree alone would have less than half of it.
+  // wide, so that cells of one degree alone have two thirds of it, with a tenth of it as their error.
   const double truth_cd = 0.85 * 1000.0 * 20.0 * 20.0 / (std::numbers::pi * 0.1 * 0.1);
   EXPECT_NEAR(nominal.centre.mean, truth_cd, 3.0 * nominal.centre.standard_error);
   EXPECT_LT(nominal.centre.standard_error, 0.01 * truth_cd);
