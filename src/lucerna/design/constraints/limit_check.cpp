@@ -5,13 +5,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <unordered_map>
-#include <utility>
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/design/constraints/keep_out.h"
 #include "lucerna/geometry.h"
+#include "lucerna/optics/mesh/mesh_curvature.h"
 
 namespace lucerna {
 
@@ -55,41 +54,6 @@ Figures figures(const Mesh& mesh) {
     }
   }
   return f;
-}
-
-/// Where a triangle with corners on a bent surface has the surface's own slope: for a right angle exactly the
-/// middle of the longest side, which is the circumcentre.
-Vec3 circumcentre(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 u = b - a, v = c - a, n = cross(u, v);
-  const double square = 2.0 * dot(n, n);
-  return a + (1.0 / square) * (dot(u, u) * cross(v, n) + dot(v, v) * cross(n, u));
-}
-
-/// Largest curvature: the angle between two triangles that share an edge, over the distance across it of the
-/// places where they have the surface's slope. Where these nearly coincide the pair says nothing.
-double curvature(const Mesh& mesh) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> first;
-  const auto at = [&](std::uint32_t i) { return mesh.vertices_mm[i]; };
-  const auto normal_of = [&](const std::array<std::uint32_t, 3>& t) {
-    return cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
-  };
-  double max = 0.0;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto& t = mesh.triangles[i];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto edge = std::minmax(t[k], t[(k + 1) % 3]);
-      const auto [found, fresh] = first.try_emplace({edge.first, edge.second}, i);
-      if (fresh) continue;
-      const auto& s = mesh.triangles[found->second];
-      const double along = length(at(edge.second) - at(edge.first));
-      const double across =
-          length(circumcentre(at(t[0]), at(t[1]), at(t[2])) - circumcentre(at(s[0]), at(s[1]), at(s[2])));
-      if (across < 0.2 * along) continue;
-      const double angle = angle_between(Direction::from(normal_of(t)), Direction::from(normal_of(s)));
-      max = std::max(max, angle / across);
-    }
-  }
-  return max;
 }
 
 /// Points in cells, to find near ones.
@@ -180,8 +144,8 @@ std::vector<LimitCheck> check_limits(const Mesh& mirror, const DesignLimits& lim
   max("max_height_mm", limits.max_height_mm, f.high - f.low, 1e-4);
   max("max_slope_deg", limits.max_slope_deg, degrees(f.max_slope), slope_deg);
   if (limits.min_radius_mm) {
-    const double radius = 1.0 / std::max(curvature(mirror), 1e-9);
-    min("min_radius_mm", limits.min_radius_mm, radius, 0.1 * *limits.min_radius_mm);
+    const double radius = 1.0 / std::max(max_curvature_per_mm(mirror), 1e-9);
+    min("min_radius_mm", limits.min_radius_mm, radius, 0.01 * *limits.min_radius_mm);
   }
   for (const KeepOut& zone : limits.keep_out) {
     const double distance = distance_to(mirror, zone);

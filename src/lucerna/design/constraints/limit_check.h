@@ -11,9 +11,9 @@ namespace lucerna {
 
 /// Whether a mirror as exported (a mesh in the mirror's frame, as `cad_mesh` and an STL file have it) holds
 /// the limits on its form: from its triangles alone, knowing nothing of splines. `tolerance` is what the mesh
-/// was made with: within it a limit counts as held. Curvature comes from the angle between neighbouring
-/// triangles, within a tenth. Lengths are found to the tolerance; the distance to a keep-out zone only where
-/// it is less than the clearance and 1 mm (else the entry says that sum), and 0 where the mirror cuts it.
+/// was made with: within it a limit counts as held, a radius within a hundredth (`max_curvature_per_mm`).
+/// Lengths are found to the tolerance; the distance to a keep-out zone only where it is less than the
+/// clearance and 1 mm (else the entry says that sum), and 0 where the mirror cuts it.
 std::vector<LimitCheck> check_limits(const Mesh& mirror, const DesignLimits& limits, double chord_mm,
                                      double slope_deg);
 

@@ -138,7 +138,7 @@ TEST(ShapeLimits, ASphereHasItsRadius) {
   limits.min_radius_mm = 39.0;
   EXPECT_TRUE(ShapeLimits(limits, shape).held(shape));
   const auto mesh = check_limits(cad_mesh(shape.reflector()), limits, 0.01, 2.0);
-  EXPECT_NEAR(mesh.at(0).found.mean, 40.0, 4.0);
+  EXPECT_NEAR(mesh.at(0).found.mean, 40.0, 0.2);
   limits.min_radius_mm = 41.0;
   EXPECT_FALSE(ShapeLimits(limits, shape).held(shape));
 }
