@@ -140,6 +140,16 @@ void search_around(const PointIntensity& intensity, double radius_deg, std::vect
   }
 }
 
+/// The ends of an arc have random numbers of their own: from those of the peak too much light at both ends
+/// would be one fault, which their errors, taken as independent, would be too small for.
+constexpr std::uint64_t kFromNumbers = 1000, kToNumbers = 2000;
+
+PointIntensity with_other_numbers(const PointIntensity& intensity, std::uint64_t first) {
+  return [&intensity, first](const Direction& d, std::uint64_t samples, std::uint64_t seed) {
+    return intensity(d, samples, first + seed);
+  };
+}
+
 /// Where a section falls below a threshold, its slope there, and the error of its intensity.
 struct Crossing {
   double angle_deg, cd_per_deg, cd_error;
@@ -307,10 +317,12 @@ std::optional<Estimate> exact_arc_deg(const PointIntensity& intensity, const Dir
   if (std::isfinite(window.max_noise) && (is_noisy(near.from_deg) || is_noisy(near.to_deg)))
     return std::nullopt;
   const double inward_deg = std::max(window.outward_deg, 0.5 * (near.to_deg - near.from_deg));
-  const auto end = [&](double near_deg, double outward_deg) {
-    return find_crossing(intensity, at, near_deg, outward_deg, inward_deg, window.step_deg, threshold);
+  const auto end = [&](double near_deg, double outward_deg, std::uint64_t numbers) {
+    return find_crossing(with_other_numbers(intensity, numbers), at, near_deg, outward_deg, inward_deg,
+                         window.step_deg, threshold);
   };
-  const auto from = end(near.from_deg, -window.outward_deg), to = end(near.to_deg, window.outward_deg);
+  const auto from = end(near.from_deg, -window.outward_deg, kFromNumbers),
+             to = end(near.to_deg, window.outward_deg, kToNumbers);
   if (!from || !to) return std::nullopt;
   const double by_threshold =
       threshold.standard_error * (1.0 / std::abs(from->cd_per_deg) + 1.0 / std::abs(to->cd_per_deg));
