@@ -162,7 +162,7 @@ radius_mm = 3
     EXPECT_TRUE(limit["held"].get<bool>()) << limit;
     const auto in_file = std::ranges::find(checks, limit["limit"].get<std::string>(), &LimitCheck::limit);
     if (in_file == checks.end()) continue;  // of the light
-    // Single precision of the file matters to angles between neighbouring triangles.
+    // Single precision of the file matters to curvature.
     EXPECT_NEAR(limit["found"]["value"].get<double>(), in_file->found.mean, 0.01 * in_file->found.mean)
         << limit;
   }
@@ -176,6 +176,7 @@ TEST(DesignCli, ALimitThatTheLightCannotHoldIsSaidAndExitsWithOne) {
   EXPECT_EQ(run.exit_code, 1) << run.err;
   EXPECT_THAT(run.out, HasSubstr("NOT HELD"));
   EXPECT_THAT(run.out, HasSubstr("glare 0.001 cd/klm beyond 60 deg"));
+  EXPECT_THAT(run.out, HasSubstr("light that meets no mirror has"));
   EXPECT_TRUE(std::filesystem::exists(dir / "out" / "reflector.step"));
 }
 

@@ -85,6 +85,17 @@ void add_remarks(const DesignProblem& problem, DesignResult& result) {
   for (std::string& broken : broken_limits(result.limits)) result.remarks.push_back(std::move(broken));
 }
 
+/// That the limit on glare is broken by light that no mirror has turned.
+std::optional<std::string> direct_glare_remark(const DesignLimits& limits, double source_flux,
+                                               const GlareFound& glare) {
+  if (!limits.glare) return {};
+  const Estimate& direct = glare.direct_per_flux;
+  if (direct.mean - 2.0 * direct.standard_error <= limits.glare->max_per_flux) return {};
+  const Estimate cd{direct.mean * source_flux, direct.standard_error * source_flux};
+  return fmt::format("glare {}: light that meets no mirror has {} cd alone", limits.glare->text,
+                     estimate_text(cd));
+}
+
 }  // namespace
 
 ResultCheck::ResultCheck(const DesignProblem& problem, const DesignOptions& options, Progress& progress)
@@ -127,8 +138,8 @@ DesignBound ResultCheck::bound(const DesignShape& shape, const Validation& light
                       problem_.world_from_mirror.ez());
 }
 
-Estimate ResultCheck::set_error(std::uint64_t max_rays, double max_s, DesignResult& result,
-                                Progress& progress) {
+GlareFound ResultCheck::set_error(std::uint64_t max_rays, double max_s, DesignResult& result,
+                                  Progress& progress) {
   const Validation v = validated(result.shape, ValidationOptions().min_rays, max_rays, max_s, progress);
   result.error = v.error;
   result.zones = v.zones;
@@ -141,20 +152,21 @@ Estimate ResultCheck::set_error(std::uint64_t max_rays, double max_s, DesignResu
   result.start_error = start_.error;
   result.start_zones = start_.zones;
   result.bound = bound(result.shape, v);
-  return glare_ ? glare_->brightest(v.replicates) : Estimate{};
+  if (!glare_) return {};
+  return {glare_->brightest(v.replicates), glare_->brightest(v.replicates, &BoxSums::glare_direct)};
 }
 
 void ResultCheck::fill(const FitProblem& fit, std::uint64_t max_rays, double max_s, DesignResult& result,
                        Progress& progress) {
-  Estimate glare_per_flux = set_error(max_rays, max_s, result, progress);
+  GlareFound glare = set_error(max_rays, max_s, result, progress);
   const bool keep_given = given_is_better(problem_, result);
   if (keep_given) {
     result.shape = problem_.start;
-    glare_per_flux = set_error(max_rays, max_s, result, progress);
+    glare = set_error(max_rays, max_s, result, progress);
   }
   const CadTolerance stl = mesh_tolerance(boxes_, target_, problem_.world_from_mirror.origin_mm());
   result.limits =
-      checked_limits(problem_, result.shape, stl, rays_.flux(), result.efficiency, glare_per_flux);
+      checked_limits(problem_, result.shape, stl, rays_.flux(), result.efficiency, glare.per_flux);
   const double behind = share_behind(result.shape, rays_), given = share_behind(problem_.start, rays_);
   if (behind > given + kMaxBehind) {
     const double error = std::sqrt(behind * (1.0 - behind) / static_cast<double>(rays_.size()));
@@ -167,6 +179,8 @@ void ResultCheck::fill(const FitProblem& fit, std::uint64_t max_rays, double max
     result.remarks.insert(result.remarks.begin(), limit.statements.begin(), limit.statements.end());
   }
   add_remarks(problem_, result);
+  if (auto remark = direct_glare_remark(problem_.limits, rays_.flux(), glare))
+    result.remarks.push_back(*remark);
   if (result.shape.is_revolution()) {
     if (auto remark = rings_remark(problem_.target, result.error)) result.remarks.push_back(*remark);
   }

@@ -11,6 +11,12 @@
 
 namespace lucerna {
 
+/// The brightest cell of glare per unit of the emitted flux, in all light and in what met no mirror; 0
+/// without a limit on it.
+struct GlareFound {
+  Estimate per_flux, direct_per_flux;
+};
+
 /// What a finished design says of its mirror. All that does not need the result is done at construction, so
 /// that a search knows what time is left for it: the start's error and the étendue of the sources.
 class ResultCheck {
@@ -32,8 +38,7 @@ class ResultCheck {
   Validation validated(const DesignShape& shape, std::uint64_t min_rays, std::uint64_t max_rays, double max_s,
                        Progress& progress) const;
   DesignBound bound(const DesignShape& shape, const Validation& light);
-  /// Returns the brightest cell of glare, 0 without a limit on it.
-  Estimate set_error(std::uint64_t max_rays, double max_s, DesignResult& result, Progress& progress);
+  GlareFound set_error(std::uint64_t max_rays, double max_s, DesignResult& result, Progress& progress);
 
   const DesignProblem& problem_;
   const DesignOptions& options_;

@@ -19,8 +19,8 @@ struct BoxSums {
   /// Flux that leaves by measuring cell of the target's zones (zone_cells.h), and the part of it that met
   /// nothing; empty without zones.
   std::vector<double> zones, zones_direct;
-  /// Flux that leaves by cell of GlareCells; empty without.
-  std::vector<double> glare;
+  /// Flux that leaves by cell of GlareCells, and the part of it that met nothing; empty without.
+  std::vector<double> glare, glare_direct;
   /// All ends of the emitted flux: emitted = out_direct + out_reflected + absorbed + back + bodies + lost.
   double emitted = 0.0, out_direct = 0.0, out_reflected = 0.0;
   double absorbed = 0.0, back = 0.0, bodies = 0.0, lost = 0.0;

@@ -66,6 +66,19 @@ TEST(BoxError, ShapeModeTakesTheBestScaleAndAbsoluteModeNone) {
   EXPECT_NEAR(box_error(boxes, target, std::vector{same}, TargetMode::absolute).c48.value, 1.0, 1e-12);
 }
 
+// Fluxes are summed ray by ray, and cell by cell.
+TEST(BoxError, RoundingIsNoLightOutside) {
+  const ErrorBoxes boxes(downwards(0.3));
+  const auto target = uniform_target(boxes);
+  for (const double rounding : {1.0 - 3e-13, 1.0 + 3e-13}) {
+    BoxSums sums = changed(target, [](auto, auto) { return 1.0; });
+    sums.out_reflected *= rounding;
+    const DesignError error = box_error(boxes, target, std::vector{sums}, TargetMode::shape);
+    EXPECT_EQ(error.outside_share.mean, 0.0);
+    EXPECT_EQ(error.outside_direct.mean, 0.0);
+  }
+}
+
 TEST(BoxError, LightOutsideIsCountedWithItsDirectPart) {
   const ErrorBoxes boxes(downwards(0.3));
   const auto target = uniform_target(boxes);

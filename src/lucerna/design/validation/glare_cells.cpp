@@ -41,12 +41,13 @@ void GlareCells::add(const Vec3& direction, double flux, std::span<double> sums)
   sums[ring.first + place(turn, ring.sectors)] += flux;
 }
 
-Estimate GlareCells::brightest(std::span<const BoxSums> replicates) const {
+Estimate GlareCells::brightest(std::span<const BoxSums> replicates,
+                               std::vector<double> BoxSums::*light) const {
   Estimate most;
   for (const Ring& ring : rings_) {
     for (std::size_t cell = ring.first; cell < ring.first + ring.sectors; ++cell) {
       const Estimate e =
-          replicate_share(replicates, [&](const BoxSums& r) { return r.glare[cell] / ring.measure_sr; });
+          replicate_share(replicates, [&](const BoxSums& r) { return (r.*light)[cell] / ring.measure_sr; });
       if (e.mean > most.mean) most = e;
     }
   }

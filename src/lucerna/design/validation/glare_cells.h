@@ -22,8 +22,9 @@ class GlareCells {
   /// Adds light in a direction of the world to the cell that it is in, if it is in one.
   void add(const Vec3& direction, double flux, std::span<double> sums) const;
   /// The largest mean intensity over a cell, per unit of the emitted flux, in the light of at least two
-  /// replicates (BoxSums::glare), with that cell's error.
-  Estimate brightest(std::span<const BoxSums> replicates) const;
+  /// replicates (BoxSums::glare, or glare_direct), with that cell's error.
+  Estimate brightest(std::span<const BoxSums> replicates,
+                     std::vector<double> BoxSums::*light = &BoxSums::glare) const;
 
  private:
   struct Ring {

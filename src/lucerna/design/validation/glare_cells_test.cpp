@@ -67,6 +67,7 @@ TEST(GlareCells, SeeTheLightAboutThePole) {
   EXPECT_LT(found.standard_error, 0.05 * truth);
   EXPECT_GT(found.mean, truth - 2.0 * found.standard_error);
   EXPECT_LT(found.mean, truth + 6.0 * found.standard_error);
+  EXPECT_EQ(cells.brightest(v.replicates, &BoxSums::glare_direct).mean, found.mean) << "there is no mirror";
 }
 
 }  // namespace

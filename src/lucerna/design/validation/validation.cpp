@@ -298,6 +298,7 @@ class BatchTracer {
     if (reflected) return;
     sums.direct[cell] += flux_[i];
     if (zones_ != nullptr) zones_->add(from, along, flux_[i], sums.zones_direct);
+    if (glare_ != nullptr) glare_->add(along, flux_[i], sums.glare_direct);
   }
 
   bool off_mirror(std::size_t i, BoxSums& sums) {
@@ -356,13 +357,15 @@ class BatchTracer {
 
 /// The sums of a replicate as bytes, and back.
 void append_sums(const BoxSums& s, std::string& bytes) {
-  for (const auto* values : {&s.flux, &s.direct, &s.zones, &s.zones_direct, &s.glare}) append(bytes, *values);
+  for (const auto* values : {&s.flux, &s.direct, &s.zones, &s.zones_direct, &s.glare, &s.glare_direct})
+    append(bytes, *values);
   for (const double x : {s.emitted, s.out_direct, s.out_reflected, s.absorbed, s.back, s.bodies, s.lost})
     append_double(bytes, x);
   append(bytes, s.rays);
 }
 void take_sums(BoxSums& s, std::string_view& bytes) {
-  for (auto* values : {&s.flux, &s.direct, &s.zones, &s.zones_direct, &s.glare}) take(bytes, *values);
+  for (auto* values : {&s.flux, &s.direct, &s.zones, &s.zones_direct, &s.glare, &s.glare_direct})
+    take(bytes, *values);
   for (double* x : {&s.emitted, &s.out_direct, &s.out_reflected, &s.absorbed, &s.back, &s.bodies, &s.lost})
     *x = take_double(bytes);
   s.rays = take(bytes);
@@ -449,7 +452,8 @@ Validation validate(const Scene& scene, const ErrorBoxes& boxes, std::span<const
   for (BoxSums& r : replicates) {
     r.flux.assign(boxes.size(), 0.0);
     r.direct.assign(boxes.size(), 0.0);
-    r.glare.assign(options.glare != nullptr ? options.glare->size() : 0, 0.0);
+    for (auto* cells : {&r.glare, &r.glare_direct})
+      cells->assign(options.glare != nullptr ? options.glare->size() : 0, 0.0);
     if (options.zones == nullptr) continue;
     r.zones.assign(options.zones->size(), 0.0);
     r.zones_direct.assign(options.zones->size(), 0.0);
