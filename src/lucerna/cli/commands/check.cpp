@@ -11,6 +11,7 @@
 #include "lucerna/cli/output/describe.h"
 #include "lucerna/cli/parse/input_kind.h"
 #include "lucerna/cli/parse/photometric_arguments.h"
+#include "lucerna/cli/parse/traceable_project.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
 #include "lucerna/design/lens/lens_problem.h"
@@ -19,7 +20,6 @@
 #include "lucerna/ray_file.h"
 #include "lucerna/rayset/files/ray_check.h"
 #include "lucerna/source_model.h"
-#include "lucerna/trace/engines/solids_apart.h"
 
 namespace lucerna::cli {
 
@@ -42,13 +42,8 @@ std::vector<Diagnostic> as_faults(const std::vector<std::string>& warnings, cons
 
 /// A project with all that it names; also the target and the settings of a design, where it has them.
 std::vector<std::string> project_warnings(const std::string& path, Session& session) {
-  Project project = read_project(path, session.progress());
+  Project project = read_traceable_project(path, session.progress());
   std::vector<std::string> warnings = project.warnings;
-  try {
-    check_apart(project.scene);
-  } catch (const InputError& e) {
-    throw InputError(fmt::format("{}: {}", path, e.what()));
-  }
   if (is_lens_design(project)) {
     static_cast<void>(lens_problem(std::move(project), path));
   } else if (is_finished_lens(project)) {

@@ -7,9 +7,9 @@
 #include "lucerna/cli/output/stored_trace.h"
 #include "lucerna/cli/output/trace_output.h"
 #include "lucerna/cli/parse/arguments.h"
+#include "lucerna/cli/parse/traceable_project.h"
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
-#include "lucerna/project.h"
 #include "lucerna/results/metrics/trace_warnings.h"
 #include "lucerna/trace/device/accelerator.h"
 
@@ -60,7 +60,8 @@ NoiseTrace run_rays(const TraceArguments& a, const Scene& scene, const TraceOpti
 void run_trace(const TraceArguments& a, Session& session, int& exit_code) {
   session.start();
   const TraceOptions options = trace_options(a);
-  const Project project = session.timed("read", [&] { return read_project(a.project, session.progress()); });
+  const Project project =
+      session.timed("read", [&] { return read_traceable_project(a.project, session.progress()); });
   session.prepare_folder(a.output, session.force || a.resume);
   require_report(a.report);
   for (const std::string& warning : project.warnings) session.note(warning);

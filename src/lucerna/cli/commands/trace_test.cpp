@@ -51,6 +51,13 @@ TEST_F(TraceInputCli, MirrorsThatCannotBe) {
                 "line 10: reflector[0].reflectence: unknown key; the nearest known one is 'reflectance'");
 }
 
+TEST_F(TraceInputCli, ClearBodiesThatMeet) {
+  const std::string plate =
+      "[[body]]\nrole = 'solid'\nrefractive_index = 1.5\noutline_mm = [[0, 3], [5, 3], [5, 5], [0, 5]]\n";
+  refuse(std::string(kLamp) + plate + "name = 'a'\n" + plate + "name = 'b'\nposition_mm = [0, 0, 1]\n",
+         "expected them apart");
+}
+
 TEST_F(TraceInputCli, AReportDoesNotTakeTheProjectsPlace) {
   const std::string project = std::string(kLamp) + kBowl;
   write_file(dir / "p.toml", project);
