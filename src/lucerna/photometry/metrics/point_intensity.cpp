@@ -14,10 +14,13 @@ namespace lucerna {
 
 namespace {
 
-constexpr double kPrecise = 0.003;
+constexpr double kPrecise = 0.0015;
 constexpr std::uint64_t kFirstSamples = 1024, kMaxSamples = std::uint64_t{1} << 13;
 /// Of each direction that a search looks at; the same random numbers for all, so that most noise cancels.
-constexpr std::uint64_t kSearchSamples = 256, kSearchSeed = 11, kFinalSeed = 23;
+constexpr std::uint64_t kSearchSamples = 256, kSearchSeed = 11, kCompareSeed = 17, kFinalSeed = 23;
+/// Noise of what ripples are compared and climbed by: less than they differ by.
+constexpr double kSearchNoise = 0.002;
+constexpr std::uint64_t kFineSamples = std::uint64_t{1} << 12;
 /// Starts that are searched about, and tops that are looked at again.
 constexpr std::size_t kSearched = 8, kRetained = 3;
 /// Starts below this share of the brightest are not: a search gains less.
@@ -35,7 +38,8 @@ struct Steps {
 };
 /// About each start; and about the best that they found: the tip of a narrow lobe is sharper than a search's
 /// last step.
-constexpr Steps kCoarse{0.5, 0.1, kSearchSamples}, kFine{0.1, 0.0125, kFirstSamples};
+constexpr Steps kCoarse{0.5, 0.1, kSearchSamples};
+constexpr double kFineFirst = 0.1, kFineLast = 0.0125;
 /// Of what the finer steps gained: still finer ones may gain so much.
 constexpr double kRestOfGain = 0.25;
 /// So many more steps from where a crossing seems to be.
@@ -83,12 +87,31 @@ std::vector<Found> highest_ripples(const std::vector<Found>& found, double radiu
   return ripples;
 }
 
-/// By how much a ripple that no search went up may be higher than the best that one did. At their upper end
-/// heights fall off exponentially, with the excess of the highest over the next as their scale (I. Weissman,
-/// 1978). If as many ripples are unseen as were seen, the highest of these is the higher one in half of the
-/// cases, and then by an exponential excess: on the average the square of it is that of the scale.
-double search_error(const std::vector<Found>& ripples) {
-  return ripples.size() < 2 ? 0.0 : ripples[0].cd - ripples[1].cd;
+/// By how much a ripple that no search went up may be higher than the best that one did, of `tops` by falling
+/// height. At their upper end heights fall off exponentially, with the mean excess of the highest over the
+/// next as their scale (I. Weissman, 1978). If as many ripples are unseen as were seen, the highest of these
+/// is the higher one in half of the cases, and then by an exponential excess: on the average the square of it
+/// is that of the scale. So is, but for a quarter, the mean square of the first two excesses; one alone is
+/// small by chance too often.
+double search_error(std::span<const PointPeak> tops) {
+  if (tops.size() < 2) return 0.0;
+  double squares = 0.0;
+  for (std::size_t k = 1; k < tops.size(); ++k) {
+    const double excess = tops[k - 1].cd.mean - tops[k].cd.mean;
+    squares += excess * excess;
+  }
+  return std::sqrt(squares / static_cast<double>(tops.size() - 1));
+}
+
+/// So many samples have this relative error, or `max` of them one near it: it falls with the root of their
+/// number, or faster.
+std::uint64_t samples_for(const PointIntensity& intensity, const Direction& direction, double error,
+                          std::uint64_t max) {
+  const Estimate first = intensity(direction, kFirstSamples, kFinalSeed);
+  const double excess = first.standard_error / (error * first.mean);
+  if (!(excess > 1.0)) return kFirstSamples;
+  const double more = std::min(excess * excess, static_cast<double>(max / kFirstSamples));
+  return kFirstSamples * std::bit_ceil(static_cast<std::uint64_t>(std::ceil(more)));
 }
 
 PointPeak precise_peak(const PointIntensity& intensity, const Direction& direction) {
@@ -114,6 +137,19 @@ Found pattern_search(const PointIntensity& intensity, const Direction& start, do
     if (!(best.cd > before)) step *= 0.5;
   }
   return best;
+}
+
+/// The tip above a place: tips are sharper than the steps so far, and what is left to climb is not the same
+/// for all. Other samples judge what was found. They do not hold the noise that led the search there; where
+/// it led down the place itself is the tip.
+PointPeak climbed(const PointIntensity& intensity, const Direction& from, double radius_deg,
+                  std::uint64_t samples) {
+  const Found tip = pattern_search(intensity, from, radius_deg, {kFineFirst, kFineLast, samples});
+  const PointPeak before = precise_peak(intensity, from);
+  PointPeak top = precise_peak(intensity, tip.direction);
+  if (before.cd.mean > top.cd.mean) return before;
+  top.cd.standard_error = std::hypot(top.cd.standard_error, kRestOfGain * (top.cd.mean - before.cd.mean));
+  return top;
 }
 
 /// Searches from directions about the best of `found`, which is sorted, until that finds no better one.
@@ -265,13 +301,7 @@ std::optional<Crossing> find_crossing(const PointIntensity& intensity, const Dir
 }  // namespace
 
 Estimate precise_intensity(const PointIntensity& intensity, const Direction& direction) {
-  const Estimate first = intensity(direction, kFirstSamples, kFinalSeed);
-  const double excess = first.standard_error / (kPrecise * first.mean);
-  if (!(excess > 1.0)) return first;
-  // The error falls with the root of the samples, or faster.
-  const double more = std::min(excess * excess, static_cast<double>(kMaxSamples / kFirstSamples));
-  return intensity(direction, kFirstSamples * std::bit_ceil(static_cast<std::uint64_t>(std::ceil(more))),
-                   kFinalSeed);
+  return intensity(direction, samples_for(intensity, direction, kPrecise, kMaxSamples), kFinalSeed);
 }
 
 PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direction> starts,
@@ -282,28 +312,26 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
   retain_brightest(found, kSearched);
   const double min_cd = kHopeful * found.front().cd;
   std::erase_if(found, [&](const Found& f) { return f.cd < min_cd; });
-  const Direction brightest_start = found.front().direction;
+  std::vector<Found> seen = found;
   for (Found& f : found) f = pattern_search(intensity, f.direction, radius_deg, kCoarse);
   for (Found& f : found) f.cd = intensity(f.direction, kFirstSamples, kSearchSeed).mean;
   retain_brightest(found, kSearched);
   search_around(intensity, radius_deg, found);
-  std::vector<Found> ripples = highest_ripples(found, radius_deg);
-  const double coarse_cd = ripples.front().cd;
-  // Tips are sharper than the steps so far: what is left to climb is not the same for all.
-  for (Found& f : ripples) f = pattern_search(intensity, f.direction, radius_deg, kFine);
-  const double rest_cd = kRestOfGain * std::max(0.0, ripples.front().cd - coarse_cd);
-  retain_brightest(ripples, kRetained);
-  // Fine steps can raise one tip above the others, which are lobes of their own then.
-  const double same_cd = kSameTop * ripples.front().cd;
-  std::erase_if(ripples, [&](const Found& f) { return f.cd < same_cd; });
-  // Other samples judge what was found: they do not hold the noise that led the search there.
-  PointPeak best = precise_peak(intensity, brightest_start);
-  for (const Found& f : ripples) {
-    const PointPeak top = precise_peak(intensity, f.direction);
-    if (top.cd.mean > best.cd.mean) best = top;
+  // Noise leads searches away from starts that were better: other numbers than those that led them compare.
+  seen.insert(seen.end(), found.begin(), found.end());
+  const std::uint64_t samples = samples_for(intensity, found.front().direction, kSearchNoise, kFineSamples);
+  for (Found& f : seen) f.cd = intensity(f.direction, samples, kCompareSeed).mean;
+  retain_brightest(seen, seen.size());
+  std::vector<PointPeak> tops;
+  for (const Found& f : highest_ripples(seen, radius_deg)) {
+    tops.push_back(climbed(intensity, f.direction, radius_deg, std::max(kFirstSamples, samples / 2)));
   }
-  best.cd.standard_error = std::hypot(best.cd.standard_error, rest_cd);
-  best.search_error_cd = search_error(ripples);
+  std::ranges::stable_sort(tops, std::ranges::greater(), [](const PointPeak& p) { return p.cd.mean; });
+  // Fine steps can raise one tip above the others, which are lobes of their own then.
+  const double same_cd = kSameTop * tops.front().cd.mean;
+  std::erase_if(tops, [&](const PointPeak& p) { return p.cd.mean < same_cd; });
+  PointPeak best = tops.front();
+  best.search_error_cd = search_error(tops);
   return best;
 }
 

@@ -99,6 +99,27 @@ TEST(PointIntensityStatistical, FindsAHighRippleAndSaysHowHighOthersMayBe) {
   EXPECT_GE(within, 36);
 }
 
+// A tip of 1 % that is narrower than a search's steps, and one of eight starts on it. The starts are first
+// looked at with noise of 0.6 %, at which the tip is the brightest of them in two of three cases. Of 100
+// cases 90 or more find it, as do all but some hundredths by 4096 samples; two thirds do with a chance of
+// 1e-7.
+TEST(PointIntensityStatistical, DoesNotLoseTheBestStartToNoise) {
+  int found = 0;
+  for (std::uint64_t stream = 0; stream < 100; ++stream) {
+    const Direction tip = toward(45.0 * static_cast<double>(stream % 8), 3.0);
+    const PointIntensity noisy = [&](const Direction& d, std::uint64_t samples, std::uint64_t seed) {
+      const Estimate noise = noisy_lobe(toward(0.0, 0.0), 1e3, stream)(d, samples, seed);
+      return Estimate{noise.mean - (angle_between(d, tip) < radians(0.05) ? 0.0 : 10.0),
+                      noise.standard_error};
+    };
+    std::vector<Direction> starts;
+    for (int i = 0; i < 8; ++i) starts.push_back(toward(45.0 * i, 3.0));
+    const PointPeak peak = brightest_point(noisy, starts, 0.75);
+    found += angle_between(peak.direction, tip) < radians(0.05) ? 1 : 0;
+  }
+  EXPECT_GE(found, 90);
+}
+
 TEST(PointIntensity, SaysNothingWhereTheEndsAreNotThere) {
   const PointIntensity lobe = noisy_lobe(toward(0.0, 0.0), 3.0);
   const auto line = [](double angle) { return toward(angle < 0.0 ? 180.0 : 0.0, std::abs(angle)); };
