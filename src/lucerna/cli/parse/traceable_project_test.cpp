@@ -8,6 +8,7 @@
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/core/io/file.h"
+#include "tests/support/random_rays.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna::cli {
@@ -27,12 +28,8 @@ TEST(TraceableProject, BodiesThatMeetAreNamedWithTheFile) {
   write_file(path, "[[source]]\nkind = 'disk'\n" + plate("a", 3.0) + plate("b", 6.0));
   EXPECT_EQ(read_traceable_project(path).scene.solids.size(), 2u);
   write_file(path, "[[source]]\nkind = 'disk'\n" + plate("a", 3.0) + plate("b", 4.0));
-  try {
-    static_cast<void>(read_traceable_project(path));
-    FAIL() << "bodies that share room were taken";
-  } catch (const InputError& e) {
-    EXPECT_THAT(e.what(), HasSubstr("p.toml: solid 'b' and solid 'a'"));
-  }
+  EXPECT_THAT(test::message_of<InputError>([&] { static_cast<void>(read_traceable_project(path)); }),
+              HasSubstr("p.toml: solid 'b' and solid 'a'"));
 }
 
 }  // namespace

@@ -103,11 +103,9 @@ double search_error(std::span<const PointPeak> tops) {
   return std::sqrt(squares / static_cast<double>(tops.size() - 1));
 }
 
-/// So many samples have this relative error, or `max` of them one near it: it falls with the root of their
-/// number, or faster.
-std::uint64_t samples_for(const PointIntensity& intensity, const Direction& direction, double error,
-                          std::uint64_t max) {
-  const Estimate first = intensity(direction, kFirstSamples, kFinalSeed);
+/// So many samples have this relative error, or `max` of them one near it, where kFirstSamples have that of
+/// `first`: it falls with the root of their number, or faster.
+std::uint64_t samples_for(const Estimate& first, double error, std::uint64_t max) {
   const double excess = first.standard_error / (error * first.mean);
   if (!(excess > 1.0)) return kFirstSamples;
   const double more = std::min(excess * excess, static_cast<double>(max / kFirstSamples));
@@ -176,8 +174,8 @@ void search_around(const PointIntensity& intensity, double radius_deg, std::vect
   }
 }
 
-/// The ends of an arc have random numbers of their own: from those of the peak too much light at both ends
-/// would be one fault, which their errors, taken as independent, would be too small for.
+/// Each end of an arc has random numbers of its own, which are not the peak's either: where they are shared
+/// both ends are too bright at once, but the error of the arc takes them as independent.
 constexpr std::uint64_t kFromNumbers = 1000, kToNumbers = 2000;
 
 PointIntensity with_other_numbers(const PointIntensity& intensity, std::uint64_t first) {
@@ -301,7 +299,9 @@ std::optional<Crossing> find_crossing(const PointIntensity& intensity, const Dir
 }  // namespace
 
 Estimate precise_intensity(const PointIntensity& intensity, const Direction& direction) {
-  return intensity(direction, samples_for(intensity, direction, kPrecise, kMaxSamples), kFinalSeed);
+  const Estimate first = intensity(direction, kFirstSamples, kFinalSeed);
+  const std::uint64_t samples = samples_for(first, kPrecise, kMaxSamples);
+  return samples > kFirstSamples ? intensity(direction, samples, kFinalSeed) : first;
 }
 
 PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direction> starts,
@@ -319,7 +319,8 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
   search_around(intensity, radius_deg, found);
   // Noise leads searches away from starts that were better: other numbers than those that led them compare.
   seen.insert(seen.end(), found.begin(), found.end());
-  const std::uint64_t samples = samples_for(intensity, found.front().direction, kSearchNoise, kFineSamples);
+  const std::uint64_t samples =
+      samples_for(intensity(found.front().direction, kFirstSamples, kFinalSeed), kSearchNoise, kFineSamples);
   for (Found& f : seen) f.cd = intensity(f.direction, samples, kCompareSeed).mean;
   retain_brightest(seen, seen.size());
   std::vector<PointPeak> tops;
