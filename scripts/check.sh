@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # The gate: each stage in turn, one line each (stage, tests, failures, minutes). Usage: scripts/check.sh [STAGE...]; without one, all.
 # What passed for this commit is not run again (build/check/COMMIT/STAGE holds its line); changes that are not committed are, each time.
+# Stages of compilers and sanitizers alone look at sources, not at docs: a commit that changes docs keeps what passed before
+# (build/check/sources-HASH/STAGE; its line names the commit that it ran on). What reads the docs, release runs too.
 # Logs: build/check/STAGE.log. Ends with 1 if a stage failed, after the others have run.
 #   format        clang-format changes nothing
 #   tidy          clang-tidy on every source, with the rule of 60 lines a function (tidy-changed: on those changed since $BASE)
@@ -29,11 +31,21 @@ base=${BASE:-origin/main}
 # New files count too: CMake builds what lies in the folders of the sources.
 if [ -z "$(git status --porcelain -- . ':!fuzz/executions.csv')" ]; then
   commit=$(git rev-parse --short=12 HEAD)
+  sources=sources-$(git ls-files -s -- . ':!docs' ':!*.md' ':!fuzz/executions.csv' | git hash-object --stdin | cut -c1-12)
 else
   commit=changed
+  sources=changed
   rm -rf build/check/changed
 fi
-mkdir -p "build/check/$commit"
+mkdir -p "build/check/$commit" "build/check/$sources"
+
+# Where it is written down that a stage passed.
+passed_file() {  # STAGE
+  case $1 in
+    format | tidy | consumers | clang* | asan* | tsan*) echo "build/check/$sources/$1" ;;
+    *) echo "build/check/$commit/$1" ;;
+  esac
+}
 
 # What a preset compiles, unity files for the sources in them; not what only a build makes.
 compiled_files() {  # PRESET
@@ -165,7 +177,7 @@ counts() {  # LOG
 
 failed=0
 for name in $stages; do
-  done_line="build/check/$commit/$name"
+  done_line=$(passed_file "$name")
   if [ -s "$done_line" ]; then
     cat "$done_line"
     continue
