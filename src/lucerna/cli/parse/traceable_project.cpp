@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <string>
+
 #include "lucerna/core/io/error.h"
 #include "lucerna/trace/engines/solids_apart.h"
 
@@ -15,6 +17,8 @@ Project read_traceable_project(const std::filesystem::path& path, Progress& prog
   } catch (const InputError& e) {
     throw InputError(fmt::format("{}: {}", path.string(), e.what()));
   }
+  for (const std::string& line : within_plates(project.scene))
+    project.warnings.push_back(fmt::format("{}: {}", path.string(), line));
   return project;
 }
 

@@ -32,5 +32,20 @@ TEST(TraceableProject, BodiesThatMeetAreNamedWithTheFile) {
               HasSubstr("p.toml: solid 'b' and solid 'a'"));
 }
 
+TEST(TraceableProject, MirrorsWithinACoverGlassAreNamedWithTheFile) {
+  const test::TempDir dir;
+  const std::filesystem::path path = dir / "p.toml";
+  const auto warnings = [&](double glass_mm) {
+    write_file(path,
+               "[[source]]\nkind = 'disk'\nposition_mm = [0, 0, 5]\n[[reflector]]\nfamily = "
+               "'revolution'\npreset = 'parabola'\nfocal_mm = 20\ndiameter_mm = 100\n"
+               "[[body]]\nrole = 'glass'\ndiameter_mm = 110\nposition_mm = [0, 0, " +
+                   std::to_string(glass_mm) + "]\n");
+    return read_traceable_project(path).warnings;
+  };
+  EXPECT_THAT(warnings(32.0), testing::IsEmpty());
+  EXPECT_THAT(warnings(30.0), testing::ElementsAre(HasSubstr("p.toml: reflector 1 reaches into")));
+}
+
 }  // namespace
 }  // namespace lucerna::cli

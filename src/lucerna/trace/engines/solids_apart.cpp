@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -211,9 +212,11 @@ void check_shells(const Solid& solid) {
                                solid, other));
 }
 
+/// What is less than this within a plate only touches it, mm.
+constexpr double kSkin = 1e-3;
+
 /// Is a point of a plate's frame within it, not just on it?
 bool is_within(const CoverGlass& glass, const Vec3& p) {
-  constexpr double kSkin = 1e-3;
   return p.z > kSkin && p.z < glass.thickness_mm - kSkin && glass.aperture.contains(p.x, p.y);
 }
 
@@ -254,6 +257,55 @@ void check_plates_apart(const std::vector<CoverGlass>& glasses) {
   }
 }
 
+/// What of a plate is not skin; none if it is all skin.
+std::optional<CoverGlass> without_skin(const CoverGlass& glass) {
+  const Aperture& a = glass.aperture;
+  const double x = 2.0 * (a.half_x_mm() - kSkin), y = 2.0 * (a.half_y_mm() - kSkin);
+  if (!(std::min({x, y, glass.thickness_mm - 2.0 * kSkin}) > 0.0)) return std::nullopt;
+  CoverGlass core = glass;
+  core.aperture = a.shape() == ApertureShape::circle ? Aperture::circle(x) : Aperture::rectangle(x, y);
+  core.thickness_mm -= 2.0 * kSkin;
+  core.world_from_glass = glass.world_from_glass * Frame({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, kSkin});
+  return core;
+}
+
+/// Lines over a mirror, from its axis or one side to the rim, dense enough for what is as large as a plate.
+std::vector<std::vector<Vec3>> lines_on(const PlacedReflector& mirror) {
+  constexpr int kLines = 96, kSteps = 48;
+  std::vector<std::vector<Vec3>> lines;
+  const Aperture& a = mirror.reflector.aperture;
+  if (!mirror.reflector.surface) return lines;  // a swept curve
+  for (int i = 0; i <= kLines; ++i) {
+    std::vector<Vec3>& line = lines.emplace_back();
+    const double turn = 2.0 * std::numbers::pi * i / kLines, y_mm = a.half_y_mm() * (2.0 * i / kLines - 1.0);
+    for (int k = 0; k <= kSteps; ++k) {
+      const double share = static_cast<double>(k) / kSteps, r_mm = share * (1.0 - 1e-12) * a.half_x_mm();
+      const bool round = a.shape() == ApertureShape::circle;
+      const double x = round ? r_mm * std::cos(turn) : a.half_x_mm() * (2.0 * share - 1.0);
+      const double y = round ? r_mm * std::sin(turn) : y_mm;
+      if (!a.contains(x, y)) continue;
+      line.push_back(mirror.world_from_reflector.point({x, y, mirror.reflector.surface->at(x, y).z_mm}));
+    }
+  }
+  return lines;
+}
+
+bool reaches_into(const PlacedReflector& mirror, Placed& plate) {
+  for (const std::vector<Vec3>& line : lines_on(mirror)) {
+    for (std::size_t k = 0; k < line.size(); ++k) {
+      if (is_within(plate.extents, line[k]) && contains(plate, line[k])) return true;
+      if (k > 0 && crosses(plate, line[k - 1], line[k])) return true;
+    }
+  }
+  return false;
+}
+
+bool reaches_into(const Body& body, Placed& plate) {
+  if (are_far(extents_of(body), plate.extents)) return false;
+  Placed b(body);
+  return cut(b, plate) || contains(plate, corner_of(b));
+}
+
 }  // namespace
 
 void check_apart(const Scene& scene) {
@@ -283,6 +335,28 @@ void check_apart(const Scene& scene) {
       }
     }
   }
+}
+
+std::vector<std::string> within_plates(const Scene& scene) {
+  std::vector<std::string> lines;
+  for (const CoverGlass& glass : scene.glasses) {
+    const std::optional<CoverGlass> core = without_skin(glass);
+    if (!core) continue;
+    Placed plate(as_body(*core));
+    const auto add = [&](const std::string& what) {
+      lines.push_back(
+          fmt::format("{} reaches into cover glass '{}': light crosses the glass in one step and passes what "
+                      "is within; expected the glass beyond it",
+                      what, glass.name));
+    };
+    for (std::size_t m = 0; m < scene.reflectors.size(); ++m) {
+      if (reaches_into(scene.reflectors[m], plate)) add(fmt::format("reflector {}", m + 1));
+    }
+    for (const Body& body : scene.bodies) {
+      if (reaches_into(body, plate)) add(fmt::format("body '{}'", body.name));
+    }
+  }
+  return lines;
 }
 
 }  // namespace lucerna

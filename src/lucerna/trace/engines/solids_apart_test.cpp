@@ -112,5 +112,66 @@ TEST(SolidsApart, ShellsOfAMeshAreBesideEachOtherOrHollows) {
   EXPECT_THAT(apart_error(scene_of_shells({low, across})), HasSubstr("cut each other"));
 }
 
+/// A paraboloid that ends at z = 31.25, without its front.
+PlacedReflector paraboloid(const Aperture& aperture) {
+  PlacedReflector mirror;
+  mirror.reflector = conic_reflector(ConicPreset::parabola, 20.0, 0.0, aperture);
+  return mirror;
+}
+
+TEST(WithinPlates, MirrorsAreNamed) {
+  const Aperture round = Aperture::circle(100.0, 8.0), square = Aperture::rectangle(70.0, 70.0);
+  struct Case {
+    Aperture mirror, glass;
+    double z_mm, thickness_mm;
+    bool is_within;
+  };
+  // The square's corners are at z = 30.6, the middle of its sides at 15.3.
+  const Case cases[] = {
+      {round, Aperture::circle(120.0), 31.25, 2.0, false},       // lies on the rim
+      {round, Aperture::circle(120.0), 31.2, 2.0, true},         // holds the rim
+      {round, Aperture::circle(120.0), 10.0, 0.01, true},        // is cut by the mirror
+      {round, Aperture::circle(20.0), 15.0, 2.0, false},         // hangs within the mirror
+      {round, Aperture::rectangle(20.0, 60.0), 9.0, 1.0, true},  // longer than the mirror is wide there
+      {round, Aperture::circle(120.0), -3.0, 2.0, false},        // behind it
+      {square, Aperture::rectangle(90.0, 90.0), 30.625, 2.0, false},
+      {square, Aperture::rectangle(90.0, 90.0), 30.0, 2.0, true},
+  };
+  for (const Case& c : cases) {
+    Scene scene;
+    scene.reflectors = {paraboloid(c.mirror)};
+    scene.glasses = {glass_from(c.z_mm, c.glass)};
+    scene.glasses[0].thickness_mm = c.thickness_mm;
+    // Turned and moved together, nothing changes.
+    for (const Frame& frame :
+         {Frame(), Frame::from_axis(Direction::from({1, 2, -1}), 0.3, {500, -200, 90})}) {
+      Scene placed = scene;
+      placed.reflectors[0].world_from_reflector = frame;
+      placed.glasses[0].world_from_glass = frame * scene.glasses[0].world_from_glass;
+      const std::vector<std::string> found = within_plates(placed);
+      ASSERT_EQ(found.size(), c.is_within ? 1u : 0u) << c.z_mm << ' ' << c.thickness_mm;
+      if (!c.is_within) continue;
+      EXPECT_THAT(found[0], HasSubstr("reflector 1 reaches into cover glass 'window'"));
+    }
+  }
+}
+
+TEST(WithinPlates, BodiesAreNamed) {
+  const auto lines = [](double low_mm, double height_mm) {
+    Body lamp;
+    lamp.name = "lamp";
+    lamp.mesh = std::make_shared<const Mesh>(cylinder_mesh(4, low_mm, height_mm, true));
+    Scene scene;
+    scene.bodies = {lamp};
+    scene.glasses = {glass_from(10.0, Aperture::circle(50.0))};
+    return within_plates(scene);
+  };
+  EXPECT_THAT(lines(5.0, 5.0), testing::IsEmpty()) << "touches it";
+  EXPECT_THAT(lines(12.0, 5.0), testing::IsEmpty()) << "stands on it";
+  for (const auto& [low_mm, height_mm] : {std::pair{5.0, 5.1}, {5.0, 20.0}, {10.5, 1.0}})
+    EXPECT_THAT(lines(low_mm, height_mm), testing::ElementsAre(HasSubstr("body 'lamp' reaches into")))
+        << low_mm;
+}
+
 }  // namespace
 }  // namespace lucerna
