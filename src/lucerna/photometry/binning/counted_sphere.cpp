@@ -184,14 +184,21 @@ Jackknife CountedSphere::mean_cd(const Direction& direction, const Kernel& kerne
   return sum;
 }
 
-double CountedSphere::mean_of_all_cd(const Direction& direction, const Kernel& kernel) const {
+double CountedSphere::mean_cd_of(std::span<const double> flux, const Direction& direction,
+                                 const Kernel& kernel) const {
   double sum = 0.0, area = 0.0;
   for_cells_in(window(direction, kernel, kMeanPlanes),
                [&](std::size_t cell, std::size_t g, double, double, double weight) {
-                 sum += weight * all_[cell];
+                 sum += weight * flux[cell];
                  area += weight * solid_angle_sr_[g];
                });
   return area > 0.0 ? sum / area : 0.0;
+}
+
+std::vector<double> CountedSphere::half_of_flux(bool odd) const {
+  std::vector<double> half(flux_.cells());
+  for (std::size_t i = 0; i < half.size(); ++i) half[i] = half_estimate(flux_.row(i), odd).mean;
+  return half;
 }
 
 LocalFit CountedSphere::fit(const Direction& direction, const Kernel& kernel) const {

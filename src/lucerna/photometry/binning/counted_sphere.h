@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "lucerna/flux_unit.h"
@@ -65,7 +66,13 @@ class CountedSphere {
   /// the intensity. O(cells within the radius). 0 where there are none.
   Jackknife mean_cd(const Direction& direction, const Kernel& kernel) const;
   /// The same of the whole run alone.
-  double mean_of_all_cd(const Direction& direction, const Kernel& kernel) const;
+  double mean_of_all_cd(const Direction& direction, const Kernel& kernel) const {
+    return mean_cd_of(all_, direction, kernel);
+  }
+  /// The same of other flux of the cells.
+  double mean_cd_of(std::span<const double> flux, const Direction& direction, const Kernel& kernel) const;
+  /// Flux of the cells as half of the replicates have it (half_estimate).
+  std::vector<double> half_of_flux(bool odd) const;
   /// Least squares with the same kernel: what is left of the bias is of the fourth order.
   LocalFit fit(const Direction& direction, const Kernel& kernel) const;
 

@@ -55,6 +55,21 @@ Jackknife Jackknife::with_error(double error) const {
   return out;
 }
 
+Estimate half_estimate(std::span<const double> values, bool odd) {
+  const std::size_t replicates = values.size() - 1;
+  LUCERNA_CHECK(replicates >= 4, "{} replicates", replicates);
+  const auto n = static_cast<double>(replicates);
+  double count = 0.0, sum = 0.0, squares = 0.0;
+  for (std::size_t r = odd ? 1 : 2; r <= replicates; r += 2) {
+    const double own = n * values[0] - (n - 1.0) * values[r];
+    count += 1.0;
+    sum += own;
+    squares += own * own;
+  }
+  const double mean = sum / count;
+  return {mean, std::sqrt(std::max(0.0, squares / count - mean * mean) / (count - 1.0))};
+}
+
 Jackknife ratio(const Jackknife& numerator, const Jackknife& denominator) {
   Jackknife out(numerator);
   for (std::size_t i = 0; i < out.values().size(); ++i) {

@@ -58,6 +58,11 @@ class Jackknife {
   std::vector<double> values_;
 };
 
+/// What the even replicates of a figure say by themselves, or the odd ones: the mean of their pseudo-values
+/// and its standard error. `values` are laid out as those of a Jackknife of four replicates or more. The two
+/// halves of a run are independent: one can choose what the other is asked about.
+Estimate half_estimate(std::span<const double> values, bool odd);
+
 /// A ratio, value by value; 0 where the denominator is 0.
 Jackknife ratio(const Jackknife& numerator, const Jackknife& denominator);
 

@@ -100,5 +100,17 @@ TEST(Jackknife, WithNothingToChooseTheLargestIsItself) {
   EXPECT_NEAR(max.estimate.standard_error, candidates[1].estimate().standard_error, 1e-9);
 }
 
+// Of a mean the pseudo-values are the replicates.
+TEST(Jackknife, HalvesSayWhatTheirOwnReplicatesDo) {
+  const std::vector<double> own{3.0, 10.0, 5.0, 14.0, 7.0, 12.0};  // numbered from 1
+  std::vector<double> values{51.0 / 6.0};
+  for (const double v : own) values.push_back((51.0 - v) / 5.0);
+  const Estimate odd = half_estimate(values, true), even = half_estimate(values, false);
+  EXPECT_NEAR(odd.mean, 5.0, 1e-12);
+  EXPECT_NEAR(odd.standard_error, std::sqrt(4.0 / 3.0), 1e-12);
+  EXPECT_NEAR(even.mean, 12.0, 1e-12);
+  EXPECT_NEAR(even.standard_error, std::sqrt(4.0 / 3.0), 1e-12);
+}
+
 }  // namespace
 }  // namespace lucerna

@@ -216,7 +216,8 @@ std::optional<Estimate> furthest(const std::vector<PlaneResult>& results) {
 
 /// Peak and axis of the side with more light; returns what angles are measured by.
 Light measure_peak_and_axis(const CountedSphere& sphere, const PointIntensity& exact, FarFieldMetrics& m) {
-  std::optional<FoundPeak> peak = peak_estimate(sphere, static_cast<bool>(exact));
+  std::optional<FoundPeak> peak =
+      peak_estimate(sphere, exact ? PeakSearch::bright_directions : PeakSearch::all_scales);
   m.peak = peak;  // the lobe's width, for the axis
   const bool up = sphere.zone_flux(90.0, 180.0).all() > sphere.zone_flux(0.0, 90.0).all();
   m.axis_gamma_deg = up ? 180.0 : 0.0;

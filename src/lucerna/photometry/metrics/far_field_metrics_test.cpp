@@ -100,6 +100,56 @@ TEST(FarFieldMetrics, LobesComeBackWithoutBias) {
   }
 }
 
+IntensityOf sum(const IntensityOf& a, const IntensityOf& b) {
+  return [=](const Direction& d) { return a(d) + b(d); };
+}
+
+// Wide kernels are brightest on the wide lobe; with them alone its 1000 cd are the peak.
+TEST(FarFieldMetrics, ALobeThatIsNarrowBesideAWiderOneIsThePeak) {
+  for (const double gamma : {0.0, 25.0, 60.0}) {
+    const Direction place = at(120.0, gamma);
+    const IntensityOf light = sum(lobe(0.0, 30.0, 20.0), lobe(120.0, gamma, 1.5, 2000.0));
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      const FarFieldMetrics m = far_field_metrics(sphere(light, 2e6, seed), {});
+      ASSERT_TRUE(m.peak);
+      EXPECT_LT(degrees(angle_between(m.peak->direction, place)), 0.7) << gamma;
+      EXPECT_NEAR(m.peak->cd.mean, light(place), 4.0 * m.peak->cd.standard_error) << gamma;
+      EXPECT_LT(m.peak->cd.standard_error, 0.1 * light(place)) << gamma;
+    }
+  }
+}
+
+// The light of a ring rises towards its edge, beyond which it is dark. A kernel of some degrees, all of it
+// within the light, has 870 cd.
+TEST(FarFieldMetrics, ThePeakAtAnEdgeIsThatOfTheEdge) {
+  const IntensityOf ring = [](const Direction& d) {
+    const double gamma = degrees(type_c_angles(d).gamma_rad);
+    return gamma < 30.0 ? 1000.0 * std::pow(gamma / 30.0, 3.0) : 0.0;
+  };
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const FarFieldMetrics m = far_field_metrics(sphere(ring, 1e6, seed), {});
+    ASSERT_TRUE(m.peak);
+    EXPECT_NEAR(degrees(type_c_angles(m.peak->direction).gamma_rad), 29.5, 0.8);
+    // A kernel of half a degree does not reach the edge's 1000 cd.
+    EXPECT_NEAR(m.peak->cd.mean, 960.0, std::hypot(40.0, 3.0 * m.peak->cd.standard_error));
+    EXPECT_LT(m.peak->cd.standard_error, 120.0);
+  }
+}
+
+// In 20 runs that have no narrow lobe none is found: chosen by noise, kernels of half a degree have 1500 cd.
+TEST(FarFieldMetricsStatistical, NoiseIsNoNarrowLobe) {
+  const IntensityOf light = lobe(0.0, 20.0, 15.0);
+  double squares = 0.0;
+  constexpr std::uint64_t kSeeds = 20;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const FarFieldMetrics m = far_field_metrics(sphere(light, 3e5, seed), {});
+    ASSERT_TRUE(m.peak);
+    EXPECT_NEAR(m.peak->cd.mean, 1000.0, 60.0) << seed;
+    squares += std::pow((m.peak->cd.mean - 1000.0) / m.peak->cd.standard_error, 2.0);
+  }
+  EXPECT_LT(std::sqrt(squares / kSeeds), 1.6);
+}
+
 // A quadratic through a dark middle of few rays ends below zero in some runs: an intensity does not.
 TEST(FarFieldMetrics, ADarkAxisIsNotBelowZero) {
   const auto hole = [](const Direction& d) {

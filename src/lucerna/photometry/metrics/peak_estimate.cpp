@@ -2,7 +2,9 @@
 #include "lucerna/photometry/metrics/peak_estimate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -28,9 +30,18 @@ constexpr double kSpacing = 0.5;
 constexpr double kCandidateShare = 0.9;
 constexpr std::size_t kMaxCandidates = 400;
 /// Where a kernel's mean is below this share of the largest, kernels of half the solid angle need not look.
-constexpr double kDarkShare = 0.1;
+constexpr double kDarkShare = 0.2;
 /// Each candidate's quadratic is looked at on a stencil of this many points a side within its spacing.
-constexpr int kStencil = 5;
+constexpr std::size_t kStencil = 5;
+/// A narrower scale is taken if it is brighter by so many errors of the difference. Eight values tell each
+/// half's error, and a dozen scales are tried: Student's t is that large for one run in a thousand.
+constexpr double kHigherErrors = 5.0;
+/// What it is brighter by beyond so many is in the error where it is not taken.
+constexpr double kNoiseErrors = 3.0;
+/// A kernel that is so many times as long as it is wide follows a ring.
+constexpr double kRing = 1.5;
+/// What is as far from a place, in radii, as this belongs to its lobe.
+constexpr double kNear = 2.0;
 /// Directions that are offered as starts of a finer search.
 constexpr std::size_t kMaxBright = 12;
 /// Kernels of this radius show ripples on top of a lobe; wider ones may not.
@@ -83,7 +94,9 @@ struct Scan {
   std::size_t best = 0;
 };
 
-Scan scan(const CountedSphere& sphere, const Kernel& kernel, const Scan* before) {
+using MeanCd = std::function<double(const Direction&, const Kernel&)>;
+
+Scan scan(const MeanCd& mean_cd, const Kernel& kernel, const Scan* before) {
   Scan s{Covering(kernel), {}, {}, 0};
   s.directions.resize(s.covering.size());
   s.cd.assign(s.covering.size(), -1.0);
@@ -96,11 +109,16 @@ Scan scan(const CountedSphere& sphere, const Kernel& kernel, const Scan* before)
       if (before != nullptr &&
           before->cd[before->covering.nearest(a)] < kDarkShare * before->cd[before->best])
         continue;
-      s.cd[i] = sphere.mean_of_all_cd(s.directions[i], kernel);
+      s.cd[i] = mean_cd(s.directions[i], kernel);
     }
   });
   s.best = static_cast<std::size_t>(std::max_element(s.cd.begin(), s.cd.end()) - s.cd.begin());
   return s;
+}
+
+Scan scan(const CountedSphere& sphere, const Kernel& kernel, const Scan* before) {
+  return scan([&](const Direction& d, const Kernel& k) { return sphere.mean_of_all_cd(d, k); }, kernel,
+              before);
 }
 
 struct PointOfScan {
@@ -174,6 +192,16 @@ struct Candidates {
   Direction direction(std::size_t i) const { return fits[places[i].fit].direction(places[i].x, places[i].y); }
 };
 
+/// The x and y of a quadratic that are looked at: half way to the next direction.
+std::array<std::array<double, 2>, kStencil * kStencil> stencil() {
+  std::array<std::array<double, 2>, kStencil * kStencil> out{};
+  const double reach = 0.5 * kSpacing, step = 2.0 * reach / (kStencil - 1);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = {-reach + step * static_cast<double>(i / kStencil),
+              -reach + step * static_cast<double>(i % kStencil)};
+  return out;
+}
+
 Candidates candidates(const CountedSphere& sphere, const Scan& s, const Kernel& kernel) {
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < s.cd.size(); ++i) {
@@ -192,12 +220,9 @@ Candidates candidates(const CountedSphere& sphere, const Scan& s, const Kernel& 
     out.fits[first] = sphere.fit(s.directions[chosen[first]], kernel);
   });
   for (std::size_t k = 0; k < chosen.size(); ++k) {
-    for (int i = 0; i < kStencil; ++i) {
-      for (int j = 0; j < kStencil; ++j) {
-        const double reach = 0.5 * kSpacing, step = 2.0 * reach / (kStencil - 1);
-        out.places.push_back({k, -reach + step * i, -reach + step * j});
-        out.cd.push_back(out.fits[k].at(out.places.back().x, out.places.back().y));
-      }
+    for (const auto& [x, y] : stencil()) {
+      out.places.push_back({k, x, y});
+      out.cd.push_back(out.fits[k].at(x, y));
     }
   }
   return out;
@@ -361,34 +386,168 @@ void find_bright(const CountedSphere& sphere, const Scan& scanned, const Candida
   p.bright = bright_directions(p.direction, points(scan(sphere, narrow, &scanned)), p.bright_spacing_deg);
 }
 
-}  // namespace
+/// The brightest places as kernels of one size show them.
+struct Scale {
+  Kernel kernel;
+  LobeWidth width;
+  Scan scan;
+  Candidates candidates;
+  LargestFigure max;
+  /// What narrower kernels may be brighter by; they are not for certain.
+  double missed_cd = 0.0;
+};
 
-std::optional<FoundPeak> peak_estimate(const CountedSphere& sphere, bool with_bright) {
-  FoundPeak p;
-  double radius = kWidestRadius_deg;
+Scale scale_of(const CountedSphere& sphere, const Kernel& kernel, const LobeWidth& width, Scan scan) {
+  Candidates c = candidates(sphere, scan, kernel);
+  LargestFigure max = largest(c.cd);
+  return {kernel, width, std::move(scan), std::move(c), std::move(max), 0.0};
+}
+
+/// From wide to narrow, until the kernel is narrow for the lobe that is the brightest then.
+std::optional<Scale> widest_scale(const CountedSphere& sphere) {
   const double finest = sphere.resolution_deg();
   std::optional<Scan> s;
+  LobeWidth width;
+  double radius = kWidestRadius_deg;
   for (;; radius = std::max(finest, radius / std::numbers::sqrt2)) {
     s = scan(sphere, Kernel(radius), s ? &*s : nullptr);
     if (!(s->cd[s->best] > 0.0)) return std::nullopt;
-    const LobeWidth w = lobe_width(sphere, s->directions[s->best], s->cd[s->best], radius);
-    p.half_width_deg = w.half_deg;
-    p.nearest_side_deg = w.side_deg;
-    if (radius <= radius_for(w)) {
-      radius = radius_for(w);
+    width = lobe_width(sphere, s->directions[s->best], s->cd[s->best], radius);
+    if (radius <= radius_for(width)) {
+      radius = radius_for(width);
       break;
     }
     if (radius <= finest) break;
   }
   const Kernel kernel(radius, radius_along_c(sphere, s->directions[s->best], radius));
-  p.radius_deg = kernel.radius_deg;
-  p.c_radius_deg = kernel.c_radius_deg;
-  s = scan(sphere, kernel, &*s);
-  const Candidates c = candidates(sphere, *s, kernel);
-  const LargestFigure max = largest(c.cd);
-  place_peak(c, max, p);
-  if (with_bright) find_bright(sphere, *s, c, p);
-  choose_radius(sphere, max, kernel, p);
+  return scale_of(sphere, kernel, width, scan(sphere, kernel, &*s));
+}
+
+/// One half of a run chooses the brightest place by a kernel, the other one tells how bright that is: no more
+/// than the peak but for noise, which is known.
+class Halves {
+ public:
+  explicit Halves(const CountedSphere& sphere)
+      : sphere_(sphere), flux_{sphere.half_of_flux(false), sphere.half_of_flux(true)} {}
+
+  /// The mean of both ways. Kernels narrower than those before.
+  Estimate brightest(const Kernel& kernel) {
+    Estimate out{0.0, 0.0};
+    for (std::size_t half = 0; half < 2; ++half) {
+      const auto mean_cd = [&](const Direction& d, const Kernel& k) {
+        return sphere_.mean_cd_of(flux_[half], d, k);
+      };
+      std::optional<Scan>& s = scans_[half];
+      s = scan(mean_cd, kernel, s ? &*s : nullptr);
+      const Estimate e = half_estimate(sphere_.mean_cd(place(half), kernel).values(), half == 0);
+      out = {out.mean + 0.5 * e.mean, std::hypot(out.standard_error, 0.5 * e.standard_error)};
+    }
+    return out;
+  }
+  /// The top of a quadratic about the brightest places instead of kernel means.
+  Estimate top(const Kernel& kernel) const {
+    Estimate out{0.0, 0.0};
+    for (std::size_t half = 0; half < 2; ++half) {
+      const LocalFit fit = sphere_.fit(place(half), kernel);
+      Estimate best{-std::numeric_limits<double>::infinity(), 0.0}, other;
+      for (const auto& [x, y] : stencil()) {
+        const Jackknife cd = fit.at(x, y);
+        const Estimate e = half_estimate(cd.values(), half == 1);
+        if (!(e.mean > best.mean)) continue;
+        best = e;
+        other = half_estimate(cd.values(), half == 0);
+      }
+      out = {out.mean + 0.5 * other.mean, std::hypot(out.standard_error, 0.5 * other.standard_error)};
+    }
+    return out;
+  }
+  const Direction& place(std::size_t half) const { return scans_[half]->directions[scans_[half]->best]; }
+
+ private:
+  const CountedSphere& sphere_;
+  std::array<std::vector<double>, 2> flux_;
+  std::array<std::optional<Scan>, 2> scans_;
+};
+
+/// Only what is near to a place that a half has chosen, or as far from the pole where the kernel follows a
+/// ring: elsewhere noise may be higher.
+Scan scan_about(const CountedSphere& sphere, const Kernel& kernel, const Halves& halves) {
+  Scan s = scan(sphere, kernel, nullptr);
+  for (std::size_t i = 0; i < s.cd.size(); ++i) {
+    const auto is_near = [&](const Direction& place) {
+      if (kernel.c_radius_deg <= kernel.radius_deg)
+        return apart_deg(s.directions[i], place) <= kNear * kernel.radius_deg;
+      const double off = type_c_angles(s.directions[i]).gamma_rad - type_c_angles(place).gamma_rad;
+      return std::abs(degrees(off)) <= kNear * kernel.radius_deg;
+    };
+    if (!is_near(halves.place(0)) && !is_near(halves.place(1))) s.cd[i] = -1.0;
+  }
+  s.best = static_cast<std::size_t>(std::max_element(s.cd.begin(), s.cd.end()) - s.cd.begin());
+  return s;
+}
+
+/// `largest` chooses among the brightest of the whole run, so that what it holds back of a noisy run is not
+/// quite held back. What one half finds in the other is: the midpoint of both.
+void lower_to(const Estimate& held_out, Scale& s) {
+  const double gap = s.candidates.cd[s.max.index].all() - held_out.mean;
+  const double by = s.max.estimate.mean - (held_out.mean + 0.5 * gap);
+  if (!(gap > 0.0 && by > 0.0)) return;
+  s.max.estimate.mean -= by;
+  s.max.estimate.standard_error = std::hypot(s.max.estimate.standard_error, gap / std::sqrt(12.0));
+  for (double& v : s.max.values.values()) v -= by;
+}
+
+/// A lobe that is narrow beside a wider one, or an edge, is brighter than wide kernels show: the narrowest
+/// scale that is brighter for certain.
+Scale brightest_scale(const CountedSphere& sphere, Scale s) {
+  if (sphere.replicates() < 4) return s;
+  const double finest = sphere.resolution_deg();
+  // Along a ring first: there is less noise.
+  const Kernel widest = s.kernel;
+  Halves wide(sphere);
+  wide.brightest(widest);
+  lower_to(wide.top(widest), s);
+  std::vector<double> lengths_deg{0.0};
+  if (widest.c_radius_deg > kRing * widest.radius_deg)
+    lengths_deg.insert(lengths_deg.begin(), widest.c_radius_deg);
+  for (const double length_deg : lengths_deg) {
+    Halves halves(sphere);
+    for (double radius = widest.radius_deg; radius > finest;) {
+      radius = std::max(finest, 0.5 * radius);
+      const Kernel kernel(radius, length_deg);
+      const Estimate found = halves.brightest(kernel);
+      const double noise = std::hypot(found.standard_error, s.max.estimate.standard_error);
+      const double excess = found.mean - s.max.estimate.mean;
+      if (excess > kNoiseErrors * noise)
+        s.missed_cd = std::max(s.missed_cd, std::sqrt(excess * excess - std::pow(kNoiseErrors * noise, 2.0)));
+      if (!(excess > kHigherErrors * noise)) continue;
+      Scan about = scan_about(sphere, kernel, halves);
+      const LobeWidth width = lobe_width(sphere, about.directions[about.best], about.cd[about.best], radius);
+      s = scale_of(sphere, kernel, width, std::move(about));
+      lower_to(halves.top(kernel), s);
+    }
+  }
+  return s;
+}
+
+}  // namespace
+
+std::optional<FoundPeak> peak_estimate(const CountedSphere& sphere, PeakSearch search) {
+  std::optional<Scale> s = widest_scale(sphere);
+  if (!s) return std::nullopt;
+  if (search == PeakSearch::all_scales) s = brightest_scale(sphere, std::move(*s));
+  FoundPeak p;
+  p.half_width_deg = s->width.half_deg;
+  p.nearest_side_deg = s->width.side_deg;
+  p.radius_deg = s->kernel.radius_deg;
+  p.c_radius_deg = s->kernel.c_radius_deg;
+  place_peak(s->candidates, s->max, p);
+  if (search == PeakSearch::bright_directions) find_bright(sphere, s->scan, s->candidates, p);
+  choose_radius(sphere, s->max, s->kernel, p);
+  if (s->missed_cd > 0.0) {
+    p.cd.standard_error = std::hypot(p.cd.standard_error, s->missed_cd);
+    p.values = p.values.with_error(p.cd.standard_error);
+  }
   return p;
 }
 
