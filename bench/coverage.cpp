@@ -144,6 +144,8 @@ class Truth {
  private:
   static constexpr std::uint64_t kPrecise = 1 << 15, kSeed = 7, kFreshSeed = 99;
   static constexpr double kLastStep_deg = 0.005;
+  /// A line that leaves so much more than the variances of its points is none.
+  static constexpr double kBends = 4.0;
 
   double cd(const Direction& d, std::uint64_t samples) const {
     return backward_.intensity_cd(d, samples, 16, kSeed).mean;
@@ -195,24 +197,40 @@ class Truth {
 
   struct Line {
     double angle_deg, slope, error_deg;
+    bool bends;
   };
 
+  /// Of a straight line through points about it, which are nearer to each other where the section bends by
+  /// more than their noise.
   Line crossing(double c_deg, double angle_deg, double level) const {
-    Line line{angle_deg, 1.0, 0.0};
-    for (const std::uint64_t samples : {1024, 8192}) {
-      double y[7], sum = 0.0, across = 0.0, squares = 0.0, rest = 0.0;
-      for (int k = 0; k < 7; ++k) {
-        y[k] = cd(at(c_deg, line.angle_deg + 0.016 * (k - 3)), samples);
-        sum += y[k];
-        across += 0.016 * (k - 3) * y[k];
-        squares += 0.016 * 0.016 * (k - 3) * (k - 3);
-      }
-      line.slope = across / squares;
-      for (int k = 0; k < 7; ++k) rest += std::pow(y[k] - sum / 7.0 - line.slope * 0.016 * (k - 3), 2.0);
-      line.error_deg = std::sqrt(rest / 5.0 / 7.0) / std::abs(line.slope);
-      line.angle_deg += std::clamp((level - sum / 7.0) / line.slope, -0.1, 0.1);
+    Line line = crossing(c_deg, angle_deg, level, 0.016, 1024);
+    double step_deg = 0.016;
+    for (int k = 0; k < 4; ++k) {
+      line = crossing(c_deg, line.angle_deg, level, step_deg, 8192);
+      if (!line.bends) break;
+      step_deg *= 0.25;
     }
     return line;
+  }
+
+  Line crossing(double c_deg, double angle_deg, double level, double step_deg, std::uint64_t samples) const {
+    constexpr int kPoints = 7;
+    std::array<double, kPoints> y{};
+    double sum = 0.0, across = 0.0, squares = 0.0, rest = 0.0, noise = 0.0;
+    for (int k = 0; k < kPoints; ++k) {
+      const double x = step_deg * (k - kPoints / 2);
+      const Estimate e = backward_.intensity_cd(at(c_deg, angle_deg + x), samples, 16, kSeed);
+      y[static_cast<std::size_t>(k)] = e.mean;
+      noise += e.standard_error * e.standard_error;
+      sum += e.mean;
+      across += x * e.mean;
+      squares += x * x;
+    }
+    const double mean = sum / kPoints, slope = across / squares;
+    for (int k = 0; k < kPoints; ++k)
+      rest += std::pow(y[static_cast<std::size_t>(k)] - mean - slope * step_deg * (k - kPoints / 2), 2.0);
+    return {angle_deg + std::clamp((level - mean) / slope, -0.1, 0.1), slope,
+            std::sqrt(rest / (kPoints - 2) / kPoints) / std::abs(slope), rest > kBends * noise};
   }
 
   BackwardEstimator backward_;
