@@ -119,6 +119,20 @@ TEST(FarFieldMetrics, ALobeThatIsNarrowBesideAWiderOneIsThePeak) {
   }
 }
 
+// Single directions are looked at about what the cells show: a spike that kernels of a degree and a half do
+// not see is one of them.
+TEST(FarFieldMetrics, ANarrowLobeIsAStartForSingleDirections) {
+  const Direction place = at(120.0, 8.0);
+  const IntensityOf light = sum(lobe(0.0, 50.0, 20.0), lobe(120.0, 8.0, 0.4, 3500.0));
+  const PointIntensity exact = [&](const Direction& d, std::uint64_t, std::uint64_t) {
+    return Estimate{light(d), 1e-3};
+  };
+  const FarFieldMetrics m = far_field_metrics(sphere(light, 4e6), {}, exact);
+  ASSERT_TRUE(m.peak);
+  EXPECT_NEAR(m.peak->cd.mean, light(place), 5.0);
+  EXPECT_LT(degrees(angle_between(m.peak->direction, place)), 0.05);
+}
+
 // The light of a ring rises towards its edge, beyond which it is dark. A kernel of some degrees, all of it
 // within the light, has 870 cd.
 TEST(FarFieldMetrics, ThePeakAtAnEdgeIsThatOfTheEdge) {

@@ -30,7 +30,9 @@ constexpr double kSpacing = 0.5;
 constexpr double kCandidateShare = 0.9;
 constexpr std::size_t kMaxCandidates = 400;
 /// Where a kernel's mean is below this share of the largest, kernels of half the solid angle need not look.
-constexpr double kDarkShare = 0.2;
+constexpr double kDarkShare = 0.1;
+/// The same for kernels as small as there are, of so much less solid angle.
+constexpr double kNarrowestShare = 0.5;
 /// Each candidate's quadratic is looked at on a stencil of this many points a side within its spacing.
 constexpr std::size_t kStencil = 5;
 /// A narrower scale is taken if it is brighter by so many errors of the difference. Eight values tell each
@@ -96,7 +98,8 @@ struct Scan {
 
 using MeanCd = std::function<double(const Direction&, const Kernel&)>;
 
-Scan scan(const MeanCd& mean_cd, const Kernel& kernel, const Scan* before) {
+/// Where the scan `before` has less than `dark` of its largest is not looked at.
+Scan scan(const MeanCd& mean_cd, const Kernel& kernel, const Scan* before, double dark = kDarkShare) {
   Scan s{Covering(kernel), {}, {}, 0};
   s.directions.resize(s.covering.size());
   s.cd.assign(s.covering.size(), -1.0);
@@ -106,8 +109,7 @@ Scan scan(const MeanCd& mean_cd, const Kernel& kernel, const Scan* before) {
       const TypeCAngles a = s.covering.angles(row, k);
       const std::size_t i = s.covering.index(row, k);
       s.directions[i] = direction_from_type_c(a);
-      if (before != nullptr &&
-          before->cd[before->covering.nearest(a)] < kDarkShare * before->cd[before->best])
+      if (before != nullptr && before->cd[before->covering.nearest(a)] < dark * before->cd[before->best])
         continue;
       s.cd[i] = mean_cd(s.directions[i], kernel);
     }
@@ -228,6 +230,17 @@ Candidates candidates(const CountedSphere& sphere, const Scan& s, const Kernel& 
   return out;
 }
 
+/// The brightest places as kernels of one size show them.
+struct Scale {
+  Kernel kernel;
+  LobeWidth width;
+  Scan scan;
+  Candidates candidates;
+  LargestFigure max;
+  /// What narrower kernels may be brighter by; they are not for certain.
+  double missed_cd = 0.0;
+};
+
 /// Angle between a and b, in degrees.
 double apart_deg(const Direction& a, const Direction& b) { return degrees(angle_between(a, b)); }
 
@@ -286,8 +299,15 @@ double scatter(const std::vector<double>& angles) {
   return std::sqrt(squares / static_cast<double>(angles.size()));
 }
 
-/// Direction, its error and whether it is determined.
-void place_peak(const Candidates& c, const LargestFigure& max, PeakEstimate& p) {
+/// The lobe's width, the direction, its error and whether it is determined.
+void place_peak(const Scale& s, PeakEstimate& p) {
+  const Candidates& c = s.candidates;
+  p.half_width_deg = s.width.half_deg;
+  p.nearest_side_deg = s.width.side_deg;
+  p.radius_deg = s.kernel.radius_deg;
+  p.c_radius_deg = s.kernel.c_radius_deg;
+  p.gamma_deg.reset();
+  p.c_deg.reset();
   std::vector<Direction> draws = tops(c);
   // A place is read off a stencil: a part of its step is the least error.
   const double min = p.radius_deg * kSpacing / (kStencil - 1) / std::sqrt(12.0);
@@ -309,7 +329,7 @@ void place_peak(const Candidates& c, const LargestFigure& max, PeakEstimate& p) 
     c_error = std::hypot(scatter(across), min) / std::max(std::sin(at.gamma_rad), 1e-9);
   }
   bool other_c = false, other_gamma = false;
-  find_runners_up(c, max, p, other_c, other_gamma);
+  find_runners_up(c, s.max, p, other_c, other_gamma);
   const double from_pole = degrees(std::min(at.gamma_rad, std::numbers::pi - at.gamma_rad));
   if (!other_gamma) p.gamma_deg = Estimate{degrees(at.gamma_rad), gamma_error};
   // The draws of a ring of light are far apart too, but all as far from the axis.
@@ -374,28 +394,16 @@ std::vector<PointOfScan> points(const Scan& s) {
   return out;
 }
 
-void find_bright(const CountedSphere& sphere, const Scan& scanned, const Candidates& candidates,
-                 FoundPeak& p) {
+void find_bright(const CountedSphere& sphere, const Scale& s, FoundPeak& p) {
   if (std::max(p.radius_deg, p.c_radius_deg) <= kRippleRadius_deg) {
     p.bright_spacing_deg = p.radius_deg;
-    p.bright = bright_directions(p.direction, points(candidates), p.bright_spacing_deg);
+    p.bright = bright_directions(p.direction, points(s.candidates), p.bright_spacing_deg);
     return;
   }
   const Kernel narrow(std::min(p.radius_deg, std::max(sphere.resolution_deg(), kRippleRadius_deg)));
   p.bright_spacing_deg = std::min(p.radius_deg, 2.0 * narrow.radius_deg);
-  p.bright = bright_directions(p.direction, points(scan(sphere, narrow, &scanned)), p.bright_spacing_deg);
+  p.bright = bright_directions(p.direction, points(scan(sphere, narrow, &s.scan)), p.bright_spacing_deg);
 }
-
-/// The brightest places as kernels of one size show them.
-struct Scale {
-  Kernel kernel;
-  LobeWidth width;
-  Scan scan;
-  Candidates candidates;
-  LargestFigure max;
-  /// What narrower kernels may be brighter by; they are not for certain.
-  double missed_cd = 0.0;
-};
 
 Scale scale_of(const CountedSphere& sphere, const Kernel& kernel, const LobeWidth& width, Scan scan) {
   Candidates c = candidates(sphere, scan, kernel);
@@ -438,7 +446,10 @@ class Halves {
         return sphere_.mean_cd_of(flux_[half], d, k);
       };
       std::optional<Scan>& s = scans_[half];
-      s = scan(mean_cd, kernel, s ? &*s : nullptr);
+      // The narrowest lobe is as much darker as its kernel is larger.
+      const double dark = kNarrowestShare * std::pow(sphere_.resolution_deg() / radius_deg_[half], 2.0);
+      s = scan(mean_cd, kernel, s ? &*s : nullptr, dark);
+      radius_deg_[half] = kernel.radius_deg;
       const Estimate e = half_estimate(sphere_.mean_cd(place(half), kernel).values(), half == 0);
       out = {out.mean + 0.5 * e.mean, std::hypot(out.standard_error, 0.5 * e.standard_error)};
     }
@@ -467,6 +478,7 @@ class Halves {
   const CountedSphere& sphere_;
   std::array<std::vector<double>, 2> flux_;
   std::array<std::optional<Scan>, 2> scans_;
+  std::array<double, 2> radius_deg_{kWidestRadius_deg, kWidestRadius_deg};
 };
 
 /// Only what is near to a place that a half has chosen, or as far from the pole where the kernel follows a
@@ -535,14 +547,17 @@ Scale brightest_scale(const CountedSphere& sphere, Scale s) {
 std::optional<FoundPeak> peak_estimate(const CountedSphere& sphere, PeakSearch search) {
   std::optional<Scale> s = widest_scale(sphere);
   if (!s) return std::nullopt;
-  if (search == PeakSearch::all_scales) s = brightest_scale(sphere, std::move(*s));
   FoundPeak p;
-  p.half_width_deg = s->width.half_deg;
-  p.nearest_side_deg = s->width.side_deg;
-  p.radius_deg = s->kernel.radius_deg;
-  p.c_radius_deg = s->kernel.c_radius_deg;
-  place_peak(s->candidates, s->max, p);
-  if (search == PeakSearch::bright_directions) find_bright(sphere, s->scan, s->candidates, p);
+  place_peak(*s, p);
+  if (search == PeakSearch::bright_directions) find_bright(sphere, *s, p);
+  if (search != PeakSearch::brightest_lobe) {
+    const double wide_deg = s->kernel.radius_deg;
+    s = brightest_scale(sphere, std::move(*s));
+    if (s->kernel.radius_deg < wide_deg) {
+      place_peak(*s, p);
+      if (!p.bright.empty()) p.bright.insert(p.bright.begin(), p.direction);
+    }
+  }
   choose_radius(sphere, s->max, s->kernel, p);
   if (s->missed_cd > 0.0) {
     p.cd.standard_error = std::hypot(p.cd.standard_error, s->missed_cd);

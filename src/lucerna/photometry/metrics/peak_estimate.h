@@ -24,19 +24,19 @@ struct FoundPeak : PeakEstimate {
 /// How far a peak is looked for.
 enum class PeakSearch {
   brightest_lobe,     ///< of the lobe that a wide kernel sees
-  bright_directions,  ///< that one, and `bright`
   all_scales,         ///< also lobes that are narrow beside it, and edges
+  bright_directions,  ///< that, and `bright`
 };
 
 /// Finds it. The widest kernel follows from the lobe's own width: from wide to narrow, until the radius is
 /// three tenths of the half width of the lobe that is the brightest at that radius. There a quadratic is
 /// fitted about all directions that may be the brightest; with that kernel it is too low by 2e-4 for a
 /// Gaussian lobe and by 3 % and more for a sharp tip. That the largest of many noisy values is too large is
-/// taken off as `largest` does. With `all_scales` kernels of half that radius, a quarter, ... look everywhere
-/// too; the narrowest is taken of which the peak, at the place that other replicates choose, is higher by
-/// three errors of the difference. At the place found narrower kernels follow, each of half the radius; the
-/// one of least error is taken, and its error has the bias that the others show (radius_choice.h). Nothing
-/// for a dark sphere. About 0.1 s.
+/// taken off as `largest` does. Except for `brightest_lobe` kernels of half that radius, a quarter, ... look
+/// everywhere too; the narrowest is taken of which the peak, at the place that other replicates choose, is
+/// higher by three errors of the difference. At the place found narrower kernels follow, each of half the
+/// radius; the one of least error is taken, and its error has the bias that the others show
+/// (radius_choice.h). Nothing for a dark sphere. About 0.1 s.
 std::optional<FoundPeak> peak_estimate(const CountedSphere& sphere,
                                        PeakSearch search = PeakSearch::brightest_lobe);
 
