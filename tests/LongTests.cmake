@@ -58,6 +58,7 @@ set(lucerna_long_tests
   ExamplesCli.MirrorForATarget
   ExamplesCli.RaysModelAndBeam
   ExamplesCli.TroughDownlightAndFloodlight
+  FarFieldMetricsStatistical.NoiseIsNoNarrowLobe
   FreeFaceDesign.ComesNearerToAnOvalBeamWithinItsLimits
   FreeFaceSearch.FindsLightThatAnotherFaceMakes
   FreeFormSearch.ANeighbourThatIsTheBestHasNeighbours

@@ -109,7 +109,7 @@ TEST(FarFieldMetrics, ALobeThatIsNarrowBesideAWiderOneIsThePeak) {
   for (const double gamma : {0.0, 25.0, 60.0}) {
     const Direction place = at(120.0, gamma);
     const IntensityOf light = sum(lobe(0.0, 30.0, 20.0), lobe(120.0, gamma, 1.5, 2000.0));
-    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
       const FarFieldMetrics m = far_field_metrics(sphere(light, 2e6, seed), {});
       ASSERT_TRUE(m.peak);
       EXPECT_LT(degrees(angle_between(m.peak->direction, place)), 0.7) << gamma;
@@ -140,7 +140,7 @@ TEST(FarFieldMetrics, ThePeakAtAnEdgeIsThatOfTheEdge) {
     const double gamma = degrees(type_c_angles(d).gamma_rad);
     return gamma < 30.0 ? 1000.0 * std::pow(gamma / 30.0, 3.0) : 0.0;
   };
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     const FarFieldMetrics m = far_field_metrics(sphere(ring, 1e6, seed), {});
     ASSERT_TRUE(m.peak);
     EXPECT_NEAR(degrees(type_c_angles(m.peak->direction).gamma_rad), 29.5, 0.8);
