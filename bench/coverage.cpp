@@ -143,7 +143,7 @@ class Truth {
 
  private:
   static constexpr std::uint64_t kPrecise = 1 << 15, kSeed = 7, kFreshSeed = 99;
-  static constexpr double kLastStep_deg = 0.005;
+  static constexpr double kLastStep_deg = 0.005, kNearest_deg = 0.001;
   /// A line that leaves so much more than the variances of its points is none.
   static constexpr double kBends = 4.0;
 
@@ -201,14 +201,16 @@ class Truth {
   };
 
   /// Of a straight line through points about it, which are nearer to each other where the section bends by
-  /// more than their noise.
+  /// more than their noise. It moves no further than its points reach.
   Line crossing(double c_deg, double angle_deg, double level) const {
-    Line line = crossing(c_deg, angle_deg, level, 0.016, 1024);
     double step_deg = 0.016;
-    for (int k = 0; k < 4; ++k) {
-      line = crossing(c_deg, line.angle_deg, level, step_deg, 8192);
+    Line line = crossing(c_deg, angle_deg, level, step_deg, 1024);
+    for (int k = 0; k < 20; ++k) {
+      const double before_deg = line.angle_deg;
+      line = crossing(c_deg, before_deg, level, step_deg, 8192);
+      if (std::abs(line.angle_deg - before_deg) > 2.9 * step_deg) continue;
       if (!line.bends) break;
-      step_deg *= 0.25;
+      step_deg = std::max(0.5 * step_deg, kNearest_deg);
     }
     return line;
   }
@@ -229,7 +231,7 @@ class Truth {
     const double mean = sum / kPoints, slope = across / squares;
     for (int k = 0; k < kPoints; ++k)
       rest += std::pow(y[static_cast<std::size_t>(k)] - mean - slope * step_deg * (k - kPoints / 2), 2.0);
-    return {angle_deg + std::clamp((level - mean) / slope, -0.1, 0.1), slope,
+    return {angle_deg + std::clamp((level - mean) / slope, -3.0 * step_deg, 3.0 * step_deg), slope,
             std::sqrt(rest / (kPoints - 2) / kPoints) / std::abs(slope), rest > kBends * noise};
   }
 
