@@ -5,7 +5,8 @@
 Usage: bench/coverage.py PROJECT.toml... [--build build/release] [--seeds 40] [--rays 1048576] [--keep FOLDER]
 Runs bench_coverage: short traces, then the truth. A row a figure: the truth, then of the runs the scatter,
 the median stated error, and the share whose interval holds the truth, with what chance makes of a share of
-95 % in so many runs. Figures that a run did not determine are not counted. --keep has the figures as CSV.
+95 % in so many runs. Runs that did not determine a figure are not counted, nor figures that less
+than half of the runs did. --keep has the figures as CSV.
 """
 import argparse
 import collections
@@ -38,7 +39,10 @@ def compared(scene, truth_file, runs_file):
         if name in truth and error > 1e-9 * abs(value):
             runs[name].append((value, error))
     shares = []
+    most = max(map(len, runs.values()))
     for name, found in runs.items():
+        if len(found) < most / 2:
+            continue
         true, own = truth[name]
         n = len(found)
         share = sum(abs(v - true) <= INTERVAL_ERRORS * math.hypot(e, own) for v, e in found) / n
