@@ -269,22 +269,27 @@ std::optional<CoverGlass> without_skin(const CoverGlass& glass) {
   return core;
 }
 
-/// Lines over a mirror, from its axis or one side to the rim, dense enough for what is as large as a plate.
+/// Lines over a mirror, from its axis or one side to the rim and none over a hole, dense enough for what is
+/// as large as a plate.
 std::vector<std::vector<Vec3>> lines_on(const PlacedReflector& mirror) {
   constexpr int kLines = 96, kSteps = 48;
   std::vector<std::vector<Vec3>> lines;
   const Aperture& a = mirror.reflector.aperture;
   if (!mirror.reflector.surface) return lines;  // a swept curve
   for (int i = 0; i <= kLines; ++i) {
-    std::vector<Vec3>& line = lines.emplace_back();
+    lines.emplace_back();
     const double turn = 2.0 * std::numbers::pi * i / kLines, y_mm = a.half_y_mm() * (2.0 * i / kLines - 1.0);
     for (int k = 0; k <= kSteps; ++k) {
       const double share = static_cast<double>(k) / kSteps, r_mm = share * (1.0 - 1e-12) * a.half_x_mm();
       const bool round = a.shape() == ApertureShape::circle;
       const double x = round ? r_mm * std::cos(turn) : a.half_x_mm() * (2.0 * share - 1.0);
       const double y = round ? r_mm * std::sin(turn) : y_mm;
-      if (!a.contains(x, y)) continue;
-      line.push_back(mirror.world_from_reflector.point({x, y, mirror.reflector.surface->at(x, y).z_mm}));
+      if (a.contains(x, y)) {
+        const double z = mirror.reflector.surface->at(x, y).z_mm;
+        lines.back().push_back(mirror.world_from_reflector.point({x, y, z}));
+      } else if (!lines.back().empty()) {
+        lines.emplace_back();
+      }
     }
   }
   return lines;

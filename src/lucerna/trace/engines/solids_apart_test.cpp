@@ -120,7 +120,8 @@ PlacedReflector paraboloid(const Aperture& aperture) {
 }
 
 TEST(WithinPlates, MirrorsAreNamed) {
-  const Aperture round = Aperture::circle(100.0, 8.0), square = Aperture::rectangle(70.0, 70.0);
+  const Aperture round = Aperture::circle(100.0, 8.0), square = Aperture::rectangle(70.0, 70.0),
+                 holed = Aperture::rectangle(70.0, 70.0, 20.0);
   struct Case {
     Aperture mirror, glass;
     double z_mm, thickness_mm;
@@ -136,6 +137,7 @@ TEST(WithinPlates, MirrorsAreNamed) {
       {round, Aperture::circle(120.0), -3.0, 2.0, false},        // behind it
       {square, Aperture::rectangle(90.0, 90.0), 30.625, 2.0, false},
       {square, Aperture::rectangle(90.0, 90.0), 30.0, 2.0, true},
+      {holed, Aperture::circle(6.0), 0.5, 2.0, false},  // lies in the hole
   };
   for (const Case& c : cases) {
     Scene scene;
