@@ -438,39 +438,44 @@ class Halves {
   explicit Halves(const CountedSphere& sphere)
       : sphere_(sphere), flux_{sphere.half_of_flux(false), sphere.half_of_flux(true)} {}
 
+  /// Forgets what wider kernels have shown.
+  void restart() {
+    scans_ = {};
+    radius_deg_ = kWidestRadius_deg;
+  }
   /// The mean of both ways. Kernels narrower than those before.
   Estimate brightest(const Kernel& kernel) {
     Estimate out{0.0, 0.0};
+    // The narrowest lobe is as much darker as its kernel is larger.
+    const double dark = kNarrowestShare * std::pow(sphere_.resolution_deg() / radius_deg_, 2.0);
     for (std::size_t half = 0; half < 2; ++half) {
       const auto mean_cd = [&](const Direction& d, const Kernel& k) {
         return sphere_.mean_cd_of(flux_[half], d, k);
       };
       std::optional<Scan>& s = scans_[half];
-      // The narrowest lobe is as much darker as its kernel is larger.
-      const double dark = kNarrowestShare * std::pow(sphere_.resolution_deg() / radius_deg_[half], 2.0);
       s = scan(mean_cd, kernel, s ? &*s : nullptr, dark);
-      radius_deg_[half] = kernel.radius_deg;
       const Estimate e = half_estimate(sphere_.mean_cd(place(half), kernel).values(), half == 0);
       out = {out.mean + 0.5 * e.mean, std::hypot(out.standard_error, 0.5 * e.standard_error)};
     }
+    radius_deg_ = kernel.radius_deg;
     return out;
   }
   /// The top of a quadratic about the brightest places instead of kernel means.
-  Estimate top(const Kernel& kernel) const {
-    Estimate out{0.0, 0.0};
+  double top_cd(const Kernel& kernel) const {
+    double sum_cd = 0.0;
     for (std::size_t half = 0; half < 2; ++half) {
       const LocalFit fit = sphere_.fit(place(half), kernel);
-      Estimate best{-std::numeric_limits<double>::infinity(), 0.0}, other;
+      double best_cd = -std::numeric_limits<double>::infinity(), other_cd = 0.0;
       for (const auto& [x, y] : stencil()) {
         const Jackknife cd = fit.at(x, y);
-        const Estimate e = half_estimate(cd.values(), half == 1);
-        if (!(e.mean > best.mean)) continue;
-        best = e;
-        other = half_estimate(cd.values(), half == 0);
+        const double chosen_cd = half_estimate(cd.values(), half == 1).mean;
+        if (!(chosen_cd > best_cd)) continue;
+        best_cd = chosen_cd;
+        other_cd = half_estimate(cd.values(), half == 0).mean;
       }
-      out = {out.mean + 0.5 * other.mean, std::hypot(out.standard_error, 0.5 * other.standard_error)};
+      sum_cd += other_cd;
     }
-    return out;
+    return 0.5 * sum_cd;
   }
   const Direction& place(std::size_t half) const { return scans_[half]->directions[scans_[half]->best]; }
 
@@ -478,7 +483,7 @@ class Halves {
   const CountedSphere& sphere_;
   std::array<std::vector<double>, 2> flux_;
   std::array<std::optional<Scan>, 2> scans_;
-  std::array<double, 2> radius_deg_{kWidestRadius_deg, kWidestRadius_deg};
+  double radius_deg_ = kWidestRadius_deg;  ///< of the kernel before
 };
 
 /// Only what is near to a place that a half has chosen, or as far from the pole where the kernel follows a
@@ -500,9 +505,9 @@ Scan scan_about(const CountedSphere& sphere, const Kernel& kernel, const Halves&
 
 /// `largest` chooses among the brightest of the whole run, so that what it holds back of a noisy run is not
 /// quite held back. What one half finds in the other is: the midpoint of both.
-void lower_to(const Estimate& held_out, Scale& s) {
-  const double gap = s.candidates.cd[s.max.index].all() - held_out.mean;
-  const double by = s.max.estimate.mean - (held_out.mean + 0.5 * gap);
+void lower_to(double held_out_cd, Scale& s) {
+  const double gap = s.candidates.cd[s.max.index].all() - held_out_cd;
+  const double by = s.max.estimate.mean - (held_out_cd + 0.5 * gap);
   if (!(gap > 0.0 && by > 0.0)) return;
   s.max.estimate.mean -= by;
   s.max.estimate.standard_error = std::hypot(s.max.estimate.standard_error, gap / std::sqrt(12.0));
@@ -516,14 +521,14 @@ Scale brightest_scale(const CountedSphere& sphere, Scale s) {
   const double finest = sphere.resolution_deg();
   // Along a ring first: there is less noise.
   const Kernel widest = s.kernel;
-  Halves wide(sphere);
-  wide.brightest(widest);
-  lower_to(wide.top(widest), s);
+  Halves halves(sphere);
+  halves.brightest(widest);
+  lower_to(halves.top_cd(widest), s);
   std::vector<double> lengths_deg{0.0};
   if (widest.c_radius_deg > kRing * widest.radius_deg)
     lengths_deg.insert(lengths_deg.begin(), widest.c_radius_deg);
   for (const double length_deg : lengths_deg) {
-    Halves halves(sphere);
+    halves.restart();
     for (double radius = widest.radius_deg; radius > finest;) {
       radius = std::max(finest, 0.5 * radius);
       const Kernel kernel(radius, length_deg);
@@ -536,7 +541,7 @@ Scale brightest_scale(const CountedSphere& sphere, Scale s) {
       Scan about = scan_about(sphere, kernel, halves);
       const LobeWidth width = lobe_width(sphere, about.directions[about.best], about.cd[about.best], radius);
       s = scale_of(sphere, kernel, width, std::move(about));
-      lower_to(halves.top(kernel), s);
+      lower_to(halves.top_cd(kernel), s);
     }
   }
   return s;

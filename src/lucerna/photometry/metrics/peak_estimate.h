@@ -36,7 +36,8 @@ enum class PeakSearch {
 /// everywhere too; the narrowest is taken of which the peak, at the place that other replicates choose, is
 /// higher by three errors of the difference. At the place found narrower kernels follow, each of half the
 /// radius; the one of least error is taken, and its error has the bias that the others show
-/// (radius_choice.h). Nothing for a dark sphere. About 0.1 s.
+/// (radius_choice.h). Nothing for a dark sphere. About 0.1 s; with narrower kernels up
+/// to a second.
 std::optional<FoundPeak> peak_estimate(const CountedSphere& sphere,
                                        PeakSearch search = PeakSearch::brightest_lobe);
 
