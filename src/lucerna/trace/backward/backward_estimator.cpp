@@ -58,7 +58,7 @@ void BackwardEstimator::sample_cell(const DirectionCell& cell, const CellGuide& 
 std::vector<double> BackwardEstimator::cell_flux(const DirectionCell& cell, std::size_t c_parts,
                                                  std::size_t gamma_parts, std::uint64_t samples,
                                                  std::span<const std::uint64_t> seeds) const {
-  const CellGuide guide = sampler_.guide().for_cell(cell);
+  const CellGuide guide = sampler_.guide().for_directions(cell.centre(), cell.radius_rad());
   const double solid_angle = cell.solid_angle_sr(), height = cell.gamma1_rad - cell.gamma0_rad;
   const auto part = [](double u, std::size_t parts) {
     return std::min(parts - 1, static_cast<std::size_t>(std::max(0.0, u) * static_cast<double>(parts)));
@@ -79,7 +79,7 @@ Estimate BackwardEstimator::intensity_cd(const Direction& direction, std::uint64
   LUCERNA_CHECK(replicates >= 2, "{} replicates", replicates);
   const TypeCAngles a = type_c_angles(direction);
   const DirectionCell cell{a.c_rad, a.c_rad, a.gamma_rad, a.gamma_rad};
-  const CellGuide guide = sampler_.guide().for_cell(cell);
+  const CellGuide guide = sampler_.guide().for_directions(cell.centre(), cell.radius_rad());
   std::vector<double> cd(replicates, 0.0);
   parallel_blocks(replicates, 1, [&](std::size_t r, std::size_t) {
     sample_cell(cell, guide, samples, detail::mix_bits(seed * replicates + r),

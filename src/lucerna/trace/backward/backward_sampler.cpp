@@ -19,18 +19,10 @@ std::vector<LineDisks> disks_of(const Scene& scene, const BackwardScene& backwar
   return disks;
 }
 
-std::vector<GuideSource> guide_sources(const std::vector<LineDisks>& disks) {
-  std::vector<GuideSource> out;
-  for (const LineDisks& d : disks) out.push_back({d.centre_mm(), d.guide_radius_mm()});
-  return out;
-}
-
 }  // namespace
 
 BackwardSampler::BackwardSampler(const Scene& scene, int max_bounces)
-    : scene_(scene, checked(max_bounces)),
-      disks_(disks_of(scene, scene_)),
-      guide_(scene_, guide_sources(disks_)) {}
+    : scene_(scene, checked(max_bounces)), disks_(disks_of(scene, scene_)), guide_(scene_, disks_) {}
 
 double BackwardSampler::intensity_sample(const MirrorPlace& place, const MirrorPoint& from,
                                          const Direction& out, ReflectionKey key,

@@ -41,7 +41,7 @@ MirrorPlace CellGuide::place(double u, double v) const {
   return {e.mirror, e.patch.x0_mm + t * width, e.patch.y0_mm + v * height, e.probability / (width * height)};
 }
 
-MirrorGuide::MirrorGuide(const BackwardScene& scene, std::span<const GuideSource> sources)
+MirrorGuide::MirrorGuide(const BackwardScene& scene, std::span<const LineDisks> sources)
     : sources_(sources.begin(), sources.end()) {
   for (const BackwardScene::Mirror& m : scene.mirrors()) {
     const Aperture& aperture = m.placed->reflector.aperture;
@@ -65,15 +65,15 @@ MirrorGuide::MirrorGuide(const BackwardScene& scene, std::span<const GuideSource
 
 /// By how far the light that each patch sends has missed the source's centre.
 template <class AimOf>
-std::vector<MirrorGuide::Offset> MirrorGuide::offsets(std::span<const Patch> patches,
-                                                      const GuideSource& source, const AimOf& aim_of) {
+std::vector<MirrorGuide::Offset> MirrorGuide::offsets(std::span<const Patch> patches, const LineDisks& source,
+                                                      const AimOf& aim_of) {
   std::vector<Offset> to(patches.size());
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const Patch& p = patches[i];
     const Aim aim = aim_of(p);
     const double cosine = dot(aim.out.vec(), p.normal);
     const Vec3 back = 2.0 * cosine * p.normal - aim.out.vec();
-    const Vec3 centre = source.centre_mm - p.centre_mm;
+    const Vec3 centre = source.centre_mm() - p.centre_mm;
     const double along = dot(centre, back);
     to[i] = {centre - along * back, along, cosine * p.slope * aim.weight};
   }
@@ -101,8 +101,8 @@ MirrorGuide::Offset MirrorGuide::reach_of_patch(std::span<const Offset> off, std
   return reach;
 }
 
-CellGuide MirrorGuide::for_cell(const DirectionCell& cell) const {
-  const Aim aim{cell.centre(), cell.radius_rad()};
+CellGuide MirrorGuide::for_directions(const Direction& centre, double radius_rad) const {
+  const Aim aim{centre, radius_rad};
   return guide([&](const Patch&) { return aim; });
 }
 
@@ -122,15 +122,14 @@ CellGuide MirrorGuide::guide(const AimOf& aim_of) const {
   for (std::size_t m = 0; m < mirrors_.size(); ++m) {
     const std::vector<Patch>& patches = mirrors_[m];
     std::vector<double> weight(patches.size(), 0.0);
-    for (const GuideSource& source : sources_) {
+    for (const LineDisks& source : sources_) {
       const std::vector<Offset> off = offsets(patches, source, aim_of);
       for (std::size_t i = 0; i < patches.size(); ++i) {
         if (!patches[i].on_mirror) continue;
         const Offset reach = reach_of_patch(off, i);
-        const bool lit = reach.weight > 0.0 && reach.along_mm > -source.radius_mm &&
-                         reach.miss_mm.x < source.radius_mm + (aim_of(patches[i]).spread_rad + turn_rad_[m]) *
-                                                                  std::abs(off[i].along_mm);
-        if (lit) weight[i] = reach.weight;
+        if (!(reach.weight > 0.0 && reach.along_mm > -source.guide_radius_mm())) continue;
+        const double spread_mm = (aim_of(patches[i]).spread_rad + turn_rad_[m]) * std::abs(off[i].along_mm);
+        weight[i] = std::max(weight[i], reach.weight * source.brightness(reach.miss_mm.x - spread_mm));
       }
     }
     for (std::size_t i = 0; i < patches.size(); ++i) {

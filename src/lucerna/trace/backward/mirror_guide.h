@@ -8,15 +8,9 @@
 #include <vector>
 
 #include "lucerna/trace/backward/backward_scene.h"
-#include "lucerna/trace/detectors/direction_cell.h"
+#include "lucerna/trace/backward/source_lines.h"
 
 namespace lucerna {
-
-/// Where light is thought to come from: most rays of a source pass `centre_mm` within `radius_mm`.
-struct GuideSource {
-  Vec3 centre_mm;
-  double radius_mm = 0.0;
-};
 
 /// A place on a mirror that was drawn.
 struct MirrorPlace {
@@ -40,8 +34,8 @@ struct MirrorPoint {
 std::optional<MirrorPoint> mirror_point(const BackwardScene& scene, const MirrorPlace& place);
 
 /// Chooses places on mirrors for light that leaves towards a cell of directions: nine tenths of them on the
-/// patches that are seen to reflect a source there, with a margin for what they turn within a patch and the
-/// cell, and a tenth anywhere, so that light by several reflections is found too.
+/// patches that are seen to reflect a source there, by how bright it is there, with a margin for what they
+/// turn within a patch and the cell, and a tenth anywhere, so that light by several reflections is found too.
 class CellGuide {
  public:
   /// The place of (u, v) in the unit square. Neighbours in u are neighbours on the mirror.
@@ -62,9 +56,9 @@ class CellGuide {
 /// The mirrors of a scene cut into patches. Immutable and thread safe.
 class MirrorGuide {
  public:
-  MirrorGuide(const BackwardScene& scene, std::span<const GuideSource> sources);
-  /// About 2300 patches a mirror, some 20 ns each.
-  CellGuide for_cell(const DirectionCell& cell) const;
+  MirrorGuide(const BackwardScene& scene, std::span<const LineDisks> sources);
+  /// For light in directions within `radius_rad` of `centre`. About 2300 patches a mirror, some 20 ns each.
+  CellGuide for_directions(const Direction& centre, double radius_rad) const;
   /// Whether all patches are further away than so many times their size; distance(centre) in mm.
   template <class Distance>
   bool further_than(double sizes, const Distance& distance_mm) const {
@@ -99,7 +93,7 @@ class MirrorGuide {
   template <class AimOf>
   CellGuide guide(const AimOf& aim_of) const;
   template <class AimOf>
-  static std::vector<Offset> offsets(std::span<const Patch> patches, const GuideSource& source,
+  static std::vector<Offset> offsets(std::span<const Patch> patches, const LineDisks& source,
                                      const AimOf& aim_of);
 
   static Offset reach_of_patch(std::span<const Offset> off, std::size_t i);
@@ -107,7 +101,7 @@ class MirrorGuide {
   std::vector<std::vector<Patch>> mirrors_;
   /// Of each mirror: what its slope errors turn light by.
   std::vector<double> turn_rad_;
-  std::vector<GuideSource> sources_;
+  std::vector<LineDisks> sources_;
 };
 
 }  // namespace lucerna

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kPilotRays = 4096;
 constexpr double kLineShares[] = {0.5, 0.9, 0.99};
-/// Mirrors are looked at where they reflect lines within the radius of this share.
-constexpr double kGuideShare = 0.98;
+/// Rings of lines end where they hold these shares.
+constexpr double kRingShares[] = {0.25, 0.5, 0.75, 0.9, 0.95, 0.98, 0.99, 0.995, 1.0};
 
 double distance_mm(const Ray& line, const Vec3& point) {
   const Vec3 to = point - line.origin_mm;
@@ -64,7 +64,24 @@ LineDisks::LineDisks(const PlacedSource& placed, const LuminanceSource& light) {
   for (const double share : kLineShares)
     radii_mm_.push_back(std::min(all, std::max(1e-3 * all, quantile(lines.miss_mm, share))));
   radii_mm_.push_back(all);
-  guide_radius_mm_ = quantile(lines.miss_mm, kGuideShare);
+  double inside_mm = 0.0, inside_share = 0.0;
+  for (const double share : kRingShares) {
+    const double radius = std::max(quantile(lines.miss_mm, share), inside_mm + 1e-3 * all);
+    rings_.push_back({radius, (share - inside_share) / (radius * radius - inside_mm * inside_mm)});
+    inside_mm = radius;
+    inside_share = share;
+  }
+  for (std::size_t i = rings_.size() - 1; i-- > 0;)
+    rings_[i].brightness = std::max(rings_[i].brightness, rings_[i + 1].brightness);
+  const double brightest = rings_.front().brightness;
+  for (Ring& r : rings_) r.brightness = std::sqrt(r.brightness / brightest);
+}
+
+double LineDisks::brightness(double miss_mm) const {
+  for (const Ring& r : rings_) {
+    if (miss_mm < r.radius_mm) return r.brightness;
+  }
+  return 0.0;
 }
 
 LineDisks::Place LineDisks::place(double u, double v, const Direction& line, double widest) const {

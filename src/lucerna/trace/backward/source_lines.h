@@ -28,13 +28,21 @@ class LineDisks {
   const Vec3& centre_mm() const { return centre_mm_; }
   /// Of a ball about the centre that all light leaves.
   double radius_mm() const { return radii_mm_.back(); }
-  /// Most lines pass the centre within this.
-  double guide_radius_mm() const { return guide_radius_mm_; }
+  /// All but one in some thousand lines pass the centre within this.
+  double guide_radius_mm() const { return rings_.back().radius_mm; }
+  /// How bright lines that pass the centre at this distance or further are at most, as the square root of
+  /// their mean over the brightest ring's: a part of a ring may be as bright as the middle. 0 beyond
+  /// `guide_radius_mm`.
+  double brightness(double miss_mm) const;
 
  private:
+  /// Lines that pass the centre within a radius, and further away than the ring before.
+  struct Ring {
+    double radius_mm, brightness;
+  };
   Vec3 centre_mm_;
   std::vector<double> radii_mm_;
-  double guide_radius_mm_ = 0.0;
+  std::vector<Ring> rings_;
 };
 
 /// Of `samples` by mirrors, each source has so many directly.
