@@ -33,15 +33,21 @@ class BackwardEstimator {
                         std::uint64_t seed = 1) const;
 
  private:
+  /// A way out of the luminaire, and where the mirrors send light of a cell that takes it.
+  struct WayOut {
+    Exit exit;
+    CellGuide guide;
+  };
+  std::vector<WayOut> ways_out(const DirectionCell& cell) const;
   /// One sample: a direction of the cell and what it adds to the mean intensity there.
   template <class Sink>
-  void sample_mirrors(const DirectionCell& cell, const CellGuide& guide, std::uint64_t samples,
-                      std::uint64_t seed, const Sink& sink) const;
+  void sample_mirrors(const DirectionCell& cell, const WayOut& way, std::uint64_t samples, std::uint64_t seed,
+                      const Sink& sink) const;
   template <class Sink>
-  void sample_source(const DirectionCell& cell, std::size_t source, std::uint64_t samples, std::uint64_t seed,
-                     const Sink& sink) const;
+  void sample_source(const DirectionCell& cell, Exit exit, std::size_t source, std::uint64_t samples,
+                     std::uint64_t seed, const Sink& sink) const;
   template <class Sink>
-  void sample_cell(const DirectionCell& cell, const CellGuide& guide, std::uint64_t samples,
+  void sample_cell(const DirectionCell& cell, std::span<const WayOut> ways, std::uint64_t samples,
                    std::uint64_t seed, const Sink& sink) const;
 
   BackwardSampler sampler_;

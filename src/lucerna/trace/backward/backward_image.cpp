@@ -67,7 +67,15 @@ class View {
 
 }  // namespace
 
-BackwardImage::BackwardImage(const Scene& scene, int max_bounces) : sampler_(scene, max_bounces) {}
+std::string no_backward_image_reason(const Scene& scene) {
+  const std::string reason = no_backward_reason(scene);
+  return reason.empty() && !scene.glasses.empty() ? "there is a cover glass" : reason;
+}
+
+BackwardImage::BackwardImage(const Scene& scene, int max_bounces) : sampler_(scene, max_bounces) {
+  const std::string reason = no_backward_image_reason(scene);
+  if (!reason.empty()) throw InputError("light cannot be followed backward from a detector: " + reason);
+}
 
 bool BackwardImage::can_see(const PlaneGrid& grid) const {
   const Frame plane_from_world = grid.world_from_plane.inverse();
@@ -98,7 +106,8 @@ double BackwardImage::by_mirrors(const PlaneGrid& grid, std::size_t cell, const 
     const Direction out = Direction::from(to);
     const double cosine = -dot(lit, out.vec());
     if (cosine > 0.0)
-      sum += cosine / dot(to, to) * sampler_.intensity_sample(place, *from, out, {seed, i, 0}, scratch);
+      sum += cosine / dot(to, to) *
+             sampler_.intensity_sample(place, *from, out, Exit::onward, {seed, i, 0}, scratch);
   }
   return sum / static_cast<double>(samples);
 }
@@ -122,8 +131,8 @@ double BackwardImage::by_source(const PlaneGrid& grid, std::size_t cell, std::si
     const Direction out = Direction::from(to);
     const double cosine = -dot(lit, out.vec());
     if (!(cosine > 0.0)) continue;
-    const double luminance =
-        scene.direct_luminance(scene.sources()[source], {passed.point_mm, out}, scratch, length(to));
+    const double luminance = scene.direct_luminance(scene.sources()[source], {passed.point_mm, out},
+                                                    Exit::onward, {seed, i, 0}, scratch, length(to));
     sum += luminance * cosine * dot(axis.vec(), out.vec()) / dot(to, to) / passed.pdf_area;
   }
   return sum / static_cast<double>(samples);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "lucerna/detectors.h"
@@ -10,13 +11,17 @@
 
 namespace lucerna {
 
+/// Why light cannot be followed backward from a detector through a scene; empty if it can.
+/// `no_backward_reason`, and not through a cover glass, which moves lines aside.
+std::string no_backward_image_reason(const Scene& scene);
+
 /// Illuminance and luminance in the cells of a detector by light that is followed backward from there: what a
 /// trace counts, for detectors that few of its rays find. Unbiased for every number of samples, with the
 /// limits of BackwardEstimator. Each seed is an independent replicate. Immutable and thread safe; the scene
 /// must outlive it.
 class BackwardImage {
  public:
-  /// Throws as BackwardSampler.
+  /// Throws as BackwardSampler, and InputError with `no_backward_image_reason`.
   BackwardImage(const Scene& scene, int max_bounces);
 
   /// Whether a plane is far enough from every source and mirror to look at them from there.

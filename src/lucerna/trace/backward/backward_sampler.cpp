@@ -25,14 +25,14 @@ BackwardSampler::BackwardSampler(const Scene& scene, int max_bounces)
     : scene_(scene, checked(max_bounces)), disks_(disks_of(scene, scene_)), guide_(scene_, disks_) {}
 
 double BackwardSampler::intensity_sample(const MirrorPlace& place, const MirrorPoint& from,
-                                         const Direction& out, ReflectionKey key,
+                                         const Direction& start, Exit exit, ReflectionKey key,
                                          BackwardScene::Scratch& scratch) const {
-  const double area = dot(from.area, out.vec());
+  const double area = dot(from.area, start.vec());
   if (!(area > 0.0)) return 0.0;
-  const double luminance =
-      scene_.reflected_luminance(*from.mirror, from.point_mm, Direction::from(from.area), out, key, scratch);
-  if (!(luminance > 0.0 && scene_.escapes(from.point_mm, out, true))) return 0.0;
-  return luminance * area / place.pdf_plane;
+  const double luminance = scene_.reflected_luminance(*from.mirror, from.point_mm, Direction::from(from.area),
+                                                      start, exit, key, scratch);
+  if (!(luminance > 0.0)) return 0.0;
+  return luminance * area / place.pdf_plane * scene_.leaving_share(from.point_mm, start, exit, true, key);
 }
 
 }  // namespace lucerna

@@ -21,10 +21,11 @@ class BackwardSampler {
   const std::vector<LineDisks>& disks() const { return disks_; }
   const MirrorGuide& guide() const { return guide_; }
 
-  /// Luminance times area across `out` of the light that leaves the luminaire from a place, over the density
-  /// of its draw: what one sample says of the intensity along `out`. 0 behind the mirror and in shadow.
-  double intensity_sample(const MirrorPlace& place, const MirrorPoint& from, const Direction& out,
-                          ReflectionKey key, BackwardScene::Scratch& scratch) const;
+  /// Luminance times area across `start` of the light that leaves a place of a mirror along `start` and the
+  /// luminaire by an exit, over the density of its draw: what one sample says of the intensity along the
+  /// direction that it leaves in. 0 behind the mirror and in shadow.
+  double intensity_sample(const MirrorPlace& place, const MirrorPoint& from, const Direction& start,
+                          Exit exit, ReflectionKey key, BackwardScene::Scratch& scratch) const;
 
  private:
   BackwardScene scene_;

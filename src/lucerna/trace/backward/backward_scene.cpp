@@ -14,6 +14,8 @@ namespace {
 /// Past everything; a start there loses less than a nanometre.
 constexpr double kFarAway_mm = 1e6;
 
+Direction reversed(const Direction& d) { return Direction::from_unit(-d.vec()); }
+
 /// A slope error turns where light goes but not how much of a mirror it sees: over the surface's own normal,
 /// a mirror takes light in by the cosine of incidence and gives it off by that of exit.
 struct Reflection {
@@ -33,12 +35,14 @@ Reflection reflect_backward(const PlacedReflector& mirror, double slope_error_ra
 
 }  // namespace
 
+/// On a mirror, or on the cover glass.
 struct BackwardScene::Hit {
   const Mirror* mirror = nullptr;
   double t_mm = 0.0;
   Vec3 point;
   Direction normal;
   bool front = true;
+  std::optional<GlassHit> glass = {};
 };
 
 std::string no_backward_reason(const Scene& scene) {
@@ -54,11 +58,12 @@ std::string no_backward_reason(const Scene& scene) {
     if (b.reflectance.max() > 0.0) return "a body reflects";
   }
   if (!scene.solids.empty()) return "there is a solid";
-  return scene.glasses.empty() ? "" : "there is a cover glass";
+  // Light between two plates leaves after any number of reflections.
+  return scene.glasses.size() > 1 ? "there are several cover glasses" : "";
 }
 
 BackwardScene::BackwardScene(const Scene& scene, int max_bounces)
-    : max_bounces_(max_bounces), bodies_(scene.bodies) {
+    : max_bounces_(max_bounces), bodies_(scene.bodies), glasses_(scene.glasses) {
   check(scene);
   const std::string reason = no_backward_reason(scene);
   if (!reason.empty()) throw InputError("light cannot be followed backward: " + reason);
@@ -72,6 +77,17 @@ BackwardScene::BackwardScene(const Scene& scene, int max_bounces)
   }
 }
 
+std::span<const Exit> BackwardScene::exits() const {
+  static constexpr Exit kExits[] = {Exit::onward, Exit::off_glass};
+  return {kExits, glasses_.empty() ? 1u : 2u};
+}
+
+Direction BackwardScene::direction_before(Exit exit, const Direction& out) const {
+  if (exit == Exit::onward) return out;
+  const Vec3 normal = glasses_.cover_glasses().front().world_from_glass.ez();
+  return Direction::from(out.vec() - 2.0 * dot(normal, out.vec()) * normal);
+}
+
 std::optional<BackwardScene::Hit> BackwardScene::nearest(const Ray& ray) const {
   std::optional<Hit> best;
   for (const Mirror& m : mirrors_) {
@@ -81,7 +97,27 @@ std::optional<BackwardScene::Hit> BackwardScene::nearest(const Ray& ray) const {
     best = {&m, hit->t_mm, world_from_mirror.point(hit->point_mm), world_from_mirror.direction(hit->normal),
             hit->front};
   }
+  if (glasses_.empty()) return best;
+  if (const auto glass = glasses_.first_hit(ray, best ? best->t_mm : kNoEnd, true)) {
+    best.emplace();
+    best->t_mm = glass->t_mm;
+    best->glass = glass;
+  }
   return best;
+}
+
+/// What light that goes on against `backward` came to at `at`: which share of it that is, and on which line.
+BackwardScene::Step BackwardScene::step_back(const Hit& at, const ReflectionKey& key,
+                                             const Ray& backward) const {
+  if (at.glass) {
+    // A plate is the same for light both ways.
+    const GlassPassage passage = glasses_.pass(backward, *at.glass, key, 0.0f);
+    return {passage.ray, passage.throughput, !passage.transmitted};
+  }
+  if (!at.front) return {backward, 0.0, true};
+  const Reflection r = reflect_backward(*at.mirror->placed, at.mirror->slope_error_rad, at.normal,
+                                        reversed(backward.direction), key);
+  return {{at.point, r.backward}, r.factor, true};
 }
 
 /// Light that starts on the line of `backward` within `reach_mm` of its origin and runs against it.
@@ -89,7 +125,7 @@ double BackwardScene::emitted_on(const Ray& backward, double reach_mm, Scratch& 
   double sum = 0.0;
   for (const Source& s : sources_) {
     scratch.clear();
-    const Ray light{backward.origin_mm, Direction::from_unit(-backward.direction.vec())};
+    const Ray light{backward.origin_mm, reversed(backward.direction)};
     s.light->add_light_on(s.source_from_world.ray(light), scratch);
     for (const LineLight& l : scratch) {
       if (l.start_mm <= 0.0 && -l.start_mm < reach_mm) sum += s.flux * l.pdf_etendue;
@@ -99,42 +135,56 @@ double BackwardScene::emitted_on(const Ray& backward, double reach_mm, Scratch& 
 }
 
 double BackwardScene::reflected_luminance(const Mirror& mirror, const Vec3& point, const Direction& normal,
-                                          const Direction& out, ReflectionKey key, Scratch& scratch) const {
+                                          const Direction& out, Exit exit, ReflectionKey key,
+                                          Scratch& scratch) const {
   double sum = 0.0, throughput = 1.0;
-  Hit at{&mirror, 0.0, point, normal, true};
-  Direction leaving = out;
-  for (int reflections = 1; reflections <= max_bounces_; ++reflections) {
-    key.bounce = reflections;
-    const Reflection r =
-        reflect_backward(*at.mirror->placed, at.mirror->slope_error_rad, at.normal, leaving, key);
-    throughput *= r.factor;
-    if (!(throughput > 0.0)) break;
-    const Ray backward{at.point, r.backward};
+  Hit at{&mirror, 0.0, point, normal};
+  Ray backward{point, reversed(out)};
+  int reflections = exit == Exit::off_glass ? 1 : 0;
+  for (int met = 1;; ++met) {
+    key.bounce = met;
+    const Step step = step_back(at, key, backward);
+    throughput *= step.share;
+    reflections += step.reflected ? 1 : 0;
+    if (!(throughput > 0.0) || reflections > max_bounces_) break;
+    backward = step.backward;
     const auto next = nearest(backward);
-    const double mirror_mm = next ? next->t_mm : std::numeric_limits<double>::infinity();
+    const double next_mm = next ? next->t_mm : kNoEnd;
     // Light that comes straight from a lamp does not see the lamp's own body.
-    const auto body = bodies_.first_hit(backward, mirror_mm, false);
-    sum += throughput * emitted_on(backward, body ? body->t_mm : mirror_mm, scratch);
-    if (!next || !next->front || bodies_.first_hit(backward, mirror_mm, true)) break;
+    const auto body = bodies_.first_hit(backward, next_mm, false);
+    sum += throughput * emitted_on(backward, body ? body->t_mm : next_mm, scratch);
+    if (!next || bodies_.first_hit(backward, next_mm, true)) break;
     at = *next;
-    leaving = Direction::from_unit(-r.backward.vec());
   }
   return sum;
 }
 
-bool BackwardScene::escapes(const Vec3& point, const Direction& out, bool returning) const {
-  const Ray ray{point, out};
-  return !nearest(ray) && !bodies_.first_hit(ray, std::numeric_limits<double>::infinity(), returning);
+bool BackwardScene::escapes(const Ray& ray, bool returning) const {
+  return !nearest(ray) && !bodies_.first_hit(ray, kNoEnd, returning);
 }
 
-double BackwardScene::direct_luminance(const Source& source, const Ray& ray, Scratch& scratch,
-                                       double end_mm) const {
+double BackwardScene::leaving_share(const Vec3& point, const Direction& start, Exit exit, bool returning,
+                                    const ReflectionKey& key) const {
+  const Ray ray{point, start};
+  const auto first = nearest(ray);
+  if (bodies_.first_hit(ray, first ? first->t_mm : kNoEnd, returning)) return 0.0;
+  if (!first) return exit == Exit::onward ? 1.0 : 0.0;
+  if (!first->glass) return 0.0;
+  const PlacedCoverGlass& plate = glasses_.cover_glasses()[first->glass->glass];
+  const GlassPassage passage = one_side_of_cover_glass(plate, ray, *first->glass, exit == Exit::onward, key);
+  return passage.throughput > 0.0 && escapes(passage.ray, returning || exit == Exit::off_glass)
+             ? passage.throughput
+             : 0.0;
+}
+
+double BackwardScene::direct_luminance(const Source& source, const Ray& ray, Exit exit,
+                                       const ReflectionKey& key, Scratch& scratch, double end_mm) const {
   scratch.clear();
   source.light->add_light_on(source.source_from_world.ray(ray), scratch);
   double sum = 0.0;
   for (const LineLight& l : scratch) {
-    if (l.start_mm < end_mm && escapes(ray.at(l.start_mm), ray.direction, false))
-      sum += source.flux * l.pdf_etendue;
+    if (l.start_mm < end_mm)
+      sum += source.flux * l.pdf_etendue * leaving_share(ray.at(l.start_mm), ray.direction, exit, false, key);
   }
   return sum;
 }
@@ -142,12 +192,13 @@ double BackwardScene::direct_luminance(const Source& source, const Ray& ray, Scr
 double BackwardScene::leaving_luminance(const Ray& line, ReflectionKey key, Scratch& scratch,
                                         double end_mm) const {
   double sum = 0.0;
-  for (const Source& s : sources_) sum += direct_luminance(s, line, scratch, end_mm);
-  const Ray against{line.at(kFarAway_mm), Direction::from_unit(-line.direction.vec())};
+  for (const Source& s : sources_) sum += direct_luminance(s, line, Exit::onward, key, scratch, end_mm);
+  const Ray against{line.at(kFarAway_mm), reversed(line.direction)};
   const auto last = nearest(against);
   if (!last || !last->front || kFarAway_mm - last->t_mm > end_mm) return sum;
-  if (!escapes(last->point, line.direction, true)) return sum;
-  return sum + reflected_luminance(*last->mirror, last->point, last->normal, line.direction, key, scratch);
+  if (!escapes({last->point, line.direction}, true)) return sum;
+  return sum + reflected_luminance(*last->mirror, last->point, last->normal, line.direction, Exit::onward,
+                                   key, scratch);
 }
 
 }  // namespace lucerna

@@ -17,6 +17,8 @@ namespace {
 
 /// Backward and counted flux may be this many errors apart, or this share of each other.
 constexpr double kMaxErrors = 4.0, kMaxShare = 0.005;
+/// Backward light that is so many times as noisy as counted light, or as that share, is found by chance.
+constexpr double kMaxNoise = 5.0;
 constexpr std::uint64_t kCheckSamples = 1024;
 
 /// Whole cells of a grid: planes [c, c + planes) and gammas [g, g + gammas).
@@ -58,9 +60,9 @@ Estimate backward_flux(const BackwardEstimator& estimator, const DirectionCell& 
 
 bool agree(const BackwardEstimator& estimator, const CountedFarField& f, const CellBlock& block) {
   const Estimate counted = counted_flux(f, block), backward = backward_flux(estimator, cell_of(f, block));
-  const double gap = std::abs(counted.mean - backward.mean);
-  return gap <=
-         kMaxErrors * std::hypot(counted.standard_error, backward.standard_error) + kMaxShare * counted.mean;
+  const double gap = std::abs(counted.mean - backward.mean), share = kMaxShare * counted.mean;
+  return gap <= kMaxErrors * std::hypot(counted.standard_error, backward.standard_error) + share &&
+         backward.standard_error <= kMaxNoise * std::hypot(counted.standard_error, share);
 }
 
 }  // namespace

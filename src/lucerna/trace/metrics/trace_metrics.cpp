@@ -118,7 +118,7 @@ TraceMetrics figures_of(const TraceResult& result, const Scene* scene, const Bac
     figures.far_fields.push_back(far_field_result(result, i, wanted.far_fields ? scene : nullptr, stop));
   std::optional<BackwardImage> backward;
   const bool images = wanted.images && (!result.planes.empty() || !result.luminances.empty());
-  if (images && scene != nullptr && no_backward_reason(*scene).empty())
+  if (images && scene != nullptr && no_backward_image_reason(*scene).empty())
     backward.emplace(*scene, result.max_bounces);
   for (std::size_t i = 0; i < result.planes.size(); ++i) {
     PlaneImage counted = illuminance(result, i);
