@@ -117,7 +117,7 @@ TEST(BackwardIntensity, IsNotUsedWhereItDisagreesWithCountedLight) {
 }
 
 // On the axis of this scene light went from the mirror to the cover glass and back, which samples find by
-// chance: they are twenty times as noisy as counted light, and so agree with it.
+// chance: they have an error of 60 %, and so agree with counted light.
 TEST(BackwardIntensity, IsNotUsedWhereItIsFoundByChance) {
   const Scene scene = test::project_scene(test::source_dir() / "bench" / "figures" / "spike.toml");
   const CountedFarField field = far_field(trace(scene, {.last_ray = 1 << 20}), 0);
