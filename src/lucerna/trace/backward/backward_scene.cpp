@@ -191,6 +191,7 @@ double BackwardScene::direct_luminance(const Source& source, const Ray& ray, Exi
 
 double BackwardScene::leaving_luminance(const Ray& line, ReflectionKey key, Scratch& scratch,
                                         double end_mm) const {
+  LUCERNA_CHECK(glasses_.empty(), "{} cover glasses", glasses_.cover_glasses().size());
   double sum = 0.0;
   for (const Source& s : sources_) sum += direct_luminance(s, line, Exit::onward, key, scratch, end_mm);
   const Ray against{line.at(kFarAway_mm), reversed(line.direction)};

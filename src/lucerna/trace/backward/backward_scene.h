@@ -68,8 +68,8 @@ class BackwardScene {
   double direct_luminance(const Source& source, const Ray& ray, Exit exit, const ReflectionKey& key,
                           Scratch& scratch, double end_mm = kNoEnd) const;
 
-  /// Luminance of all light that leaves the luminaire along a line from places before `end_mm`, without the
-  /// cover glass. `key` as above.
+  /// Luminance of all light that leaves the luminaire along a line from places before `end_mm`. `key` as
+  /// above. The scene must have no cover glass.
   double leaving_luminance(const Ray& line, ReflectionKey key, Scratch& scratch,
                            double end_mm = kNoEnd) const;
 
