@@ -11,10 +11,12 @@
 #include <numeric>
 #include <vector>
 
+#include "lucerna/core/io/error.h"
 #include "lucerna/core/parallel/parallel.h"
 #include "lucerna/estimate.h"
 #include "lucerna/source.h"
 #include "lucerna/trace.h"
+#include "lucerna/trace_metrics.h"
 
 namespace lucerna {
 namespace {
@@ -167,6 +169,21 @@ TEST(BackwardImage, APlaneAtASourceOrMirrorCannotBeSeenFromThere) {
   EXPECT_FALSE(backward.can_see(grid_at({200.0, 0.0, -20.0}, 500.0, 2)));
   EXPECT_FALSE(backward.can_see(grid_at({49.0, 0.0, -26.0}, 10.0, 2)));
   EXPECT_TRUE(backward.can_see(grid_at({200.0, 0.0, -60.0}, 10.0, 2)));
+}
+
+// A plate moves lines aside: detectors behind one have counted light, far fields do not.
+TEST(BackwardImage, IsNotForScenesWithACoverGlass) {
+  Scene scene = plated_paraboloid();
+  EXPECT_EQ(no_backward_image_reason(scene), "");
+  scene.glasses.push_back({.aperture = Aperture::circle(60.0),
+                           .world_from_glass = Frame::from_axis(Direction(), 0.0, {0, 0, -34})});
+  EXPECT_EQ(no_backward_reason(scene), "");
+  EXPECT_EQ(no_backward_image_reason(scene), "there is a cover glass");
+  EXPECT_THROW(BackwardImage(scene, 100), InputError);
+  scene.planes.push_back({"plane", grid_at({5.0, 3.0, -250.0}, 110.0, 4)});
+  const TraceResult traced = trace(scene, {.last_ray = 1 << 14});
+  const TraceMetrics followed = trace_metrics(traced, scene), counted = trace_metrics(traced);
+  EXPECT_EQ(followed.planes[0].extremes.mean.mean, counted.planes[0].extremes.mean.mean);
 }
 
 }  // namespace
