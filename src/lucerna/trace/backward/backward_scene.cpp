@@ -14,8 +14,6 @@ namespace {
 /// Past everything; a start there loses less than a nanometre.
 constexpr double kFarAway_mm = 1e6;
 
-Direction reversed(const Direction& d) { return Direction::from_unit(-d.vec()); }
-
 /// A slope error turns where light goes but not how much of a mirror it sees: over the surface's own normal,
 /// a mirror takes light in by the cosine of incidence and gives it off by that of exit.
 struct Reflection {
@@ -115,8 +113,8 @@ BackwardScene::Step BackwardScene::step_back(const Hit& at, const ReflectionKey&
     return {passage.ray, passage.throughput, !passage.transmitted};
   }
   if (!at.front) return {backward, 0.0, true};
-  const Reflection r = reflect_backward(*at.mirror->placed, at.mirror->slope_error_rad, at.normal,
-                                        reversed(backward.direction), key);
+  const Reflection r =
+      reflect_backward(*at.mirror->placed, at.mirror->slope_error_rad, at.normal, -backward.direction, key);
   return {{at.point, r.backward}, r.factor, true};
 }
 
@@ -125,7 +123,7 @@ double BackwardScene::emitted_on(const Ray& backward, double reach_mm, Scratch& 
   double sum = 0.0;
   for (const Source& s : sources_) {
     scratch.clear();
-    const Ray light{backward.origin_mm, reversed(backward.direction)};
+    const Ray light{backward.origin_mm, -backward.direction};
     s.light->add_light_on(s.source_from_world.ray(light), scratch);
     for (const LineLight& l : scratch) {
       if (l.start_mm <= 0.0 && -l.start_mm < reach_mm) sum += s.flux * l.pdf_etendue;
@@ -139,7 +137,7 @@ double BackwardScene::reflected_luminance(const Mirror& mirror, const Vec3& poin
                                           Scratch& scratch) const {
   double sum = 0.0, throughput = 1.0;
   Hit at{&mirror, 0.0, point, normal};
-  Ray backward{point, reversed(out)};
+  Ray backward{point, -out};
   int reflections = exit == Exit::off_glass ? 1 : 0;
   for (int met = 1;; ++met) {
     key.bounce = met;
@@ -171,7 +169,8 @@ double BackwardScene::leaving_share(const Vec3& point, const Direction& start, E
   if (!first) return exit == Exit::onward ? 1.0 : 0.0;
   if (!first->glass) return 0.0;
   const PlacedCoverGlass& plate = glasses_.cover_glasses()[first->glass->glass];
-  const GlassPassage passage = one_side_of_cover_glass(plate, ray, *first->glass, exit == Exit::onward, key);
+  const GlassSides side = exit == Exit::onward ? GlassSides::transmitted : GlassSides::reflected;
+  const GlassPassage passage = through_cover_glass(plate, ray, *first->glass, key, side);
   return passage.throughput > 0.0 && escapes(passage.ray, returning || exit == Exit::off_glass)
              ? passage.throughput
              : 0.0;
@@ -194,7 +193,7 @@ double BackwardScene::leaving_luminance(const Ray& line, ReflectionKey key, Scra
   LUCERNA_CHECK(glasses_.empty(), "{} cover glasses", glasses_.cover_glasses().size());
   double sum = 0.0;
   for (const Source& s : sources_) sum += direct_luminance(s, line, Exit::onward, key, scratch, end_mm);
-  const Ray against{line.at(kFarAway_mm), reversed(line.direction)};
+  const Ray against{line.at(kFarAway_mm), -line.direction};
   const auto last = nearest(against);
   if (!last || !last->front || kFarAway_mm - last->t_mm > end_mm) return sum;
   if (!escapes({last->point, line.direction}, true)) return sum;

@@ -61,7 +61,7 @@ TEST(CoverGlass, ShiftsALineByItsThickness) {
     ASSERT_TRUE(entry.is_hit && !entry.edge);
     EXPECT_NEAR(ray.at(entry.t_mm).z, 4.0, 1e-13);
     const CoverGlassOutcome out =
-        pass_cover_glass(cover_glass, ray.origin_mm, ray.direction.vec(), entry, 0.0, 0.0);
+        pass_cover_glass(cover_glass, ray.origin_mm, ray.direction.vec(), entry, GlassSides::both, 0.0, 0.0);
     ASSERT_TRUE(out.transmitted);
     EXPECT_EQ(out.direction.z, ray.direction.z());
     EXPECT_EQ(out.origin_mm.z, 0.0);
@@ -95,7 +95,7 @@ TEST(CoverGlassStatistical, WaysThroughTheGlassFollowTheSeries) {
   for (int i = 0; i < n; ++i) {
     const double u = rng.uniform(), v = rng.uniform();
     const CoverGlassOutcome out =
-        pass_cover_glass(cover_glass, {0, 0, 5.0}, ray.direction.vec(), entry, u, v);
+        pass_cover_glass(cover_glass, {0, 0, 5.0}, ray.direction.vec(), entry, GlassSides::both, u, v);
     const double ways = (out.origin_mm.x - start) / unit * 2.0 * out.throughput;
     sum[out.transmitted ? 1 : 0] += ways;
     square[out.transmitted ? 1 : 0] += ways * ways;
@@ -108,6 +108,36 @@ TEST(CoverGlassStatistical, WaysThroughTheGlassFollowTheSeries) {
   for (const PlateShares& s : {at.s, at.p}) first_only += s.transmitted;
   const double mean = sum[1] / n, sigma = std::sqrt((square[1] / n - mean * mean) / n);
   EXPECT_GT(std::abs(mean - first_only), 20.0 * sigma);
+}
+
+// Over a grid of u and v: each side asked for alone has its share and its ways through the glass.
+TEST(CoverGlass, OneSideAloneIsThatSideOfBoth) {
+  const CoverGlassView cover_glass{true, 5000.0, 5000.0, 4.0, 2.5, 0.02};
+  const Ray ray = ray_down(50.0, {0.0, 0.0, 4.0});
+  const CoverGlassEntry entry = cover_glass_entry(cover_glass, {0, 0, 5.0}, ray.direction.vec());
+  constexpr int kSteps = 500;
+  double both[2] = {0.0, 0.0}, alone[2] = {0.0, 0.0}, share[2] = {0.0, 0.0};
+  for (int i = 0; i < kSteps * kSteps; ++i) {
+    const double u = (i % kSteps + 0.5) / kSteps, v = (i / kSteps + 0.5) / kSteps;
+    const auto pass = [&](GlassSides sides) {
+      return pass_cover_glass(cover_glass, {0, 0, 5.0}, ray.direction.vec(), entry, sides, u, v);
+    };
+    const CoverGlassOutcome out = pass(GlassSides::both);
+    both[out.transmitted ? 1 : 0] += out.throughput * out.ways;
+    for (const GlassSides side : {GlassSides::reflected, GlassSides::transmitted}) {
+      const CoverGlassOutcome one = pass(side);
+      const std::size_t k = side == GlassSides::transmitted ? 1 : 0;
+      ASSERT_EQ(one.transmitted, k == 1);
+      alone[k] += one.throughput * one.ways;
+      share[k] = one.throughput;
+    }
+  }
+  EXPECT_NEAR(
+      share[0] + share[1],
+      pass_cover_glass(cover_glass, {0, 0, 5.0}, ray.direction.vec(), entry, GlassSides::both, 0.5, 0.5)
+          .throughput,
+      1e-15);
+  for (const int k : {0, 1}) EXPECT_NEAR(alone[k] / both[k], 1.0, 0.01);
 }
 
 TEST(CoverGlass, RimIsBlackAndStartsInsideAreFree) {

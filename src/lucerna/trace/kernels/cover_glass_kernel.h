@@ -116,15 +116,28 @@ struct CoverGlassOutcome {
   Vec3 direction;
 };
 
-/// Where light of one polarisation leaves a plate on one side; `v` in [0, 1) picks how often it went to and
-/// fro inside. 0 goes on where that is beyond the rim, else `throughput`.
-LUCERNA_HD inline CoverGlassOutcome leave_cover_glass(const CoverGlassView& cover_glass, const Vec3& o,
-                                                      const Vec3& d, const CoverGlassEntry& entry,
-                                                      double cos_inside, const PlateShares& share,
-                                                      bool transmitted, double throughput, double v) {
+/// Which of the light that a plate returns and lets through goes on.
+enum class GlassSides { both, transmitted, reflected };
+
+/// `u` and `v` are uniform in [0, 1): u picks polarisation and side in proportion to what they carry (so that
+/// `throughput` is the share that all sides asked for get together), v how often the light went to and fro
+/// inside.
+LUCERNA_HD inline CoverGlassOutcome pass_cover_glass(const CoverGlassView& cover_glass, const Vec3& o,
+                                                     const Vec3& d, const CoverGlassEntry& entry,
+                                                     GlassSides sides, double u, double v) {
+  if (entry.edge) return {};
+  const CoverGlassAtAngle at = cover_glass_at_angle(cover_glass, std::abs(d.z));
+  const double r = sides == GlassSides::transmitted ? 0.0 : 1.0;
+  const double t = sides == GlassSides::reflected ? 0.0 : 1.0;
+  const double s_share = r * at.s.reflected + t * at.s.transmitted;
+  const double all = s_share + r * at.p.reflected + t * at.p.transmitted;
+  double pick = u * all;
   CoverGlassOutcome out;
-  out.throughput = throughput;
-  out.transmitted = transmitted;
+  out.throughput = 0.5 * all;
+  const bool s = pick < s_share;
+  if (!s) pick -= s_share;
+  const PlateShares& share = s ? at.s : at.p;
+  out.transmitted = sides == GlassSides::both ? pick < share.transmitted : sides == GlassSides::transmitted;
   // Ways through the glass: 1, 3, 5 ... if transmitted, 0, 2, 4 ... if reflected; each pair has ra^2 times
   // the light of the pair before, the reflection outside being the first.
   const double ra = share.interface * share.passage, ratio = ra * ra;
@@ -140,7 +153,7 @@ LUCERNA_HD inline CoverGlassOutcome leave_cover_glass(const CoverGlassView& cove
   }
   if (inside && ratio > 0.0) ways += 2.0 * std::floor(std::log(1.0 - rest) / std::log(ratio));
   out.ways = ways;
-  const double shift = ways * cover_glass.thickness_mm / (cover_glass.index * cos_inside);
+  const double shift = ways * cover_glass.thickness_mm / (cover_glass.index * at.cos_inside);
   const bool from_above = d.z < 0.0;
   const bool leaves_above = from_above != out.transmitted;
   out.origin_mm = {o.x + (entry.t_mm + shift) * d.x, o.y + (entry.t_mm + shift) * d.y,
@@ -149,34 +162,6 @@ LUCERNA_HD inline CoverGlassOutcome leave_cover_glass(const CoverGlassView& cove
   if (!on_cover_glass(cover_glass, out.origin_mm.x, out.origin_mm.y))
     out.throughput = ways > 0.0 ? 0.0 : out.throughput;
   return out;
-}
-
-/// `u` and `v` are uniform in [0, 1): u picks polarisation and side in proportion to what they carry (so that
-/// `throughput` is the share that both sides together get), v how often the light went to and fro inside.
-LUCERNA_HD inline CoverGlassOutcome pass_cover_glass(const CoverGlassView& cover_glass, const Vec3& o,
-                                                     const Vec3& d, const CoverGlassEntry& entry, double u,
-                                                     double v) {
-  if (entry.edge) return {};
-  const CoverGlassAtAngle at = cover_glass_at_angle(cover_glass, std::abs(d.z));
-  double pick = u * (at.s.reflected + at.s.transmitted + at.p.reflected + at.p.transmitted);
-  const double throughput = 0.5 * (at.s.reflected + at.s.transmitted + at.p.reflected + at.p.transmitted);
-  const bool s = pick < at.s.reflected + at.s.transmitted;
-  if (!s) pick -= at.s.reflected + at.s.transmitted;
-  const PlateShares& share = s ? at.s : at.p;
-  return leave_cover_glass(cover_glass, o, d, entry, at.cos_inside, share, pick < share.transmitted,
-                           throughput, v);
-}
-
-/// The same for one side alone, whose share `throughput` is.
-LUCERNA_HD inline CoverGlassOutcome one_side_of_cover_glass(const CoverGlassView& cover_glass, const Vec3& o,
-                                                            const Vec3& d, const CoverGlassEntry& entry,
-                                                            bool transmitted, double u, double v) {
-  if (entry.edge) return {};
-  const CoverGlassAtAngle at = cover_glass_at_angle(cover_glass, std::abs(d.z));
-  const double s = transmitted ? at.s.transmitted : at.s.reflected;
-  const double p = transmitted ? at.p.transmitted : at.p.reflected;
-  return leave_cover_glass(cover_glass, o, d, entry, at.cos_inside, u * (s + p) < s ? at.s : at.p,
-                           transmitted, 0.5 * (s + p), v);
 }
 
 /// A plate in the luminaire frame.
@@ -221,14 +206,17 @@ struct GlassPassage {
   bool lost = false;
 };
 
-/// Random numbers of a ray at a plate. Streams below 2^17 belong to whoever emits and to slope errors.
-LUCERNA_HD inline Rng cover_glass_random(const ReflectionKey& key) {
-  return Rng(key.sequence_seed, key.ray, 0x20000u + static_cast<std::uint32_t>(key.bounce));
-}
-
-/// An outcome in the luminaire frame.
-LUCERNA_HD inline GlassPassage placed_passage(const PlacedCoverGlass& cover_glass, const Ray& ray,
-                                              const CoverGlassOutcome& out) {
+/// What becomes of a ray that met a plate. `key.bounce` counts all that the ray hit before, plates included.
+LUCERNA_HD inline GlassPassage through_cover_glass(const PlacedCoverGlass& cover_glass, const Ray& ray,
+                                                   const GlassHit& hit, const ReflectionKey& key,
+                                                   GlassSides sides = GlassSides::both) {
+  const Ray local = cover_glass.glass_from_world.ray(ray);
+  // Streams below 2^17 belong to whoever emits and to slope errors.
+  Rng rng(key.sequence_seed, key.ray, 0x20000u + static_cast<std::uint32_t>(key.bounce));
+  const double u = rng.uniform(), v = rng.uniform();
+  const CoverGlassOutcome out =
+      pass_cover_glass(cover_glass.cover_glass, local.origin_mm, local.direction.vec(),
+                       {true, hit.edge, hit.t_mm}, sides, u, v);
   if (!(out.throughput > 0.0)) return {};
   // What goes straight on keeps the direction that it came with, to the bit.
   const Direction direction =
@@ -239,30 +227,6 @@ LUCERNA_HD inline GlassPassage placed_passage(const PlacedCoverGlass& cover_glas
           static_cast<int>(out.ways),
           {cover_glass.world_from_glass.point(out.origin_mm), direction},
           false};
-}
-
-/// What becomes of a ray that met a plate. `key.bounce` counts all that the ray hit before, plates included.
-LUCERNA_HD inline GlassPassage through_cover_glass(const PlacedCoverGlass& cover_glass, const Ray& ray,
-                                                   const GlassHit& hit, const ReflectionKey& key) {
-  const Ray local = cover_glass.glass_from_world.ray(ray);
-  Rng rng = cover_glass_random(key);
-  const double u = rng.uniform(), v = rng.uniform();
-  return placed_passage(cover_glass, ray,
-                        pass_cover_glass(cover_glass.cover_glass, local.origin_mm, local.direction.vec(),
-                                         {true, hit.edge, hit.t_mm}, u, v));
-}
-
-/// The same for what goes through, or for what is reflected, alone.
-LUCERNA_HD inline GlassPassage one_side_of_cover_glass(const PlacedCoverGlass& cover_glass, const Ray& ray,
-                                                       const GlassHit& hit, bool transmitted,
-                                                       const ReflectionKey& key) {
-  const Ray local = cover_glass.glass_from_world.ray(ray);
-  Rng rng = cover_glass_random(key);
-  const double u = rng.uniform(), v = rng.uniform();
-  return placed_passage(
-      cover_glass, ray,
-      one_side_of_cover_glass(cover_glass.cover_glass, local.origin_mm, local.direction.vec(),
-                              {true, hit.edge, hit.t_mm}, transmitted, u, v));
 }
 
 }  // namespace lucerna
