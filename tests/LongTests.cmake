@@ -4,10 +4,13 @@
 # out there and by the preset clang (scripts/check.sh asan-long tsan-long clang-long runs them). A name that is no test fails Tree.LongTestsAreThere.
 set(lucerna_long_tests
   Advice.SaysWhatHelps
+  BackwardEstimatorStatistical.AgreesWithForwardWhereLightIsReflectedOften
   BackwardImageStatistical.ObserversSeeTheLightThatATraceCounts
   BackwardImageStatistical.PlanesHaveTheLightThatATraceCounts
   BackwardIntensity.FiguresThatAreStoppedAreThoseOfTheCountedRays
+  BackwardIntensityStatistical.TipsOfBeamsAreExact
   BackwardLight.IsFollowedForWhatWantsIt
+  BaseChoice.BringsTheBestFirstAndOthersThatDiffer
   BenchCli.HasAnEntryForEachSceneAndSize
   BodyShadows.ADesignThatKnowsTheBodyIsNearerToTheTargetBehindIt
   CadExport.WhatAMillionTrianglesCannotKeepIsRaisedByLittle
@@ -26,6 +29,7 @@ set(lucerna_long_tests
   Design.EveryOptimizerIsSensible
   Design.HoldsTheHeightLimit
   Design.ReachesTheLightOfAHiddenProfile
+  Design.ResumesInTheMiddleOfASearchToTheSameBits
   Design.ResumesToTheSameBits
   Design.ShapesAFreeFormMirrorAndKeepsItsSymmetry
   DesignCli.ALimitThatTheLightCannotHoldIsSaidAndExitsWithOne
@@ -38,6 +42,7 @@ set(lucerna_long_tests
   DesignRuns.AreWatchedAndGoOnToTheSameBits
   DesignRuns.GiveTheMirrorItsErrorAndItsLight
   DesignRuns.LeaveAProjectThatMakesTheSameLight
+  DesignRuns.StoppedAfterTheSearchTheyHaveTheirResult
   DesignRuns.TraceTheResultAndTryTolerancesOnlyWhereAsked
   DesignZonesCli.ZonesThatAreMetExitWithNought
   DeviceTrace.AdaptiveModelsAreSampledOnTheDevice
@@ -54,6 +59,7 @@ set(lucerna_long_tests
   DistributedTraceTest.PartsOfOtherRunsAreRefusedOnAllRanks
   EtendueLimit.ACoilIsNotJudgedByItsFocusPlane
   Evaluation.DerivativesAgreeWithCentralDifferences
+  ExamplesCli.LedInAParaboloid
   ExamplesCli.LensForATarget
   ExamplesCli.MirrorForATarget
   ExamplesCli.RaysModelAndBeam
@@ -78,10 +84,12 @@ set(lucerna_long_tests
   LensEvaluation.DerivativesAgreeWithCentralDifferences
   MergeCli.SaysWhatDoesNotFit
   MergeCli.ShardsAddToTheBitsOfOneMachine
+  MetricsCoverageStatistical.IntervalsHoldTheTruth
   ModelEtendueStatistical.OfADiskIsTheKnownOne
   ModelEtendueStatistical.OfDiesThatTakeTurnsIsThatOfAll
   ModelsCli.PointsLinesAndPlanesAreCompressedSampledAndTraced
   PlaneTarget.AMirrorIsShapedForARectangleOnTheFloor
+  ProfileSearch.FindsAHiddenMirrorsLightForAnyNumberOfThreads
   ProgramCli.AModelIsMadeSampledComparedAndTraced
   ProgramCli.PhotometricFilesAreDescribedCheckedConvertedAndCompared
   ProjectContent.IsThatOfModelsAndTargetsInMemory
@@ -95,11 +103,13 @@ set(lucerna_long_tests
   SourceEtendue.OfOneModelAndOfTwo
   Tolerances.TheSweepSeesWhatOpticsSays
   TraceNoiseCli.ATraceThatWasTooNoisyGoesOnToTheSameBits
+  TraceSourcesStatistical.EmitterRayFileAndModelMakeOneFarField
   TutorialsCli.AsALibrary
   TutorialsCli.DesignAFloodlight
   TutorialsCli.LedToModel
   TutorialsCli.LensForADesk
   TutorialsCli.ParaboloidToLdt
+  TwoFaceFit.GivesTheSameBitsOnAnyNumberOfThreads
   Wavelengths.GoFromFileThroughModelToFile
   Wavelengths.HangTogetherWithThePlaceWhereTheyDidInTheFile
   WideTrace.TwoLanesGoThroughFiles

@@ -29,7 +29,7 @@ constexpr double kPeakSearch = 0.5;
 /// Kernels move the ends of an arc below this by more than noise does. Those of a wider one are looked for by
 /// `exact` where that knows the light about them to this share: elsewhere it may come by paths that few
 /// points find.
-constexpr double kNarrowArc_deg = 20.0, kWellFound = 0.015;
+constexpr double kNarrowArc_deg = 20.0, kWellFound = 0.025;
 /// Ends of arcs are looked for by `exact` in steps of this share of the arc, and of what the cells resolve;
 /// no further away than this.
 constexpr double kArcStep = 0.05, kResolutionStep = 0.5, kMaxWindow_deg = 20.0;
@@ -57,20 +57,33 @@ struct PlaneResult {
   std::optional<Jackknife> reach;
 };
 
-/// The arc where a share of `full` is reached. Kernels move its ends: there `exact` looks for them.
+/// What `exact` measures of the arc at a place.
+std::optional<Estimate> exact_arc_at(const PointIntensity& exact, double resolution_deg,
+                                     const Section& section, const Section::Place& place,
+                                     const Estimate& threshold) {
+  if (place.outward_deg > kMaxWindow_deg) return std::nullopt;
+  const double size_deg = place.arc.to_deg - place.arc.from_deg;
+  const ArcWindow window{place.outward_deg + resolution_deg,
+                         std::min(kResolutionStep * resolution_deg, kArcStep * size_deg),
+                         size_deg > kNarrowArc_deg ? kWellFound : std::numeric_limits<double>::infinity()};
+  return exact_arc_deg(
+      exact, [&](double angle) { return section.direction(angle); }, place.arc, window, threshold);
+}
+
+/// The arc where a share of `full` is reached. Kernels move its ends: there `exact` looks for them. Of two
+/// places it is the smaller arc.
 std::optional<Estimate> arc_deg(const PointIntensity& exact, double resolution_deg, Section& section,
                                 const Jackknife& full, double share_of_full) {
   const Estimate threshold = share(full, share_of_full).estimate();
   const std::optional<Estimate> counted = section.arc_deg(threshold);
-  const auto near = exact ? section.place(threshold) : std::nullopt;
-  if (!near || near->outward_deg > kMaxWindow_deg) return counted;
-  const double size_deg = near->arc.to_deg - near->arc.from_deg;
-  const ArcWindow window{near->outward_deg + resolution_deg,
-                         std::min(kResolutionStep * resolution_deg, kArcStep * size_deg),
-                         size_deg > kNarrowArc_deg ? kWellFound : std::numeric_limits<double>::infinity()};
-  const auto ends = exact_arc_deg(
-      exact, [&](double angle) { return section.direction(angle); }, near->arc, window, threshold);
-  return ends && is_determined(*ends) ? ends : counted;
+  if (!exact) return counted;
+  std::optional<Estimate> smallest;
+  for (const Section::Place& place : section.places(threshold)) {
+    const auto arc = exact_arc_at(exact, resolution_deg, section, place, threshold);
+    if (!arc || !is_determined(*arc)) return counted;
+    if (!smallest || arc->mean < smallest->mean) smallest = arc;
+  }
+  return smallest ? smallest : counted;
 }
 
 /// A section of the light of a peak.

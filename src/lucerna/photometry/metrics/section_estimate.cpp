@@ -86,6 +86,21 @@ double error_of_ends(const CircleArc& arc, const CircleArc& wide, const CircleAr
   return std::hypot(larger(outer.from_deg, inner.from_deg), larger(outer.to_deg, inner.to_deg));
 }
 
+/// The smallest arc, and the one that leaves out the second widest dark stretch.
+std::vector<CircleArc> two_smallest_arcs(std::vector<CirclePoint> circle, double threshold) {
+  std::vector<CircleArc> out;
+  while (out.size() < 2) {
+    const auto arc = smallest_arc(circle, threshold);
+    if (!arc || !(size(*arc) < 360.0)) break;
+    out.push_back(*arc);
+    for (CirclePoint& p : circle) {
+      const double from_end = p.angle_deg - arc->to_deg;
+      if (from_end - 360.0 * std::floor(from_end / 360.0) < 360.0 - size(*arc)) p.cd = threshold;
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 bool is_determined(const Estimate& angle_deg) {
@@ -178,12 +193,21 @@ std::optional<Estimate> Section::arc_deg(const Estimate& threshold) {
   return found ? std::optional(found->angle) : std::nullopt;
 }
 
-std::optional<Section::Place> Section::place(const Estimate& threshold) {
-  const auto arc = smallest_arc(smoothed(0).middle, threshold.mean);
-  const auto wide = smallest_arc(smoothed(0).high, Levels(threshold).low);
-  if (!arc || !wide) return std::nullopt;
-  const Outside outside(*arc, *wide);
-  return Place{*arc, outside.turned ? size(*wide) : std::max({outside.from_deg, outside.to_deg, 0.0})};
+std::vector<Section::Place> Section::places(const Estimate& threshold) {
+  const std::vector<CircleArc> middle = two_smallest_arcs(smoothed(0).middle, threshold.mean),
+                               wide = two_smallest_arcs(smoothed(0).high, Levels(threshold).low);
+  std::vector<Place> out;
+  double noise_deg = 0.0;
+  for (const CircleArc& arc : middle) {
+    if (!out.empty() && size(arc) - size(out.front().arc) > noise_deg) break;
+    const auto widest =
+        std::find_if(wide.begin(), wide.end(), [&](const CircleArc& w) { return !Outside(arc, w).turned; });
+    if (widest == wide.end()) return {};
+    const Outside outside(arc, *widest);
+    noise_deg = std::max(outside.from_deg, 0.0) + std::max(outside.to_deg, 0.0);
+    out.push_back({arc, std::max({outside.from_deg, outside.to_deg, 0.0})});
+  }
+  return out;
 }
 
 Direction Section::direction(double angle_deg) const { return on_circle(c_deg_, angle_deg); }

@@ -38,7 +38,9 @@ class Section {
     CircleArc arc;
     double outward_deg = 0.0;
   };
-  std::optional<Place> place(const Estimate& threshold);
+  /// One place, or two where noise may decide which of two dark stretches is the wider one; none where the
+  /// threshold is not reached, or the band has other stretches than the section.
+  std::vector<Place> places(const Estimate& threshold);
   /// The direction of an angle of the circle.
   Direction direction(double angle_deg) const;
 

@@ -102,11 +102,31 @@ TEST(SectionEstimateStatistical, AnotherDarkStretchOfTheSameWidthIsNoError) {
   EXPECT_LT(found.error_deg, 0.6);
 }
 
+// A cap about gamma 180 leaves two dark stretches of one width.
+TEST(SectionEstimate, TwoStretchesThatNoiseMayOrderAreTwoPlaces) {
+  const auto with_cap = [](double gamma) {
+    return steep(gamma) + 50.0 * std::clamp(gamma - 150.0, 0.0, 20.0);
+  };
+  const CountedSphere sphere = noisy_sphere(with_cap, 0.05, 1);
+  const auto places = Section(sphere, 0.0, 2.0, 1.0).places({500.0, 5.0});
+  ASSERT_EQ(places.size(), 2U);
+  for (const auto& p : places) EXPECT_NEAR(p.arc.to_deg - p.arc.from_deg, 220.0, 2.0);
+  EXPECT_GT(std::abs(std::remainder(places[0].arc.from_deg - places[1].arc.from_deg, 360.0)), 100.0);
+}
+
+TEST(SectionEstimate, AStretchThatIsWiderForCertainIsOnePlace) {
+  for (const ByGamma& cd : {ByGamma(steep), ByGamma(with_ring)}) {
+    const CountedSphere sphere = noisy_sphere(cd, 0.05, 1);
+    EXPECT_EQ(Section(sphere, 0.0, 2.0, 1.0).places({500.0, 5.0}).size(), 1U);
+  }
+}
+
 TEST(SectionEstimate, SaysNothingWhereTheThresholdIsNotReached) {
   const CountedSphere sphere = noisy_sphere(steep, 0.01, 1);
   Section section(sphere, 0.0, 2.0, 1.0);
   EXPECT_FALSE(section.arc_deg({1500.0, 1.0}));
   EXPECT_FALSE(section.arc_deg({0.0, 0.0}));
+  EXPECT_TRUE(section.places({1500.0, 1.0}).empty());
   EXPECT_TRUE(section.arc_deg({500.0, 1.0}));
 }
 
