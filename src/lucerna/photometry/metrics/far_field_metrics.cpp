@@ -165,29 +165,45 @@ Jackknife independent(const Estimate& e, std::size_t replicates) {
   return Jackknife(replicates).map([&](double) { return e.mean; }).with_error(e.standard_error);
 }
 
-/// A place is as well known as it was, and no better than it has moved.
-void move(FoundPeak& p, const Direction& to) {
-  const TypeCAngles from = type_c_angles(p.direction), at = type_c_angles(to);
-  const double moved_deg = degrees(angle_between(p.direction, to));
-  const double along_deg = degrees(std::abs(at.gamma_rad - from.gamma_rad));
-  const double across_deg = std::sqrt(std::max(0.0, moved_deg * moved_deg - along_deg * along_deg));
-  const double c_moved_deg = across_deg / std::max(std::sin(at.gamma_rad), 1e-9);
-  const auto moved = [](double angle_rad, const Estimate& before, double by_deg) {
-    return Estimate{degrees(angle_rad), std::hypot(before.standard_error, by_deg)};
+/// The peak is at `top`. Its place is known as finely as it was looked for, and intervals hold the places
+/// that may be as high.
+void move(FoundPeak& p, const PointPeak& top) {
+  const TypeCAngles at = type_c_angles(top.direction);
+  double apart_deg = 0.0, along_deg = 0.0, across_deg = 0.0;
+  for (const Direction& d : top.others) {
+    const double gap_deg = degrees(angle_between(d, top.direction));
+    const double gamma_deg = degrees(std::abs(type_c_angles(d).gamma_rad - at.gamma_rad));
+    apart_deg = std::max(apart_deg, gap_deg);
+    along_deg = std::max(along_deg, gamma_deg);
+    across_deg = std::max(across_deg, std::sqrt(std::max(0.0, gap_deg * gap_deg - gamma_deg * gamma_deg)));
+  }
+  const auto error = [&](double farthest_deg) {
+    return std::hypot(top.step_error_deg, farthest_deg / kIntervalErrors);
   };
-  if (p.gamma_deg) p.gamma_deg = moved(at.gamma_rad, *p.gamma_deg, along_deg);
-  const bool on_axis = std::hypot(to.x(), to.y()) < 1e-9;
-  if (on_axis || c_moved_deg > kTurned_deg) p.c_deg.reset();
-  if (p.c_deg) p.c_deg = moved(at.c_rad, *p.c_deg, c_moved_deg);
-  p.direction_error_deg = std::hypot(p.direction_error_deg, moved_deg);
-  p.direction = to;
+  const double c_error_deg = error(across_deg) / std::max(std::sin(at.gamma_rad), 1e-9);
+  p.direction = top.direction;
+  p.direction_error_deg = error(apart_deg);
+  if (p.gamma_deg) p.gamma_deg = Estimate{degrees(at.gamma_rad), error(along_deg)};
+  if (c_error_deg > kTurned_deg) p.c_deg.reset();
+  if (p.c_deg) p.c_deg = Estimate{degrees(at.c_rad), c_error_deg};
+}
+
+/// The higher one of two tops, where the other may be as high too.
+PointPeak higher(PointPeak a, PointPeak b) {
+  if (b.cd.mean > a.cd.mean) std::swap(a, b);
+  if (may_be_as_high(b.cd, a)) {
+    a.others.push_back(b.direction);
+    a.others.insert(a.others.end(), b.others.begin(), b.others.end());
+  }
+  return a;
 }
 
 /// Moves the peak to the brightest direction near those that the cells show.
 void refine_peak(const PointIntensity& exact, const PointPeak& axis, FoundPeak& p) {
-  PointPeak best = brightest_point(exact, p.bright, kPeakSearch * p.bright_spacing_deg);
-  if (axis.cd.mean > best.cd.mean) best = {axis.direction, axis.cd, best.search_error_cd};
-  move(p, best.direction);
+  const PointPeak found = brightest_point(exact, p.bright, kPeakSearch * p.bright_spacing_deg);
+  const PointPeak best =
+      higher(found, {axis.direction, axis.cd, found.search_error_cd, found.step_error_deg, {}});
+  move(p, best);
   p.cd = best.cd;
   p.cd.standard_error = std::hypot(p.cd.standard_error, best.search_error_cd);
   p.values = independent(p.cd, p.values.replicates());

@@ -218,6 +218,25 @@ TEST(FarFieldMetrics, APeakThatMovesToTheAxisHasNoC) {
   EXPECT_FALSE(m.peak->c_deg);
 }
 
+// Cells of few rays know the place of a peak to half a degree, single directions to their search's steps. Of
+// two lobes that differ by half a per cent either may be the peak; one of 90 % is another lobe.
+TEST(FarFieldMetrics, ThePlaceOfAPeakIsKnownAsASearchFindsIt) {
+  const auto place_of = [](double second_cd) {
+    const IntensityOf light = sum(lobe(40.0, 3.0, 0.5), lobe(40.0, 6.0, 0.5, second_cd));
+    const PointIntensity exact = [&](const Direction& d, std::uint64_t, std::uint64_t) {
+      return Estimate{light(d), 1.0};
+    };
+    return far_field_metrics(sphere(light, 2e4), {}, exact).peak.value();
+  };
+  const PeakEstimate one = place_of(900.0), either = place_of(995.0);
+  ASSERT_TRUE(one.gamma_deg && one.c_deg);
+  EXPECT_NEAR(one.gamma_deg->mean, 3.0, 0.05);
+  EXPECT_LT(one.gamma_deg->standard_error, 0.1);
+  EXPECT_NEAR(one.c_deg->mean, 40.0, 3.0 * one.c_deg->standard_error);
+  EXPECT_LT(one.c_deg->standard_error, 2.0);
+  EXPECT_GT(either.direction_error_deg, 1.0);
+}
+
 // The cells show a lobe of 1.3 degrees, single directions one of 1.2: the planes of the axes and the
 // diagonals have the ends of the latter, others those of the cells.
 TEST(FarFieldMetrics, EndsInTheMainPlanesAreOfSingleDirections) {

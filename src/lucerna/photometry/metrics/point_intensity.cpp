@@ -304,6 +304,11 @@ Estimate precise_intensity(const PointIntensity& intensity, const Direction& dir
   return samples > kFirstSamples ? intensity(direction, samples, kFinalSeed) : first;
 }
 
+bool may_be_as_high(const Estimate& cd, const PointPeak& best) {
+  const double error = std::hypot(cd.standard_error, best.cd.standard_error, best.search_error_cd);
+  return best.cd.mean - cd.mean <= kIntervalErrors * error;
+}
+
 PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direction> starts,
                           double radius_deg) {
   LUCERNA_CHECK(!starts.empty(), "nowhere to start");
@@ -333,6 +338,11 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
   std::erase_if(tops, [&](const PointPeak& p) { return p.cd.mean < same_cd; });
   PointPeak best = tops.front();
   best.search_error_cd = search_error(tops);
+  // Even within the last step to either side.
+  best.step_error_deg = kCoarse.last * radius_deg / std::numbers::sqrt3;
+  for (const PointPeak& top : tops) {
+    if (top.direction != best.direction && may_be_as_high(top.cd, best)) best.others.push_back(top.direction);
+  }
   return best;
 }
 
