@@ -143,7 +143,7 @@ Found pattern_search(const PointIntensity& intensity, const Direction& start, do
 PointPeak climbed(const PointIntensity& intensity, const Direction& from, double radius_deg,
                   std::uint64_t samples) {
   const Found tip = pattern_search(intensity, from, radius_deg, {kFineFirst, kFineLast, samples});
-  const PointPeak before = precise_peak(intensity, from);
+  PointPeak before = precise_peak(intensity, from);
   PointPeak top = precise_peak(intensity, tip.direction);
   if (before.cd.mean > top.cd.mean) return before;
   top.cd.standard_error = std::hypot(top.cd.standard_error, kRestOfGain * (top.cd.mean - before.cd.mean));

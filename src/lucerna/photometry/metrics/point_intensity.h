@@ -30,7 +30,7 @@ struct PointPeak {
   double search_error_cd = 0.0;
   /// The error of the direction by the steps of the search, and other tops that may be as high.
   double step_error_deg = 0.0;
-  std::vector<Direction> others;
+  std::vector<Direction> others = {};
 };
 
 /// Whether noise, and what no search saw, leave open which of two tops is the higher one.
