@@ -178,7 +178,7 @@ void move(FoundPeak& p, const PointPeak& top) {
     across_deg = std::max(across_deg, std::sqrt(std::max(0.0, gap_deg * gap_deg - gamma_deg * gamma_deg)));
   }
   const auto error = [&](double farthest_deg) {
-    return std::hypot(top.step_error_deg, farthest_deg / kIntervalErrors);
+    return std::hypot(top.ripple_error_deg, farthest_deg / kIntervalErrors);
   };
   const double c_error_deg = error(across_deg) / std::max(std::sin(at.gamma_rad), 1e-9);
   p.direction = top.direction;
@@ -202,7 +202,7 @@ PointPeak higher(PointPeak a, PointPeak b) {
 void refine_peak(const PointIntensity& exact, const PointPeak& axis, FoundPeak& p) {
   const PointPeak found = brightest_point(exact, p.bright, kPeakSearch * p.bright_spacing_deg);
   const PointPeak best =
-      higher(found, {axis.direction, axis.cd, found.search_error_cd, found.step_error_deg, {}});
+      higher(found, {axis.direction, axis.cd, found.search_error_cd, found.ripple_error_deg, {}});
   move(p, best);
   p.cd = best.cd;
   p.cd.standard_error = std::hypot(p.cd.standard_error, best.search_error_cd);

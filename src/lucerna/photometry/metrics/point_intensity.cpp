@@ -338,8 +338,8 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
   std::erase_if(tops, [&](const PointPeak& p) { return p.cd.mean < same_cd; });
   PointPeak best = tops.front();
   best.search_error_cd = search_error(tops);
-  // Even within the last step to either side.
-  best.step_error_deg = kCoarse.last * radius_deg / std::numbers::sqrt3;
+  // What lies within this counts as one ripple.
+  best.ripple_error_deg = kSameRipple * radius_deg / kIntervalErrors;
   for (const PointPeak& top : tops) {
     if (top.direction != best.direction && may_be_as_high(top.cd, best)) best.others.push_back(top.direction);
   }

@@ -28,8 +28,8 @@ struct PointPeak {
   Direction direction;
   Estimate cd;
   double search_error_cd = 0.0;
-  /// The error of the direction by the steps of the search, and other tops that may be as high.
-  double step_error_deg = 0.0;
+  /// The error of the direction on its ripple, and other tops that may be as high.
+  double ripple_error_deg = 0.0;
   std::vector<Direction> others = {};
 };
 
