@@ -70,6 +70,8 @@ Estimate half_estimate(std::span<const double> values, bool odd) {
   return {mean, std::sqrt(std::max(0.0, squares / count - mean * mean) / (count - 1.0))};
 }
 
+double error_of_rays(double value, double ray) { return std::sqrt(ray * (value + ray)); }
+
 Jackknife ratio(const Jackknife& numerator, const Jackknife& denominator) {
   Jackknife out(numerator);
   for (std::size_t i = 0; i < out.values().size(); ++i) {

@@ -63,6 +63,10 @@ class Jackknife {
 /// halves of a run are independent: one can choose what the other is asked about.
 Estimate half_estimate(std::span<const double> values, bool odd);
 
+/// The standard error of what n rays carried is that of n + 1: replicates of few rays know a variance badly.
+/// `ray`: what one effective ray carries, variance over value.
+double error_of_rays(double value, double ray);
+
 /// A ratio, value by value; 0 where the denominator is 0.
 Jackknife ratio(const Jackknife& numerator, const Jackknife& denominator);
 

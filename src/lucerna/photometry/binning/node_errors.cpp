@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/photometry/binning/jackknife.h"
 
 namespace lucerna {
 
@@ -50,7 +51,7 @@ std::vector<double> pooled_errors(const IntensityDistribution& d, std::span<cons
       const double ray =
           near.flux > 0.0 && near.squares > 0.0 ? near.squares / near.flux : all.squares / all.flux;
       const std::size_t i = c * gammas + g;
-      errors[i] = std::sqrt(ray * (of[i].flux + ray)) / solid_angle_sr[i];
+      errors[i] = error_of_rays(of[i].flux, ray) / solid_angle_sr[i];
     }
   }
   return errors;

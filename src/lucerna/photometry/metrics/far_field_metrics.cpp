@@ -111,13 +111,11 @@ PlaneResult measure_plane(const CountedSphere& sphere, double c_deg, bool up, co
   return r;
 }
 
-/// Sixteen replicates of few rays know a variance badly. Variance over flux is what one effective ray
-/// carries; where n were counted the error is that of n + 1, as at the angles of the grid.
+/// As at the angles of the grid.
 Estimate flux_estimate(const Jackknife& flux) {
   Estimate e = flux.estimate();
   if (!(e.mean > 0.0)) return e;
-  const double ray = e.standard_error * e.standard_error / e.mean;
-  e.standard_error = std::sqrt(ray * (e.mean + ray));
+  e.standard_error = error_of_rays(e.mean, e.standard_error * e.standard_error / e.mean);
   return e;
 }
 
@@ -188,10 +186,12 @@ void move(FoundPeak& p, const PointPeak& top) {
   if (p.c_deg) p.c_deg = Estimate{degrees(at.c_rad), c_error_deg};
 }
 
-/// The higher one of two tops, where the other may be as high too.
+/// The higher one of two tops, where the other may be as high too: noise, and what no search saw, leave that
+/// open.
 PointPeak higher(PointPeak a, PointPeak b) {
   if (b.cd.mean > a.cd.mean) std::swap(a, b);
-  if (may_be_as_high(b.cd, a)) {
+  const double error = std::hypot(a.cd.standard_error, b.cd.standard_error, a.search_error_cd);
+  if (a.cd.mean - b.cd.mean <= kIntervalErrors * error) {
     a.others.push_back(b.direction);
     a.others.insert(a.others.end(), b.others.begin(), b.others.end());
   }

@@ -304,11 +304,6 @@ Estimate precise_intensity(const PointIntensity& intensity, const Direction& dir
   return samples > kFirstSamples ? intensity(direction, samples, kFinalSeed) : first;
 }
 
-bool may_be_as_high(const Estimate& cd, const PointPeak& best) {
-  const double error = std::hypot(cd.standard_error, best.cd.standard_error, best.search_error_cd);
-  return best.cd.mean - cd.mean <= kIntervalErrors * error;
-}
-
 PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direction> starts,
                           double radius_deg) {
   LUCERNA_CHECK(!starts.empty(), "nowhere to start");
@@ -340,9 +335,7 @@ PointPeak brightest_point(const PointIntensity& intensity, std::span<const Direc
   best.search_error_cd = search_error(tops);
   // What lies within this counts as one ripple.
   best.ripple_error_deg = kSameRipple * radius_deg / kIntervalErrors;
-  for (const PointPeak& top : tops) {
-    if (top.direction != best.direction && may_be_as_high(top.cd, best)) best.others.push_back(top.direction);
-  }
+  for (std::size_t k = 1; k < tops.size(); ++k) best.others.push_back(tops[k].direction);
   return best;
 }
 

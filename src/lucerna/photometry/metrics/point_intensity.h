@@ -28,13 +28,10 @@ struct PointPeak {
   Direction direction;
   Estimate cd;
   double search_error_cd = 0.0;
-  /// The error of the direction on its ripple, and other tops that may be as high.
+  /// The error of the direction on its ripple, and other tops. These differ by what the search error allows.
   double ripple_error_deg = 0.0;
   std::vector<Direction> others = {};
 };
-
-/// Whether noise, and what no search saw, leave open which of two tops is the higher one.
-bool may_be_as_high(const Estimate& cd, const PointPeak& best);
 
 /// The brightest direction by pattern searches, each within about `radius_deg` of where it starts: about the
 /// brightest eight of `starts`, then about places up to four radii from the best top. The value is from

@@ -71,7 +71,7 @@ std::vector<double> pooled_errors(const std::vector<CirclePoint>& section,
     }
     const double ray = light > 0.0 ? noise / light : 0.0;
     const auto i = static_cast<std::size_t>(k);
-    out.push_back(variance[i] > 0.0 ? std::sqrt(ray * (section[i].cd + ray)) : 0.0);
+    out.push_back(variance[i] > 0.0 ? error_of_rays(section[i].cd, ray) : 0.0);
   }
   return out;
 }
