@@ -27,6 +27,10 @@ struct LampSet {
   friend bool operator==(const LampSet&, const LampSet&) = default;
 };
 
+/// File generation types of LM-63-2019 (its table 2): intensities of a computer simulation; not said how.
+inline constexpr const char* kGenerationSimulated = "1.00010";
+inline constexpr const char* kGenerationUndefined = "1.00001";
+
 /// What a photometric file says of the luminaire beside its intensities. Text is UTF-8, without line ends.
 /// Lengths in mm in EULUMDAT's sense: length along C90-C270, width along C0-C180; width 0 with a length is a
 /// circle of that diameter.
@@ -56,6 +60,10 @@ struct LuminaireData {
   /// Further LM-63 keywords in their order, without brackets; a text with line ends was continued with
   /// [MORE].
   std::vector<std::pair<std::string, std::string>> keywords;
+  /// How the intensities were found: file generation type of LM-63-2019, as in the file; empty if not said.
+  std::string generation_type{};
+  /// More about that: text of LM-63-2019's [FILEGENINFO]; empty: none.
+  std::string generation_info{};
   friend bool operator==(const LuminaireData&, const LuminaireData&) = default;
 };
 
@@ -67,7 +75,6 @@ struct PhotometricOrigin {
   std::size_t planes = 0, gammas = 0;  ///< angles that the file lists
   double multiplier = 1.0;             ///< LM-63 multiplier, EULUMDAT conversion factor; applied
   double ballast_factor = 1.0;         ///< LM-63, applied
-  std::string file_generation;         ///< second value of LM-63's record 2, as in the file
   std::array<double, 3> raw_size{};    ///< LM-63 width, length, height as in the file
   /// True if that is in feet.
   bool feet = false;
@@ -117,10 +124,6 @@ struct PhotometricWriteOptions {
   /// Significant digits of the peak; all other intensities get as many decimals. 17 or more: shortest text
   /// that reads back to the same double.
   int digits = 7;
-  /// What LM-63-2019 calls the file generation type; 1.00010 is computer simulation (LM-63-2019 table 2).
-  std::string file_generation_type = "1.00010";
-  /// Text of [FILEGENINFO]; empty: none is written.
-  std::string file_generation_info = "Computer simulation by Lucerna (light tracing)";
 };
 
 /// The text of an IES LM-63 file, CR LF, symmetry found at the printed precision, absolute photometry as

@@ -165,6 +165,8 @@ void visit_luminaire(Luminaire& l, const Visit& visit) {
   visit("type_indicator", l.type_indicator);
   visit("direct_ratios", l.direct_ratios);
   visit("keywords", l.keywords);
+  visit("generation_type", l.generation_type);
+  visit("generation_info", l.generation_info);
 }
 
 template <class Lamp, class Visit>

@@ -284,6 +284,7 @@ py::object detector(const TracedPointer& t, const std::string& name) {
     if (f.field.name != name) continue;
     auto file = std::make_shared<PhotometricFile>();
     file->distribution = f.intensity.distribution;
+    file->luminaire.generation_type = kGenerationSimulated;
     return py::cast(Intensity{file, f.intensity.standard_error_cd, f.metrics.flux, t, i});
   }
   for (const auto* images : {&counted->planes, &counted->luminances}) {

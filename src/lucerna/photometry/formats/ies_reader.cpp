@@ -111,13 +111,14 @@ void assign_keywords(const std::vector<Keyword>& keywords, PhotometricFile& file
                                                          {"MANUFAC", &l.manufacturer},
                                                          {"LUMCAT", &l.catalog_number},
                                                          {"LUMINAIRE", &l.name},
-                                                         {"LAMP", &lamp}};
+                                                         {"LAMP", &lamp},
+                                                         {"FILEGENINFO", &l.generation_info}};
   std::vector<std::string> seen;
   for (const Keyword& keyword : keywords) {
     const std::string key = upper_case(keyword.key);
     const auto field =
         std::find_if(std::begin(fields), std::end(fields), [&](const auto& f) { return key == f.first; });
-    if (key == "_INTENSITYUNITS" || key == "FILEGENINFO") continue;
+    if (key == "_INTENSITYUNITS") continue;
     if (field == std::end(fields) || std::find(seen.begin(), seen.end(), key) != seen.end()) {
       l.keywords.emplace_back(keyword.key, keyword.text);
       continue;
@@ -162,7 +163,6 @@ double intensity_factor(const IesBody& body, int year, PhotometricOrigin& origin
     log.fail(body.first_line, "candela multiplier {}, more than 0 expected", body.multiplier);
   origin.multiplier = body.multiplier;
   origin.ballast_factor = body.ballast_factor;
-  origin.file_generation = std::string(body.second_text);
   if (!(body.ballast_factor > 0.0)) {
     log.repair(body.first_line, "ballast factor {}: 1 taken", body.ballast_factor);
     origin.ballast_factor = 1.0;
@@ -184,6 +184,18 @@ double intensity_factor(const IesBody& body, int year, PhotometricOrigin& origin
   }
   log.note(body.v_line, "ballast-lamp photometric factor {} applied", body.second_factor);
   return factor * body.second_factor;
+}
+
+/// LM-63-2019's second value of record 2. What is no such type (a ballast's factor, as before 1995) says
+/// nothing.
+void assign_generation(const IesBody& body, int year, LuminaireData& luminaire, RepairLog& log) {
+  if (year < 2019 || body.second_text == kGenerationUndefined) return;
+  if (body.second_factor >= 1.0 && body.second_factor < 1.2) {
+    luminaire.generation_type = std::string(body.second_text);
+  } else {
+    log.repair(body.v_line, "file generation type {}, 1 to 1.111 expected: taken as not said",
+               body.second_text);
+  }
 }
 
 /// LM-63's luminous opening; round and other shapes by negative values.
@@ -399,6 +411,7 @@ PhotometricFile read_ies(std::string_view bytes, std::string_view name,
   const IesBody body = parse_ies_body(lines, at + 1, included, log);
   if (included) report_tilt(body, at + 2, file.origin, log);
   double factor = intensity_factor(body, year, file.origin, log);
+  assign_generation(body, year, file.luminaire, log);
   const std::optional<double> radiant = radiant_unit(keywords, log);
   if (radiant) factor *= *radiant;
   assign_sizes(body, options.ies_turn, file, log);

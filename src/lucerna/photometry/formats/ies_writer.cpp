@@ -68,8 +68,7 @@ const char* header(PhotometricFormat format) {
 
 std::string or_unknown(const std::string& text) { return text.empty() ? "unknown" : text; }
 
-void append_keywords(std::string& out, const PhotometricFile& file, PhotometricFormat format,
-                     const PhotometricWriteOptions& options) {
+void append_keywords(std::string& out, const PhotometricFile& file, PhotometricFormat format) {
   const LuminaireData& l = file.luminaire;
   append_keyword(out, "TEST", or_unknown(l.report_number));
   append_keyword(out, "TESTLAB", or_unknown(l.test_lab));
@@ -78,8 +77,8 @@ void append_keywords(std::string& out, const PhotometricFile& file, PhotometricF
   if (!l.catalog_number.empty()) append_keyword(out, "LUMCAT", l.catalog_number);
   if (!l.name.empty()) append_keyword(out, "LUMINAIRE", l.name);
   if (!l.lamps.empty() && !l.lamps.front().type.empty()) append_keyword(out, "LAMP", l.lamps.front().type);
-  if (format == PhotometricFormat::ies_2019 && !options.file_generation_info.empty()) {
-    append_keyword(out, "FILEGENINFO", options.file_generation_info);
+  if (format == PhotometricFormat::ies_2019 && !l.generation_info.empty()) {
+    append_keyword(out, "FILEGENINFO", l.generation_info);
   }
   if (file.distribution.unit == FluxUnit::watt) append_keyword(out, "_INTENSITYUNITS", "W/sr");
   for (const auto& [key, text] : l.keywords) append_keyword(out, key, text);
@@ -141,7 +140,7 @@ std::string ies_text(const PhotometricFile& file, PhotometricFormat format,
 
   std::string out;
   append_line(out, header(format));
-  append_keywords(out, file, format, options);
+  append_keywords(out, file, format);
   append_line(out, "TILT=NONE");
   const std::optional<double> lamp_flux = lamp_flux_lm(l);
   const int lamps = !l.lamps.empty() && l.lamps.front().count > 0 ? l.lamps.front().count : 1;
@@ -156,9 +155,9 @@ std::string ies_text(const PhotometricFile& file, PhotometricFormat format,
     record.add("2");
     append_sizes(record, l, options.ies_turn);
   }
-  append_line(
-      out, fmt::format("1 {} {}", format == PhotometricFormat::ies_2019 ? options.file_generation_type : "1",
-                       number_text(l.input_watts, 3)));
+  const std::string generation = l.generation_type.empty() ? kGenerationUndefined : l.generation_type;
+  append_line(out, fmt::format("1 {} {}", format == PhotometricFormat::ies_2019 ? generation : "1",
+                               number_text(l.input_watts, 3)));
   {
     Record record(out);
     for (const double g : d.gamma_deg) record.add(number_text(g, -1));

@@ -29,15 +29,27 @@ TEST(IesWriter, HeadersAndKeywords) {
   EXPECT_TRUE(
       text.starts_with("IES:LM-63-2019\r\n[TEST] unknown\r\n[TESTLAB] unknown\r\n[ISSUEDATE] unknown\r\n"
                        "[MANUFAC] Lucerna\r\n"));
-  EXPECT_NE(text.find("[FILEGENINFO] "), std::string::npos);
   const std::string old = ies_text(example(), PhotometricFormat::ies_2002);
   EXPECT_TRUE(old.starts_with("IESNA:LM-63-2002\r\n"));
+}
+
+// Measured light must not become simulated by being written again.
+TEST(IesWriter, SaysHowTheLightWasFoundOnlyAsItIsTold) {
+  PhotometricFile file = example();
+  EXPECT_EQ(ies_text(file, PhotometricFormat::ies_2019).find("[FILEGENINFO]"), std::string::npos);
+  file.luminaire.generation_type = "1.10100";
+  file.luminaire.generation_info = "lumen scaled";
+  const std::string text = ies_text(file, PhotometricFormat::ies_2019);
+  EXPECT_NE(text.find("[FILEGENINFO] lumen scaled\r\n"), std::string::npos);
+  EXPECT_NE(text.find("\r\n1 1.10100 12.5\r\n"), std::string::npos);
+  const std::string old = ies_text(file, PhotometricFormat::ies_2002);
   EXPECT_EQ(old.find("[FILEGENINFO]"), std::string::npos);
+  EXPECT_NE(old.find("\r\n1 1 12.5\r\n"), std::string::npos);
 }
 
 TEST(IesWriter, UnturnedSwapsSizesAndPrintsTheWholeCircle) {
   EXPECT_EQ(body(ies_text(example(), PhotometricFormat::ies_2019)),
-            "1 -1 1 3 5 1 2 1.1 0.1 0\r\n1 1.00010 12.5\r\n0 45 90\r\n0 90 180 270 360\r\n"
+            "1 -1 1 3 5 1 2 1.1 0.1 0\r\n1 1.00001 12.5\r\n0 45 90\r\n0 90 180 270 360\r\n"
             "100 50 0\r\n100 80 0\r\n100 50 0\r\n100 20 0\r\n100 50 0\r\n");
 }
 

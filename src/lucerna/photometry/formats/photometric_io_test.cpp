@@ -168,8 +168,23 @@ TEST(PhotometricIo, SizesAndText) {
   EXPECT_FALSE(relative.absolute);
   EXPECT_EQ(relative.lamps.front().count, 2);
   EXPECT_EQ(relative.lamps.front().flux_lm, 3000.0);
-  EXPECT_EQ(read_photometric_file(own("ies_2019_fgt_1.10100_accredited_scaled.ies")).origin.file_generation,
-            "1.10100");
+}
+
+TEST(PhotometricIo, HowTheLightWasFoundIsKept) {
+  const PhotometricFile measured =
+      read_photometric_file(own("ies_2019_fgt_1.10100_accredited_scaled.ies"), {.strict = true});
+  EXPECT_EQ(measured.luminaire.generation_type, "1.10100");
+  EXPECT_EQ(measured.luminaire.generation_info, "lumen scaled");
+  const std::string text = ies_text(measured, PhotometricFormat::ies_2019);
+  EXPECT_EQ(read_ies(text, "again", {.strict = true}).luminaire, measured.luminaire);
+  // A factor of the ballast where 2019 has the type: not applied, and said.
+  std::string wrong = text;
+  wrong.replace(wrong.find("1.10100"), 7, "0.93");
+  const PhotometricFile read = read_ies(wrong, "wrong", {});
+  EXPECT_EQ(read.luminaire.generation_type, "");
+  EXPECT_EQ(read.distribution.cd, measured.distribution.cd);
+  ASSERT_EQ(read.repairs.size(), 1u);
+  EXPECT_NE(ies_text(read, PhotometricFormat::ies_2019).find("\r\n1 1.00001 "), std::string::npos);
 }
 
 // 2000 cos^3: the flux of I0 cos^3 gamma over a hemisphere is 2 pi I0 / 4; 15 degree steps cost the trapezoid

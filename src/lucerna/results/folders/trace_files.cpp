@@ -27,6 +27,8 @@ PhotometricFile photometric_file(const FarFieldResult& figures, const TraceOrigi
   file.luminaire.manufacturer = "Lucerna simulation";
   file.luminaire.report_number = fmt::format("lucerna-{}", version());
   file.luminaire.test_lab = "none (computer simulation)";
+  file.luminaire.generation_type = kGenerationSimulated;
+  file.luminaire.generation_info = "Computer simulation by Lucerna (light tracing)";
   file.luminaire.luminous_length_mm = file.luminaire.length_mm = origin.luminous_length_mm;
   file.luminaire.luminous_width_mm = file.luminaire.width_mm = origin.luminous_width_mm;
   return file;
