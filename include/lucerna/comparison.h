@@ -22,7 +22,7 @@ struct FileComparisonOptions {
   std::uint64_t rays = 4'000'000, seed = 1;
   /// Sides of the square cells on the focus plane, um, above 0.
   std::vector<double> cells_um{12.0, 24.0, 48.0, 96.0, 240.0};
-  /// How IES and EULUMDAT files are read.
+  /// How IES and EULUMDAT files are read; with `strict` ray files that raise a warning are refused too.
   PhotometricReadOptions photometric;
   /// Folder for pictures, which is there: luminance images of rays, polar.svg of light distributions. Empty:
   /// no pictures.

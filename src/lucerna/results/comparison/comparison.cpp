@@ -44,6 +44,7 @@ Side read_side(const fs::path& path, std::uint64_t stream, const FileComparisonO
     side.unit = set.header.flux_unit;
     side.rays = std::move(set.rays);
     add_named_warnings(path, found, warnings);
+    if (options.photometric.strict && !warnings.empty()) throw InputError(warnings.front());
     return side;
   }
   side.model = load_source_model(path);
@@ -94,9 +95,13 @@ RayFileComparison compare_sides(const Side& reference, const Side& test,
 }
 
 /// A light distribution, with the standard errors of its values where they are known.
-FarFieldTable read_distribution(const fs::path& path, const FileComparisonOptions& options) {
+FarFieldTable read_distribution(const fs::path& path, const FileComparisonOptions& options,
+                                std::vector<std::string>& warnings) {
   if (!fs::is_directory(path)) {
-    return {path.string(), read_photometric_file(path, options.photometric).distribution, {}};
+    PhotometricFile file = read_photometric_file(path, options.photometric);
+    for (const Diagnostic& repair : file.repairs)
+      warnings.push_back(fmt::format("{}: {}", path.string(), to_string(repair)));
+    return {path.string(), std::move(file.distribution), {}};
   }
   TraceFolder folder = read_trace_folder(path);
   if (folder.far_fields.empty()) {
@@ -106,9 +111,9 @@ FarFieldTable read_distribution(const fs::path& path, const FileComparisonOption
 }
 
 LightFileComparison compare_light(const fs::path& reference_path, const fs::path& test_path,
-                                  const FileComparisonOptions& options) {
-  const FarFieldTable reference = read_distribution(reference_path, options);
-  const FarFieldTable test = read_distribution(test_path, options);
+                                  const FileComparisonOptions& options, std::vector<std::string>& warnings) {
+  const FarFieldTable reference = read_distribution(reference_path, options, warnings);
+  const FarFieldTable test = read_distribution(test_path, options, warnings);
   if (reference.distribution.unit != test.distribution.unit) {
     throw InputError(fmt::format("{}: found {}, expected {} as {} has", test_path.string(),
                                  intensity_symbol(test.distribution.unit),
@@ -155,7 +160,7 @@ FileComparison compare(const fs::path& reference, const fs::path& test, const Fi
   }
   FileComparison found;
   if (light) {
-    found.light = compare_light(reference, test, options);
+    found.light = compare_light(reference, test, options, found.warnings);
     return found;
   }
   const Side a = read_side(reference, 0, options, found.warnings, progress);

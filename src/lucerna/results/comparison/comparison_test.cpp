@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lucerna/core/io/file.h"
@@ -10,6 +11,7 @@
 #include "lucerna/photometric_file.h"
 #include "lucerna/ray_file.h"
 #include "lucerna/source.h"
+#include "tests/support/paths.h"
 #include "tests/support/random_rays.h"
 #include "tests/support/temp_dir.h"
 
@@ -125,6 +127,31 @@ TEST(Comparison, OfDifferentKindsIsRefused) {
   const std::string folder = refused("a.ldt", "folder");
   EXPECT_NE(folder.find("folder: found no result.json, expected the folder of a trace"), std::string::npos)
       << folder;
+}
+
+// What was repaired is named; strictly, it is refused.
+TEST(Comparison, NamesWhatWasOddInTheFiles) {
+  const test::TempDir dir;
+  const fs::path repaired = test::source_dir() / "tests/data/photometry/own_ies_missing_360_plane.ies";
+  const FileComparison light = compare(repaired, repaired);
+  const auto names_the_repair = [](const std::string& warning) {
+    return warning.find("own_ies_missing_360_plane.ies: ") != std::string::npos &&
+           warning.find("end at 315") != std::string::npos;
+  };
+  EXPECT_EQ(std::ranges::count_if(light.warnings, names_the_repair), 2);
+  FileComparisonOptions strict;
+  strict.rays = 1000;
+  strict.photometric.strict = true;
+  EXPECT_THROW(static_cast<void>(compare(repaired, repaired, strict)), InputError);
+
+  write_disk(dir / "a.tm25ray", 1.0, 1);
+  EXPECT_NO_THROW(static_cast<void>(compare(dir / "a.tm25ray", dir / "a.tm25ray", strict)));
+  // Bytes behind the rays.
+  write_file(dir / "b.tm25ray", read_file(dir / "a.tm25ray", 1 << 26) + "tail");
+  ASSERT_FALSE(compare(dir / "a.tm25ray", dir / "b.tm25ray").warnings.empty());
+  const std::string said = test::message_of<InputError>(
+      [&] { static_cast<void>(compare(dir / "a.tm25ray", dir / "b.tm25ray", strict)); });
+  EXPECT_NE(said.find("b.tm25ray: "), std::string::npos) << said;
 }
 
 TEST(Comparison, OfDifferentUnitsIsRefused) {
