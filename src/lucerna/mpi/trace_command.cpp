@@ -25,15 +25,15 @@ namespace {
 namespace fs = std::filesystem;
 
 struct MpiTraceArguments {
-  std::string project, output, noise = "1%", time = "60", rays, seed, sequence = "sobol", chunk,
-                               checkpoint = "300", report;
+  std::string project, output, noise = "1%", time = "60", rays, seed, sequence, chunk, checkpoint = "300",
+                               report;
   bool resume = false;
 };
 
 TraceOptions trace_options(const MpiTraceArguments& a) {
   TraceOptions options;
   if (!a.seed.empty()) options.seed = parse_count(a.seed);
-  options.sequence = sequence_kind(a.sequence);
+  if (!a.sequence.empty()) options.sequence = sequence_kind(a.sequence);
   if (a.rays.empty()) return options;
   const RayRange range = parse_range(a.rays);
   options.first_ray = range.first;
@@ -69,7 +69,7 @@ std::optional<TraceResult> finished_trace(const MpiTraceArguments& a, const Trac
   std::string numbers;
   together(ranks, [&] {
     if (!a.resume || !ranks.is_first()) return;
-    from = stored_trace(a.output, a.seed, origin);
+    from = stored_trace(a.output, a.seed, a.sequence, origin);
     if (from) numbers = fmt::format("{} {}", from->seed, to_string(from->sequence));
   });
   numbers = ranks.broadcast(numbers);
@@ -180,7 +180,8 @@ void add_mpi_trace(CLI::App& app, Session& session, Ranks& ranks) {
   command.option("--chunk", a.chunk,
                  "Rays that a rank takes at a time (default: by their number, 2^24 at most)");
   command.option("--seed", a.seed, "Seed of the random numbers (default 1; with --resume that of the trace)");
-  command.option("--sequence", a.sequence, "random or sobol");
+  command.option("--sequence", a.sequence,
+                 "random or sobol (default sobol; with --resume that of the trace)");
   command.option("--report", a.report, "Also write the report as one HTML file");
   command.flag("--force", session.force, "Write into a folder that is not empty");
   session.add_json(command);

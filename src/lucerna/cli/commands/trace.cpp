@@ -18,8 +18,7 @@ namespace lucerna::cli {
 namespace {
 
 struct TraceArguments {
-  std::string project, output, rays, noise = "1%", time = "60", seed, sequence = "sobol", device = "auto",
-                                     report;
+  std::string project, output, rays, noise = "1%", time = "60", seed, sequence, device = "auto", report;
   bool resume = false;
 };
 
@@ -28,7 +27,7 @@ TraceOptions trace_options(const TraceArguments& a) {
   options.device = trace_device(a.device);
   if (options.device == TraceDevice::cuda) require_cuda();
   if (!a.seed.empty()) options.seed = parse_count(a.seed);
-  options.sequence = sequence_kind(a.sequence);
+  if (!a.sequence.empty()) options.sequence = sequence_kind(a.sequence);
   if (!a.rays.empty()) {
     const RayRange range = parse_range(a.rays);
     options.first_ray = range.first;
@@ -39,7 +38,8 @@ TraceOptions trace_options(const TraceArguments& a) {
 
 NoiseTrace run_rays(const TraceArguments& a, const Scene& scene, const TraceOptions& options,
                     const TraceOrigin& origin, Session& session) {
-  std::optional<TraceResult> from = a.resume ? stored_trace(a.output, a.seed, origin) : std::nullopt;
+  std::optional<TraceResult> from =
+      a.resume ? stored_trace(a.output, a.seed, a.sequence, origin) : std::nullopt;
   if (a.resume && !from) session.note(fmt::format("{}: no trace yet, starting anew", a.output));
   if (!a.rays.empty()) {
     NoiseTrace traced = trace_rays(scene, options, std::move(from), session.progress());
@@ -103,13 +103,17 @@ void add_trace(CLI::App& app, Session& session, int& exit_code) {
   command.required("-o,--output", a.output, "Folder for the results");
   command.option("--noise", a.noise,
                  "Trace until no angle above 1 % of the peak has a larger error, as a share of the peak");
-  command.option("--time", a.time, "Seconds after which to stop with the noise that is left");
+  command.option("--time", a.time,
+                 "Seconds after which to stop with the noise that is left. Neither limit acts with a ray "
+                 "file as source, "
+                 "a rays detector or no far field: a file is traced once, other sources share 2^20 rays");
   command.option("--rays", a.rays, "Instead of both: a number of rays, or a range A:B of ray numbers");
   command.exclusive("--rays", "--noise");
   command.exclusive("--rays", "--time");
   command.flag("--resume", a.resume, "Go on with the trace in the folder");
   command.option("--seed", a.seed, "Seed of the random numbers (default 1; with --resume that of the trace)");
-  command.option("--sequence", a.sequence, "random or sobol");
+  command.option("--sequence", a.sequence,
+                 "random or sobol (default sobol; with --resume that of the trace)");
   command.option("--device", a.device, "cpu, cuda or auto");
   command.option("--report", a.report, "Also write the report as one HTML file");
   command.flag("--force", session.force, "Write into a folder that is not empty");

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/cli/output/stored_trace.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <utility>
 
 #include "lucerna/cli/parse/arguments.h"
 #include "lucerna/core/io/error.h"
+#include "lucerna/random.h"
 #include "lucerna/results/folders/trace_file.h"
 
 namespace lucerna::cli {
 
 std::optional<TraceResult> stored_trace(const std::string& folder, const std::string& seed,
-                                        const TraceOrigin& origin) {
+                                        const std::string& sequence, const TraceOrigin& origin) {
   const std::filesystem::path file = std::filesystem::path(folder) / kTraceFileName;
   if (!std::filesystem::exists(file)) return std::nullopt;
   StoredTrace stored = read_trace_file(file);
@@ -24,6 +27,10 @@ std::optional<TraceResult> stored_trace(const std::string& folder, const std::st
   if (!seed.empty() && parse_count(seed) != stored.result.seed) {
     throw InputError(
         fmt::format("{}: was traced with seed {}, found --seed {}", folder, stored.result.seed, seed));
+  }
+  if (!sequence.empty() && sequence_kind(sequence) != stored.result.sequence) {
+    throw InputError(fmt::format("{}: was traced with sequence {}, found --sequence {}", folder,
+                                 to_string(stored.result.sequence), sequence));
   }
   return std::move(stored.result);
 }

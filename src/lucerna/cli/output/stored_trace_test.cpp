@@ -24,9 +24,10 @@ class StoredTraceCli : public testing::Test {
     result_ = trace(project.scene, {.last_ray = 1000, .seed = 5});
     write_trace_file(dir_ / kTraceFileName, result_, origin_);
   }
-  std::string refusal(const TraceOrigin& origin, const std::string& seed = "") {
+  std::string refusal(const TraceOrigin& origin, const std::string& seed = "",
+                      const std::string& sequence = "") {
     try {
-      static_cast<void>(stored_trace(dir_.path().string(), seed, origin));
+      static_cast<void>(stored_trace(dir_.path().string(), seed, sequence, origin));
     } catch (const InputError& e) {
       return e.what();
     }
@@ -38,18 +39,18 @@ class StoredTraceCli : public testing::Test {
 };
 
 TEST_F(StoredTraceCli, IsTheOneThatWasWritten) {
-  const auto stored = stored_trace(dir_.path().string(), "", origin_);
+  const auto stored = stored_trace(dir_.path().string(), "", "", origin_);
   ASSERT_TRUE(stored);
   EXPECT_EQ(encode_trace(*stored, origin_), encode_trace(result_, origin_));
-  EXPECT_TRUE(stored_trace(dir_.path().string(), "5", origin_));
+  EXPECT_TRUE(stored_trace(dir_.path().string(), "5", "sobol", origin_));
 }
 
 TEST_F(StoredTraceCli, IsNothingInAnEmptyFolder) {
   const test::TempDir empty;
-  EXPECT_FALSE(stored_trace(empty.path().string(), "", origin_));
+  EXPECT_FALSE(stored_trace(empty.path().string(), "", "", origin_));
 }
 
-TEST_F(StoredTraceCli, OfAnotherProjectVersionOrSeedIsRefused) {
+TEST_F(StoredTraceCli, OfAnotherProjectVersionSeedOrSequenceIsRefused) {
   TraceOrigin other = origin_;
   other.scene_id = "another";
   EXPECT_THAT(refusal(other), testing::HasSubstr("of another project"));
@@ -57,6 +58,8 @@ TEST_F(StoredTraceCli, OfAnotherProjectVersionOrSeedIsRefused) {
   other.program_version = "0.0.1";
   EXPECT_THAT(refusal(other), testing::HasSubstr("this is 0.0.1"));
   EXPECT_THAT(refusal(origin_, "6"), testing::HasSubstr("was traced with seed 5, found --seed 6"));
+  EXPECT_THAT(refusal(origin_, "", "random"),
+              testing::HasSubstr("was traced with sequence sobol, found --sequence random"));
 }
 
 TEST_F(StoredTraceCli, ADamagedFileIsRefusedByItsName) {

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "lucerna/core/io/error.h"
+#include "lucerna/core/io/file.h"
 #include "lucerna/design/evaluation/window.h"
 #include "lucerna/design/problem/zone_guide.h"
 #include "lucerna/photometric_file.h"
@@ -38,14 +39,15 @@ TargetMode read_mode(TomlReader& reader) {
 }
 
 IlluminanceMap read_map(TomlReader& reader, const std::filesystem::path& file, TargetMode mode) {
-  const std::string ending = file.extension().string();
+  const std::string ending = lower_ending(file);
   const auto white = reader.number("white_lx");
   if (ending == ".csv" || ending == ".txt") {
     if (white) reader.fail("white_lx", "belongs to a PNG picture; a CSV holds the illuminances themselves");
     return read_illuminance_csv(file);
   }
   if (ending != ".png") {
-    reader.fail("file", fmt::format("found '{}', expected a .csv or .png with the illuminance", ending));
+    reader.fail("file",
+                fmt::format("found '{}', expected a .csv, .txt or .png with the illuminance", ending));
   }
   if (mode == TargetMode::absolute && !white) {
     reader.missing("white_lx", "mode = \"absolute\" needs the illuminance of the picture's white");

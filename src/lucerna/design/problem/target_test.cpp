@@ -84,6 +84,7 @@ TEST(PlaneTarget, AMirrorIsShapedForARectangleOnTheFloor) {
 TEST(PlaneTarget, NamesWhatIsWrong) {
   const TempDir folder;
   write_file(folder / "e.csv", "1\n");
+  write_file(folder / "CAMERA.CSV", "1\n");
   write_png(folder / "e.png", 1, 1, std::vector<std::uint8_t>(3, 255));
   const auto message = [&](const std::string& target) {
     try {
@@ -99,7 +100,9 @@ TEST(PlaneTarget, NamesWhatIsWrong) {
   const std::string placed = "kind = \"plane\"\nposition_mm = [0, 0, -1500]\nsize_mm = [800, 500]\n";
   EXPECT_THAT(message(placed + "file = \"e.csv\"\n"), HasSubstr("target.normal: is missing"));
   EXPECT_THAT(message(placed + "file = \"e.csv\"\nnormal = \"-z\"\n"), HasSubstr("looks away"));
-  EXPECT_THAT(message(placed + "file = \"e.ldt\"\nnormal = \"z\"\n"), HasSubstr("expected a .csv or .png"));
+  EXPECT_THAT(message(placed + "file = \"CAMERA.CSV\"\nnormal = \"-z\"\n"), HasSubstr("looks away"));
+  EXPECT_THAT(message(placed + "file = \"e.ldt\"\nnormal = \"z\"\n"),
+              HasSubstr("expected a .csv, .txt or .png"));
   EXPECT_THAT(message(placed + "file = \"e.png\"\nnormal = \"z\"\nmode = \"absolute\"\n"),
               HasSubstr("target.white_lx: is missing"));
   EXPECT_THAT(message(placed + "file = \"none.csv\"\nnormal = \"z\"\n"), HasSubstr("none.csv"));

@@ -120,6 +120,7 @@ void check(const DesignOptions& options) {
 DesignResult design(const DesignProblem& problem, const DesignOptions& options, Progress& progress,
                     const DesignObserver& observer) {
   check(options);
+  if (options.pareto) check_pareto(problem);
   LUCERNA_CHECK(options.peers == nullptr || !options.accelerator, "a device is not shared with peers");
   const double time_s = options.time_s.value_or(problem.time_s);
   TimeBudget time(time_s, options.peers);

@@ -16,6 +16,7 @@
 #include "lucerna/random.h"
 #include "lucerna/trace.h"
 #include "lucerna/trace/result/far_field_counts.h"
+#include "tests/support/random_rays.h"
 #include "tests/support/temp_dir.h"
 
 namespace lucerna {
@@ -160,6 +161,21 @@ TEST(Design, ResumesInTheMiddleOfASearchToTheSameBits) {
 }
 
 constexpr const char* kFreeForm = "family = \"bspline\"\nfocal_mm = 8\n";
+
+TEST(Design, WithoutATradeBetweenErrorAndLightIsRefusedAtOnce) {
+  const TempDir folder;
+  write_target(folder.path());
+  DesignOptions options = small();
+  options.pareto = true;
+  const auto refusal = [&](const std::string& keys, const std::string& shape) {
+    const DesignProblem p = problem(folder.path(), keys, shape);
+    return test::message_of<InputError>([&] { static_cast<void>(design(p, options)); });
+  };
+  EXPECT_THAT(refusal("", "family = \"revolution\"\npreset = \"parabola\"\nfocal_mm = 8\n"),
+              testing::HasSubstr("found family = \"revolution\""));
+  EXPECT_THAT(refusal("optimizer = \"least-squares\"\n", kFreeForm),
+              testing::HasSubstr("found optimizer = \"least-squares\""));
+}
 
 /// Takes a design up from what `chosen` says of its states, one for each figure, and expects the same bits.
 void expect_same_end(const DesignProblem& p, const std::function<int(const FitState&)>& chosen, int figures,

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lucerna/design/run/pareto.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 
 #include "lucerna/core/io/error.h"
 #include "lucerna/design/run/design.h"
@@ -72,12 +75,24 @@ std::vector<DesignShape> guesses(const FitProblem& fit, const DesignShape& found
 
 }  // namespace
 
+void check_pareto(const DesignProblem& problem) {
+  const DesignShape& start = problem.start;
+  const std::string found = start.is_revolution() ? "family = \"revolution\""
+                            : !uses_free_form_search(problem)
+                                ? fmt::format("optimizer = \"{}\"", problem.optimizer.name)
+                            : problem.target.mode != TargetMode::shape ? "mode = \"absolute\""
+                            : problem.target.zones_only                ? "zones alone"
+                                                                       : "";
+  if (found.empty()) return;
+  throw InputError(
+      fmt::format("no trade between error and light: found {}, expected a free form or a trough, "
+                  "optimizer = \"auto\" and a target with mode = \"shape\"",
+                  found),
+      ErrorCause::unsupported, "pareto");
+}
+
 std::vector<ParetoPoint> pareto_front(const DesignProblem& problem, const DesignShape& found,
                                       const DesignOptions& options, Progress& progress) {
-  if (!uses_free_form_search(problem) || problem.target.mode != TargetMode::shape ||
-      problem.target.zones_only) {
-    return {};
-  }
   DesignRays rays = design_rays(problem, options, options.seed);
   FitProblem fit = fit_problem(problem, options, rays);
   const ErrorBoxes boxes(target_rectangle(problem.target));
