@@ -95,7 +95,8 @@ void run_bench(const BenchArguments& a, Session& session) {
 void add_bench(CLI::App& app, Session& session, int&) {
   Command command(app, "bench", "Measure how fast light is traced on this machine");
   auto arguments = std::make_shared<BenchArguments>();
-  command.option("--device", arguments->device, "cpu, cuda or auto");
+  command.option("--device", arguments->device,
+                 "cpu or auto, which are the same: bench_gpu measures a graphics card");
   command.option("--rays", arguments->rays, "Rays a measurement, 1 to 1e8");
   command.option("--cells", arguments->cells, "Cells a side of the mirror, powers of two from 8 to 8192");
   session.add_json(command);

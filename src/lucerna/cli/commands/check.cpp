@@ -170,7 +170,8 @@ void add_check(CLI::App& app, Session& session, int& exit_code) {
   Command command(app, "check", "Name every fault of files or folders with its place");
   auto paths = std::make_shared<std::vector<std::string>>();
   auto photometric = std::make_shared<PhotometricArguments>();
-  command.required("FILE", *paths, "Ray files, models, IES, EULUMDAT, .agf, .bsdf, projects; or folders");
+  command.required("FILE", *paths,
+                   "Ray files, models, IES, EULUMDAT, .agf, .bsdf, projects; or folders of all but projects");
   photometric->add_read(command);
   session.add_json(command);
   session.add_strict(command);

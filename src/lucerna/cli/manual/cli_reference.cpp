@@ -17,7 +17,8 @@ constexpr std::string_view kHead = R"(# Command line
 
 `lucerna COMMAND ...` does one thing. `lucerna COMMAND --help` prints what is below.
 Counts may be written as `1e6`. Results go to standard output, warnings and errors to standard
-error. An error is one line: the file, the place, what was found and what was expected.
+error; `info` and `check` list what they find in files with their results. An error is one line: the
+file, the place, what was found and what was expected.
 
 This page is written by `make reference` from the program's parser.
 
@@ -26,9 +27,9 @@ This page is written by `make reference` from the program's parser.
 | code | meaning |
 |---|---|
 | 0 | done |
-| 1 | bad input, or a check failed: a limit that is not held, a file with faults |
+| 1 | bad input, no memory, no device, or a check failed: a limit that is not held, a zone that is missed or not determined, a file with faults |
 | 2 | the command line itself is wrong |
-| 3 | interrupted; what was whole has been written |
+| 3 | interrupted by Ctrl-C or SIGTERM; what was whole has been written. A second Ctrl-C ends at once |
 )";
 
 /// A cell of a table: no bar, no end of line.

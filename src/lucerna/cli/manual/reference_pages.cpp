@@ -25,8 +25,10 @@ a `UsageError` for a bad call, `Interrupted` where the caller's `Progress` asked
 `Error::option()` names the field of the call's options that would help, where there is one.
 A broken invariant of the library's own is a `std::logic_error`: please report it.
 
-`error_parts` takes the text apart: file, place, found, expected. In Python these are attributes of
-`lucerna.InputError`; errors of files are an `OSError` there, an interrupt a `KeyboardInterrupt`.
+`error_parts` takes the text apart: file, place, found, expected. In Python `path`, `place`,
+`found`, `expected` and `cause` are attributes of `lucerna.InputError`, which bad calls raise too.
+The causes not found, unreadable, unwritable and no space raise an `OSError` there, an interrupt a
+`KeyboardInterrupt`.
 
 | cause | `ErrorCause::` | meaning |
 |---|---|---|
@@ -37,11 +39,12 @@ std::string_view meaning(ErrorCause cause) {
     case ErrorCause::invalid:
       return "A value that cannot be, or one that the call cannot work with.";
     case ErrorCause::out_of_range:
-      return "A number of a project file outside its range.";
+      return "A number outside its range.";
     case ErrorCause::missing:
       return "Something that is needed was not given: a key, a flux, a format.";
     case ErrorCause::unknown_key:
-      return "A key of a project file that there is none of. The text names the nearest one.";
+      return "A key of a project file that there is none of. The text names the nearest one, where one is "
+             "near.";
     case ErrorCause::contradiction:
       return "Two demands exclude each other. The text names both.";
     case ErrorCause::mismatch:
@@ -55,9 +58,9 @@ std::string_view meaning(ErrorCause cause) {
     case ErrorCause::no_space:
       return "The disk is full. What was there before is unchanged.";
     case ErrorCause::damaged:
-      return "A file that breaks its format. The text has the byte or line.";
+      return "A file that breaks its format. The text has the byte or line, where there is one.";
     case ErrorCause::unsupported:
-      return "A device that is not there, or a feature that this build lacks.";
+      return "A device that is not there, or what this build, or this kind of problem, cannot do.";
     case ErrorCause::usage:
       return "The call itself is wrong.";
     case ErrorCause::interrupted:

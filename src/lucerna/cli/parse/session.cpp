@@ -112,7 +112,7 @@ Session::~Session() {
 
 void Session::add_common(Command& command) {
   command.option("--threads", threads, "Worker threads (default: all)", 1, 4096);
-  command.flag("--quiet", quiet, "Print no progress and no summary");
+  command.flag("--quiet", quiet, "Print no progress and no result as text; warnings and --json remain");
 }
 
 void Session::add_json(Command& command) {

@@ -17,7 +17,8 @@ looked at; `lucerna trace` and `lucerna design` read it. `lucerna init` writes o
 - Lengths are in mm, angles in degrees. The unit is part of a key's name.
 - The luminaire frame has z up. Nadir (gamma 0) is -z, C0 is +x, C90 is +y.
 - File names are relative to the folder of the project.
-- A key that is not known is an error. The message names the line and the nearest known key.
+- A key that is not known is an error. The message names the line and, where one is near, the
+  key that may be meant.
 - A number out of its range is an error. The message names the line, what was found and the range.
 
 This page is written by `make reference` from the table that the parser reads with.
