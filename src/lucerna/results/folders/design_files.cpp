@@ -79,7 +79,7 @@ std::vector<std::string> write_design_files(const std::filesystem::path& folder,
                                             const nlohmann::ordered_json& json) {
   write_design_progress(folder, problem, result.shape, history, result.checkpoint);
   std::vector<std::string> names{"reflector.toml"};
-  // The mesh that the error was found with.
+  // As fine as that of a validation by many rays.
   const ErrorBoxes boxes(target_rectangle(problem.target));
   const CadTolerance stl =
       mesh_tolerance(boxes, box_target(boxes, problem.target, 1.0), problem.world_from_mirror.origin_mm());
